@@ -1,0 +1,97 @@
+//! One cyclic sector of a bladed disk with ring damper, in physical degrees of freedom.
+
+use crate::linalg::{Complex64, SymmetricSparse};
+
+/// Component of a displacement in the cylindrical frame at the node's own angle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Component {
+    /// Radial, `r`.
+    Radial,
+    /// Tangential, `t` (theta).
+    Tangential,
+    /// Axial, `z`.
+    Axial,
+}
+
+/// The body a node belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Body {
+    /// Disk and blade.
+    Blisk,
+    /// Ring damper.
+    Ring,
+}
+
+/// A degree of freedom: one component of one node.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dof {
+    /// Node id, from 0.
+    pub node: usize,
+    /// Displacement component.
+    pub component: Component,
+    /// Cartesian position of the node in the frame of sector 0, m; the axis of rotation is z.
+    pub position_m: [f64; 3],
+    /// Body of the node.
+    pub body: Body,
+}
+
+/// A pair of facing nodes of blisk and ring.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactPair {
+    /// Node on the blisk.
+    pub blisk_node: usize,
+    /// Node on the ring.
+    pub ring_node: usize,
+    /// Unit outward normal of the blisk's surface (pointing into the ring), in (r, theta, z).
+    pub normal: [f64; 3],
+    /// Share of the sector's normal load and contact stiffness; the shares of a sector sum to 1.
+    pub weight: f64,
+}
+
+/// A node whose displacement is reported; the first of a model carries the peak metric.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ObservedNode {
+    /// Name shown to the user.
+    pub name: String,
+    /// Node id.
+    pub node: usize,
+}
+
+/// One cyclic sector, structure only: no contact springs, boundary conditions already applied.
+///
+/// Both cyclic faces are present; the high face of sector n is the low face of sector n + 1.
+/// Conventions of frame, signs and faces: the module documentation of [`crate::model::cyclic`].
+/// Built by the sources beside this file and checked by [`super::validate`] before use.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SectorModel {
+    /// Name of the model.
+    pub name: String,
+    /// Number of sectors N of the wheel.
+    pub sectors: usize,
+    /// Stiffness, N/m, `n_dofs x n_dofs`.
+    pub stiffness: SymmetricSparse,
+    /// Mass, kg, `n_dofs x n_dofs`; positive semidefinite (a lumped high face has none).
+    pub mass: SymmetricSparse,
+    /// Share of the stiffness that belongs to the blade, N/m: mistuned sector n has `K + delta_n K_blade`.
+    pub blade_stiffness: SymmetricSparse,
+    /// Degrees of freedom, in the order of the matrices.
+    pub dofs: Vec<Dof>,
+    /// `(low_dof, high_dof)`: the same component on the two cyclic faces.
+    pub cyclic_pairs: Vec<(usize, usize)>,
+    /// Contact pairs; no node on the high face. Empty for a model without ring.
+    pub contact_pairs: Vec<ContactPair>,
+    /// Complex force amplitude on sector 0 as `(dof, newton)`.
+    pub force: Vec<(usize, Complex64)>,
+    /// Observed nodes, at least one.
+    pub observed: Vec<ObservedNode>,
+}
+
+impl SectorModel {
+    /// The dof of `node` in direction `component`, if the node has it.
+    #[must_use]
+    pub fn dof_of(&self, node: usize, component: Component) -> Option<usize> {
+        self.dofs
+            .iter()
+            .position(|dof| dof.node == node && dof.component == component)
+    }
+}

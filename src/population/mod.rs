@@ -1,0 +1,3 @@
+//! All patterns: rows, tables, statistics.
+
+pub mod monte_carlo;

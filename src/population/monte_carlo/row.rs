@@ -1,0 +1,55 @@
+//! One row of `responses.parquet`: what became of one (scenario, pattern).
+
+use crate::response::harmonic_balance::Status;
+
+/// Result of one pattern under one scenario. Values of a failed row are `None`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResponseRow {
+    /// Scenario index.
+    pub scenario: usize,
+    /// Pattern id.
+    pub pattern: u32,
+    /// How the solution ended.
+    pub status: Status,
+    /// Largest amplitude over blades and frequency, m.
+    pub peak_amplitude_m: Option<f64>,
+    /// Its frequency, Hz.
+    pub peak_frequency_hz: Option<f64>,
+    /// Its blade.
+    pub peak_blade: Option<u32>,
+    /// Peak amplitude over the tuned peak of the same scenario.
+    pub amplification_factor: Option<f64>,
+    /// Whether lower amplitudes were seen on both sides of the peak.
+    pub peak_bracketed: Option<bool>,
+    /// Harmonic set, like `"1-3"`.
+    pub harmonics: String,
+    /// Nonlinear solves used.
+    pub nonlinear_solves: u64,
+    /// Newton iterations used.
+    pub newton_iterations: u64,
+    /// Residual relative to the excitation at the peak.
+    pub residual: Option<f64>,
+    /// Share of pairs slipping in any direction at any sample, at the peak.
+    pub slipping_fraction: Option<f64>,
+    /// Share of pairs with no normal load at some sample, at the peak.
+    pub separated_fraction: Option<f64>,
+    /// Shortcut used, or `"none"`.
+    pub shortcut: String,
+}
+
+/// Peak of the tuned wheel of a scenario, the denominator of its amplification factors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TunedReference {
+    /// Scenario index.
+    pub scenario: usize,
+    /// How the solution ended.
+    pub status: Status,
+    /// Peak amplitude, m.
+    pub amplitude_m: Option<f64>,
+    /// Peak frequency, Hz.
+    pub frequency_hz: Option<f64>,
+    /// Share of separated pairs at the peak.
+    pub separated_fraction: Option<f64>,
+    /// Share of slipping pairs at the peak.
+    pub slipping_fraction: Option<f64>,
+}

@@ -1,0 +1,5 @@
+//! Linear limits, sweep, peak search, and the one definition of the amplification factor.
+
+mod options;
+
+pub use options::{AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, SolverOptions};

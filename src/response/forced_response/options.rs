@@ -1,0 +1,108 @@
+//! What a user chooses about the solution of one row, and the contact condition it is solved under.
+
+use serde::{Deserialize, Serialize};
+
+/// Temporal harmonics of the solution.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Harmonics {
+    /// Chosen by the program; at present `[1, 3]` where there is friction, remainder unscreened.
+    Auto,
+    /// This set, ascending; contains 1.
+    Set(Vec<u32>),
+}
+
+/// The displacement measure called amplitude, at the first observed node of a blade.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AmplitudeMeasure {
+    /// Euclidean norm over r, theta, z of the complex amplitude of the fundamental harmonic.
+    Fundamental,
+    /// Largest norm of the displacement over one period, harmonic 0 left out.
+    TimeMaximum,
+}
+
+/// Band in which the peak is sought.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum FrequencyBand {
+    /// Per row, from the stuck and slide linear models of the pattern.
+    Auto,
+    /// Fixed, Hz.
+    Fixed {
+        /// Lower end, Hz.
+        start_hz: f64,
+        /// Upper end, Hz.
+        stop_hz: f64,
+    },
+}
+
+/// Settings of the nonlinear solution and of the peak search.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SolverOptions {
+    /// Harmonic set. Default auto.
+    pub harmonics: Harmonics,
+    /// Time samples per period of the alternating frequency/time method. Default 128.
+    pub samples_per_period: usize,
+    /// Bound on the residual force relative to the excitation. Default 1e-8.
+    pub residual_tolerance: f64,
+    /// Relative tolerance of the peak amplitude in the peak search. Default 1e-3.
+    pub peak_tolerance: f64,
+    /// Measure called amplitude. Default fundamental.
+    pub amplitude: AmplitudeMeasure,
+    /// Instants of a period for [`AmplitudeMeasure::TimeMaximum`]. Default 1024.
+    pub time_samples: usize,
+    /// Searched band. Default auto.
+    pub frequency_band: FrequencyBand,
+}
+
+impl Default for SolverOptions {
+    fn default() -> Self {
+        Self {
+            harmonics: Harmonics::Auto,
+            samples_per_period: 128,
+            residual_tolerance: 1e-8,
+            peak_tolerance: 1e-3,
+            amplitude: AmplitudeMeasure::Fundamental,
+            time_samples: 1024,
+            frequency_band: FrequencyBand::Auto,
+        }
+    }
+}
+
+/// Condition of the contact between blisk and ring in one scenario.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactCondition {
+    /// The nonlinear contact law under this normal load per sector, N.
+    Full {
+        /// Normal load per sector, N.
+        normal_load_n: f64,
+    },
+    /// Linear limit: normal and tangential contact springs bilateral.
+    Stuck,
+    /// Linear limit: normal contact springs only.
+    Slide,
+    /// Linear limit: no contact springs.
+    Free,
+}
+
+impl ContactCondition {
+    /// Name in the column `contact`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Full { .. } => "full",
+            Self::Stuck => "stuck",
+            Self::Slide => "slide",
+            Self::Free => "free",
+        }
+    }
+
+    /// Normal load per sector, N; none for the linear limits.
+    #[must_use]
+    pub fn normal_load_n(self) -> Option<f64> {
+        match self {
+            Self::Full { normal_load_n } => Some(normal_load_n),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! What a user chooses about the contact between blisk and ring.
+
+use serde::{Deserialize, Serialize};
+
+/// Contact law of a node pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactLaw {
+    /// Friction along the first tangent only, limit `mu N0`; normal spring bilateral where given.
+    #[serde(rename = "macro_slip_1d")]
+    MacroSlip1d,
+    /// Variable normal load `max(0, N0 + kn g)` and two independent tangential Jenkins elements.
+    #[serde(rename = "simplified_3d")]
+    Simplified3d,
+}
+
+/// Contact law and its parameters; stiffnesses are per sector and shared out by pair weight.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ContactOptions {
+    /// Contact law. Default `simplified_3d`.
+    #[serde(default = "default_law")]
+    pub law: ContactLaw,
+    /// Coefficient of friction mu.
+    pub friction_coefficient: f64,
+    /// Tangential contact stiffness per sector, N/m.
+    pub tangential_stiffness_n_per_m: f64,
+    /// Normal contact stiffness per sector, N/m; optional for `macro_slip_1d` only.
+    pub normal_stiffness_n_per_m: Option<f64>,
+}
+
+fn default_law() -> ContactLaw {
+    ContactLaw::Simplified3d
+}

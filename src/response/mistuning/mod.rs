@@ -1,0 +1,5 @@
+//! Patterns of blade deviations: distributions, random streams, tables, and their application.
+
+mod options;
+
+pub use options::{Distribution, Projection};
