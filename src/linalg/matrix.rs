@@ -17,6 +17,12 @@ pub trait Scalar: ComplexField + Copy + PartialEq + Default + std::fmt::Debug {
     fn real_part(self) -> f64;
     /// As a complex number.
     fn to_complex(self) -> Complex64;
+    /// Appends the real numbers that store the value.
+    fn store(self, parts: &mut Vec<f64>);
+    /// Number of real numbers that store a value.
+    const PARTS: usize;
+    /// From its stored real numbers, of which there are [`Self::PARTS`].
+    fn load(parts: &[f64]) -> Self;
 }
 
 impl Scalar for f64 {
@@ -31,6 +37,13 @@ impl Scalar for f64 {
     }
     fn to_complex(self) -> Complex64 {
         Complex64::new(self, 0.0)
+    }
+    fn store(self, parts: &mut Vec<f64>) {
+        parts.push(self);
+    }
+    const PARTS: usize = 1;
+    fn load(parts: &[f64]) -> Self {
+        parts[0]
     }
 }
 
@@ -47,6 +60,13 @@ impl Scalar for Complex64 {
     fn to_complex(self) -> Complex64 {
         self
     }
+    fn store(self, parts: &mut Vec<f64>) {
+        parts.extend([self.re, self.im]);
+    }
+    const PARTS: usize = 2;
+    fn load(parts: &[f64]) -> Self {
+        Self::new(parts[0], parts[1])
+    }
 }
 
 /// Dense `rows x columns` matrix, column-major without padding.
@@ -54,10 +74,54 @@ impl Scalar for Complex64 {
 /// faer's own matrix pads its columns with uninitialised memory, and arithmetic on subnormal
 /// leftovers there is up to a hundred times slower; hence a plain vector viewed by faer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(into = "StoredMatrix", try_from = "StoredMatrix")]
+#[serde(bound = "T: Scalar")]
 pub struct Matrix<T> {
     rows: usize,
     columns: usize,
     data: Vec<T>,
+}
+
+/// A matrix as it is written to disk: its size and the real numbers of its entries.
+#[derive(Serialize, Deserialize)]
+struct StoredMatrix {
+    rows: usize,
+    columns: usize,
+    parts: Vec<f64>,
+}
+
+impl<T: Scalar> From<Matrix<T>> for StoredMatrix {
+    fn from(matrix: Matrix<T>) -> Self {
+        let mut parts = Vec::with_capacity(matrix.data.len() * T::PARTS);
+        for &entry in &matrix.data {
+            entry.store(&mut parts);
+        }
+        Self {
+            rows: matrix.rows,
+            columns: matrix.columns,
+            parts,
+        }
+    }
+}
+
+impl<T: Scalar> TryFrom<StoredMatrix> for Matrix<T> {
+    type Error = String;
+    fn try_from(stored: StoredMatrix) -> Result<Self, String> {
+        let data: Vec<T> = stored.parts.chunks_exact(T::PARTS).map(T::load).collect();
+        if stored.rows.checked_mul(stored.columns) != Some(data.len()) {
+            return Err(format!(
+                "a {} x {} matrix holds {} numbers",
+                stored.rows,
+                stored.columns,
+                data.len()
+            ));
+        }
+        Ok(Self {
+            rows: stored.rows,
+            columns: stored.columns,
+            data,
+        })
+    }
 }
 
 impl<T: Scalar> Matrix<T> {
@@ -136,6 +200,12 @@ impl<T: Scalar> Matrix<T> {
     #[must_use]
     pub fn adjoint(&self) -> Self {
         Self::from_fn(self.columns, self.rows, |i, j| self[(j, i)].conjugate())
+    }
+
+    /// Complex conjugate, entry by entry.
+    #[must_use]
+    pub fn conjugate(&self) -> Self {
+        Self::from_fn(self.rows, self.columns, |i, j| self[(i, j)].conjugate())
     }
 
     /// Sub-matrix of the given rows, in the given order.
