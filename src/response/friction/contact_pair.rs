@@ -1,6 +1,6 @@
 //! One pair of contact nodes: its parameters, its displacement history and what the chosen law makes of it.
 
-use super::{ContactLaw, PeriodicSlider, macro_slip_1d, simplified_3d};
+use super::{ContactLaw, ContactOptions, PeriodicSlider, macro_slip_1d, simplified_3d};
 
 impl ContactLaw {
     /// Whether the normal load follows the normal displacement.
@@ -27,6 +27,17 @@ pub struct PairParameters {
 }
 
 impl PairParameters {
+    /// The parameters of a whole sector under the normal load `normal_load_n`, to be shared out over its pairs.
+    #[must_use]
+    pub fn of_sector(options: &ContactOptions, normal_load_n: f64) -> Self {
+        Self {
+            normal_load_n,
+            normal_stiffness_n_per_m: options.normal_stiffness_n_per_m.unwrap_or(0.0),
+            tangential_stiffness_n_per_m: options.tangential_stiffness_n_per_m,
+            friction_coefficient: options.friction_coefficient,
+        }
+    }
+
     /// The parameters of a pair that has `weight` of the sector's contact; mu is no share.
     #[must_use]
     pub fn share(self, weight: f64) -> Self {
@@ -103,13 +114,21 @@ impl ContactHistory {
         }
     }
 
-    /// Applies `law` to the displacement; every history must have the number of samples of these buffers.
+    /// Applies `law` to the displacement.
+    ///
+    /// # Panics
+    /// A history does not have `n_samples` samples.
     pub fn respond(
         &mut self,
         law: ContactLaw,
         parameters: &PairParameters,
         displacement: PairDisplacement<'_>,
     ) -> PairState {
+        assert_eq!(
+            displacement.normal.len(),
+            self.normal_load.len(),
+            "samples of the closing"
+        );
         match law {
             ContactLaw::MacroSlip1d => macro_slip_1d::respond(self, parameters, displacement),
             ContactLaw::Simplified3d => simplified_3d::respond(self, parameters, displacement),

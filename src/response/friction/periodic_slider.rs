@@ -58,6 +58,9 @@ impl PeriodicSlider {
     ///
     /// `displacement_m` (`n_samples`) is the tangential displacement, `normal_load_n` (`n_samples`, all >= 0) the normal
     /// load. Values that are not finite are not reported here: the linear part of the force carries them on.
+    ///
+    /// # Panics
+    /// A history does not have `n_samples` samples.
     pub fn solve(
         &mut self,
         tangential_stiffness_n_per_m: f64,
@@ -65,6 +68,16 @@ impl PeriodicSlider {
         displacement_m: &[f64],
         normal_load_n: &[f64],
     ) -> bool {
+        assert_eq!(
+            displacement_m.len(),
+            self.offset.len(),
+            "samples of the displacement"
+        );
+        assert_eq!(
+            normal_load_n.len(),
+            self.offset.len(),
+            "samples of the normal load"
+        );
         let (highest_lower, lowest_upper) = self.bound(
             tangential_stiffness_n_per_m,
             friction_coefficient,

@@ -28,7 +28,11 @@ pub(super) fn respond(
         let bilateral = n0 + kn * g;
         separated |= bilateral <= 0.0;
         *load = if bilateral > 0.0 { bilateral } else { 0.0 };
-        *correction = if bilateral > 0.0 { 0.0 } else { -bilateral };
+        *correction = if bilateral > 0.0 {
+            0.0
+        } else {
+            0.0 - bilateral
+        };
     }
     let mut slipping = false;
     for (slider, x) in history.sliders.iter_mut().zip(displacement.tangential) {

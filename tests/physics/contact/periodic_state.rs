@@ -144,6 +144,47 @@ fn slider_agrees_with_the_start_at_the_lowest_upper_bound() {
     }
 }
 
+#[test]
+fn values_that_are_not_finite_pass_without_a_panic() {
+    let transform = Arc::new(HarmonicTransform::new(&[0, 1], 32).unwrap());
+    let mut pairs = PairHarmonics::new(ContactLaw::Simplified3d, transform);
+    let mut jacobian = PairJacobian::new(3);
+    for poison in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX] {
+        for position in 0..9 {
+            let mut coefficients = [0.0, 1.0, 2.0, 0.0, 3.0, -4.0, 0.0, 5.0, 6.0];
+            coefficients[position] = poison;
+            let mut correction = [0.0; 9];
+            pairs.evaluate(
+                &pair(1.0, 0.3),
+                &coefficients,
+                &mut correction,
+                Some(&mut jacobian),
+            );
+        }
+    }
+}
+
+#[test]
+fn few_samples_are_enough_for_the_law_itself() {
+    for n_samples in 1..8 {
+        let x: Vec<f64> = (0..n_samples)
+            .map(|j| [1.0, -1.0, 0.5, -2.0][j % 4])
+            .collect();
+        let load = vec![0.25; n_samples];
+        let mut slider = PeriodicSlider::new(n_samples);
+        slider.solve(1.0, 1.0, &x, &load);
+        let force: Vec<f64> = x
+            .iter()
+            .zip(slider.offset_n())
+            .map(|(x, y)| x + y)
+            .collect();
+        if slider.is_slipping() {
+            assert_eq!(force, marched(1.0, 1.0, &x, &load, 4));
+        }
+        assert_eq!(slider.is_slipping(), n_samples > 1);
+    }
+}
+
 fn pair(n0: f64, mu: f64) -> PairParameters {
     PairParameters {
         normal_load_n: n0,
