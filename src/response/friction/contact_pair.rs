@@ -1,4 +1,5 @@
-//! One pair of contact nodes: its parameters, its displacement history and what the chosen law makes of it.
+//! One pair of contact nodes: its parameters, its displacement history and what the chosen law
+//! makes of it.
 
 use super::{ContactLaw, ContactOptions, PeriodicSlider, macro_slip_1d, simplified_3d};
 
@@ -27,7 +28,8 @@ pub struct PairParameters {
 }
 
 impl PairParameters {
-    /// The parameters of a whole sector under the normal load `normal_load_n`, to be shared out over its pairs.
+    /// The parameters of a whole sector under the normal load `normal_load_n`, to be shared out
+    /// over its pairs.
     #[must_use]
     pub fn of_sector(options: &ContactOptions, normal_load_n: f64) -> Self {
         Self {
@@ -49,8 +51,8 @@ impl PairParameters {
         }
     }
 
-    /// Whether the pair certainly sticks throughout, in contact and with zero offset, if its displacement along n, t1, t2
-    /// never exceeds `excursions_m`: `kt |x| < mu (N0 - kn |g|)`.
+    /// Whether the pair certainly sticks throughout, in contact and with zero offset, if its
+    /// displacement along n, t1, t2 never exceeds `excursions_m`: `kt |x| < mu (N0 - kn |g|)`.
     #[must_use]
     pub fn surely_sticks(&self, law: ContactLaw, excursions_m: [f64; 3]) -> bool {
         let [normal, first, second] = excursions_m;
@@ -67,10 +69,12 @@ impl PairParameters {
     }
 }
 
-/// Relative displacement `u_blisk - u_ring` of a pair over one period, m; each history has `n_samples` samples.
+/// Relative displacement `u_blisk - u_ring` of a pair over one period, m; each history has
+/// `n_samples` samples.
 #[derive(Debug, Clone, Copy)]
 pub struct PairDisplacement<'a> {
-    /// Closing `g_j` (positive = pressed together), its mean included where harmonic 0 is solved for.
+    /// Closing `g_j` (positive = pressed together), its mean included where harmonic 0 is solved
+    /// for.
     pub normal: &'a [f64],
     /// `x_j` along t1 and t2, without their means.
     pub tangential: [&'a [f64]; 2],
@@ -85,10 +89,12 @@ pub struct PairState {
     pub separated: bool,
 }
 
-/// Response of a pair: corrections to the *linear, stuck* contact force, and what their derivatives need.
+/// Response of a pair: corrections to the *linear, stuck* contact force, and what their derivatives
+/// need.
 ///
-/// The stuck force is `(kn g, kt x1, kt x2)` (for `macro_slip_1d`: `(kn g, kt x1, 0)`). Corrections are formed directly,
-/// never as a difference of two forces: a pair that sticks has a correction of exactly zero at any normal load.
+/// The stuck force is `(kn g, kt x1, kt x2)` (for `macro_slip_1d`: `(kn g, kt x1, 0)`). Corrections
+/// are formed directly, never as a difference of two forces: a pair that sticks has a correction of
+/// exactly zero at any normal load.
 #[derive(Debug, Clone)]
 pub struct ContactHistory {
     /// `N_j`, N.
@@ -164,7 +170,8 @@ impl ContactHistory {
         &self.normal_load
     }
 
-    /// Normal correction `(N_j - N0) - kn g_j`, N (`n_samples`); its derivative is `-kn` where `N_j = 0`, else 0.
+    /// Normal correction `(N_j - N0) - kn g_j`, N (`n_samples`); its derivative is `-kn` where `N_j
+    /// = 0`, else 0.
     #[must_use]
     pub fn normal_correction_n(&self) -> &[f64] {
         &self.normal_correction

@@ -1,9 +1,12 @@
 //! The law `simplified_3d`: variable normal load with separation, two independent Jenkins elements.
 //!
 //! ```text
-//! N_j = max(0, N0 + kn g_j),          normal correction   c_j = (N_j - N0) - kn g_j = max(0, -(N0 + kn g_j))
-//! T_j = kt x_j + y_j, |T_j| <= mu N_j, tangential correction y_j of each direction: see `periodic_slider`
+//! N_j = max(0, N0 + kn g_j)
+//! c_j = (N_j - N0) - kn g_j = max(0, -(N0 + kn g_j))     normal correction
+//! T_j = kt x_j + y_j,    |T_j| <= mu N_j                 tangential correction y_j, per direction
 //! ```
+//!
+//! For y see [`PeriodicSlider`](super::PeriodicSlider).
 
 use super::{ContactHistory, PairDisplacement, PairParameters, PairState};
 

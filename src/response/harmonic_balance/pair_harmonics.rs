@@ -1,8 +1,10 @@
-//! One contact pair in harmonic space: coefficients of its displacement to those of its force, with derivatives.
+//! One contact pair in harmonic space: coefficients of its displacement to those of its force, with
+//! derivatives.
 //!
-//! Alternating frequency/time: synthesise the histories, apply the law, project. Forces are *corrections* to the linear
-//! stuck force, see [`ContactHistory`]; with `W`, `V` sums over the clips (sample `r_e`, sign `s_e`) of a slider and
-//! `Psi_e` the sum of `psi` over the samples that clip e rules,
+//! Alternating frequency/time: synthesise the histories, apply the law, project. Forces are
+//! *corrections* to the linear stuck force, see [`ContactHistory`]; with `W`, `V` sums over the
+//! clips (sample `r_e`, sign `s_e`) of a slider and `Psi_e` the sum of `psi` over the samples that
+//! clip e rules,
 //!
 //! ```text
 //! W_{cc'} = sum_e Psi_{e,c} phi_c'(r_e),    V_{cc'} = sum_e s_e Psi_{e,c} phi_c'(r_e)
@@ -10,8 +12,9 @@
 //! d(normal)/d(normal)_{cc'}   = -kn sum_{j: N_j = 0} psi_c(tau_j) phi_c'(tau_j)
 //! ```
 //!
-//! The mean of the tangential displacement is no input of the law and its correction is zero (its force is the linear
-//! `kt u_0`): coefficient 0 of a set with harmonic 0 gives zero rows and columns in the tangential directions.
+//! The mean of the tangential displacement is no input of the law and its correction is zero (its
+//! force is the linear `kt u_0`): coefficient 0 of a set with harmonic 0 gives zero rows and
+//! columns in the tangential directions.
 
 use std::sync::Arc;
 
@@ -21,8 +24,9 @@ use crate::response::friction::{
     ContactHistory, ContactLaw, PairDisplacement, PairParameters, PairState,
 };
 
-/// Derivative of a pair's correction coefficients, N/m; every block is `n_coefficients * n_coefficients`, row after
-/// row, a row per coefficient of the correction and a column per coefficient of the displacement.
+/// Derivative of a pair's correction coefficients, N/m; every block is `n_coefficients *
+/// n_coefficients`, row after row, a row per coefficient of the correction and a column per
+/// coefficient of the displacement.
 ///
 /// Blocks not listed are zero: normal by tangential, and t1 by t2.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,9 +107,9 @@ impl PairHarmonics {
 
     /// Corrections of one pair, and where wanted their derivative.
     ///
-    /// `coefficients`, m, and `correction`, N (`3 * n_coefficients` each): those of n, then t1, then t2, each in the
-    /// order of [`HarmonicTransform`]. `jacobian` is overwritten. A pair that neither slips nor separates has zero
-    /// correction and zero Jacobian, exactly.
+    /// `coefficients`, m, and `correction`, N (`3 * n_coefficients` each): those of n, then t1,
+    /// then t2, each in the order of [`HarmonicTransform`]. `jacobian` is overwritten. A pair that
+    /// neither slips nor separates has zero correction and zero Jacobian, exactly.
     pub fn evaluate(
         &mut self,
         parameters: &PairParameters,
@@ -137,7 +141,8 @@ impl PairHarmonics {
         state
     }
 
-    /// Upper bounds on the displacement along n, t1, t2, m: the sum of the amplitudes of the harmonics.
+    /// Upper bounds on the displacement along n, t1, t2, m: the sum of the amplitudes of the
+    /// harmonics.
     fn excursions(&self) -> [f64; 3] {
         let n_coefficients = self.transform.n_coefficients();
         let first = usize::from(self.transform.has_mean());
@@ -232,8 +237,8 @@ impl PairHarmonics {
     }
 }
 
-/// Factors of the sums over events (clips, or separated samples), coefficient after coefficient with a stride of
-/// `n_samples`.
+/// Factors of the sums over events (clips, or separated samples), coefficient after coefficient
+/// with a stride of `n_samples`.
 #[derive(Debug, Clone)]
 struct ClipSums {
     n_coefficients: usize,
