@@ -58,10 +58,8 @@ fn jacobian_is_the_difference_quotient_away_from_kinks() {
             shifted[column] = coefficients[column] - step;
             pairs.evaluate(&parameters, &shifted, &mut below, None);
             shifted[column] = coefficients[column];
-            let smooth = (0..3 * n)
-                .all(|row| (above[row] + below[row] - 2.0 * value[row]).abs() < 1e-8 * step);
-            let smooth = smooth
-                || (0..3 * n).all(|row| (above[row] + below[row] - 2.0 * value[row]).abs() < 1e-14);
+            let smooth =
+                (0..3 * n).all(|row| (above[row] + below[row] - 2.0 * value[row]).abs() < 1e-14);
             if !smooth {
                 skipped += 1;
                 continue;
