@@ -4,3 +4,4 @@
 
 mod support;
 mod wheels;
+mod debug;

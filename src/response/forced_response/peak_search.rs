@@ -96,7 +96,6 @@ pub fn find_peak(
         envelope,
         settings,
         evaluations: 0,
-        predicted: None,
     };
     let mut first: Vec<f64> = starts
         .iter()
@@ -157,8 +156,6 @@ struct Search {
     envelope: Envelope,
     settings: SearchSettings,
     evaluations: usize,
-    /// Amplitude predicted for the vertex evaluated last.
-    predicted: Option<(f64, f64)>,
 }
 
 enum Next {
@@ -224,7 +221,7 @@ impl Search {
     }
 
     /// The vertex of the best peak first; then the widest interval that could hide a higher one.
-    fn next_frequency(&mut self, best: usize) -> Next {
+    fn next_frequency(&self, best: usize) -> Next {
         if let Some(vertex) = self.unsettled_vertex(best) {
             return Next::Evaluate(vertex);
         }
@@ -268,7 +265,7 @@ impl Search {
 
     /// The vertex of the parabola in `1/A^2` through the best sample and its neighbours, unless
     /// the best is known to lie within tolerance of it.
-    fn unsettled_vertex(&mut self, best: usize) -> Option<f64> {
+    fn unsettled_vertex(&self, best: usize) -> Option<f64> {
         let (left, right) = self.neighbours(best)?;
         let blade = self.samples[best].blade;
         let point = |i: usize| {
@@ -299,26 +296,22 @@ impl Search {
         } else {
             0.0
         };
-        let close = x2 - x0 <= 2.0 * gamma;
-        let agreed = self.predicted.is_some_and(|(f, a)| {
-            f == x1 && (a / amplitude - 1.0).abs() <= self.settings.tolerance
-        });
-        if gain <= 0.5 * self.settings.tolerance && (close || agreed) {
+        // The vertex is trusted where the cubic term it neglects, about 0.1 (d/gamma)^3 at a
+        // distance d of the neighbours, is below the tolerance.
+        let trusted = gamma * (10.0 * self.settings.tolerance).cbrt();
+        let (left_gap, right_gap) = (x1 - x0, x2 - x1);
+        if gain <= 0.5 * self.settings.tolerance && left_gap.max(right_gap) <= trusted {
             return None;
         }
-        let margin = 1e-3 * (x2 - x0);
-        let mut next = vertex.clamp(x0 + margin, x2 - margin);
-        let spacing = f64::max(1e-13 * x1, 1e-6 * gamma * self.settings.tolerance.sqrt());
-        if (next - x1).abs() <= spacing {
-            // The best lies at the vertex already: narrow the wider side, to confirm it.
-            next = if x2 - x1 > x1 - x0 {
-                x1 + 0.5 * (x2 - x1)
-            } else {
-                x1 - 0.5 * (x1 - x0)
-            };
+        if (vertex - x1).abs() > 0.2 * trusted {
+            return Some(vertex.clamp(x0 + 0.1 * left_gap, x2 - 0.1 * right_gap));
         }
-        self.predicted = Some((next, predicted));
-        Some(next)
+        // The best lies at the vertex: confirm it by closer neighbours.
+        Some(if right_gap > left_gap {
+            x1 + f64::min(0.5 * right_gap, 0.9 * trusted)
+        } else {
+            x1 - f64::min(0.5 * left_gap, 0.9 * trusted)
+        })
     }
 }
 

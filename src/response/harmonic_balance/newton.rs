@@ -78,6 +78,7 @@ pub fn solve(
             residual: norm,
             shares,
         };
+        if std::env::var("NEWTON").is_ok() { eprintln!("   it {iterations} norm {norm:e} renew {renew} shares {shares:?}"); }
         if let Some(status) = bounds.judge(first, norm, iterations as usize) {
             return outcome(status);
         }
