@@ -37,15 +37,15 @@ fn straight_brick() -> [[f64; 3]; NODES] {
 /// `K u` of an element, node by node.
 fn forces(nodes: &[[f64; 3]; NODES], displacement: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<[f64; 3]> {
     let element = hexahedron20::matrices(0, nodes, &STEEL).unwrap();
-    (0..NODES)
-        .map(|a| {
+    element
+        .stiffness
+        .iter()
+        .map(|row| {
             let mut force = [0.0; 3];
-            for b in 0..NODES {
-                let u = displacement(nodes[b]);
-                for i in 0..3 {
-                    force[i] += (0..3)
-                        .map(|j| element.stiffness[a][b][i][j] * u[j])
-                        .sum::<f64>();
+            for (block, &position) in row.iter().zip(nodes) {
+                let u = displacement(position);
+                for (total, stiffness) in force.iter_mut().zip(block) {
+                    *total += (0..3).map(|j| stiffness[j] * u[j]).sum::<f64>();
                 }
             }
             force
@@ -233,12 +233,8 @@ fn distorted_patch_reproduces_constant_strain() {
         e / (2.0 * (1.0 + nu)),
     );
     let trace: f64 = (0..3).map(|i| gradient[i][i]).sum();
-    let mut squares = 0.0;
-    for i in 0..3 {
-        for j in 0..3 {
-            squares += (0.5 * (gradient[i][j] + gradient[j][i])).powi(2);
-        }
-    }
+    let strain = |i: usize, j: usize| 0.5 * (gradient[i][j] + gradient[j][i]);
+    let squares: f64 = (0..9).map(|at| strain(at / 3, at % 3).powi(2)).sum();
     let exact = 0.04_f64.powi(3) * (lambda * trace * trace + 2.0 * mu * squares);
     assert!(
         (energy / exact - 1.0).abs() < 1e-12,
@@ -287,8 +283,11 @@ fn read_deck(path: &Path) -> Deck {
     let (mut keyword, mut set, mut pending) = (String::new(), String::new(), Vec::new());
     for line in text.lines() {
         if let Some(card) = line.strip_prefix('*') {
-            keyword = card.split(',').next().unwrap().to_owned();
-            set = card.split("NSET=").nth(1).unwrap_or_default().to_owned();
+            card.split(',').next().unwrap().clone_into(&mut keyword);
+            card.split("NSET=")
+                .nth(1)
+                .unwrap_or_default()
+                .clone_into(&mut set);
             continue;
         }
         let words = line

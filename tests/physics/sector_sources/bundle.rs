@@ -35,7 +35,7 @@ fn a_written_model_reads_back_bit_for_bit() {
             let matrices = [&model.stiffness, &model.mass, &model.blade_stiffness];
             let entries = matrices
                 .into_iter()
-                .flat_map(|matrix| matrix.lower_entries());
+                .flat_map(blisk::linalg::SymmetricSparse::lower_entries);
             let force = model
                 .force
                 .iter()

@@ -116,11 +116,11 @@ fn options_out_of_range_are_refused_by_key_and_value() {
         ("sectors", "is 0;", |o| o.sectors = 0),
         ("blade_mass_kg", "is 0;", |o| o.blade_mass_kg = 0.0),
         ("blade_stiffness_n_per_m", "is -1;", |o| {
-            o.blade_stiffness_n_per_m = -1.0
+            o.blade_stiffness_n_per_m = -1.0;
         }),
         ("disk_mass_kg", "is NaN;", |o| o.disk_mass_kg = f64::NAN),
         ("ring_coupling_stiffness_n_per_m", "is -2;", |o| {
-            o.ring_coupling_stiffness_n_per_m = -2.0
+            o.ring_coupling_stiffness_n_per_m = -2.0;
         }),
         ("disk_ground_stiffness_n_per_m", "is inf;", |o| {
             o.disk_ground_stiffness_n_per_m = f64::INFINITY;
@@ -148,14 +148,14 @@ fn springs_and_rings_without_the_mass_that_holds_them_are_refused() {
     type Change = fn(&mut LumpedOptions);
     let cases: [(&str, &str, Change); 4] = [
         ("disk_ground_stiffness_n_per_m", "disk_mass_kg", |o| {
-            o.disk_ground_stiffness_n_per_m = 1.0
+            o.disk_ground_stiffness_n_per_m = 1.0;
         }),
         ("disk_coupling_stiffness_n_per_m", "disk_mass_kg", |o| {
             o.disk_coupling_stiffness_n_per_m = 1.0;
         }),
         ("ring_mass_kg", "disk_mass_kg", |o| o.ring_mass_kg = 1.0),
         ("ring_disk_stiffness_n_per_m", "ring_mass_kg", |o| {
-            o.ring_disk_stiffness_n_per_m = 1.0
+            o.ring_disk_stiffness_n_per_m = 1.0;
         }),
     ];
     for (key, mass, change) in cases {

@@ -214,43 +214,43 @@ fn options_out_of_range_are_refused_by_key_value_and_what_is_accepted() {
     let cases: [(&str, &str, Change); 17] = [
         ("sectors", "is 2;", |o| o.sectors = 2),
         ("disk_radial_elements", "is 0;", |o| {
-            o.disk_radial_elements = 0
+            o.disk_radial_elements = 0;
         }),
         ("blade_radial_elements", "is 65;", |o| {
-            o.blade_radial_elements = 65
+            o.blade_radial_elements = 65;
         }),
         ("disk_thickness_m", "is -0.006;", |o| {
-            o.disk_thickness_m = -0.006
+            o.disk_thickness_m = -0.006;
         }),
         ("blade_height_m", "is 0;", |o| o.blade_height_m = 0.0),
         ("blade_height_m", "is NaN;", |o| o.blade_height_m = f64::NAN),
         ("ring_density_kg_per_m3", "is inf;", |o| {
-            o.ring_density_kg_per_m3 = f64::INFINITY
+            o.ring_density_kg_per_m3 = f64::INFINITY;
         }),
         ("blisk_poisson_ratio", "is 0.5;", |o| {
-            o.blisk_poisson_ratio = 0.5
+            o.blisk_poisson_ratio = 0.5;
         }),
         ("ring_grounding_frequency_hz", "is -1;", |o| {
-            o.ring_grounding_frequency_hz = -1.0
+            o.ring_grounding_frequency_hz = -1.0;
         }),
         ("bore_radius_m", "is 0.196;", |o| {
             o.bore_radius_m = 0.196;
         }),
         ("flange_thickness_m", "is 0.011;", |o| {
-            o.flange_thickness_m = 0.011
+            o.flange_thickness_m = 0.011;
         }),
         ("ring_axial_width_m", "is 0.02;", |o| {
-            o.ring_axial_width_m = 0.020
+            o.ring_axial_width_m = 0.020;
         }),
         ("disk_thickness_m", "is 0.05;", |o| {
-            o.disk_thickness_m = 0.050
+            o.disk_thickness_m = 0.050;
         }),
         ("blade_root_axial_chord_m", "is 0.041;", |o| {
-            o.blade_root_axial_chord_m = 0.041
+            o.blade_root_axial_chord_m = 0.041;
         }),
         ("ring_thickness_m", "is 0.2;", |o| o.ring_thickness_m = 0.2),
         ("blade_root_thickness_m", "is 0.05;", |o| {
-            o.blade_root_thickness_m = 0.05
+            o.blade_root_thickness_m = 0.05;
         }),
         ("blade_twist_deg", "is 40;", |o| o.blade_twist_deg = 40.0),
     ];

@@ -169,8 +169,8 @@ fn asymmetry_is_named_with_both_values() {
 
 #[test]
 fn files_that_end_early_or_late_are_refused() {
-    let head = "%%MatrixMarket matrix coordinate real symmetric\n";
     type Kind = fn(&LineProblem) -> bool;
+    let head = "%%MatrixMarket matrix coordinate real symmetric\n";
     let cases: [(String, &str, Kind); 4] = [
         (String::new(), "banner", |p| {
             matches!(p, LineProblem::Missing(_))

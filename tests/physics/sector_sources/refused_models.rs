@@ -300,7 +300,7 @@ const LOAD_CASES: [Case; 8] = [
             m.observed.push(ObservedNode {
                 name: "tip_le".to_owned(),
                 node: 100,
-            })
+            });
         },
         kind: |e| matches!(e, ModelError::ObservedDuplicate { .. }),
         message: "observed nodes 0 and 2 are both named \"tip_le\"",
