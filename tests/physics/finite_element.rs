@@ -266,6 +266,40 @@ fn free_node_on_the_axis_is_refused_and_a_clamped_one_is_not() {
     assert_eq!(mesh.assemble().unwrap().dofs.len(), 3 * 17);
 }
 
+#[test]
+fn meshes_that_refer_to_nothing_are_refused_with_element_and_value() {
+    type Case = (fn(&mut SolidMesh), fn(&ModelError) -> bool, &'static str);
+    let cases: [Case; 4] = [
+        (
+            |mesh| mesh.elements[3].nodes[5] = 5000,
+            |error| matches!(error, ModelError::ElementNode { .. }),
+            "element 3 has node 5000",
+        ),
+        (
+            |mesh| mesh.elements[3].material = 1,
+            |error| matches!(error, ModelError::ElementMaterial { .. }),
+            "element 3 has material 1",
+        ),
+        (
+            |mesh| mesh.elements[3].body = Body::Ring,
+            |error| matches!(error, ModelError::ElementBody { .. }),
+            "element 3 shares node",
+        ),
+        (
+            |mesh| mesh.clamped_nodes.push(5000),
+            |error| matches!(error, ModelError::ClampedNode { .. }),
+            "clamped node 5000",
+        ),
+    ];
+    for (spoil, kind, part) in cases {
+        let mut mesh = patch();
+        spoil(&mut mesh);
+        let error = mesh.assemble().unwrap_err();
+        let message = error.to_string();
+        assert!(kind(&error) && message.contains(part), "{message}");
+    }
+}
+
 /// A `CalculiX` mesh as far as the test needs it: C3D20 elements, and node sets by name.
 struct Deck {
     mesh: SolidMesh,
