@@ -28,7 +28,7 @@ pub struct NewtonWorkspace {
     residual: Vec<f64>,
     step: Vec<f64>,
     trial: Vec<f64>,
-    trial_residual: Vec<f64>,
+    trial_step: Vec<f64>,
 }
 
 impl NewtonWorkspace {
@@ -42,15 +42,18 @@ impl NewtonWorkspace {
             residual: vec![0.0; n],
             step: vec![0.0; n],
             trial: vec![0.0; n],
-            trial_residual: vec![0.0; n],
+            trial_step: vec![0.0; n],
         }
     }
 }
 
 /// Solves `R(x) = 0` at angular frequency `omega` from the given `x`, in place.
 ///
-/// A step is `-J^-1 R`, halved while the residual does not fall. The Jacobian of an earlier step
-/// is used again as long as it reduces the residual well; one that does not is renewed.
+/// A step is `s = -J^-1 R(x)`, damped by the natural monotonicity test of Deuflhard (2004, Newton
+/// Methods for Nonlinear Problems, section 3.3): a damped step is taken where the next simplified step
+/// `-J^-1 R(x + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual itself this does
+/// not depend on how the equations are scaled, and contact forces are far from well scaled. While
+/// the simplified step is much shorter, it is taken as the next step and the Jacobian is kept.
 pub fn solve(
     system: &HarmonicSystem,
     omega: f64,
@@ -64,72 +67,67 @@ pub fn solve(
         residual,
         step,
         trial,
-        trial_residual,
+        trial_step,
     } = workspace;
-    let (mut norm, mut shares) = system.residual(omega, x, residual, true, buffers);
-    let first = norm;
-    let (mut iterations, mut factorisations) = (0, 0);
-    let mut renew = true;
+    let (first, shares) = system.residual(omega, x, residual, true, buffers);
+    let mut state = NewtonOutcome {
+        status: Status::IterationLimit,
+        iterations: 0,
+        factorisations: 0,
+        residual: first,
+        shares,
+    };
+    // Whether `step` holds a simplified step with the kept Jacobian.
+    let mut kept = false;
     loop {
-        let outcome = |status| NewtonOutcome {
-            status,
-            iterations,
-            factorisations,
-            residual: norm,
-            shares,
-        };
-        if std::env::var("NEWTON").is_ok() { eprintln!("   it {iterations} norm {norm:e} renew {renew} shares {shares:?}"); }
-        if let Some(status) = bounds.judge(first, norm, iterations as usize) {
-            return outcome(status);
+        let ended = |state: NewtonOutcome, status| NewtonOutcome { status, ..state };
+        if let Some(status) = bounds.judge(first, state.residual, state.iterations as usize) {
+            return ended(state, status);
         }
-        let fresh = renew;
-        if fresh {
+        if !kept {
             system.jacobian(omega, buffers, jacobian.matrix_mut());
             if !jacobian.factor() {
-                return outcome(Status::SingularJacobian);
+                return ended(state, Status::SingularJacobian);
             }
-            factorisations += 1;
+            state.factorisations += 1;
+            step.copy_from_slice(residual);
+            jacobian.solve(step);
         }
-        step.copy_from_slice(residual);
-        jacobian.solve(step);
-        iterations += 1;
-
-        let halvings = if fresh { bounds.halvings } else { 0 };
+        state.iterations += 1;
+        let length = norm_of(step);
+        let halvings = if kept { 0 } else { bounds.halvings };
         let accepted = (0..=halvings).find_map(|halving| {
-            let scale = 0.5_f64.powi(halving as i32);
+            let factor = 0.5_f64.powi(halving as i32);
             for ((t, x), s) in trial.iter_mut().zip(x.iter()).zip(step.iter()) {
-                *t = x - scale * s;
+                *t = x - factor * s;
             }
-            let (trial_norm, trial_shares) =
-                system.residual(omega, trial, trial_residual, true, buffers);
-            (trial_norm < norm).then_some((trial_norm, trial_shares))
+            let (norm, shares) = system.residual(omega, trial, residual, true, buffers);
+            trial_step.copy_from_slice(residual);
+            jacobian.solve(trial_step);
+            let contraction = norm_of(trial_step) / length;
+            let monotone = contraction <= 1.0 - 0.25 * factor;
+            (monotone || norm <= bounds.residual_tolerance).then_some((norm, shares, contraction))
         });
         match accepted {
-            Some((trial_norm, trial_shares)) => {
-                renew = trial_norm > KEPT_JACOBIAN_CONTRACTION * norm;
+            Some((norm, shares, contraction)) => {
                 std::mem::swap(x, trial);
-                std::mem::swap(residual, trial_residual);
-                (norm, shares) = (trial_norm, trial_shares);
+                (state.residual, state.shares) = (norm, shares);
+                kept = contraction <= KEPT_JACOBIAN_CONTRACTION;
+                if kept {
+                    std::mem::swap(step, trial_step);
+                }
             }
-            None if fresh => {
-                let status = if norm.is_finite() {
-                    Status::Stagnated
-                } else {
-                    Status::NonFinite
-                };
-                return NewtonOutcome {
-                    status,
-                    iterations,
-                    factorisations,
-                    residual: norm,
-                    shares,
-                };
-            }
-            None => {
-                // The kept Jacobian failed: its derivative data must be those of x again.
+            None if kept => {
+                // The kept Jacobian failed: residual and derivative data must be those of x again.
                 system.residual(omega, x, residual, true, buffers);
-                renew = true;
+                kept = false;
             }
+            None if state.residual.is_finite() => return ended(state, Status::Stagnated),
+            None => return ended(state, Status::NonFinite),
         }
     }
+}
+
+fn norm_of(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
