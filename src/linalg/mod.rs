@@ -1,6 +1,16 @@
 //! Linear algebra of the project: a thin, named layer over faer, the only place that names it.
 
+mod dense;
+mod lu;
+mod matrix;
+mod sparse;
 mod symmetric_sparse;
 
+pub use dense::{
+    NotPositiveDefinite, OrthonormalBasis, hermitian_eigen, hermitian_pencil, orthonormal_basis,
+};
+pub use lu::LuWorkspace;
+pub use matrix::{Matrix, Scalar, transpose_times_into};
 pub use rustfft::num_complex::Complex64;
+pub use sparse::{HermitianSparse, SparseFactor, lowest_modes};
 pub use symmetric_sparse::SymmetricSparse;

@@ -1,5 +1,13 @@
-//! Craig-Bampton reduction, stick and slide basis, component mode mistuning, a-posteriori error.
+//! Craig-Bampton reduction, stick and slide basis, component mode mistuning.
 
+mod basis;
+mod blade;
+mod craig_bampton;
 mod options;
+mod reduce;
 
+pub use basis::{BasisChoice, ContactSprings};
+pub use blade::{CantileverModes, blade_gram};
+pub use craig_bampton::CraigBampton;
 pub use options::{Basis, ReductionOptions};
+pub use reduce::{ContactStiffness, Reduction};

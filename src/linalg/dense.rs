@@ -1,0 +1,198 @@
+//! Dense Hermitian eigenproblems and bases orthonormal in the metric of a mass matrix.
+
+use std::sync::Once;
+
+use faer::{Par, Side};
+
+use super::matrix::{Matrix, Scalar};
+
+/// The mass matrix of a pencil is not positive definite, or a decomposition broke down on
+/// values that are not finite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the matrix is not positive definite")]
+pub struct NotPositiveDefinite;
+
+/// Keeps faer sequential: the parallelism of this project is over patterns and nodal diameters.
+pub(super) fn sequential() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| faer::set_global_parallelism(Par::Seq));
+}
+
+/// Eigenvalues, ascending, and orthonormal eigenvectors (columns) of a Hermitian matrix, whose
+/// lower triangle is read.
+///
+/// # Errors
+/// If the matrix holds values that are not finite.
+pub fn hermitian_eigen<T: Scalar>(
+    a: &Matrix<T>,
+) -> Result<(Vec<f64>, Matrix<T>), NotPositiveDefinite> {
+    sequential();
+    let decomposition = a
+        .view()
+        .self_adjoint_eigen(Side::Lower)
+        .map_err(|_| NotPositiveDefinite)?;
+    let values: Vec<f64> = (0..a.rows())
+        .map(|i| decomposition.S().column_vector()[i].real_part())
+        .collect();
+    if values.iter().any(|value| !value.is_finite()) {
+        return Err(NotPositiveDefinite);
+    }
+    Ok((values, Matrix::from_view(decomposition.U())))
+}
+
+/// Eigenvalues, ascending, and M-orthonormal eigenvectors of `K x = lambda M x`; K Hermitian,
+/// M Hermitian positive definite.
+///
+/// # Errors
+/// If M is not positive definite.
+pub fn hermitian_pencil<T: Scalar>(
+    k: &Matrix<T>,
+    m: &Matrix<T>,
+) -> Result<(Vec<f64>, Matrix<T>), NotPositiveDefinite> {
+    sequential();
+    let factor = m.view().llt(Side::Lower).map_err(|_| NotPositiveDefinite)?;
+    // L^-1 K L^-H, by two triangular solves.
+    let mut half = k.clone();
+    factor.L().solve_lower_triangular_in_place(half.view_mut());
+    let mut reduced = half.adjoint();
+    factor
+        .L()
+        .solve_lower_triangular_in_place(reduced.view_mut());
+    let (values, mut vectors) = hermitian_eigen(&reduced)?;
+    factor
+        .L()
+        .adjoint()
+        .solve_upper_triangular_in_place(vectors.view_mut());
+    Ok((values, vectors))
+}
+
+/// An M-orthonormal basis with the singular values it was cut by.
+#[derive(Debug, Clone)]
+pub struct OrthonormalBasis<T> {
+    /// Columns span the retained part of the input, `V^H M V = I`.
+    pub vectors: Matrix<T>,
+    /// All singular values of the input columns (scaled to unit M-norm) in the metric of M, descending.
+    pub singular_values: Vec<f64>,
+}
+
+impl<T: Scalar> OrthonormalBasis<T> {
+    /// Retained number of columns.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        self.vectors.columns()
+    }
+
+    /// Ratio of the largest to the smallest retained singular value.
+    #[must_use]
+    pub fn condition(&self) -> f64 {
+        match self.rank() {
+            0 => 1.0,
+            rank => self.singular_values[0] / self.singular_values[rank - 1],
+        }
+    }
+}
+
+/// Basis of the span of `columns`, orthonormal in the metric of M: columns scaled to unit
+/// M-norm, singular value decomposition of `L^H V` with `M = L L^H`, singular values below
+/// `drop_below` times the largest left out.
+///
+/// # Errors
+/// If M is not positive definite.
+pub fn orthonormal_basis<T: Scalar>(
+    columns: &Matrix<T>,
+    m: &Matrix<T>,
+    drop_below: f64,
+) -> Result<OrthonormalBasis<T>, NotPositiveDefinite> {
+    sequential();
+    let factor = m.view().llt(Side::Lower).map_err(|_| NotPositiveDefinite)?;
+    let lower = Matrix::from_view(factor.L());
+    let mut scaled = lower.adjoint_times(columns);
+    for column in 0..scaled.columns() {
+        let norm: f64 = scaled
+            .column(column)
+            .iter()
+            .map(|&x| (x * x.conjugate()).real_part())
+            .sum::<f64>()
+            .sqrt();
+        if norm > 0.0 {
+            for entry in scaled.column_mut(column) {
+                *entry = *entry * T::from_real(1.0 / norm);
+            }
+        }
+    }
+    let decomposition = scaled.view().thin_svd().map_err(|_| NotPositiveDefinite)?;
+    let count = scaled.rows().min(scaled.columns());
+    let singular_values: Vec<f64> = (0..count)
+        .map(|i| decomposition.S().column_vector()[i].real_part())
+        .collect();
+    let largest = singular_values.first().copied().unwrap_or(0.0);
+    let rank = singular_values
+        .iter()
+        .take_while(|&&s| s > drop_below * largest)
+        .count();
+    let mut vectors = Matrix::from_view(decomposition.U()).column_range(0, rank);
+    factor
+        .L()
+        .adjoint()
+        .solve_upper_triangular_in_place(vectors.view_mut());
+    Ok(OrthonormalBasis {
+        vectors,
+        singular_values,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::Complex64;
+
+    fn sample(n: usize) -> (Matrix<Complex64>, Matrix<Complex64>) {
+        let raw = Matrix::from_fn(n, n, |i, j| {
+            Complex64::new(
+                ((3 * i + 7 * j) as f64).sin(),
+                ((5 * i + 2 * j) as f64).cos(),
+            )
+        });
+        let mut k = raw.adjoint_times(&raw);
+        let mut m = raw.times(&raw.adjoint());
+        for i in 0..n {
+            k[(i, i)] += 0.1;
+            m[(i, i)] += n as f64;
+        }
+        (k, m)
+    }
+
+    #[test]
+    fn a_pencil_gives_mass_normalised_vectors_that_diagonalise_the_stiffness() {
+        let (k, m) = sample(9);
+        let (values, vectors) = hermitian_pencil(&k, &m).expect("positive definite");
+        let kk = vectors.adjoint_times(&k.times(&vectors));
+        let mm = vectors.adjoint_times(&m.times(&vectors));
+        for i in 0..9 {
+            for j in 0..9 {
+                let unit = f64::from(u8::from(i == j));
+                assert!((mm[(i, j)] - unit).norm() < 1e-12);
+                assert!((kk[(i, j)] - unit * values[i]).norm() < 1e-11);
+            }
+        }
+    }
+
+    #[test]
+    fn a_repeated_column_is_dropped_and_the_rank_reported() {
+        let (k, m) = sample(6);
+        let columns = k.column_range(0, 3).beside(&k.column_range(1, 2));
+        let basis = orthonormal_basis(&columns, &m, 1e-8).expect("positive definite");
+        assert_eq!(basis.rank(), 3);
+        assert!(basis.condition() < 1e8);
+        let gram = basis.vectors.adjoint_times(&m.times(&basis.vectors));
+        assert!((gram[(2, 2)].re - 1.0).abs() < 1e-12 && gram[(2, 0)].norm() < 1e-12);
+    }
+
+    #[test]
+    fn an_indefinite_mass_is_refused() {
+        let k = Matrix::<f64>::identity(2);
+        let mut m = Matrix::<f64>::identity(2);
+        m[(1, 1)] = -1.0;
+        assert_eq!(hermitian_pencil(&k, &m).err(), Some(NotPositiveDefinite));
+    }
+}

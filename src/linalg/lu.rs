@@ -1,0 +1,102 @@
+//! Dense LU factorisation in caller-owned storage, for loops that must not allocate.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::lu::partial_pivoting::{factor, solve};
+use faer::perm::PermRef;
+use faer::{MatMut, MatRef, Par};
+
+use super::matrix::Scalar;
+
+/// LU factorisation with partial pivoting of an `n x n` matrix; storage is reused.
+pub struct LuWorkspace<T> {
+    dimension: usize,
+    matrix: Vec<T>,
+    permutation: Vec<usize>,
+    inverse: Vec<usize>,
+    memory: MemBuffer,
+}
+
+impl<T: Scalar> LuWorkspace<T> {
+    /// Storage for matrices of dimension `n`.
+    #[must_use]
+    pub fn new(dimension: usize) -> Self {
+        let factor_need = factor::lu_in_place_scratch::<usize, T>(
+            dimension,
+            dimension,
+            Par::Seq,
+            faer::prelude::default(),
+        );
+        let solve_need = solve::solve_in_place_scratch::<usize, T>(dimension, 1, Par::Seq);
+        Self {
+            dimension,
+            matrix: vec![T::default(); dimension * dimension],
+            permutation: vec![0; dimension],
+            inverse: vec![0; dimension],
+            memory: MemBuffer::new(factor_need.or(solve_need)),
+        }
+    }
+
+    /// Dimension n.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// The matrix to fill, column-major, before [`Self::factor`] overwrites it.
+    pub fn matrix_mut(&mut self) -> &mut [T] {
+        &mut self.matrix
+    }
+
+    /// Factors the matrix in place; false if a pivot is zero or not finite.
+    pub fn factor(&mut self) -> bool {
+        let n = self.dimension;
+        factor::lu_in_place(
+            MatMut::from_column_major_slice_mut(&mut self.matrix, n, n),
+            &mut self.permutation,
+            &mut self.inverse,
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+            faer::prelude::default(),
+        );
+        (0..n).all(|i| {
+            let pivot = self.matrix[i * n + i];
+            let size = (pivot * pivot.conjugate()).real_part();
+            size.is_finite() && size > 0.0
+        })
+    }
+
+    /// Solves with the factors, in place.
+    pub fn solve(&mut self, right: &mut [T]) {
+        let n = self.dimension;
+        let factors = MatRef::from_column_major_slice(&self.matrix, n, n);
+        solve::solve_in_place(
+            factors,
+            factors,
+            PermRef::new_checked(&self.permutation, &self.inverse, n),
+            MatMut::from_column_major_slice_mut(right, n, 1),
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::LuWorkspace;
+
+    #[test]
+    fn solves_what_it_factored_and_reports_a_singular_matrix() {
+        let mut lu = LuWorkspace::<f64>::new(3);
+        let a = [4.0, 1.0, 0.5, 2.0, 5.0, 0.25, 1.0, 2.0, 6.0];
+        lu.matrix_mut().copy_from_slice(&a);
+        assert!(lu.factor());
+        let mut x = [1.0, 2.0, 3.0];
+        lu.solve(&mut x);
+        for row in 0..3 {
+            let product: f64 = (0..3).map(|column| a[3 * column + row] * x[column]).sum();
+            assert!((product - (row as f64 + 1.0)).abs() < 1e-14);
+        }
+        lu.matrix_mut().fill(1.0);
+        assert!(!lu.factor());
+    }
+}

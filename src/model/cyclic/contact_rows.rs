@@ -1,0 +1,143 @@
+//! Relative motion at the contact pairs: one row per pair and direction.
+
+use serde::{Deserialize, Serialize};
+
+use crate::model::sector::{Component, ContactPair, SectorModel};
+
+/// Direction of a relative motion at a pair, in its own frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Direction {
+    /// Along the outward normal of the blisk's surface; positive = pressed together.
+    Normal,
+    /// First tangent: the normalised projection of e_theta (of e_z if the normal is nearly e_theta).
+    Tangent1,
+    /// Second tangent `t2 = n x t1`.
+    Tangent2,
+}
+
+impl Direction {
+    /// All three, in the order of rows: normal, first tangent, second tangent.
+    pub const ALL: [Self; 3] = [Self::Normal, Self::Tangent1, Self::Tangent2];
+}
+
+/// Relative displacement `d = u_blisk - u_ring` of one pair along one direction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactRow {
+    /// Index of the pair in the sector.
+    pub pair: usize,
+    /// Direction.
+    pub direction: Direction,
+    /// `(dof, factor)` over the sector's dofs.
+    pub entries: Vec<(usize, f64)>,
+}
+
+/// The contact interface of one sector.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ContactGeometry {
+    /// Weight of each pair: its share of the sector's stiffness and normal load.
+    pub weights: Vec<f64>,
+    /// For each pair, the row of its normal, first and second tangential motion; none where the
+    /// nodes have no displacement that way.
+    pub rows: Vec<[Option<usize>; 3]>,
+}
+
+impl ContactGeometry {
+    /// Number of rows of a sector.
+    #[must_use]
+    pub fn row_count(&self) -> usize {
+        self.rows.iter().flatten().flatten().count()
+    }
+
+    /// Contact springs of the rows, N/m, from per-sector totals `[normal, tangent1, tangent2]`.
+    #[must_use]
+    pub fn springs(&self, per_sector: [f64; 3]) -> Vec<f64> {
+        let mut springs = vec![0.0; self.row_count()];
+        for (rows, weight) in self.rows.iter().zip(&self.weights) {
+            for (row, total) in rows.iter().zip(per_sector) {
+                if let Some(row) = *row {
+                    springs[row] = weight * total;
+                }
+            }
+        }
+        springs
+    }
+}
+
+/// Frame of a pair in (r, theta, z): normal, first and second tangent.
+fn frame(pair: &ContactPair) -> [[f64; 3]; 3] {
+    let n = pair.normal;
+    let axis = if n[1].abs() > 0.9 { 2 } else { 1 };
+    let mut t1 = [0.0; 3];
+    t1[axis] = 1.0;
+    for (component, normal) in t1.iter_mut().zip(n) {
+        *component -= normal * n[axis];
+    }
+    let length = t1.iter().map(|c| c * c).sum::<f64>().sqrt();
+    for component in &mut t1 {
+        *component /= length;
+    }
+    let t2 = [
+        n[1] * t1[2] - n[2] * t1[1],
+        n[2] * t1[0] - n[0] * t1[2],
+        n[0] * t1[1] - n[1] * t1[0],
+    ];
+    [n, t1, t2]
+}
+
+/// Rows of relative motion of a sector, pair by pair in the order normal, t1, t2; directions
+/// that no dof of the pair moves in have no row.
+#[must_use]
+pub fn contact_rows(model: &SectorModel) -> (Vec<ContactRow>, ContactGeometry) {
+    const COMPONENTS: [Component; 3] = [Component::Radial, Component::Tangential, Component::Axial];
+    let mut rows: Vec<ContactRow> = Vec::new();
+    let mut geometry = ContactGeometry {
+        weights: model.contact_pairs.iter().map(|pair| pair.weight).collect(),
+        rows: Vec::new(),
+    };
+    for (index, pair) in model.contact_pairs.iter().enumerate() {
+        let mut places = [None; 3];
+        for ((direction, vector), place) in
+            Direction::ALL.into_iter().zip(frame(pair)).zip(&mut places)
+        {
+            let mut entries = Vec::new();
+            for (node, sign) in [(pair.blisk_node, 1.0), (pair.ring_node, -1.0)] {
+                for (component, factor) in COMPONENTS.into_iter().zip(vector) {
+                    if let Some(dof) = model.dof_of(node, component)
+                        && factor != 0.0
+                    {
+                        entries.push((dof, sign * factor));
+                    }
+                }
+            }
+            if !entries.is_empty() {
+                *place = Some(rows.len());
+                rows.push(ContactRow {
+                    pair: index,
+                    direction,
+                    entries,
+                });
+            }
+        }
+        geometry.rows.push(places);
+    }
+    (rows, geometry)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_frame_of_a_ring_under_a_flange_is_theta_and_minus_z() {
+        let pair = ContactPair {
+            blisk_node: 0,
+            ring_node: 1,
+            normal: [-1.0, 0.0, 0.0],
+            weight: 1.0,
+        };
+        assert_eq!(
+            frame(&pair),
+            [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]
+        );
+    }
+}

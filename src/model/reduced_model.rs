@@ -1,0 +1,108 @@
+//! The reduced model: what the Monte Carlo loop needs of a bladed disk, and nothing else.
+
+use serde::{Deserialize, Serialize};
+
+use super::cyclic::{ContactGeometry, NodalDiameter};
+use super::reduction::{BasisChoice, CantileverModes, ContactSprings};
+use crate::linalg::{Complex64, Matrix};
+
+/// One nodal diameter in its own tuned contact-free modes: `M = I`, `K = diag(eigenvalues)`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReducedNodalDiameter {
+    /// Eigenvalues of the tuned contact-free structure, (rad/s)^2, ascending, length `n_modes`.
+    pub eigenvalues: Vec<f64>,
+    /// Relative motion at the contact rows of a sector, `n_rows x n_modes`.
+    pub contact: Matrix<Complex64>,
+    /// Displacement r, theta, z of the first observed node, `3 x n_modes`; zero where it has none.
+    pub observed: Matrix<Complex64>,
+    /// `B^H f` of the sector's force amplitude, `n_modes x 1`.
+    pub force: Matrix<Complex64>,
+    /// `B^T f`: the same for the conjugate wave.
+    pub conjugate_force: Matrix<Complex64>,
+}
+
+/// What the reduction of one nodal diameter came to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NodalDiameterReport {
+    /// Nodal diameter h.
+    pub nodal_diameter: usize,
+    /// Size of the Craig-Bampton model.
+    pub craig_bampton_size: usize,
+    /// Number of vectors offered to the basis.
+    pub candidates: usize,
+    /// Rank: number of basis vectors kept.
+    pub rank: usize,
+    /// Ratio of the largest to the smallest singular value kept.
+    pub condition: f64,
+    /// Lowest frequencies under sticking contact, Hz.
+    pub stick_frequencies_hz: Vec<f64>,
+    /// Lowest frequencies under sliding contact, Hz.
+    pub slide_frequencies_hz: Vec<f64>,
+    /// Lowest frequencies without contact, Hz.
+    pub free_frequencies_hz: Vec<f64>,
+}
+
+/// A wheel in reduced coordinates.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReducedModel {
+    /// Name of the sector model.
+    pub name: String,
+    /// Number of sectors N.
+    pub sectors: usize,
+    /// Basis that was used.
+    pub basis: BasisChoice,
+    /// Whether the basis spans every independent dof, so that nothing is lost.
+    pub whole_space: bool,
+    /// Nodal diameters 0..=N/2.
+    pub nodal_diameters: Vec<ReducedNodalDiameter>,
+    /// The contact interface of a sector.
+    pub contact: ContactGeometry,
+    /// Linear contact springs of a sector's rows, stick and slide.
+    pub springs: ContactSprings,
+    /// `W^T K_blade W` over `W = [Re B_0, Im B_0, Re B_1, ...]`, see [`super::reduction::blade_gram`].
+    pub blade_gram: Matrix<f64>,
+    /// Cantilevered-blade modes, where the study projects through them.
+    pub cantilever: Option<CantileverModes>,
+    /// What the reduction came to, per nodal diameter.
+    pub report: Vec<NodalDiameterReport>,
+}
+
+impl ReducedModel {
+    /// Number of real modal coordinates of the wheel: every nodal diameter but 0 and N/2 twice.
+    #[must_use]
+    pub fn wheel_size(&self) -> usize {
+        self.nodal_diameters
+            .iter()
+            .enumerate()
+            .map(|(h, nd)| nd.eigenvalues.len() * if self.is_standing(h) { 1 } else { 2 })
+            .sum()
+    }
+
+    /// Whether nodal diameter h is a standing wave (0 or N/2), with a real basis.
+    #[must_use]
+    pub fn is_standing(&self, h: usize) -> bool {
+        h == 0 || 2 * h == self.sectors
+    }
+
+    /// Number of contact rows of a sector.
+    #[must_use]
+    pub fn contact_rows(&self) -> usize {
+        self.contact.row_count()
+    }
+
+    /// The travelling wave of a nodal diameter: contact, observation and force of one sector.
+    #[must_use]
+    pub fn wave(&self, nodal_diameter: NodalDiameter) -> ReducedNodalDiameter {
+        let nd = &self.nodal_diameters[nodal_diameter.index];
+        if !nodal_diameter.conjugate {
+            return nd.clone();
+        }
+        ReducedNodalDiameter {
+            eigenvalues: nd.eigenvalues.clone(),
+            contact: nd.contact.conjugate(),
+            observed: nd.observed.conjugate(),
+            force: nd.conjugate_force.clone(),
+            conjugate_force: nd.force.clone(),
+        }
+    }
+}

@@ -1,0 +1,303 @@
+//! Craig-Bampton model of one nodal diameter: contact dofs kept, the rest in fixed-interface modes.
+
+use crate::linalg::{Complex64, HermitianSparse, Matrix, SparseFactor, hermitian_pencil, lowest_modes};
+use crate::model::cyclic::CyclicSector;
+use crate::model::sector::{ModelError, StiffnessKind};
+
+/// At most so many independent dofs, the whole space is the basis.
+const WHOLE_SPACE_DOFS: usize = 12;
+/// At most so many interior dofs, the fixed-interface modes are found by a dense solution.
+const DENSE_INTERIOR: usize = 60;
+
+/// Craig-Bampton model of nodal diameter h (Craig & Bampton 1968, AIAA J. 6(7)).
+///
+/// Displacement of the independent dofs `u = T q`, `T = [constraint modes, fixed-interface modes,
+/// enrichment]`; sizes: `n_dofs` independent dofs, `size` columns.
+#[derive(Debug, Clone)]
+pub struct CraigBampton {
+    /// Nodal diameter h.
+    pub nodal_diameter: usize,
+    /// Whether T spans all of the independent dofs.
+    pub whole_space: bool,
+    /// Number of enrichment columns, the last of T.
+    pub enrichment: usize,
+    /// T, `n_dofs x size`.
+    pub recovery: Matrix<Complex64>,
+    /// `T^H K T`, contact-free, `size x size`.
+    pub stiffness: Matrix<Complex64>,
+    /// `T^H M T`, `size x size`.
+    pub mass: Matrix<Complex64>,
+    /// Relative motion `C T`, `n_rows x size`.
+    pub contact: Matrix<Complex64>,
+}
+
+impl CraigBampton {
+    /// Reduces nodal diameter `h` with `modes` fixed-interface modes.
+    ///
+    /// # Errors
+    /// If the mass is not positive definite, or the stiffness with held contact is indefinite.
+    pub fn new(sector: &CyclicSector<'_>, h: usize, modes: usize) -> Result<Self, ModelError> {
+        let mass = sector.mass(h);
+        let stiffness = sector.stiffness(h);
+        mass.factor()
+            .map_err(|_| ModelError::MassNotPositiveDefinite { nodal_diameter: h })?;
+        let n = sector.dimension();
+        if n <= WHOLE_SPACE_DOFS {
+            return Ok(Self::project(sector, h, &stiffness, &mass, Matrix::identity(n), 0, true));
+        }
+        let boundary = sector.contact_dofs();
+        let mut is_boundary = vec![false; n];
+        for &dof in &boundary {
+            is_boundary[dof] = true;
+        }
+        let interior: Vec<usize> = (0..n).filter(|&dof| !is_boundary[dof]).collect();
+        let held = HeldInterior::new(&stiffness, &mass, &interior, h)?;
+        let fixed = held.modes(modes, h)?;
+        let constraint = held.constraint_modes(&stiffness, &mass, &interior, &boundary);
+
+        let columns = boundary.len() + fixed.columns();
+        let mut recovery = Matrix::zeros(n, columns);
+        for (column, &dof) in boundary.iter().enumerate() {
+            recovery[(dof, column)] = Complex64::new(1.0, 0.0);
+            for (row, &at) in interior.iter().enumerate() {
+                recovery[(at, column)] = constraint[(row, column)];
+            }
+        }
+        for column in 0..fixed.columns() {
+            for (row, &at) in interior.iter().enumerate() {
+                recovery[(at, boundary.len() + column)] = fixed[(row, column)];
+            }
+        }
+        let whole_space = columns == n;
+        Ok(Self::project(sector, h, &stiffness, &mass, recovery, 0, whole_space))
+    }
+
+    /// The same model with T enlarged by the sensitivity to blade stiffness of `count` stick modes,
+    /// `(K + C^T k_c C)^-1 K_blade phi_j`: the static response to the force by which a stiffer
+    /// blade loads mode j. The modes are those with the largest share of strain energy in the blade.
+    ///
+    /// # Errors
+    /// If the stuck stiffness is not positive definite.
+    pub fn with_blade_sensitivity(
+        &self,
+        sector: &CyclicSector<'_>,
+        stick_springs: &[f64],
+        count: usize,
+    ) -> Result<Self, ModelError> {
+        let h = self.nodal_diameter;
+        if self.whole_space || count == 0 {
+            return Ok(self.clone());
+        }
+        let (eigenvalues, vectors) = self.modes(stick_springs)?;
+        let blade = sector.blade_stiffness();
+        let candidates = vectors.columns().min(10);
+        let modes = self.recovery.times(&vectors.column_range(0, candidates));
+        let blade_force = blade.times(&modes);
+        let energy = modes.adjoint_times(&blade_force);
+        let mut order: Vec<usize> = (0..candidates).collect();
+        let share = |j: usize| energy[(j, j)].re / eigenvalues[j].abs().max(f64::MIN_POSITIVE);
+        order.sort_by(|&a, &b| share(b).total_cmp(&share(a)).then(a.cmp(&b)));
+        order.truncate(count);
+        order.sort_unstable();
+        let chosen = Matrix::from_fn(blade_force.rows(), order.len(), |i, j| {
+            blade_force[(i, order[j])]
+        });
+        let stiffness = sector.stiffness(h);
+        let mass = sector.mass(h);
+        let stuck = stiffness.plus(1.0, &sector.contact_stiffness(stick_springs));
+        let factor = stuck
+            .factor()
+            .map_err(|_| ModelError::StiffnessNotPositiveDefinite {
+                nodal_diameter: h,
+                what: StiffnessKind::Stick,
+            })?;
+        let sensitivity = factor.solve(&chosen);
+        let recovery = self.enlarge(&mass, &sensitivity)?;
+        let added = recovery.columns() - self.size();
+        Ok(Self::project(sector, h, &stiffness, &mass, recovery, added, false))
+    }
+
+    /// Eigenvalues (rad/s)^2, ascending, and M-orthonormal modes of the model with contact
+    /// springs `springs` (N/m, one per contact row).
+    ///
+    /// # Errors
+    /// If the mass is not positive definite.
+    pub fn modes(&self, springs: &[f64]) -> Result<(Vec<f64>, Matrix<Complex64>), ModelError> {
+        pencil(&self.stiffness_with_contact(springs), &self.mass, self.nodal_diameter)
+    }
+
+    /// `T^H (K + C^T diag(springs) C) T`.
+    #[must_use]
+    pub fn stiffness_with_contact(&self, springs: &[f64]) -> Matrix<Complex64> {
+        let scaled = Matrix::from_fn(self.contact.rows(), self.contact.columns(), |i, j| {
+            self.contact[(i, j)] * springs[i]
+        });
+        let mut sum = self.contact.adjoint_times(&scaled);
+        for (entry, &structure) in sum
+            .as_mut_slice()
+            .iter_mut()
+            .zip(self.stiffness.as_slice())
+        {
+            *entry += structure;
+        }
+        sum
+    }
+
+    /// Number of columns of T.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.recovery.columns()
+    }
+
+    /// `[T, extra]` where `extra` is first made M-orthogonal to T and to itself, so that the
+    /// enlarged mass stays well conditioned; what lies in the span of T already is left out.
+    fn enlarge(
+        &self,
+        mass: &HermitianSparse,
+        extra: &Matrix<Complex64>,
+    ) -> Result<Matrix<Complex64>, ModelError> {
+        let h = self.nodal_diameter;
+        let (_, basis) = pencil(&self.stiffness, &self.mass, h)?;
+        let mut orthonormal = self.recovery.times(&basis);
+        let mut recovery = self.recovery.clone();
+        for column in 0..extra.columns() {
+            let mut vector = extra.column_range(column, column + 1);
+            let norm = |x: &Matrix<Complex64>| x.adjoint_times(&mass.times(x))[(0, 0)].re.sqrt();
+            let before = norm(&vector);
+            for _ in 0..2 {
+                let inside = orthonormal.times(&orthonormal.adjoint_times(&mass.times(&vector)));
+                for (entry, &part) in vector.as_mut_slice().iter_mut().zip(inside.as_slice()) {
+                    *entry -= part;
+                }
+            }
+            let after = norm(&vector);
+            if after > 1e-8 * before {
+                for entry in vector.as_mut_slice() {
+                    *entry /= after;
+                }
+                orthonormal = orthonormal.beside(&vector);
+                recovery = recovery.beside(&vector);
+            }
+        }
+        Ok(recovery)
+    }
+
+    fn project(
+        sector: &CyclicSector<'_>,
+        nodal_diameter: usize,
+        stiffness: &HermitianSparse,
+        mass: &HermitianSparse,
+        recovery: Matrix<Complex64>,
+        enrichment: usize,
+        whole_space: bool,
+    ) -> Self {
+        let reduced_stiffness = recovery.adjoint_times(&stiffness.times(&recovery));
+        let reduced_mass = recovery.adjoint_times(&mass.times(&recovery));
+        let rows = sector.contact_rows();
+        let contact = Matrix::from_fn(rows.len(), recovery.columns(), |i, j| {
+            rows[i]
+                .iter()
+                .map(|&(dof, factor)| recovery[(dof, j)] * factor)
+                .sum()
+        });
+        Self {
+            nodal_diameter,
+            whole_space,
+            enrichment,
+            recovery,
+            stiffness: reduced_stiffness,
+            mass: reduced_mass,
+            contact,
+        }
+    }
+}
+
+/// Hermitian pencil solved in real numbers where it is real (nodal diameters 0 and N/2), so that
+/// its modes are real, as the basis of a standing wave must be.
+pub(super) fn pencil(
+    k: &Matrix<Complex64>,
+    m: &Matrix<Complex64>,
+    nodal_diameter: usize,
+) -> Result<(Vec<f64>, Matrix<Complex64>), ModelError> {
+    let real = |a: &Matrix<Complex64>| a.as_slice().iter().all(|x| x.im == 0.0);
+    let solved = if real(k) && real(m) {
+        hermitian_pencil(&k.real(), &m.real()).map(|(values, x)| (values, x.to_complex()))
+    } else {
+        hermitian_pencil(k, m)
+    };
+    solved.map_err(|_| ModelError::MassNotPositiveDefinite { nodal_diameter })
+}
+
+/// The interior of a sector with its contact dofs held.
+struct HeldInterior {
+    factor: SparseFactor,
+    stiffness: HermitianSparse,
+    mass: HermitianSparse,
+    /// 0, or negative where the held interior still has rigid-body modes.
+    shift: f64,
+}
+
+impl HeldInterior {
+    fn new(
+        stiffness: &HermitianSparse,
+        mass: &HermitianSparse,
+        interior: &[usize],
+        nodal_diameter: usize,
+    ) -> Result<Self, ModelError> {
+        let stiffness = stiffness.principal(interior);
+        let mass = mass.principal(interior);
+        let trace = |a: &HermitianSparse| -> f64 {
+            a.entries()
+                .filter(|&(i, j, _)| i == j)
+                .map(|(_, _, value)| value.re)
+                .sum()
+        };
+        for shift in [0.0, -1e-6 * trace(&stiffness) / trace(&mass)] {
+            if let Ok(factor) = stiffness.plus(-shift, &mass).factor() {
+                return Ok(Self {
+                    factor,
+                    stiffness,
+                    mass,
+                    shift,
+                });
+            }
+        }
+        Err(ModelError::StiffnessNotPositiveDefinite {
+            nodal_diameter,
+            what: StiffnessKind::FixedInterface,
+        })
+    }
+
+    fn modes(&self, count: usize, nodal_diameter: usize) -> Result<Matrix<Complex64>, ModelError> {
+        let n = self.mass.dimension();
+        if n <= DENSE_INTERIOR {
+            let all: Vec<usize> = (0..n).collect();
+            let (_, vectors) = pencil(
+                &self.stiffness.block(&all, &all),
+                &self.mass.block(&all, &all),
+                nodal_diameter,
+            )?;
+            return Ok(vectors.column_range(0, count.min(n)));
+        }
+        let (_, vectors) = lowest_modes(&self.factor, &self.mass, self.shift, count)
+            .map_err(|_| ModelError::MassNotPositiveDefinite { nodal_diameter })?;
+        Ok(vectors)
+    }
+
+    /// Static (for a shift, quasi-static) interior response to unit motions of the boundary,
+    /// `-(K_ii - s M_ii)^-1 (K_ib - s M_ib)`.
+    fn constraint_modes(
+        &self,
+        stiffness: &HermitianSparse,
+        mass: &HermitianSparse,
+        interior: &[usize],
+        boundary: &[usize],
+    ) -> Matrix<Complex64> {
+        let mut right = stiffness.block(interior, boundary);
+        let inertia = mass.block(interior, boundary);
+        for (entry, &m) in right.as_mut_slice().iter_mut().zip(inertia.as_slice()) {
+            *entry = -(*entry - m * self.shift);
+        }
+        self.factor.solve(&right)
+    }
+}

@@ -1,0 +1,195 @@
+//! From a cyclic sector to a reduced model: Craig-Bampton once, then a basis of a chosen size.
+
+use std::f64::consts::TAU;
+
+use rayon::prelude::*;
+
+use super::basis::{BasisChoice, ContactSprings, basis_of};
+use super::blade::{blade_gram, cantilever_modes};
+use super::craig_bampton::{CraigBampton, pencil};
+use crate::linalg::{Complex64, Matrix};
+use crate::model::cyclic::CyclicSector;
+use crate::model::{NodalDiameterReport, ReducedModel, ReducedNodalDiameter};
+use crate::model::sector::{ModelError, SectorModel};
+
+/// Number of frequencies per nodal diameter in the report.
+const REPORTED_FREQUENCIES: usize = 6;
+
+/// The Craig-Bampton models of every nodal diameter 0..=N/2 of a sector: made once, then
+/// reduced further as often as a choice of basis asks for.
+#[derive(Debug)]
+pub struct Reduction<'a> {
+    name: &'a str,
+    sector: CyclicSector<'a>,
+    springs: ContactSprings,
+    models: Vec<CraigBampton>,
+}
+
+/// Per-sector contact stiffness, N/m, in normal, first and second tangential direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactStiffness {
+    /// Normal stiffness kn; 0 where the law has none.
+    pub normal_n_per_m: f64,
+    /// Stiffness kt along the first tangent.
+    pub tangential_1_n_per_m: f64,
+    /// Stiffness kt along the second tangent; 0 where the law has none.
+    pub tangential_2_n_per_m: f64,
+}
+
+impl<'a> Reduction<'a> {
+    /// Craig-Bampton models with `craig_bampton_modes` fixed-interface modes, nodal diameters in
+    /// parallel, and `sensitivity_vectors` to blade stiffness in each.
+    ///
+    /// # Errors
+    /// If a mass or stiffness is not positive definite.
+    pub fn new(
+        model: &'a SectorModel,
+        stiffness: ContactStiffness,
+        craig_bampton_modes: usize,
+        sensitivity_vectors: usize,
+    ) -> Result<Self, ModelError> {
+        let sector = CyclicSector::new(model);
+        let springs = ContactSprings {
+            stick: sector.contact().springs([
+                stiffness.normal_n_per_m,
+                stiffness.tangential_1_n_per_m,
+                stiffness.tangential_2_n_per_m,
+            ]),
+            slide: sector
+                .contact()
+                .springs([stiffness.normal_n_per_m, 0.0, 0.0]),
+        };
+        let models = (0..=model.sectors / 2)
+            .into_par_iter()
+            .map(|h| {
+                CraigBampton::new(&sector, h, craig_bampton_modes)?.with_blade_sensitivity(
+                    &sector,
+                    &springs.stick,
+                    sensitivity_vectors,
+                )
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        Ok(Self {
+            name: &model.name,
+            sector,
+            springs,
+            models,
+        })
+    }
+
+    /// The Craig-Bampton model of each nodal diameter.
+    #[must_use]
+    pub fn models(&self) -> &[CraigBampton] {
+        &self.models
+    }
+
+    /// Whether every nodal diameter keeps all of its dofs, so that any basis is the whole space.
+    #[must_use]
+    pub fn is_whole_space(&self) -> bool {
+        self.models.iter().all(|model| model.whole_space)
+    }
+
+    /// Number of contact rows of a sector.
+    #[must_use]
+    pub fn contact_rows(&self) -> usize {
+        self.sector.contact().row_count()
+    }
+
+    /// One nodal diameter in the given basis.
+    ///
+    /// # Errors
+    /// If a mass is not positive definite.
+    pub fn nodal_diameter(
+        &self,
+        h: usize,
+        choice: BasisChoice,
+    ) -> Result<ReducedNodalDiameter, ModelError> {
+        Ok(self.project(h, choice)?.0)
+    }
+
+    /// The reduced model of the wheel in the given basis, with `cantilever_modes` of the blade
+    /// where the mistuning goes through them.
+    ///
+    /// # Errors
+    /// If a mass is not positive definite, or the blade has no cantilever modes.
+    pub fn reduce(
+        &self,
+        choice: BasisChoice,
+        cantilever_mode_count: Option<usize>,
+    ) -> Result<ReducedModel, ModelError> {
+        let projected = (0..self.models.len())
+            .into_par_iter()
+            .map(|h| self.project(h, choice))
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut nodal_diameters = Vec::new();
+        let mut bases = Vec::new();
+        let mut report = Vec::new();
+        for (nodal_diameter, basis, line) in projected {
+            nodal_diameters.push(nodal_diameter);
+            bases.push(basis);
+            report.push(line);
+        }
+        let cantilever = cantilever_mode_count
+            .map(|count| cantilever_modes(&self.sector, &bases, count))
+            .transpose()?;
+        Ok(ReducedModel {
+            name: self.name.to_owned(),
+            sectors: self.sector.sectors(),
+            basis: choice,
+            whole_space: self.is_whole_space(),
+            nodal_diameters,
+            contact: self.sector.contact().clone(),
+            springs: self.springs.clone(),
+            blade_gram: blade_gram(&self.sector, &bases),
+            cantilever,
+            report,
+        })
+    }
+
+    /// Reduced matrices, the basis over the independent dofs (`n_dofs x n_modes`), and the report.
+    fn project(
+        &self,
+        h: usize,
+        choice: BasisChoice,
+    ) -> Result<(ReducedNodalDiameter, Matrix<Complex64>, NodalDiameterReport), ModelError> {
+        let model = &self.models[h];
+        let basis = basis_of(model, &self.springs, choice)?;
+        let v = &basis.vectors;
+        let mass = v.adjoint_times(&model.mass.times(v));
+        let stiffness = v.adjoint_times(&model.stiffness.times(v));
+        let (eigenvalues, rotation) = pencil(&stiffness, &mass, h)?;
+        let v = v.times(&rotation);
+        let full = model.recovery.times(&v);
+        let observed = self.sector.observed_dofs();
+        let observed = Matrix::from_fn(3, full.columns(), |i, j| {
+            observed[i].map_or(Complex64::default(), |dof| full[(dof, j)])
+        });
+        let force = self.sector.force();
+        let reduced = ReducedNodalDiameter {
+            contact: model.contact.times(&v),
+            observed,
+            force: full.adjoint_times(&force),
+            conjugate_force: full.conjugate().adjoint_times(&force),
+            eigenvalues,
+        };
+        let report = NodalDiameterReport {
+            nodal_diameter: h,
+            craig_bampton_size: model.size(),
+            candidates: basis.singular_values.len(),
+            rank: basis.rank(),
+            condition: basis.condition(),
+            stick_frequencies_hz: frequencies_hz(&model.modes(&self.springs.stick)?.0),
+            slide_frequencies_hz: frequencies_hz(&model.modes(&self.springs.slide)?.0),
+            free_frequencies_hz: frequencies_hz(&pencil(&model.stiffness, &model.mass, h)?.0),
+        };
+        Ok((reduced, full, report))
+    }
+}
+
+fn frequencies_hz(eigenvalues: &[f64]) -> Vec<f64> {
+    eigenvalues
+        .iter()
+        .take(REPORTED_FREQUENCIES)
+        .map(|value| value.max(0.0).sqrt() / TAU)
+        .collect()
+}

@@ -1,0 +1,128 @@
+//! Reading a bundle.
+
+use std::path::Path;
+
+use super::header::{FILE_NAME, Header};
+use super::table::{Table, read_text};
+use crate::linalg::Complex64;
+use crate::model::sector::error::ModelError;
+use crate::model::sector::line_problem::LineProblem;
+use crate::model::sector::matrix_market::{self, integer, number};
+use crate::model::sector::sector_model::{
+    Body, Component, ContactPair, Dof, ObservedNode, SectorModel,
+};
+use crate::model::sector::validate::validate;
+
+/// Columns of each table.
+pub(super) const DOFS: &str = "dof,node,component,x,y,z,body";
+pub(super) const CYCLIC: &str = "low_dof,high_dof";
+pub(super) const CONTACT: &str = "pair,blisk_node,ring_node,nr,nt,nz,weight";
+pub(super) const FORCE: &str = "dof,re,im";
+pub(super) const OBSERVE: &str = "name,node";
+
+/// Reads the bundle in `directory` and validates it.
+///
+/// # Errors
+/// A file that is missing, a line that is not what the format says, or a model that is refused.
+pub fn read(directory: &Path) -> Result<SectorModel, ModelError> {
+    let header_path = directory.join(FILE_NAME);
+    let header =
+        Header::parse(&read_text(&header_path)?).map_err(|(line, problem)| ModelError::Line {
+            path: header_path,
+            line,
+            problem,
+        })?;
+    let files = &header.files;
+    let model = SectorModel {
+        name: header.name,
+        sectors: header.sectors,
+        stiffness: matrix_market::read(&directory.join(&files.stiffness))?,
+        mass: matrix_market::read(&directory.join(&files.mass))?,
+        blade_stiffness: matrix_market::read(&directory.join(&files.blade_stiffness))?,
+        dofs: Table::read(directory.join(&files.dofs), DOFS)?.rows(parse_dof)?,
+        cyclic_pairs: Table::read(directory.join(&files.cyclic), CYCLIC)?.rows(parse_cyclic)?,
+        contact_pairs: Table::read(directory.join(&files.contact), CONTACT)?.rows(parse_contact)?,
+        force: Table::read(directory.join(&files.force), FORCE)?.rows(parse_force)?,
+        observed: Table::read(directory.join(&files.observe), OBSERVE)?.rows(parse_observed)?,
+    };
+    validate(&model)?;
+    Ok(model)
+}
+
+fn parse_dof(
+    index: usize,
+    [dof, node, component, x, y, z, body]: [&str; 7],
+) -> Result<Dof, LineProblem> {
+    in_order("dof", dof, index)?;
+    Ok(Dof {
+        node: integer("node", node)?,
+        component: match component {
+            "r" => Component::Radial,
+            "t" => Component::Tangential,
+            "z" => Component::Axial,
+            other => return Err(not_a_word("component", other, "r, t or z")),
+        },
+        position_m: [number("x", x)?, number("y", y)?, number("z", z)?],
+        body: match body {
+            "blisk" => Body::Blisk,
+            "ring" => Body::Ring,
+            other => return Err(not_a_word("body", other, "blisk or ring")),
+        },
+    })
+}
+
+fn parse_cyclic(_: usize, [low, high]: [&str; 2]) -> Result<(usize, usize), LineProblem> {
+    Ok((integer("low_dof", low)?, integer("high_dof", high)?))
+}
+
+fn parse_contact(
+    index: usize,
+    [pair, blisk_node, ring_node, nr, nt, nz, weight]: [&str; 7],
+) -> Result<ContactPair, LineProblem> {
+    in_order("pair", pair, index)?;
+    Ok(ContactPair {
+        blisk_node: integer("blisk_node", blisk_node)?,
+        ring_node: integer("ring_node", ring_node)?,
+        normal: [number("nr", nr)?, number("nt", nt)?, number("nz", nz)?],
+        weight: number("weight", weight)?,
+    })
+}
+
+fn parse_force(_: usize, [dof, re, im]: [&str; 3]) -> Result<(usize, Complex64), LineProblem> {
+    Ok((
+        integer("dof", dof)?,
+        Complex64::new(number("re", re)?, number("im", im)?),
+    ))
+}
+
+fn parse_observed(_: usize, [name, node]: [&str; 2]) -> Result<ObservedNode, LineProblem> {
+    if name.is_empty() {
+        return Err(not_a_word("name", name, "a name"));
+    }
+    Ok(ObservedNode {
+        name: name.to_owned(),
+        node: integer("node", node)?,
+    })
+}
+
+/// An index that must equal the row's own.
+fn in_order(field: &'static str, word: &str, expected: usize) -> Result<(), LineProblem> {
+    let found = integer(field, word)?;
+    if found == expected {
+        Ok(())
+    } else {
+        Err(LineProblem::OutOfOrder {
+            field,
+            found,
+            expected,
+        })
+    }
+}
+
+fn not_a_word(field: &'static str, found: &str, accepted: &'static str) -> LineProblem {
+    LineProblem::NotAWord {
+        field,
+        found: found.to_owned(),
+        accepted,
+    }
+}

@@ -1,0 +1,121 @@
+//! Writing a bundle.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use super::header::{FILE_NAME, Header};
+use super::read::{CONTACT, CYCLIC, DOFS, FORCE, OBSERVE};
+use crate::model::sector::error::ModelError;
+use crate::model::sector::matrix_market;
+use crate::model::sector::sector_model::{Body, SectorModel};
+use crate::model::sector::validate::validate;
+
+/// Writes `model` as a bundle into `directory`, made if absent; files of the same names are replaced.
+///
+/// Reading the bundle gives the same model bit for bit.
+///
+/// # Errors
+/// A model that is refused, a name that CSV without quoting cannot hold, or a file that cannot be
+/// written.
+pub fn write(model: &SectorModel, directory: &Path) -> Result<(), ModelError> {
+    validate(model)?;
+    for (index, observed) in model.observed.iter().enumerate() {
+        let name = &observed.name;
+        if name.is_empty() || name.trim() != name || name.contains([',', '"', '\n', '\r']) {
+            return Err(ModelError::NameNotWritable {
+                index,
+                name: name.clone(),
+            });
+        }
+    }
+    let file_error = |path: &Path| {
+        let path = path.to_owned();
+        |source| ModelError::File { path, source }
+    };
+    fs::create_dir_all(directory).map_err(file_error(directory))?;
+    let header = Header::new(&model.name, model.sectors);
+    let files = &header.files;
+    for (matrix, comment, name) in [
+        (&model.stiffness, "sector stiffness, N/m", &files.stiffness),
+        (&model.mass, "sector mass, kg", &files.mass),
+        (
+            &model.blade_stiffness,
+            "share of the blade in the stiffness, N/m",
+            &files.blade_stiffness,
+        ),
+    ] {
+        matrix_market::write(matrix, comment, &directory.join(name))?;
+    }
+    let header_text =
+        toml::to_string(&header).map_err(|source| ModelError::HeaderNotWritable { source })?;
+    for (text, name) in [
+        (dofs(model), &files.dofs),
+        (cyclic(model), &files.cyclic),
+        (contact(model), &files.contact),
+        (force(model), &files.force),
+        (observe(model), &files.observe),
+        (header_text, &FILE_NAME.to_owned()),
+    ] {
+        let path = directory.join(name);
+        fs::write(&path, text).map_err(file_error(&path))?;
+    }
+    Ok(())
+}
+
+// Writing to a string cannot fail, so the results of `writeln!` below are dropped. `{:e}` prints the
+// shortest digits that read back as the same number.
+
+fn dofs(model: &SectorModel) -> String {
+    let mut text = format!("{DOFS}\n");
+    for (index, dof) in model.dofs.iter().enumerate() {
+        let [x, y, z] = dof.position_m;
+        let body = match dof.body {
+            Body::Blisk => "blisk",
+            Body::Ring => "ring",
+        };
+        let _ = writeln!(
+            text,
+            "{index},{},{},{x:e},{y:e},{z:e},{body}",
+            dof.node, dof.component
+        );
+    }
+    text
+}
+
+fn cyclic(model: &SectorModel) -> String {
+    let mut text = format!("{CYCLIC}\n");
+    for (low, high) in &model.cyclic_pairs {
+        let _ = writeln!(text, "{low},{high}");
+    }
+    text
+}
+
+fn contact(model: &SectorModel) -> String {
+    let mut text = format!("{CONTACT}\n");
+    for (index, pair) in model.contact_pairs.iter().enumerate() {
+        let [nr, nt, nz] = pair.normal;
+        let _ = writeln!(
+            text,
+            "{index},{},{},{nr:e},{nt:e},{nz:e},{:e}",
+            pair.blisk_node, pair.ring_node, pair.weight
+        );
+    }
+    text
+}
+
+fn force(model: &SectorModel) -> String {
+    let mut text = format!("{FORCE}\n");
+    for (dof, value) in &model.force {
+        let _ = writeln!(text, "{dof},{:e},{:e}", value.re, value.im);
+    }
+    text
+}
+
+fn observe(model: &SectorModel) -> String {
+    let mut text = format!("{OBSERVE}\n");
+    for observed in &model.observed {
+        let _ = writeln!(text, "{},{}", observed.name, observed.node);
+    }
+    text
+}

@@ -1,0 +1,103 @@
+//! The built-in bladed disk with a friction ring: options to sector model.
+
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+
+use super::error::ModelError;
+use super::parametric_mesh::ParametricMesh;
+use super::parametric_options::ParametricOptions;
+use super::sector_model::{Body, Component, ContactPair, ObservedNode, SectorModel};
+use super::validate::validate;
+use crate::linalg::{Complex64, SymmetricSparse};
+
+/// Builds the sector of the built-in bladed disk.
+///
+/// 1 N acts on the leading edge of the tip, normal to the tip's chord: `(cos, -sin)` of the tip's stagger
+/// angle in (theta, z). Observed are `tip_le` and `tip_te`, at mid-thickness. The contact pairs are
+/// the facing corner nodes of flange and ring off the cyclic faces, each with its share of the
+/// contact surface (see the mesh), normal (-1, 0, 0): the flange's inner surface faces the axis.
+///
+/// # Errors
+/// If an option is out of range or the geometry folds an element.
+pub fn build(options: &ParametricOptions) -> Result<SectorModel, ModelError> {
+    options.check()?;
+    let layout = ParametricMesh::new(options);
+    let assembled = layout.mesh.assemble()?;
+    let first_dof: HashMap<usize, usize> = assembled
+        .dofs
+        .iter()
+        .enumerate()
+        .filter(|(_, dof)| dof.component == Component::Radial)
+        .map(|(index, dof)| (dof.node, index))
+        .collect();
+    let is_ring: Vec<bool> = assembled
+        .dofs
+        .iter()
+        .map(|dof| dof.body == Body::Ring)
+        .collect();
+    let grounding = (TAU * options.ring_grounding_frequency_hz).powi(2);
+    let stiffness = grounded(&assembled.stiffness, &assembled.mass, &is_ring, grounding);
+
+    let mut cyclic_pairs = Vec::new();
+    for (low, high) in layout.face_nodes() {
+        if let (Some(low), Some(high)) = (first_dof.get(&low), first_dof.get(&high)) {
+            cyclic_pairs.extend((0..3).map(|component| (low + component, high + component)));
+        }
+    }
+    cyclic_pairs.sort_unstable();
+    let contact_pairs = layout
+        .facing_nodes()
+        .into_iter()
+        .map(|facing| ContactPair {
+            blisk_node: facing.blisk_node,
+            ring_node: facing.ring_node,
+            normal: [-1.0, 0.0, 0.0],
+            weight: facing.weight,
+        })
+        .collect();
+    let mut force = Vec::new();
+    let mut observed = Vec::new();
+    if let Some((leading, trailing)) = layout.tip_nodes() {
+        let stagger = (options.blade_stagger_angle_deg + options.blade_twist_deg).to_radians();
+        let tip = first_dof[&leading];
+        force.push((tip + 1, Complex64::new(stagger.cos(), 0.0)));
+        force.push((tip + 2, Complex64::new(-stagger.sin(), 0.0)));
+        observed.push(ObservedNode {
+            name: "tip_le".to_owned(),
+            node: leading,
+        });
+        observed.push(ObservedNode {
+            name: "tip_te".to_owned(),
+            node: trailing,
+        });
+    }
+    let model = SectorModel {
+        name: "parametric".to_owned(),
+        sectors: options.sectors,
+        stiffness,
+        mass: assembled.mass,
+        blade_stiffness: assembled.blade_stiffness,
+        dofs: assembled.dofs,
+        cyclic_pairs,
+        contact_pairs,
+        force,
+        observed,
+    };
+    validate(&model)?;
+    Ok(model)
+}
+
+/// `K + grounding M` on the ring's dofs.
+fn grounded(
+    stiffness: &SymmetricSparse,
+    mass: &SymmetricSparse,
+    is_ring: &[bool],
+    grounding: f64,
+) -> SymmetricSparse {
+    let on_ring = mass
+        .lower_entries()
+        .filter(|&(row, column, _)| is_ring[row] && is_ring[column])
+        .map(|(row, column, value)| (row, column, grounding * value));
+    let triplets: Vec<_> = stiffness.lower_entries().chain(on_ring).collect();
+    SymmetricSparse::from_lower_triplets(stiffness.dimension(), &triplets)
+}

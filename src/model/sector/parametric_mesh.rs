@@ -1,0 +1,357 @@
+//! Structured mesh of the built-in bladed disk: a lattice in (theta, z, r) and the map to space.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use super::assembly::{SolidElement, SolidMesh};
+use super::hexahedron20::NATURAL_COORDINATES;
+use super::parametric_options::ParametricOptions;
+use super::sector_model::Body;
+
+/// Lattice point in half elements: (theta, z, r); even in all three = corner of elements.
+type Point = [usize; 3];
+
+/// Coordinates along one direction in half elements: entry `2 e` begins element `e`.
+#[derive(Debug, Clone)]
+struct Axis(Vec<f64>);
+
+impl Axis {
+    /// Divides each interval between ascending `levels` into its number of elements; levels that
+    /// coincide (within 1e-9 of the span) are one.
+    fn new(levels: &[f64], elements: impl Fn(f64) -> usize) -> Self {
+        let span = levels[levels.len() - 1] - levels[0];
+        let mut values = vec![levels[0]];
+        let mut start = levels[0];
+        for &end in &levels[1..] {
+            if end - start <= 1e-9 * span {
+                continue;
+            }
+            let halves = 2 * elements(0.5 * (start + end));
+            for half in 1..halves {
+                values.push(start + (end - start) * half as f64 / halves as f64);
+            }
+            values.push(end);
+            start = end;
+        }
+        Self(values)
+    }
+
+    fn elements(&self) -> usize {
+        (self.0.len() - 1) / 2
+    }
+
+    /// Middle of element `e`.
+    fn middle(&self, element: usize) -> f64 {
+        self.0[2 * element + 1]
+    }
+
+    /// Index of the half-element point nearest to a level.
+    fn index_of(&self, level: f64) -> usize {
+        let mut nearest = 0;
+        for (index, value) in self.0.iter().enumerate() {
+            if (value - level).abs() < (self.0[nearest] - level).abs() {
+                nearest = index;
+            }
+        }
+        nearest
+    }
+}
+
+/// The mesh and where to find its faces, contact and tip.
+pub(super) struct ParametricMesh<'a> {
+    options: &'a ParametricOptions,
+    /// Angle before the shear that follows the stagger, rad.
+    theta: Axis,
+    z: Axis,
+    /// Radii of disk, rim and blade.
+    r: Axis,
+    /// Radii of the ring.
+    ring_r: Axis,
+    nodes: BTreeMap<(bool, Point), usize>,
+    pub(super) mesh: SolidMesh,
+}
+
+/// A pair of facing corner nodes and its share of the contact surface.
+pub(super) struct FacingNodes {
+    pub(super) blisk_node: usize,
+    pub(super) ring_node: usize,
+    pub(super) weight: f64,
+}
+
+impl<'a> ParametricMesh<'a> {
+    /// Lays out the mesh; the options have been checked.
+    pub(super) fn new(options: &'a ParametricOptions) -> Self {
+        let (half_pitch, half_blade) = (
+            0.5 * TAU / options.sectors as f64,
+            options.blade_half_angle_rad(),
+        );
+        let theta = Axis::new(
+            &[-half_pitch, -half_blade, half_blade, half_pitch],
+            |angle| {
+                if angle.abs() < half_blade {
+                    options.blade_thickness_elements
+                } else {
+                    options.passage_elements
+                }
+            },
+        );
+        let (half_rim, half_disk) = (
+            0.5 * options.rim_axial_width_m,
+            0.5 * options.disk_thickness_m,
+        );
+        let half_chord = 0.5 * options.blade_root_axial_chord_m;
+        let flange_end = half_rim + options.flange_length_m;
+        let ring_start = flange_end - options.ring_axial_width_m;
+        let mut levels = [
+            -half_rim,
+            -half_chord,
+            -half_disk,
+            half_disk,
+            half_chord,
+            half_rim,
+            ring_start,
+            flange_end,
+        ];
+        levels.sort_by(f64::total_cmp);
+        let z = Axis::new(&levels, |z| {
+            if z.abs() < half_disk {
+                options.disk_axial_elements
+            } else if z.abs() < half_rim {
+                options.rim_axial_elements
+            } else {
+                options.flange_axial_elements
+            }
+        });
+        let rim = options.rim_radius_m;
+        let levels = [
+            options.bore_radius_m,
+            options.rim_inner_radius_m(),
+            options.flange_inner_radius_m(),
+            rim,
+            rim + options.blade_height_m,
+        ];
+        let r = Axis::new(&levels, |radius| {
+            if radius < options.rim_inner_radius_m() {
+                options.disk_radial_elements
+            } else if radius < rim {
+                1
+            } else {
+                options.blade_radial_elements
+            }
+        });
+        let ring_outer = options.flange_inner_radius_m();
+        let ring_r = Axis::new(&[ring_outer - options.ring_thickness_m, ring_outer], |_| {
+            options.ring_radial_elements
+        });
+        let mesh = SolidMesh {
+            materials: options.materials().to_vec(),
+            ..SolidMesh::default()
+        };
+        let mut built = Self {
+            options,
+            theta,
+            z,
+            r,
+            ring_r,
+            nodes: BTreeMap::new(),
+            mesh,
+        };
+        built.add_elements();
+        built.clamp_bore();
+        built
+    }
+
+    fn add_elements(&mut self) {
+        for k in 0..self.r.elements() {
+            for j in 0..self.z.elements() {
+                for i in 0..self.theta.elements() {
+                    let (theta, z, r) = (self.theta.middle(i), self.z.middle(j), self.r.middle(k));
+                    let blade = r > self.options.rim_radius_m;
+                    if self.in_blisk(theta, z, r) {
+                        self.add_element([i, j, k], Body::Blisk, blade);
+                    }
+                }
+            }
+        }
+        let flange_end = 0.5 * self.options.rim_axial_width_m + self.options.flange_length_m;
+        for k in 0..self.ring_r.elements() {
+            for j in 0..self.z.elements() {
+                if self.z.middle(j) < flange_end - self.options.ring_axial_width_m {
+                    continue;
+                }
+                for i in 0..self.theta.elements() {
+                    self.add_element([i, j, k], Body::Ring, false);
+                }
+            }
+        }
+    }
+
+    /// Whether the middle of an element lies in disk, rim, flange or blade.
+    fn in_blisk(&self, theta: f64, z: f64, r: f64) -> bool {
+        let o = self.options;
+        let half_rim = 0.5 * o.rim_axial_width_m;
+        if r > o.rim_radius_m {
+            theta.abs() < o.blade_half_angle_rad() && z.abs() < 0.5 * o.blade_root_axial_chord_m
+        } else if r > o.rim_inner_radius_m() {
+            z.abs() < half_rim || (z > half_rim && r > o.flange_inner_radius_m())
+        } else {
+            z.abs() < 0.5 * o.disk_thickness_m
+        }
+    }
+
+    /// Adds the element `cell`; natural axes are r, theta, z, a right-handed order.
+    fn add_element(&mut self, cell: [usize; 3], body: Body, blade: bool) {
+        let nodes = NATURAL_COORDINATES.map(|[radial, tangential, axial]| {
+            let natural = [tangential, axial, radial];
+            let mut point = [0; 3];
+            for axis in 0..3 {
+                point[axis] = 2 * cell[axis] + (natural[axis] + 1.0) as usize;
+            }
+            self.node(body, point)
+        });
+        let material = usize::from(body == Body::Ring);
+        self.mesh.elements.push(SolidElement {
+            nodes,
+            material,
+            body,
+            blade,
+        });
+    }
+
+    /// Node at a lattice point of a body, made when first asked for.
+    fn node(&mut self, body: Body, point: Point) -> usize {
+        let position = self.position(body, point);
+        let next = self.mesh.nodes_m.len();
+        let node = *self
+            .nodes
+            .entry((body == Body::Ring, point))
+            .or_insert(next);
+        if node == next {
+            self.mesh.nodes_m.push(position);
+        }
+        node
+    }
+
+    /// Cartesian position of a lattice point, m.
+    ///
+    /// Up to the rim: `theta + z tan(stagger) / r_rim`, held beyond the root's chord, so that the rim's
+    /// lattice carries the staggered root. Blade at height share `s`, chordwise `v` and thicknesswise
+    /// `u` in [-1, 1]: `z = v a(s) / 2`, `theta = (z tan(stagger(s)) + u t(s) / (2 cos(stagger(s)))) / r`:
+    /// sections lie on cylinders, and both edges are cut normal to the axis.
+    fn position(&self, body: Body, [i, j, k]: Point) -> [f64; 3] {
+        let o = self.options;
+        let (theta, z) = (self.theta.0[i], self.z.0[j]);
+        let r = if body == Body::Ring {
+            self.ring_r.0[k]
+        } else {
+            self.r.0[k]
+        };
+        let half_chord = 0.5 * o.blade_root_axial_chord_m;
+        let (angle, z) = if body == Body::Blisk && k > self.rim_index() {
+            let s = (r - o.rim_radius_m) / o.blade_height_m;
+            let stagger = (o.blade_stagger_angle_deg + s * o.blade_twist_deg).to_radians();
+            let chord = o.blade_root_axial_chord_m
+                + s * (o.blade_tip_axial_chord_m - o.blade_root_axial_chord_m);
+            let thickness =
+                o.blade_root_thickness_m + s * (o.blade_tip_thickness_m - o.blade_root_thickness_m);
+            let (u, v) = (theta / o.blade_half_angle_rad(), z / half_chord);
+            let z = 0.5 * v * chord;
+            (
+                (z * stagger.tan() + 0.5 * u * thickness / stagger.cos()) / r,
+                z,
+            )
+        } else {
+            let shear = o.blade_stagger_angle_deg.to_radians().tan() / o.rim_radius_m;
+            (theta + shear * z.clamp(-half_chord, half_chord), z)
+        };
+        [r * angle.cos(), r * angle.sin(), z]
+    }
+
+    fn rim_index(&self) -> usize {
+        self.r.index_of(self.options.rim_radius_m)
+    }
+
+    fn clamp_bore(&mut self) {
+        self.mesh.clamped_nodes = self
+            .nodes
+            .iter()
+            .filter(|((ring, point), _)| !ring && point[2] == 0)
+            .map(|(_, &node)| node)
+            .collect();
+    }
+
+    /// Nodes `(low, high)` of the cyclic faces, clamped ones among them.
+    pub(super) fn face_nodes(&self) -> Vec<(usize, usize)> {
+        let last = self.theta.0.len() - 1;
+        self.nodes
+            .iter()
+            .filter(|((_, point), _)| point[0] == 0)
+            .filter_map(|(&(ring, [_, j, k]), &low)| {
+                self.nodes
+                    .get(&(ring, [last, j, k]))
+                    .map(|&high| (low, high))
+            })
+            .collect()
+    }
+
+    /// Facing corner nodes of flange and ring on the lines that lie on neither cyclic face.
+    ///
+    /// Weight = tributary area of the node on the contact surface, over the whole surface: half of each
+    /// neighbouring element in theta and z (the lumping of bilinear faces, always positive, where
+    /// consistent quadratic corner weights are negative). The outer halves at the cyclic faces
+    /// fall to the nearest line.
+    pub(super) fn facing_nodes(&self) -> Vec<FacingNodes> {
+        let o = self.options;
+        let flange_end = 0.5 * o.rim_axial_width_m + o.flange_length_m;
+        let first_z = self.z.index_of(flange_end - o.ring_axial_width_m);
+        let flange_r = self.r.index_of(o.flange_inner_radius_m());
+        let ring_r = self.ring_r.0.len() - 1;
+        let (last_theta, last_z) = (self.theta.0.len() - 1, self.z.0.len() - 1);
+        let mut facing = Vec::new();
+        for i in (2..last_theta).step_by(2) {
+            let low = if i == 2 {
+                self.theta.0[0]
+            } else {
+                self.theta.0[i - 1]
+            };
+            let high = if i + 2 == last_theta {
+                self.theta.0[last_theta]
+            } else {
+                self.theta.0[i + 1]
+            };
+            for j in (first_z..=last_z).step_by(2) {
+                let below = self.z.0[j.max(first_z + 1) - 1];
+                let above = self.z.0[(j + 1).min(last_z)];
+                let nodes = (
+                    self.nodes.get(&(false, [i, j, flange_r])),
+                    self.nodes.get(&(true, [i, j, ring_r])),
+                );
+                if let (Some(&blisk_node), Some(&ring_node)) = nodes {
+                    let weight = (high - low) * (above - below);
+                    facing.push(FacingNodes {
+                        blisk_node,
+                        ring_node,
+                        weight,
+                    });
+                }
+            }
+        }
+        let whole: f64 = facing.iter().map(|pair| pair.weight).sum();
+        for pair in &mut facing {
+            pair.weight /= whole;
+        }
+        facing
+    }
+
+    /// Nodes at mid-thickness of the blade's tip: leading edge (least z), trailing edge.
+    pub(super) fn tip_nodes(&self) -> Option<(usize, usize)> {
+        let half_chord = 0.5 * self.options.blade_root_axial_chord_m;
+        let (i, k) = (self.theta.index_of(0.0), self.r.0.len() - 1);
+        let edge = |z: f64| {
+            self.nodes
+                .get(&(false, [i, self.z.index_of(z), k]))
+                .copied()
+        };
+        Some((edge(-half_chord)?, edge(half_chord)?))
+    }
+}

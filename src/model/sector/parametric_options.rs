@@ -1,0 +1,332 @@
+//! Dimensions, materials and mesh of the built-in bladed disk, with their defaults and limits.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::ModelError;
+use super::error_place::Accepted;
+use super::hexahedron20::Material;
+
+/// The built-in bladed disk with a ring damper under a rim flange; lengths in m.
+///
+/// Seen in the (z, r) plane, from the axis outwards: a web of constant thickness round z = 0, clamped
+/// at the bore; a rim, as wide as `rim_axial_width_m`, centred on z = 0; a flange, the outer layer of the
+/// rim continued towards +z; under the flange's free end the ring. The blade stands on the rim.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ParametricOptions {
+    /// Number of sectors N. Default 24.
+    pub sectors: usize,
+    /// Radius of the bore, where the disk is clamped.
+    pub bore_radius_m: f64,
+    /// Outer radius of the rim, on which the blade stands.
+    pub rim_radius_m: f64,
+    /// Radial thickness of the rim.
+    pub rim_thickness_m: f64,
+    /// Axial width of the rim.
+    pub rim_axial_width_m: f64,
+    /// Axial thickness of the disk's web.
+    pub disk_thickness_m: f64,
+    /// Axial length of the flange beyond the rim.
+    pub flange_length_m: f64,
+    /// Radial thickness of the flange, at most that of the rim.
+    pub flange_thickness_m: f64,
+    /// Axial width of the ring, which ends where the flange ends; at most the flange's length.
+    pub ring_axial_width_m: f64,
+    /// Radial thickness of the ring.
+    pub ring_thickness_m: f64,
+    /// Height of the blade above the rim.
+    pub blade_height_m: f64,
+    /// Axial chord at the root, at most the rim's width; the chord is this over cos(stagger).
+    pub blade_root_axial_chord_m: f64,
+    /// Axial chord at the tip.
+    pub blade_tip_axial_chord_m: f64,
+    /// Thickness at the root, normal to the chord.
+    pub blade_root_thickness_m: f64,
+    /// Thickness at the tip, normal to the chord.
+    pub blade_tip_thickness_m: f64,
+    /// Angle from the axis to the chord at the root, positive from +z towards +theta.
+    pub blade_stagger_angle_deg: f64,
+    /// Stagger angle at the tip less that at the root; linear in between.
+    pub blade_twist_deg: f64,
+    /// Young's modulus of disk and blade, Pa.
+    pub blisk_youngs_modulus_pa: f64,
+    /// Poisson's ratio of disk and blade.
+    pub blisk_poisson_ratio: f64,
+    /// Density of disk and blade.
+    pub blisk_density_kg_per_m3: f64,
+    /// Young's modulus of the ring, Pa.
+    pub ring_youngs_modulus_pa: f64,
+    /// Poisson's ratio of the ring.
+    pub ring_poisson_ratio: f64,
+    /// Density of the ring.
+    pub ring_density_kg_per_m3: f64,
+    /// Frequency f of the weak grounding `(2 pi f)^2 M` of the ring, which contact alone holds otherwise.
+    pub ring_grounding_frequency_hz: f64,
+    /// Elements along the radius of the web.
+    pub disk_radial_elements: usize,
+    /// Elements through the axial thickness of the web.
+    pub disk_axial_elements: usize,
+    /// Elements of the rim and the root along z, on each side of the web.
+    pub rim_axial_elements: usize,
+    /// Elements along the flange over the ring's width.
+    pub flange_axial_elements: usize,
+    /// Elements between the blade and each cyclic face.
+    pub passage_elements: usize,
+    /// Elements through the thickness of the blade.
+    pub blade_thickness_elements: usize,
+    /// Elements along the height of the blade.
+    pub blade_radial_elements: usize,
+    /// Elements through the radial thickness of the ring.
+    pub ring_radial_elements: usize,
+}
+
+impl Default for ParametricOptions {
+    fn default() -> Self {
+        Self {
+            sectors: 24,
+            bore_radius_m: 0.06,
+            rim_radius_m: 0.205,
+            rim_thickness_m: 0.010,
+            rim_axial_width_m: 0.040,
+            disk_thickness_m: 0.006,
+            flange_length_m: 0.014,
+            flange_thickness_m: 0.010,
+            ring_axial_width_m: 0.014,
+            ring_thickness_m: 0.007,
+            blade_height_m: 0.080,
+            blade_root_axial_chord_m: 0.040,
+            blade_tip_axial_chord_m: 0.032,
+            blade_root_thickness_m: 0.0045,
+            blade_tip_thickness_m: 0.0025,
+            blade_stagger_angle_deg: 20.0,
+            blade_twist_deg: 20.0,
+            blisk_youngs_modulus_pa: 2.1e11,
+            blisk_poisson_ratio: 0.3,
+            blisk_density_kg_per_m3: 7850.0,
+            ring_youngs_modulus_pa: 2.1e11,
+            ring_poisson_ratio: 0.3,
+            ring_density_kg_per_m3: 7850.0,
+            ring_grounding_frequency_hz: 5.0,
+            disk_radial_elements: 3,
+            disk_axial_elements: 1,
+            rim_axial_elements: 1,
+            flange_axial_elements: 1,
+            passage_elements: 1,
+            blade_thickness_elements: 1,
+            blade_radial_elements: 5,
+            ring_radial_elements: 1,
+        }
+    }
+}
+
+/// Largest number of sectors accepted; below three a sector spans half a turn or more.
+const SECTORS: (usize, usize) = (3, 1000);
+/// Largest number of elements in one direction.
+const MAX_ELEMENTS: usize = 64;
+/// Largest stagger angle at root and tip, deg: beyond it the elements are too sheared.
+const MAX_STAGGER_DEG: f64 = 65.0;
+
+impl ParametricOptions {
+    /// Inner radius of the rim, m.
+    #[must_use]
+    pub fn rim_inner_radius_m(&self) -> f64 {
+        self.rim_radius_m - self.rim_thickness_m
+    }
+
+    /// Inner radius of the flange, which is the outer radius of the ring, m.
+    #[must_use]
+    pub fn flange_inner_radius_m(&self) -> f64 {
+        self.rim_radius_m - self.flange_thickness_m
+    }
+
+    /// Half the angle of the blade's root at the rim, rad: `t / (2 r cos(stagger))`.
+    #[must_use]
+    pub fn blade_half_angle_rad(&self) -> f64 {
+        let cosine = self.blade_stagger_angle_deg.to_radians().cos();
+        self.blade_root_thickness_m / (2.0 * self.rim_radius_m * cosine)
+    }
+
+    /// Material of disk and blade, then of the ring.
+    #[must_use]
+    pub fn materials(&self) -> [Material; 2] {
+        [
+            Material {
+                youngs_modulus_pa: self.blisk_youngs_modulus_pa,
+                poisson_ratio: self.blisk_poisson_ratio,
+                density_kg_per_m3: self.blisk_density_kg_per_m3,
+            },
+            Material {
+                youngs_modulus_pa: self.ring_youngs_modulus_pa,
+                poisson_ratio: self.ring_poisson_ratio,
+                density_kg_per_m3: self.ring_density_kg_per_m3,
+            },
+        ]
+    }
+
+    /// Checks every value and the order of the radii and widths.
+    ///
+    /// # Errors
+    /// [`ModelError::Option`] with the key, the value and what is accepted.
+    pub fn check(&self) -> Result<(), ModelError> {
+        self.check_counts()?;
+        self.check_signs()?;
+        self.check_order()
+    }
+
+    fn check_counts(&self) -> Result<(), ModelError> {
+        count("sectors", self.sectors, SECTORS)?;
+        for (key, value) in [
+            ("disk_radial_elements", self.disk_radial_elements),
+            ("disk_axial_elements", self.disk_axial_elements),
+            ("rim_axial_elements", self.rim_axial_elements),
+            ("flange_axial_elements", self.flange_axial_elements),
+            ("passage_elements", self.passage_elements),
+            ("blade_thickness_elements", self.blade_thickness_elements),
+            ("blade_radial_elements", self.blade_radial_elements),
+            ("ring_radial_elements", self.ring_radial_elements),
+        ] {
+            count(key, value, (1, MAX_ELEMENTS))?;
+        }
+        Ok(())
+    }
+
+    fn check_signs(&self) -> Result<(), ModelError> {
+        for (key, value) in [
+            ("bore_radius_m", self.bore_radius_m),
+            ("rim_radius_m", self.rim_radius_m),
+            ("rim_thickness_m", self.rim_thickness_m),
+            ("rim_axial_width_m", self.rim_axial_width_m),
+            ("disk_thickness_m", self.disk_thickness_m),
+            ("flange_length_m", self.flange_length_m),
+            ("flange_thickness_m", self.flange_thickness_m),
+            ("ring_axial_width_m", self.ring_axial_width_m),
+            ("ring_thickness_m", self.ring_thickness_m),
+            ("blade_height_m", self.blade_height_m),
+            ("blade_root_axial_chord_m", self.blade_root_axial_chord_m),
+            ("blade_tip_axial_chord_m", self.blade_tip_axial_chord_m),
+            ("blade_root_thickness_m", self.blade_root_thickness_m),
+            ("blade_tip_thickness_m", self.blade_tip_thickness_m),
+            ("blisk_youngs_modulus_pa", self.blisk_youngs_modulus_pa),
+            ("blisk_density_kg_per_m3", self.blisk_density_kg_per_m3),
+            ("ring_youngs_modulus_pa", self.ring_youngs_modulus_pa),
+            ("ring_density_kg_per_m3", self.ring_density_kg_per_m3),
+        ] {
+            accept(
+                key,
+                value,
+                value.is_finite() && value > 0.0,
+                Accepted::Positive,
+            )?;
+        }
+        let grounding = self.ring_grounding_frequency_hz;
+        let valid = grounding.is_finite() && grounding >= 0.0;
+        accept(
+            "ring_grounding_frequency_hz",
+            grounding,
+            valid,
+            Accepted::NonNegative,
+        )?;
+        for (key, value) in [
+            ("blisk_poisson_ratio", self.blisk_poisson_ratio),
+            ("ring_poisson_ratio", self.ring_poisson_ratio),
+        ] {
+            accept(
+                key,
+                value,
+                (0.0..0.5).contains(&value),
+                Accepted::Range(0.0, 0.5),
+            )?;
+        }
+        let limits = -MAX_STAGGER_DEG..MAX_STAGGER_DEG;
+        let accepted = Accepted::Range(limits.start, limits.end);
+        let root = self.blade_stagger_angle_deg;
+        accept(
+            "blade_stagger_angle_deg",
+            root,
+            limits.contains(&root),
+            accepted,
+        )?;
+        let twist = self.blade_twist_deg;
+        let accepted = Accepted::Range(limits.start - root, limits.end - root);
+        accept(
+            "blade_twist_deg",
+            twist,
+            limits.contains(&(root + twist)),
+            accepted,
+        )
+    }
+
+    fn check_order(&self) -> Result<(), ModelError> {
+        let limit = self.rim_inner_radius_m();
+        let accepted = Accepted::BelowM("rim_radius_m - rim_thickness_m", limit);
+        accept(
+            "bore_radius_m",
+            self.bore_radius_m,
+            self.bore_radius_m < limit,
+            accepted,
+        )?;
+        for (key, value, what, limit) in [
+            (
+                "flange_thickness_m",
+                self.flange_thickness_m,
+                "rim_thickness_m",
+                self.rim_thickness_m,
+            ),
+            (
+                "ring_axial_width_m",
+                self.ring_axial_width_m,
+                "flange_length_m",
+                self.flange_length_m,
+            ),
+            (
+                "disk_thickness_m",
+                self.disk_thickness_m,
+                "rim_axial_width_m",
+                self.rim_axial_width_m,
+            ),
+            (
+                "blade_root_axial_chord_m",
+                self.blade_root_axial_chord_m,
+                "rim_axial_width_m",
+                self.rim_axial_width_m,
+            ),
+        ] {
+            accept(key, value, value <= limit, Accepted::AtMostM(what, limit))?;
+        }
+        let limit = self.flange_inner_radius_m();
+        let accepted = Accepted::BelowM("the inner radius of the flange", limit);
+        accept(
+            "ring_thickness_m",
+            self.ring_thickness_m,
+            self.ring_thickness_m < limit,
+            accepted,
+        )?;
+        // The root must leave room for the passage: its angle stays below the pitch.
+        let pitch = std::f64::consts::TAU / self.sectors as f64;
+        let thickness = self.blade_root_thickness_m;
+        let limit = thickness * pitch / (2.0 * self.blade_half_angle_rad());
+        let accepted = Accepted::BelowM("the pitch of the roots normal to the chord", limit);
+        accept(
+            "blade_root_thickness_m",
+            thickness,
+            thickness < limit,
+            accepted,
+        )
+    }
+}
+
+fn accept(key: &str, value: f64, valid: bool, accepted: Accepted) -> Result<(), ModelError> {
+    if valid {
+        return Ok(());
+    }
+    Err(ModelError::Option {
+        key: format!("model.parametric.{key}"),
+        value,
+        accepted,
+    })
+}
+
+fn count(key: &str, value: usize, (low, high): (usize, usize)) -> Result<(), ModelError> {
+    let valid = (low..=high).contains(&value);
+    accept(key, value as f64, valid, Accepted::Count(low, high))
+}

@@ -1,0 +1,168 @@
+//! One pair of contact nodes: its parameters, its displacement history and what the chosen law makes of it.
+
+use super::{ContactLaw, PeriodicSlider, macro_slip_1d, simplified_3d};
+
+impl ContactLaw {
+    /// Whether the normal load follows the normal displacement.
+    #[must_use]
+    pub fn has_variable_load(self) -> bool {
+        match self {
+            Self::MacroSlip1d => false,
+            Self::Simplified3d => true,
+        }
+    }
+}
+
+/// Parameters of one pair: the per-sector values of the study times the weight of the pair.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairParameters {
+    /// Static normal load N0 of the pair, N, >= 0.
+    pub normal_load_n: f64,
+    /// Normal stiffness kn of the pair, N/m.
+    pub normal_stiffness_n_per_m: f64,
+    /// Tangential stiffness kt of the pair, N/m, in either tangential direction.
+    pub tangential_stiffness_n_per_m: f64,
+    /// Coefficient of friction mu.
+    pub friction_coefficient: f64,
+}
+
+impl PairParameters {
+    /// The parameters of a pair that has `weight` of the sector's contact; mu is no share.
+    #[must_use]
+    pub fn share(self, weight: f64) -> Self {
+        Self {
+            normal_load_n: weight * self.normal_load_n,
+            normal_stiffness_n_per_m: weight * self.normal_stiffness_n_per_m,
+            tangential_stiffness_n_per_m: weight * self.tangential_stiffness_n_per_m,
+            friction_coefficient: self.friction_coefficient,
+        }
+    }
+
+    /// Whether the pair certainly sticks throughout, in contact and with zero offset, if its displacement along n, t1, t2
+    /// never exceeds `excursions_m`: `kt |x| < mu (N0 - kn |g|)`.
+    #[must_use]
+    pub fn surely_sticks(&self, law: ContactLaw, excursions_m: [f64; 3]) -> bool {
+        let [normal, first, second] = excursions_m;
+        let (lowest_load, tangential) = match law {
+            ContactLaw::MacroSlip1d => (self.normal_load_n, first),
+            ContactLaw::Simplified3d => (
+                self.normal_load_n - self.normal_stiffness_n_per_m * normal,
+                first.max(second),
+            ),
+        };
+        lowest_load > 0.0
+            && self.tangential_stiffness_n_per_m * tangential
+                < self.friction_coefficient * lowest_load
+    }
+}
+
+/// Relative displacement `u_blisk - u_ring` of a pair over one period, m; each history has `n_samples` samples.
+#[derive(Debug, Clone, Copy)]
+pub struct PairDisplacement<'a> {
+    /// Closing `g_j` (positive = pressed together), its mean included where harmonic 0 is solved for.
+    pub normal: &'a [f64],
+    /// `x_j` along t1 and t2, without their means.
+    pub tangential: [&'a [f64]; 2],
+}
+
+/// Contact state of a pair over the period.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PairState {
+    /// Slips in any direction at any sample.
+    pub slipping: bool,
+    /// The normal load is zero at any sample.
+    pub separated: bool,
+}
+
+/// Response of a pair: corrections to the *linear, stuck* contact force, and what their derivatives need.
+///
+/// The stuck force is `(kn g, kt x1, kt x2)` (for `macro_slip_1d`: `(kn g, kt x1, 0)`). Corrections are formed directly,
+/// never as a difference of two forces: a pair that sticks has a correction of exactly zero at any normal load.
+#[derive(Debug, Clone)]
+pub struct ContactHistory {
+    /// `N_j`, N.
+    pub(super) normal_load: Vec<f64>,
+    /// `(N_j - N0) - kn g_j`, N: zero unless separated.
+    pub(super) normal_correction: Vec<f64>,
+    pub(super) sliders: [PeriodicSlider; 2],
+    pub(super) state: PairState,
+}
+
+impl ContactHistory {
+    /// Buffers for histories of `n_samples` samples.
+    #[must_use]
+    pub fn new(n_samples: usize) -> Self {
+        Self {
+            normal_load: vec![0.0; n_samples],
+            normal_correction: vec![0.0; n_samples],
+            sliders: [
+                PeriodicSlider::new(n_samples),
+                PeriodicSlider::new(n_samples),
+            ],
+            state: PairState::default(),
+        }
+    }
+
+    /// Applies `law` to the displacement; every history must have the number of samples of these buffers.
+    pub fn respond(
+        &mut self,
+        law: ContactLaw,
+        parameters: &PairParameters,
+        displacement: PairDisplacement<'_>,
+    ) -> PairState {
+        match law {
+            ContactLaw::MacroSlip1d => macro_slip_1d::respond(self, parameters, displacement),
+            ContactLaw::Simplified3d => simplified_3d::respond(self, parameters, displacement),
+        }
+        self.state
+    }
+
+    /// State of a pair known to stick with zero offset throughout, without looking at its history.
+    pub fn rest(&mut self, parameters: &PairParameters) -> PairState {
+        self.normal_load.fill(parameters.normal_load_n);
+        self.normal_correction.fill(0.0);
+        self.sliders.iter_mut().for_each(PeriodicSlider::rest);
+        self.state = PairState::default();
+        self.state
+    }
+
+    /// Finds what the derivatives of the tangential corrections need.
+    pub fn locate_clips(&mut self) {
+        self.sliders
+            .iter_mut()
+            .for_each(PeriodicSlider::locate_clips);
+    }
+
+    /// State of the response last computed.
+    #[must_use]
+    pub fn state(&self) -> PairState {
+        self.state
+    }
+
+    /// Normal load `N_j`, N (`n_samples`); the static load where the law has no other.
+    #[must_use]
+    pub fn normal_load_n(&self) -> &[f64] {
+        &self.normal_load
+    }
+
+    /// Normal correction `(N_j - N0) - kn g_j`, N (`n_samples`); its derivative is `-kn` where `N_j = 0`, else 0.
+    #[must_use]
+    pub fn normal_correction_n(&self) -> &[f64] {
+        &self.normal_correction
+    }
+
+    /// Sliders along t1 and t2: their offsets are the tangential corrections.
+    #[must_use]
+    pub fn sliders(&self) -> &[PeriodicSlider; 2] {
+        &self.sliders
+    }
+
+    /// Mean friction force along t1 and t2 that the displacements without their means cause, N.
+    #[must_use]
+    pub fn mean_friction_n(&self) -> [f64; 2] {
+        let mean = |offset: &[f64]| offset.iter().sum::<f64>() / offset.len() as f64;
+        self.sliders
+            .each_ref()
+            .map(|slider| mean(slider.offset_n()))
+    }
+}

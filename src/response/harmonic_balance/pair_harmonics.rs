@@ -1,0 +1,323 @@
+//! One contact pair in harmonic space: coefficients of its displacement to those of its force, with derivatives.
+//!
+//! Alternating frequency/time: synthesise the histories, apply the law, project. Forces are *corrections* to the linear
+//! stuck force, see [`ContactHistory`]; with `W`, `V` sums over the clips (sample `r_e`, sign `s_e`) of a slider and
+//! `Psi_e` the sum of `psi` over the samples that clip e rules,
+//!
+//! ```text
+//! W_{cc'} = sum_e Psi_{e,c} phi_c'(r_e),    V_{cc'} = sum_e s_e Psi_{e,c} phi_c'(r_e)
+//! d(tangential)/d(tangential) = -kt W,      d(tangential)/d(normal) = mu kn V
+//! d(normal)/d(normal)_{cc'}   = -kn sum_{j: N_j = 0} psi_c(tau_j) phi_c'(tau_j)
+//! ```
+//!
+//! The mean of the tangential displacement is no input of the law and its correction is zero (its force is the linear
+//! `kt u_0`): coefficient 0 of a set with harmonic 0 gives zero rows and columns in the tangential directions.
+
+use std::sync::Arc;
+
+use super::transform::dot;
+use super::{HarmonicTransform, TransformScratch};
+use crate::response::friction::{
+    ContactHistory, ContactLaw, PairDisplacement, PairParameters, PairState,
+};
+
+/// Derivative of a pair's correction coefficients, N/m; every block is `n_coefficients * n_coefficients`, row after
+/// row, a row per coefficient of the correction and a column per coefficient of the displacement.
+///
+/// Blocks not listed are zero: normal by tangential, and t1 by t2.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairJacobian {
+    /// Normal correction by normal displacement.
+    pub normal_normal: Vec<f64>,
+    /// Correction along t1 by displacement along t1, then t2 by t2.
+    pub tangential_tangential: [Vec<f64>; 2],
+    /// Correction along t1, then t2, by the normal displacement.
+    pub tangential_normal: [Vec<f64>; 2],
+}
+
+impl PairJacobian {
+    /// Zero blocks.
+    #[must_use]
+    pub fn new(n_coefficients: usize) -> Self {
+        let zero = || vec![0.0; n_coefficients * n_coefficients];
+        Self {
+            normal_normal: zero(),
+            tangential_tangential: [zero(), zero()],
+            tangential_normal: [zero(), zero()],
+        }
+    }
+
+    /// Sets every block to zero.
+    pub fn clear(&mut self) {
+        self.normal_normal.fill(0.0);
+        self.tangential_tangential
+            .iter_mut()
+            .for_each(|block| block.fill(0.0));
+        self.tangential_normal
+            .iter_mut()
+            .for_each(|block| block.fill(0.0));
+    }
+}
+
+/// Evaluates pairs of one law and one harmonic set; owns the buffers, so each thread has its own.
+#[derive(Debug, Clone)]
+pub struct PairHarmonics {
+    law: ContactLaw,
+    transform: Arc<HarmonicTransform>,
+    scratch: TransformScratch,
+    /// Coefficients without tangential means (`3 * n_coefficients`).
+    oscillation: Vec<f64>,
+    /// Histories along n, t1, t2 (`3 * n_samples`).
+    displacement: Vec<f64>,
+    history: ContactHistory,
+    sums: ClipSums,
+}
+
+impl PairHarmonics {
+    /// Buffers for `law` on the harmonics and samples of `transform`.
+    #[must_use]
+    pub fn new(law: ContactLaw, transform: Arc<HarmonicTransform>) -> Self {
+        let (n_samples, n_coefficients) = (transform.n_samples(), transform.n_coefficients());
+        Self {
+            law,
+            scratch: transform.scratch(),
+            oscillation: vec![0.0; 3 * n_coefficients],
+            displacement: vec![0.0; 3 * n_samples],
+            history: ContactHistory::new(n_samples),
+            sums: ClipSums::new(n_coefficients, n_samples),
+            transform,
+        }
+    }
+
+    /// The transform: harmonics, samples, order of the coefficients.
+    #[must_use]
+    pub fn transform(&self) -> &HarmonicTransform {
+        &self.transform
+    }
+
+    /// Histories of the pair last evaluated.
+    #[must_use]
+    pub fn history(&self) -> &ContactHistory {
+        &self.history
+    }
+
+    /// Corrections of one pair, and where wanted their derivative.
+    ///
+    /// `coefficients`, m, and `correction`, N (`3 * n_coefficients` each): those of n, then t1, then t2, each in the
+    /// order of [`HarmonicTransform`]. `jacobian` is overwritten. A pair that neither slips nor separates has zero
+    /// correction and zero Jacobian, exactly.
+    pub fn evaluate(
+        &mut self,
+        parameters: &PairParameters,
+        coefficients: &[f64],
+        correction: &mut [f64],
+        jacobian: Option<&mut PairJacobian>,
+    ) -> PairState {
+        let n_coefficients = self.transform.n_coefficients();
+        self.oscillation.copy_from_slice(coefficients);
+        if self.transform.has_mean() {
+            self.oscillation[n_coefficients] = 0.0;
+            self.oscillation[2 * n_coefficients] = 0.0;
+        }
+        correction.fill(0.0);
+        let state = if parameters.surely_sticks(self.law, self.excursions()) {
+            self.history.rest(parameters)
+        } else {
+            self.respond(parameters)
+        };
+        if state.slipping || state.separated {
+            self.project(correction);
+        }
+        if let Some(jacobian) = jacobian {
+            jacobian.clear();
+            if state.slipping || state.separated {
+                self.differentiate(parameters, jacobian);
+            }
+        }
+        state
+    }
+
+    /// Upper bounds on the displacement along n, t1, t2, m: the sum of the amplitudes of the harmonics.
+    fn excursions(&self) -> [f64; 3] {
+        let n_coefficients = self.transform.n_coefficients();
+        let first = usize::from(self.transform.has_mean());
+        std::array::from_fn(|direction| {
+            let (mean, oscillation) =
+                self.oscillation[direction * n_coefficients..][..n_coefficients].split_at(first);
+            let amplitude = |pair: &[f64]| (pair[0] * pair[0] + pair[1] * pair[1]).sqrt();
+            mean.iter().map(|mean| mean.abs()).sum::<f64>()
+                + oscillation.chunks_exact(2).map(amplitude).sum::<f64>()
+        })
+    }
+
+    /// Displacement histories and the response of the law to them.
+    fn respond(&mut self, parameters: &PairParameters) -> PairState {
+        let n_samples = self.transform.n_samples();
+        self.transform
+            .synthesize(&self.oscillation, &mut self.displacement, &mut self.scratch);
+        let (normal, tangential) = self.displacement.split_at(n_samples);
+        let (first, second) = tangential.split_at(n_samples);
+        let displacement = PairDisplacement {
+            normal,
+            tangential: [first, second],
+        };
+        self.history.respond(self.law, parameters, displacement)
+    }
+
+    /// Coefficients of the corrections that are not zero.
+    fn project(&mut self, correction: &mut [f64]) {
+        let n_coefficients = self.transform.n_coefficients();
+        let (normal, tangential) = correction.split_at_mut(n_coefficients);
+        if self.history.state().separated {
+            self.transform.project(
+                self.history.normal_correction_n(),
+                normal,
+                &mut self.scratch,
+            );
+        }
+        let sliders = self.history.sliders().iter();
+        for (slider, correction) in sliders.zip(tangential.chunks_exact_mut(n_coefficients)) {
+            if slider.is_slipping() {
+                self.transform
+                    .project(slider.offset_n(), correction, &mut self.scratch);
+                if self.transform.has_mean() {
+                    correction[0] = 0.0;
+                }
+            }
+        }
+    }
+
+    /// Blocks of the Jacobian that are not zero, into cleared blocks.
+    fn differentiate(&mut self, parameters: &PairParameters, jacobian: &mut PairJacobian) {
+        let PairParameters {
+            normal_stiffness_n_per_m: kn,
+            tangential_stiffness_n_per_m: kt,
+            friction_coefficient: mu,
+            ..
+        } = *parameters;
+        let variable_load = self.law.has_variable_load();
+        if variable_load && self.history.state().separated {
+            self.sums
+                .gather_separated(&self.transform, self.history.normal_load_n());
+            self.sums
+                .product(&mut jacobian.normal_normal, &self.sums.held, -kn, 0, 0);
+        }
+        // Tangential means: neither rows nor columns.
+        let first = usize::from(self.transform.has_mean());
+        self.history.locate_clips();
+        for (direction, slider) in self.history.sliders().iter().enumerate() {
+            if !slider.is_slipping() {
+                continue;
+            }
+            self.sums
+                .gather_clips(&self.transform, slider.clip_samples(), slider.clip_signs());
+            let sums = &self.sums;
+            sums.product(
+                &mut jacobian.tangential_tangential[direction],
+                &sums.held,
+                -kt,
+                first,
+                first,
+            );
+            if variable_load {
+                sums.product(
+                    &mut jacobian.tangential_normal[direction],
+                    &sums.held_signed,
+                    mu * kn,
+                    first,
+                    0,
+                );
+            }
+        }
+    }
+}
+
+/// Factors of the sums over events (clips, or separated samples), coefficient after coefficient with a stride of
+/// `n_samples`.
+#[derive(Debug, Clone)]
+struct ClipSums {
+    n_coefficients: usize,
+    n_samples: usize,
+    n_events: usize,
+    /// `Psi_{e,c}`.
+    held: Vec<f64>,
+    /// `s_e Psi_{e,c}`.
+    held_signed: Vec<f64>,
+    /// `phi_c(r_e)`.
+    moved: Vec<f64>,
+}
+
+impl ClipSums {
+    fn new(n_coefficients: usize, n_samples: usize) -> Self {
+        let zero = || vec![0.0; n_coefficients * n_samples];
+        Self {
+            n_coefficients,
+            n_samples,
+            n_events: 0,
+            held: zero(),
+            held_signed: zero(),
+            moved: zero(),
+        }
+    }
+
+    /// Factors of the clips of a slipping slider.
+    fn gather_clips(&mut self, transform: &HarmonicTransform, samples: &[usize], signs: &[f64]) {
+        self.n_events = samples.len();
+        let (Some(&first), Some(&last)) = (samples.first(), samples.last()) else {
+            return;
+        };
+        for c in 0..self.n_coefficients {
+            let rows = c * self.n_samples..c * self.n_samples + samples.len();
+            let (basis, cumulative) = (transform.basis(c), transform.cumulative_projection(c));
+            let held = &mut self.held[rows.clone()];
+            for (held, pair) in held.iter_mut().zip(samples.windows(2)) {
+                *held = cumulative[pair[1]] - cumulative[pair[0]];
+            }
+            held[samples.len() - 1] =
+                (cumulative[self.n_samples] - cumulative[last]) + cumulative[first];
+            let held_signed = self.held_signed[rows.clone()].iter_mut();
+            held_signed
+                .zip(held)
+                .zip(signs)
+                .for_each(|((signed, held), sign)| *signed = sign * *held);
+            let moved = self.moved[rows].iter_mut();
+            moved.zip(samples).for_each(|(moved, &r)| *moved = basis[r]);
+        }
+    }
+
+    /// Factors of the samples without normal load.
+    fn gather_separated(&mut self, transform: &HarmonicTransform, normal_load: &[f64]) {
+        for c in 0..self.n_coefficients {
+            let scale = transform.projection_scale(c);
+            let mut n_events = 0;
+            for (&load, &phi) in normal_load.iter().zip(transform.basis(c)) {
+                self.held[c * self.n_samples + n_events] = scale * phi;
+                self.moved[c * self.n_samples + n_events] = phi;
+                n_events += usize::from(load == 0.0);
+            }
+            self.n_events = n_events;
+        }
+    }
+
+    /// `block_{cc'} = factor sum_e held_{e,c} moved_{e,c'}` for rows from `first_row` and columns from `first_column`.
+    fn product(
+        &self,
+        block: &mut [f64],
+        held: &[f64],
+        factor: f64,
+        first_row: usize,
+        first_column: usize,
+    ) {
+        let row = |values: &[f64], c: usize| -> std::ops::Range<usize> {
+            debug_assert!(values.len() >= c * self.n_samples);
+            c * self.n_samples..c * self.n_samples + self.n_events
+        };
+        for c in first_row..self.n_coefficients {
+            let held = &held[row(held, c)];
+            for other in first_column..self.n_coefficients {
+                let moved = &self.moved[row(&self.moved, other)];
+                block[c * self.n_coefficients + other] = factor * dot(held, moved);
+            }
+        }
+    }
+}

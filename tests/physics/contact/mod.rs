@@ -1,0 +1,7 @@
+//! Contact laws: exact loops, brute force, limits, derivatives.
+
+mod harmonic_transform;
+mod jenkins_oracles;
+mod pair_derivatives;
+mod periodic_state;
+mod random;

@@ -1,0 +1,4 @@
+//! Physics: exact solutions, limits and derivatives of the mechanics.
+#![allow(clippy::unwrap_used)]
+
+mod contact;
