@@ -4,3 +4,4 @@ pub mod linalg;
 pub mod model;
 pub mod population;
 pub mod response;
+pub mod study;

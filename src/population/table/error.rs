@@ -44,17 +44,17 @@ impl TableError {
         }
     }
 
-    pub(super) fn damaged(path: &Path, reason: impl ToString) -> Self {
+    pub(super) fn damaged(path: &Path, reason: impl Into<String>) -> Self {
         Self::Damaged {
             path: path.to_owned(),
-            reason: reason.to_string(),
+            reason: reason.into(),
         }
     }
 
-    pub(super) fn encoding(path: &Path, reason: impl ToString) -> Self {
+    pub(super) fn encoding(path: &Path, reason: impl Into<String>) -> Self {
         Self::Encoding {
             path: path.to_owned(),
-            reason: reason.to_string(),
+            reason: reason.into(),
         }
     }
 }

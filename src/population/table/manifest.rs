@@ -166,7 +166,7 @@ impl Manifest {
         let text = std::fs::read_to_string(&path).map_err(TableError::io("read", &path))?;
         serde_json::from_str(&text)
             .map(Some)
-            .map_err(|error| TableError::damaged(&path, error))
+            .map_err(|error| TableError::damaged(&path, error.to_string()))
     }
 
     /// Writes `manifest.json` into the folder `results`.
@@ -204,7 +204,7 @@ impl RunRecord {
     /// The file cannot be written.
     pub fn write(&self, results: &Path) -> Result<(), TableError> {
         let folder = results.join("runs");
-        let free = (1_u32..)
+        let free = (1..=u32::MAX)
             .map(|number| folder.join(format!("{number}.json")))
             .find(|path| !path.exists());
         match free {
@@ -215,8 +215,8 @@ impl RunRecord {
 }
 
 fn write_json(path: &Path, content: &impl Serialize) -> Result<(), TableError> {
-    let mut text =
-        serde_json::to_string_pretty(content).map_err(|error| TableError::encoding(path, error))?;
+    let mut text = serde_json::to_string_pretty(content)
+        .map_err(|error| TableError::encoding(path, error.to_string()))?;
     text.push('\n');
     write_atomically(path, text.as_bytes())
 }

@@ -31,7 +31,7 @@ pub fn read_pattern_parquet(path: &Path) -> Result<PatternRecords, PatternParque
     let frame = ParquetReader::new(file)
         .read_parallel(ParallelStrategy::None)
         .finish()
-        .map_err(|error| TableError::damaged(path, error))?;
+        .map_err(|error| TableError::damaged(path, error.to_string()))?;
     let form = |found: String| PatternFileError::Form {
         path: path.to_owned(),
         found,

@@ -33,6 +33,9 @@ pub const PATTERN_COLUMNS: &[ColumnSpec] = &[
     ),
 ];
 
+/// Standard deviation, pattern, blade, mode, deviation.
+type Row = (Option<f64>, u32, u32, Option<u32>, f64);
+
 /// Rows that are gathered before a row group is written.
 const ROW_GROUP: usize = 65_536;
 
@@ -47,7 +50,7 @@ pub fn write_patterns(
     header: &TableHeader,
 ) -> Result<(), TableError> {
     let mut writer = TableWriter::create(path, PATTERN_COLUMNS, header)?;
-    let mut rows: Vec<(Option<f64>, u32, u32, Option<u32>, f64)> = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
     for &standard_deviation in standard_deviations {
         for id in source.ids() {
             let Some(pattern) = source.pattern(id, standard_deviation) else {
@@ -74,7 +77,7 @@ pub fn write_patterns(
     writer.finish()
 }
 
-fn columns_of(rows: &[(Option<f64>, u32, u32, Option<u32>, f64)]) -> Vec<Values> {
+fn columns_of(rows: &[Row]) -> Vec<Values> {
     vec![
         Values::Float64(rows.iter().map(|row| row.0).collect()),
         Values::Int32(rows.iter().map(|row| Some(row.1 as i32)).collect()),

@@ -3,7 +3,9 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use polars::prelude::{DataFrame, ParallelStrategy, ParquetReader, SerReader};
+use polars::prelude::{
+    Column, DataFrame, DataType, ParallelStrategy, ParquetReader, PolarsError, SerReader,
+};
 
 use super::column::polars_type;
 use super::writer::STUDY_DIGEST_KEY;
@@ -22,14 +24,12 @@ impl TableReader {
     /// Opens `path` and checks that it has `columns` with their types (others may follow).
     pub(super) fn open(path: &Path, columns: &'static [ColumnSpec]) -> Result<Self, TableError> {
         let mut reader = parquet(path)?;
-        let damaged = |error| TableError::damaged(path, error);
+        let damaged = |error: PolarsError| TableError::damaged(path, error.to_string());
         let metadata = reader.get_metadata().map_err(damaged)?.clone();
         let schema = reader.schema().map_err(damaged)?;
         for column in columns {
             let expected = polars_type(column.kind);
-            let found = schema
-                .get(column.name)
-                .map(|field| polars::prelude::DataType::from_arrow_field(field));
+            let found = schema.get(column.name).map(DataType::from_arrow_field);
             if found.as_ref() != Some(&expected) {
                 let found = found.map_or("missing".to_owned(), |kind| kind.to_string());
                 return Err(TableError::damaged(
@@ -76,7 +76,7 @@ impl TableReader {
             .read_parallel(ParallelStrategy::None)
             .set_rechunk(true)
             .finish()
-            .map_err(|error| TableError::damaged(&self.path, error))?;
+            .map_err(|error| TableError::damaged(&self.path, error.to_string()))?;
         Ok(Slice {
             path: &self.path,
             frame,
@@ -96,17 +96,17 @@ pub(super) struct Slice<'a> {
 }
 
 impl Slice<'_> {
-    fn column(&self, name: &str) -> Result<&polars::prelude::Column, TableError> {
+    fn column(&self, name: &str) -> Result<&Column, TableError> {
         self.frame
             .column(name)
-            .map_err(|error| TableError::damaged(self.path, error))
+            .map_err(|error| TableError::damaged(self.path, error.to_string()))
     }
 
     pub(super) fn int32(&self, name: &str) -> Result<Vec<Option<i32>>, TableError> {
         let column = self.column(name)?;
         let values = column
             .i32()
-            .map_err(|error| TableError::damaged(self.path, error))?;
+            .map_err(|error| TableError::damaged(self.path, error.to_string()))?;
         Ok(values.iter().collect())
     }
 
@@ -114,7 +114,7 @@ impl Slice<'_> {
         let column = self.column(name)?;
         let values = column
             .i64()
-            .map_err(|error| TableError::damaged(self.path, error))?;
+            .map_err(|error| TableError::damaged(self.path, error.to_string()))?;
         Ok(values.iter().collect())
     }
 
@@ -122,7 +122,7 @@ impl Slice<'_> {
         let column = self.column(name)?;
         let values = column
             .f64()
-            .map_err(|error| TableError::damaged(self.path, error))?;
+            .map_err(|error| TableError::damaged(self.path, error.to_string()))?;
         Ok(values.iter().collect())
     }
 
@@ -130,7 +130,7 @@ impl Slice<'_> {
         let column = self.column(name)?;
         let values = column
             .bool()
-            .map_err(|error| TableError::damaged(self.path, error))?;
+            .map_err(|error| TableError::damaged(self.path, error.to_string()))?;
         Ok(values.iter().collect())
     }
 
@@ -138,7 +138,7 @@ impl Slice<'_> {
         let column = self.column(name)?;
         let values = column
             .str()
-            .map_err(|error| TableError::damaged(self.path, error))?;
+            .map_err(|error| TableError::damaged(self.path, error.to_string()))?;
         Ok(values
             .iter()
             .map(|value| value.map(str::to_owned))

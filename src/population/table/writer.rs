@@ -85,7 +85,7 @@ impl TableWriter {
             .set_parallel(false)
             .with_key_value_metadata(Some(header.metadata(columns)))
             .batched(&polars_schema(columns))
-            .map_err(|error| TableError::encoding(path, error))?;
+            .map_err(|error| TableError::encoding(path, error.to_string()))?;
         Ok(Self {
             path: path.to_owned(),
             columns,
@@ -100,14 +100,14 @@ impl TableWriter {
             frame(self.columns, values).map_err(|error| TableError::encoding(&self.path, error))?;
         self.writer
             .write_batch(&frame)
-            .map_err(|error| TableError::encoding(&self.path, error))
+            .map_err(|error| TableError::encoding(&self.path, error.to_string()))
     }
 
     /// Writes the footer and puts the file in its place.
     pub(super) fn finish(self) -> Result<(), TableError> {
         self.writer
             .finish()
-            .map_err(|error| TableError::encoding(&self.path, error))?;
+            .map_err(|error| TableError::encoding(&self.path, error.to_string()))?;
         self.file.commit()
     }
 }
