@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::Mistuning;
+use super::source_map::SourceMap;
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::monte_carlo::Scenario;
@@ -43,6 +44,8 @@ pub struct OutputOptions {
 pub struct Study {
     /// The study file.
     pub path: PathBuf,
+    /// Where its keys stand.
+    pub(super) map: SourceMap,
     /// Name; also of the results folder.
     pub name: String,
     /// Seed of the patterns.
