@@ -1,6 +1,7 @@
-//! One pair of contact nodes: its parameters, its displacement history and what the chosen law makes of it.
+//! One pair of contact nodes: its parameters, its displacement history and what the chosen law
+//! makes of it.
 
-use super::{ContactLaw, PeriodicSlider, macro_slip_1d, simplified_3d};
+use super::{ContactLaw, ContactOptions, PeriodicSlider, macro_slip_1d, simplified_3d};
 
 impl ContactLaw {
     /// Whether the normal load follows the normal displacement.
@@ -27,6 +28,18 @@ pub struct PairParameters {
 }
 
 impl PairParameters {
+    /// The parameters of a whole sector under the normal load `normal_load_n`, to be shared out
+    /// over its pairs.
+    #[must_use]
+    pub fn of_sector(options: &ContactOptions, normal_load_n: f64) -> Self {
+        Self {
+            normal_load_n,
+            normal_stiffness_n_per_m: options.normal_stiffness_n_per_m.unwrap_or(0.0),
+            tangential_stiffness_n_per_m: options.tangential_stiffness_n_per_m,
+            friction_coefficient: options.friction_coefficient,
+        }
+    }
+
     /// The parameters of a pair that has `weight` of the sector's contact; mu is no share.
     #[must_use]
     pub fn share(self, weight: f64) -> Self {
@@ -38,8 +51,8 @@ impl PairParameters {
         }
     }
 
-    /// Whether the pair certainly sticks throughout, in contact and with zero offset, if its displacement along n, t1, t2
-    /// never exceeds `excursions_m`: `kt |x| < mu (N0 - kn |g|)`.
+    /// Whether the pair certainly sticks throughout, in contact and with zero offset, if its
+    /// displacement along n, t1, t2 never exceeds `excursions_m`: `kt |x| < mu (N0 - kn |g|)`.
     #[must_use]
     pub fn surely_sticks(&self, law: ContactLaw, excursions_m: [f64; 3]) -> bool {
         let [normal, first, second] = excursions_m;
@@ -56,10 +69,12 @@ impl PairParameters {
     }
 }
 
-/// Relative displacement `u_blisk - u_ring` of a pair over one period, m; each history has `n_samples` samples.
+/// Relative displacement `u_blisk - u_ring` of a pair over one period, m; each history has
+/// `n_samples` samples.
 #[derive(Debug, Clone, Copy)]
 pub struct PairDisplacement<'a> {
-    /// Closing `g_j` (positive = pressed together), its mean included where harmonic 0 is solved for.
+    /// Closing `g_j` (positive = pressed together), its mean included where harmonic 0 is solved
+    /// for.
     pub normal: &'a [f64],
     /// `x_j` along t1 and t2, without their means.
     pub tangential: [&'a [f64]; 2],
@@ -74,10 +89,12 @@ pub struct PairState {
     pub separated: bool,
 }
 
-/// Response of a pair: corrections to the *linear, stuck* contact force, and what their derivatives need.
+/// Response of a pair: corrections to the *linear, stuck* contact force, and what their derivatives
+/// need.
 ///
-/// The stuck force is `(kn g, kt x1, kt x2)` (for `macro_slip_1d`: `(kn g, kt x1, 0)`). Corrections are formed directly,
-/// never as a difference of two forces: a pair that sticks has a correction of exactly zero at any normal load.
+/// The stuck force is `(kn g, kt x1, kt x2)` (for `macro_slip_1d`: `(kn g, kt x1, 0)`). Corrections
+/// are formed directly, never as a difference of two forces: a pair that sticks has a correction of
+/// exactly zero at any normal load.
 #[derive(Debug, Clone)]
 pub struct ContactHistory {
     /// `N_j`, N.
@@ -103,13 +120,21 @@ impl ContactHistory {
         }
     }
 
-    /// Applies `law` to the displacement; every history must have the number of samples of these buffers.
+    /// Applies `law` to the displacement.
+    ///
+    /// # Panics
+    /// A history does not have `n_samples` samples.
     pub fn respond(
         &mut self,
         law: ContactLaw,
         parameters: &PairParameters,
         displacement: PairDisplacement<'_>,
     ) -> PairState {
+        assert_eq!(
+            displacement.normal.len(),
+            self.normal_load.len(),
+            "samples of the closing"
+        );
         match law {
             ContactLaw::MacroSlip1d => macro_slip_1d::respond(self, parameters, displacement),
             ContactLaw::Simplified3d => simplified_3d::respond(self, parameters, displacement),
@@ -145,7 +170,8 @@ impl ContactHistory {
         &self.normal_load
     }
 
-    /// Normal correction `(N_j - N0) - kn g_j`, N (`n_samples`); its derivative is `-kn` where `N_j = 0`, else 0.
+    /// Normal correction `(N_j - N0) - kn g_j`, N (`n_samples`); its derivative is `-kn` where `N_j
+    /// = 0`, else 0.
     #[must_use]
     pub fn normal_correction_n(&self) -> &[f64] {
         &self.normal_correction

@@ -1,7 +1,7 @@
 //! The law `macro_slip_1d`: one Jenkins element along t1 with the constant limit `mu N0`.
 //!
-//! The normal spring is bilateral (no correction) and nothing acts along t2, so the linear limits of this law have no
-//! spring along t2 either.
+//! The normal spring is bilateral (no correction) and nothing acts along t2, so the linear limits
+//! of this law have no spring along t2 either.
 
 use super::{ContactHistory, PairDisplacement, PairParameters, PairState};
 

@@ -1,33 +1,39 @@
-//! The periodic state of one Jenkins element (spring in series with a Coulomb slider), in closed form.
+//! The periodic state of one Jenkins element (spring in series with a Coulomb slider), in closed
+//! form.
 //!
-//! The tangential force is `T_j = kt x_j + y_j`; the offset `y` of the slider stays where it is unless the limit
-//! pushes it, `y_j = clip(y_{j-1}, a_j, b_j)` with
+//! The tangential force is `T_j = kt x_j + y_j`; the offset `y` of the slider stays where it is
+//! unless the limit pushes it, `y_j = clip(y_{j-1}, a_j, b_j)` with
 //!
 //! ```text
 //! a_j = -mu N_j - kt x_j,    b_j = mu N_j - kt x_j,    a_j <= b_j since N_j >= 0.
 //! ```
 //!
-//! A chain of clips is a clip: `clip(clip(y, L, H), a, b) = clip(y, clip(L, a, b), clip(H, a, b))`. One period thus
-//! maps `y` to `clip(y, L, H)`, and its fixed points are `[L, H]`:
+//! A chain of clips is a clip: `clip(clip(y, L, H), a, b) = clip(y, clip(L, a, b), clip(H, a, b))`.
+//! One period thus maps `y` to `clip(y, L, H)`, and its fixed points are `[L, H]`:
 //!
-//! * `max a <= min b`: `[L, H] = [max a, min b]`, the slider sticks for good and `y` is the point nearest to 0;
-//! * otherwise `L = H`: every history ends in the one periodic state that passes through `y = L` at the period's end.
+//! * `max a <= min b`: `[L, H] = [max a, min b]`, the slider sticks for good and `y` is the point
+//!   nearest to 0;
+//! * otherwise `L = H`: every history ends in the one periodic state that passes through `y = L` at
+//!   the period's end.
 //!
-//! Clips are exact in floating point, so the state closes to the last bit and no warm-up periods are marched. Where `y`
-//! was last clipped at sample r, at the bound of sign s (+1 for `b`, -1 for `a`), its derivative is exact:
+//! Clips are exact in floating point, so the state closes to the last bit and no warm-up periods
+//! are marched. Where `y` was last clipped at sample r, at the bound of sign s (+1 for `b`, -1 for
+//! `a`), its derivative is exact:
 //!
 //! ```text
 //! y_j = -kt x_r + s mu N_r,    dy_j = -kt dx_r + s mu dN_r.
 //! ```
 //!
-//! The limit and its transitions are those of Yang, Chu & Menq, J. Sound Vib. 211 (1998), section 2.
+//! The transitions between stick, slip and separation are those of Yang, Chu & Menq (1998).
 
-/// Stretches of the period that are marched side by side: the chain of clips is bound by latency, not by work.
+/// Stretches of the period that are marched side by side: the chain of clips is bound by latency,
+/// not by work.
 const STRETCHES: usize = 4;
 
 /// Offset history and clips of one slider; its buffers are reused from call to call.
 ///
-/// Forces are in N, displacements in m; every history has `n_samples` equidistant samples of one period.
+/// Forces are in N, displacements in m; every history has `n_samples` equidistant samples of one
+/// period.
 #[derive(Debug, Clone)]
 pub struct PeriodicSlider {
     lower: Vec<f64>,
@@ -56,8 +62,12 @@ impl PeriodicSlider {
 
     /// Solves for the periodic offset; returns whether the slider slips at any sample.
     ///
-    /// `displacement_m` (`n_samples`) is the tangential displacement, `normal_load_n` (`n_samples`, all >= 0) the normal
-    /// load. Values that are not finite are not reported here: the linear part of the force carries them on.
+    /// `displacement_m` (`n_samples`) is the tangential displacement, `normal_load_n` (`n_samples`,
+    /// all >= 0) the normal load. Values that are not finite are not reported here: the linear part
+    /// of the force carries them on.
+    ///
+    /// # Panics
+    /// A history does not have `n_samples` samples.
     pub fn solve(
         &mut self,
         tangential_stiffness_n_per_m: f64,
@@ -65,6 +75,16 @@ impl PeriodicSlider {
         displacement_m: &[f64],
         normal_load_n: &[f64],
     ) -> bool {
+        assert_eq!(
+            displacement_m.len(),
+            self.offset.len(),
+            "samples of the displacement"
+        );
+        assert_eq!(
+            normal_load_n.len(),
+            self.offset.len(),
+            "samples of the normal load"
+        );
         let (highest_lower, lowest_upper) = self.bound(
             tangential_stiffness_n_per_m,
             friction_coefficient,
@@ -90,8 +110,8 @@ impl PeriodicSlider {
 
     /// Finds the clips of the state last solved for: all that the derivative needs.
     ///
-    /// A slider sticking with zero offset has none; one sticking with another offset has one, the first sample that
-    /// attains the bound.
+    /// A slider sticking with zero offset has none; one sticking with another offset has one, the
+    /// first sample that attains the bound.
     pub fn locate_clips(&mut self) {
         let n_samples = self.offset.len();
         let mut n_clips = 0;
@@ -124,7 +144,8 @@ impl PeriodicSlider {
         self.n_clips = n_clips;
     }
 
-    /// Offset `y_j` = `T_j - kt x_j`, N (`n_samples`): the correction to the force of the stuck spring.
+    /// Offset `y_j` = `T_j - kt x_j`, N (`n_samples`): the correction to the force of the stuck
+    /// spring.
     #[must_use]
     pub fn offset_n(&self) -> &[f64] {
         &self.offset
@@ -136,14 +157,16 @@ impl PeriodicSlider {
         self.slipping
     }
 
-    /// Samples r at which the offset is clipped, ascending; clip i rules the samples from `r_i` up to the one before
-    /// `r_{i+1}`, the last one across the end of the period. Empty until [`Self::locate_clips`] is called.
+    /// Samples r at which the offset is clipped, ascending; clip i rules the samples from `r_i` up
+    /// to the one before `r_{i+1}`, the last one across the end of the period. Empty until
+    /// [`Self::locate_clips`] is called.
     #[must_use]
     pub fn clip_samples(&self) -> &[usize] {
         &self.clip_samples[..self.n_clips]
     }
 
-    /// Signs s of the clips: +1 at the upper bound, -1 at the lower one, 0 where both coincide (no normal load).
+    /// Signs s of the clips: +1 at the upper bound, -1 at the lower one, 0 where both coincide (no
+    /// normal load).
     #[must_use]
     pub fn clip_signs(&self) -> &[f64] {
         &self.clip_signs[..self.n_clips]
@@ -184,7 +207,8 @@ impl PeriodicSlider {
         let lower = stretches(lower, length);
         let upper = stretches(upper, length);
 
-        // The clip that each stretch amounts to, then the one of the period: a point, for the slider slips.
+        // The clip that each stretch amounts to, then the one of the period: a point, for the
+        // slider slips.
         let mut low = [f64::NEG_INFINITY; STRETCHES];
         let mut high = [f64::INFINITY; STRETCHES];
         for i in 0..length {

@@ -1,9 +1,12 @@
 //! The law `simplified_3d`: variable normal load with separation, two independent Jenkins elements.
 //!
 //! ```text
-//! N_j = max(0, N0 + kn g_j),          normal correction   c_j = (N_j - N0) - kn g_j = max(0, -(N0 + kn g_j))
-//! T_j = kt x_j + y_j, |T_j| <= mu N_j, tangential correction y_j of each direction: see `periodic_slider`
+//! N_j = max(0, N0 + kn g_j)
+//! c_j = (N_j - N0) - kn g_j = max(0, -(N0 + kn g_j))     normal correction
+//! T_j = kt x_j + y_j,    |T_j| <= mu N_j                 tangential correction y_j, per direction
 //! ```
+//!
+//! For y see [`PeriodicSlider`](super::PeriodicSlider).
 
 use super::{ContactHistory, PairDisplacement, PairParameters, PairState};
 
@@ -28,7 +31,11 @@ pub(super) fn respond(
         let bilateral = n0 + kn * g;
         separated |= bilateral <= 0.0;
         *load = if bilateral > 0.0 { bilateral } else { 0.0 };
-        *correction = if bilateral > 0.0 { 0.0 } else { -bilateral };
+        *correction = if bilateral > 0.0 {
+            0.0
+        } else {
+            0.0 - bilateral
+        };
     }
     let mut slipping = false;
     for (slider, x) in history.sliders.iter_mut().zip(displacement.tangential) {

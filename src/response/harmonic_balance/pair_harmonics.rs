@@ -1,8 +1,10 @@
-//! One contact pair in harmonic space: coefficients of its displacement to those of its force, with derivatives.
+//! One contact pair in harmonic space: coefficients of its displacement to those of its force, with
+//! derivatives.
 //!
-//! Alternating frequency/time: synthesise the histories, apply the law, project. Forces are *corrections* to the linear
-//! stuck force, see [`ContactHistory`]; with `W`, `V` sums over the clips (sample `r_e`, sign `s_e`) of a slider and
-//! `Psi_e` the sum of `psi` over the samples that clip e rules,
+//! Alternating frequency/time: synthesise the histories, apply the law, project. Forces are
+//! *corrections* to the linear stuck force, see [`ContactHistory`]; with `W`, `V` sums over the
+//! clips (sample `r_e`, sign `s_e`) of a slider and `Psi_e` the sum of `psi` over the samples that
+//! clip e rules,
 //!
 //! ```text
 //! W_{cc'} = sum_e Psi_{e,c} phi_c'(r_e),    V_{cc'} = sum_e s_e Psi_{e,c} phi_c'(r_e)
@@ -10,8 +12,9 @@
 //! d(normal)/d(normal)_{cc'}   = -kn sum_{j: N_j = 0} psi_c(tau_j) phi_c'(tau_j)
 //! ```
 //!
-//! The mean of the tangential displacement is no input of the law and its correction is zero (its force is the linear
-//! `kt u_0`): coefficient 0 of a set with harmonic 0 gives zero rows and columns in the tangential directions.
+//! The mean of the tangential displacement is no input of the law and its correction is zero (its
+//! force is the linear `kt u_0`): coefficient 0 of a set with harmonic 0 gives zero rows and
+//! columns in the tangential directions.
 
 use std::sync::Arc;
 
@@ -21,8 +24,9 @@ use crate::response::friction::{
     ContactHistory, ContactLaw, PairDisplacement, PairParameters, PairState,
 };
 
-/// Derivative of a pair's correction coefficients, N/m; every block is `n_coefficients * n_coefficients`, row after
-/// row, a row per coefficient of the correction and a column per coefficient of the displacement.
+/// Derivative of a pair's correction coefficients, N/m; every block is `n_coefficients *
+/// n_coefficients`, row after row, a row per coefficient of the correction and a column per
+/// coefficient of the displacement.
 ///
 /// Blocks not listed are zero: normal by tangential, and t1 by t2.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,9 +107,9 @@ impl PairHarmonics {
 
     /// Corrections of one pair, and where wanted their derivative.
     ///
-    /// `coefficients`, m, and `correction`, N (`3 * n_coefficients` each): those of n, then t1, then t2, each in the
-    /// order of [`HarmonicTransform`]. `jacobian` is overwritten. A pair that neither slips nor separates has zero
-    /// correction and zero Jacobian, exactly.
+    /// `coefficients`, m, and `correction`, N (`3 * n_coefficients` each): those of n, then t1,
+    /// then t2, each in the order of [`HarmonicTransform`]. `jacobian` is overwritten. A pair that
+    /// neither slips nor separates has zero correction and zero Jacobian, exactly.
     pub fn evaluate(
         &mut self,
         parameters: &PairParameters,
@@ -137,7 +141,8 @@ impl PairHarmonics {
         state
     }
 
-    /// Upper bounds on the displacement along n, t1, t2, m: the sum of the amplitudes of the harmonics.
+    /// Upper bounds on the displacement along n, t1, t2, m: the sum of the amplitudes of the
+    /// harmonics.
     fn excursions(&self) -> [f64; 3] {
         let n_coefficients = self.transform.n_coefficients();
         let first = usize::from(self.transform.has_mean());
@@ -195,45 +200,45 @@ impl PairHarmonics {
             friction_coefficient: mu,
             ..
         } = *parameters;
-        let variable_load = self.law.has_variable_load();
-        if variable_load && self.history.state().separated {
+        // The derivative of the limit; a constant load has none.
+        let limit_slope = if self.law.has_variable_load() {
+            mu * kn
+        } else {
+            0.0
+        };
+        if self.history.state().separated {
             self.sums
                 .gather_separated(&self.transform, self.history.normal_load_n());
-            self.sums
-                .product(&mut jacobian.normal_normal, &self.sums.held, -kn, 0, 0);
+            self.sums.fill_normal(-kn, &mut jacobian.normal_normal);
         }
-        // Tangential means: neither rows nor columns.
-        let first = usize::from(self.transform.has_mean());
         self.history.locate_clips();
-        for (direction, slider) in self.history.sliders().iter().enumerate() {
+        let blocks = jacobian
+            .tangential_tangential
+            .iter_mut()
+            .zip(&mut jacobian.tangential_normal);
+        for (slider, (by_tangential, by_normal)) in self.history.sliders().iter().zip(blocks) {
             if !slider.is_slipping() {
                 continue;
             }
             self.sums
                 .gather_clips(&self.transform, slider.clip_samples(), slider.clip_signs());
-            let sums = &self.sums;
-            sums.product(
-                &mut jacobian.tangential_tangential[direction],
-                &sums.held,
-                -kt,
-                first,
-                first,
-            );
-            if variable_load {
-                sums.product(
-                    &mut jacobian.tangential_normal[direction],
-                    &sums.held_signed,
-                    mu * kn,
-                    first,
-                    0,
-                );
+            self.sums
+                .fill_tangential(-kt, limit_slope, by_tangential, by_normal);
+            if self.transform.has_mean() {
+                let n_coefficients = self.transform.n_coefficients();
+                by_tangential[..n_coefficients].fill(0.0);
+                by_normal[..n_coefficients].fill(0.0);
+                by_tangential
+                    .iter_mut()
+                    .step_by(n_coefficients)
+                    .for_each(|entry| *entry = 0.0);
             }
         }
     }
 }
 
-/// Factors of the sums over events (clips, or separated samples), coefficient after coefficient with a stride of
-/// `n_samples`.
+/// Factors of the sums over events (clips, or separated samples), coefficient after coefficient
+/// with a stride of `n_samples`.
 #[derive(Debug, Clone)]
 struct ClipSums {
     n_coefficients: usize,
@@ -299,25 +304,76 @@ impl ClipSums {
         }
     }
 
-    /// `block_{cc'} = factor sum_e held_{e,c} moved_{e,c'}` for rows from `first_row` and columns from `first_column`.
-    fn product(
-        &self,
-        block: &mut [f64],
-        held: &[f64],
-        factor: f64,
-        first_row: usize,
-        first_column: usize,
-    ) {
-        let row = |values: &[f64], c: usize| -> std::ops::Range<usize> {
-            debug_assert!(values.len() >= c * self.n_samples);
-            c * self.n_samples..c * self.n_samples + self.n_events
-        };
-        for c in first_row..self.n_coefficients {
-            let held = &held[row(held, c)];
-            for other in first_column..self.n_coefficients {
-                let moved = &self.moved[row(&self.moved, other)];
-                block[c * self.n_coefficients + other] = factor * dot(held, moved);
+    /// `block_{cc'} = factor sum_e held_{e,c} moved_{e,c'}`.
+    fn fill_normal(&self, factor: f64, block: &mut [f64]) {
+        for (c, row) in block.chunks_exact_mut(self.n_coefficients).enumerate() {
+            for (other, entry) in row.iter_mut().enumerate() {
+                *entry = factor * dot(self.events(&self.held, c), self.events(&self.moved, other));
             }
         }
     }
+
+    /// `by_tangential = tangential_factor W`, `by_normal = normal_factor V`.
+    fn fill_tangential(
+        &self,
+        tangential_factor: f64,
+        normal_factor: f64,
+        by_tangential: &mut [f64],
+        by_normal: &mut [f64],
+    ) {
+        let n = self.n_coefficients;
+        for c in 0..n {
+            let held = [
+                self.events(&self.held, c),
+                self.events(&self.held_signed, c),
+            ];
+            // Two columns at a time; an odd last one is paired with itself.
+            for first in (0..n).step_by(2) {
+                let second = (first + 1).min(n - 1);
+                let moved = [
+                    self.events(&self.moved, first),
+                    self.events(&self.moved, second),
+                ];
+                let [w, v] = dots(held, moved);
+                for (other, w, v) in [(first, w[0], v[0]), (second, w[1], v[1])] {
+                    by_tangential[c * n + other] = tangential_factor * w;
+                    by_normal[c * n + other] = normal_factor * v;
+                }
+            }
+        }
+    }
+
+    /// The events of coefficient `c`.
+    fn events<'a>(&self, factors: &'a [f64], c: usize) -> &'a [f64] {
+        &factors[c * self.n_samples..][..self.n_events]
+    }
+}
+
+/// `a_i . b_j`: each vector is read once for two products.
+fn dots(a: [&[f64]; 2], b: [&[f64]; 2]) -> [[f64; 2]; 2] {
+    const LANES: usize = 4;
+    let length = a[0].len();
+    let [a0, a1] = a.map(|values| values[..length].as_chunks::<LANES>());
+    let [b0, b1] = b.map(|values| values[..length].as_chunks::<LANES>());
+    let mut sums = [[[0.0; LANES]; 2]; 2];
+    for (((a0, a1), b0), b1) in a0.0.iter().zip(a1.0).zip(b0.0).zip(b1.0) {
+        for lane in 0..LANES {
+            sums[0][0][lane] += a0[lane] * b0[lane];
+            sums[0][1][lane] += a0[lane] * b1[lane];
+            sums[1][0][lane] += a1[lane] * b0[lane];
+            sums[1][1][lane] += a1[lane] * b1[lane];
+        }
+    }
+    let rest = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let total = |lanes: [f64; LANES]| lanes.into_iter().sum::<f64>();
+    [
+        [
+            total(sums[0][0]) + rest(a0.1, b0.1),
+            total(sums[0][1]) + rest(a0.1, b1.1),
+        ],
+        [
+            total(sums[1][0]) + rest(a1.1, b0.1),
+            total(sums[1][1]) + rest(a1.1, b1.1),
+        ],
+    ]
 }

@@ -81,7 +81,8 @@ fn largest_norm_leaves_the_mean_out() {
     assert!((transform.largest_norm(&straight) - 5.0).abs() < 1e-14);
     // x = cos + cos 2 tau: 2 at tau = 0.
     assert!((transform.largest_norm(&[0.0, 1.0, 0.0, 1.0, 0.0]) - 2.0).abs() < 1e-14);
-    // A circle has the norm of its radius at every instant, though the fundamental's complex norm is sqrt(2).
+    // A circle has the norm of its radius at every instant, though the fundamental's complex norm
+    // is sqrt(2).
     let circle = [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0];
     assert!((transform.largest_norm(&circle) - 1.0).abs() < 1e-14);
 }

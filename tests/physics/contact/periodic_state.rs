@@ -1,4 +1,5 @@
 //! Periodic state against brute force, its closure, limits and scaling.
+#![allow(clippy::float_cmp)] // exact zeros and exact powers of two are the point here
 
 use std::sync::Arc;
 
@@ -20,7 +21,8 @@ fn history(random: &mut Random, n_samples: usize, size: f64) -> Vec<f64> {
     samples
 }
 
-/// Tangential force of the return map `T <- clip(T + kt dx, -mu N, mu N)` after `periods` periods from rest.
+/// Tangential force of the return map `T <- clip(T + kt dx, -mu N, mu N)` after `periods` periods
+/// from rest.
 fn marched(kt: f64, mu: f64, x: &[f64], load: &[f64], periods: usize) -> Vec<f64> {
     let n = x.len();
     let mut force = vec![0.0; n];
@@ -144,6 +146,47 @@ fn slider_agrees_with_the_start_at_the_lowest_upper_bound() {
     }
 }
 
+#[test]
+fn values_that_are_not_finite_pass_without_a_panic() {
+    let transform = Arc::new(HarmonicTransform::new(&[0, 1], 32).unwrap());
+    let mut pairs = PairHarmonics::new(ContactLaw::Simplified3d, transform);
+    let mut jacobian = PairJacobian::new(3);
+    for poison in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX] {
+        for position in 0..9 {
+            let mut coefficients = [0.0, 1.0, 2.0, 0.0, 3.0, -4.0, 0.0, 5.0, 6.0];
+            coefficients[position] = poison;
+            let mut correction = [0.0; 9];
+            pairs.evaluate(
+                &pair(1.0, 0.3),
+                &coefficients,
+                &mut correction,
+                Some(&mut jacobian),
+            );
+        }
+    }
+}
+
+#[test]
+fn few_samples_are_enough_for_the_law_itself() {
+    for n_samples in 1..8 {
+        let x: Vec<f64> = (0..n_samples)
+            .map(|j| [1.0, -1.0, 0.5, -2.0][j % 4])
+            .collect();
+        let load = vec![0.25; n_samples];
+        let mut slider = PeriodicSlider::new(n_samples);
+        slider.solve(1.0, 1.0, &x, &load);
+        let force: Vec<f64> = x
+            .iter()
+            .zip(slider.offset_n())
+            .map(|(x, y)| x + y)
+            .collect();
+        if slider.is_slipping() {
+            assert_eq!(force, marched(1.0, 1.0, &x, &load, 4));
+        }
+        assert_eq!(slider.is_slipping(), n_samples > 1);
+    }
+}
+
 fn pair(n0: f64, mu: f64) -> PairParameters {
     PairParameters {
         normal_load_n: n0,
@@ -179,14 +222,15 @@ fn stuck_pair_has_exactly_no_correction_at_any_load() {
 
 #[test]
 fn sticking_with_an_offset_has_no_correction_in_the_harmonics() {
-    // The range of x fits between the bounds, but not round zero: |x| exceeds the limit in one direction only.
+    // The range of x fits between the bounds, but not round zero: |x| exceeds the limit in one
+    // direction only.
     let transform = Arc::new(HarmonicTransform::new(&[1, 2], 128).unwrap());
     let mut pairs = PairHarmonics::new(ContactLaw::Simplified3d, Arc::clone(&transform));
     let mut coefficients = [0.0; 12];
     (coefficients[4], coefficients[6]) = (1.0, 0.5);
     let mut correction = [1.0; 12];
     let mut jacobian = PairJacobian::new(4);
-    // kt x ranges from -1.125 to 2.25, limit 1.8: max a = 0.45 - 1.35, min b = ... around an offset of -0.45.
+    // kt x ranges from about -1.1 to 2.25 and the limit is 1.8: min b = 1.8 - 2.25 = -0.45.
     let state = pairs.evaluate(
         &pair(6.0, 0.3),
         &coefficients,
