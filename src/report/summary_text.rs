@@ -104,7 +104,7 @@ fn amplitudes(group: &[ScenarioSummary], unit: Unit) -> TextTable {
     ];
     let mut table = TextTable::new(&header.each_ref().map(String::as_str));
     for scenario in group {
-        let metres = |value: f64| format!("{:.4}", value / unit.metres);
+        let metres = |value: f64| four_digits(value / unit.metres);
         let mut row = vec![
             load(scenario.contact, scenario.normal_load_n),
             scenario
@@ -177,7 +177,7 @@ fn best_line(best: &BestLoad, unit: Unit) -> String {
     format!(
         "lowest {what} (engine order {}{deviation}): {} {} at load {}{place}",
         best.engine_order,
-        trimmed_to(best.amplitude_m / unit.metres, 4),
+        four_digits(best.amplitude_m / unit.metres),
         unit.name,
         load(best.contact, best.normal_load_n),
     )
@@ -193,25 +193,28 @@ fn share(fraction: Option<f64>) -> String {
     })
 }
 
-/// The unit in which the largest tuned amplitude or median has one to three digits before the point.
+/// The largest unit in which no tuned amplitude or mean is below 1.
 fn unit_of(scenarios: &[ScenarioSummary]) -> Unit {
-    let largest = scenarios
+    let smallest = scenarios
         .iter()
         .flat_map(|scenario| [scenario.tuned_amplitude_m, scenario.peak_amplitude_m.mean])
         .flatten()
-        .fold(0.0, f64::max);
+        .fold(f64::INFINITY, f64::min);
     UNITS
         .into_iter()
-        .find(|unit| largest >= unit.metres)
+        .find(|unit| smallest >= unit.metres)
         .unwrap_or(UNITS[UNITS.len() - 1])
 }
 
-fn trimmed(value: f64) -> String {
-    trimmed_to(value, 6)
+/// `value` with four significant digits, or as a whole number.
+fn four_digits(value: f64) -> String {
+    let before_point = value.abs().max(1e-9).log10().floor() as i32;
+    let decimals = (3 - before_point).clamp(0, 9) as usize;
+    format!("{value:.decimals$}")
 }
 
-/// `value` with at most `digits` decimals and no trailing zeros.
-fn trimmed_to(value: f64, digits: usize) -> String {
-    let text = format!("{value:.digits$}");
+/// `value` with at most six decimals and no trailing zeros.
+fn trimmed(value: f64) -> String {
+    let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

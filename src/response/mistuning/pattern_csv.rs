@@ -30,7 +30,13 @@ pub fn read_pattern_csv(path: &Path) -> Result<PatternRecords, PatternFileError>
     let mut lines = (1..)
         .zip(text.trim_start_matches('\u{feff}').lines())
         .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
-    let header = lines.next().map_or("", |(_, line)| line);
+    let Some((_, header)) = lines.next() else {
+        return Err(PatternFileError::Form {
+            path: path.to_owned(),
+            found: "the file is empty".to_owned(),
+            accepted: ACCEPTED_HEADER,
+        });
+    };
     let columns = read_header(path, header)?;
     let records = lines
         .map(|(line, content)| read_record(path, &columns, line, content))
