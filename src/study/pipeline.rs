@@ -1,5 +1,6 @@
 //! A study from file to tables: one call per stage.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
@@ -18,7 +19,7 @@ use crate::population::table::{
 use crate::report::{StudySummary, SummaryContext};
 use crate::response::forced_response::Harmonics;
 use crate::response::harmonic_balance::Status;
-use crate::response::mistuning::{GENERATOR, PatternSource};
+use crate::response::mistuning::{GENERATOR, Pattern, PatternSource};
 
 /// Patterns up to which `patterns.parquet` is written without being asked for.
 const PATTERNS_WRITTEN: u32 = 10_000;
@@ -273,11 +274,42 @@ impl<'a> Work<'a> {
                 .filter(|(scenario, _)| scenario.standard_deviation == standard_deviation)
                 .collect();
             if let Some(pattern) = self.patterns.pattern(id, standard_deviation) {
-                rows.extend(self.engine.rows(&pattern, &of_deviation));
+                rows.extend(self.rows_or_panicked(&pattern, &of_deviation));
             }
         }
         rows.sort_by_key(|row| row.scenario);
         rows
+    }
+
+    /// A panic while one pattern is solved costs the rows of that pattern, not the run.
+    fn rows_or_panicked(
+        &self,
+        pattern: &Pattern,
+        scenarios: &[(&Scenario, &TunedReference)],
+    ) -> Vec<ResponseRow> {
+        let solve = AssertUnwindSafe(|| self.engine.rows(pattern, scenarios));
+        catch_unwind(solve).unwrap_or_else(|_| {
+            scenarios
+                .iter()
+                .map(|(scenario, _)| ResponseRow {
+                    scenario: scenario.index,
+                    pattern: pattern.id,
+                    status: Status::Panicked,
+                    peak_amplitude_m: None,
+                    peak_frequency_hz: None,
+                    peak_blade: None,
+                    amplification_factor: None,
+                    peak_bracketed: None,
+                    harmonics: String::new(),
+                    nonlinear_solves: 0,
+                    newton_iterations: 0,
+                    residual: None,
+                    slipping_fraction: None,
+                    separated_fraction: None,
+                    shortcut: "none".to_owned(),
+                })
+                .collect()
+        })
     }
 
     fn tables(

@@ -1,8 +1,9 @@
 //! A run in pieces comes to the same bytes as a run at once.
 
 use std::path::Path;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicI64, Ordering};
 
+use blisk::response::harmonic_balance::Status;
 use blisk::study::{PipelineError, Progress, RunOutcome, RunRequest, Study, run};
 
 use crate::mock_engine::{MockSource, study};
@@ -10,6 +11,17 @@ use crate::mock_engine::{MockSource, study};
 struct Silent;
 
 impl Progress for Silent {}
+
+/// Ends a run by a panic after some rows, as far as a process can end itself in a test.
+struct Interrupting {
+    rows_left: AtomicI64,
+}
+
+impl Progress for Interrupting {
+    fn row(&self, _status: Status) {
+        assert!(self.rows_left.fetch_sub(1, Ordering::SeqCst) > 0, "interrupted on purpose");
+    }
+}
 
 fn run_in(
     folder: &Path,
@@ -108,27 +120,30 @@ fn raising_the_number_of_patterns_solves_only_the_new_ones() {
 #[test]
 fn an_interrupted_run_continues_to_the_same_bytes() {
     let expected = reference(500);
-    for stop_after in [0, 1, 99, 400, 980] {
+    for rows in [0, 1, 99, 800, 1960] {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let study = study(500, |text| text);
-        let broken = MockSource {
-            stop_after: Some(stop_after),
-            ..MockSource::default()
+        let progress = Interrupting {
+            rows_left: AtomicI64::new(rows),
         };
-        let path = folder.path().to_owned();
+        let request = RunRequest {
+            study: &study,
+            results: folder.path(),
+            threads: 2,
+        };
         let interrupted = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-            run_in(&path, &study, 2, &broken)
+            run(request, &MockSource::default(), &progress)
         }));
-        assert!(interrupted.is_err(), "the mock engine panics");
+        assert!(interrupted.is_err(), "the listener panics");
         let source = MockSource::default();
         let outcome = run_in(folder.path(), &study, 3, &source).expect("continued");
         assert_eq!(outcome.rows_solved + outcome.rows_reused, 2000);
-        if stop_after >= 400 {
+        if rows >= 800 {
             assert!(outcome.rows_reused > 0, "parts were used");
         }
         assert!(
             bytes(folder.path()) == expected,
-            "stopped after {stop_after}"
+            "stopped after {rows} rows"
         );
     }
 }
@@ -216,4 +231,27 @@ fn a_damaged_table_is_found_and_named() {
             "{keep}: {error}"
         );
     }
+}
+
+#[test]
+fn a_panic_in_one_pattern_costs_its_rows_and_not_the_run() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let source = MockSource {
+        panics_in: Some(5),
+        ..MockSource::default()
+    };
+    let outcome = run_in(folder.path(), &study(50, |text| text), 2, &source).expect("run");
+    assert_eq!(outcome.summary.rows.count(Status::Panicked), 4);
+    assert_eq!(outcome.summary.rows.ok(), 196);
+}
+
+#[test]
+fn a_folder_in_use_is_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let lock = std::fs::File::create(folder.path().join(".lock")).expect("create");
+    lock.lock().expect("lock");
+    let error = run_in(folder.path(), &study(5, |text| text), 1, &MockSource::default());
+    assert!(matches!(error, Err(PipelineError::Locked { .. })));
+    drop(lock);
+    run_in(folder.path(), &study(5, |text| text), 1, &MockSource::default()).expect("free again");
 }

@@ -12,18 +12,18 @@ use blisk::response::mistuning::{Deviations, Pattern};
 use blisk::study::{Engine, EngineSource, PipelineError, Study};
 use serde_json::{Value, json};
 
-/// Counts the patterns it solves; stops the process of solving by a panic after `stop_after`.
+/// Counts the patterns it solves and panics in pattern `panics_in`.
 #[derive(Debug, Default)]
 pub struct MockSource {
     /// Calls of [`Engine::rows`] so far.
     pub solved: std::sync::Arc<AtomicU64>,
-    /// Panics once so many patterns are solved.
-    pub stop_after: Option<u64>,
+    /// Pattern in which it panics.
+    pub panics_in: Option<u32>,
 }
 
 struct MockEngine {
     solved: std::sync::Arc<AtomicU64>,
-    stop_after: Option<u64>,
+    panics_in: Option<u32>,
 }
 
 impl EngineSource for MockSource {
@@ -35,7 +35,7 @@ impl EngineSource for MockSource {
     ) -> Result<Box<dyn Engine>, PipelineError> {
         Ok(Box::new(MockEngine {
             solved: self.solved.clone(),
-            stop_after: self.stop_after,
+            panics_in: self.panics_in,
         }))
     }
 }
@@ -70,11 +70,8 @@ impl Engine for MockEngine {
         pattern: &Pattern,
         scenarios: &[(&Scenario, &TunedReference)],
     ) -> Vec<ResponseRow> {
-        let solved = self.solved.fetch_add(1, Ordering::SeqCst);
-        assert!(
-            self.stop_after.is_none_or(|most| solved < most),
-            "stopped on purpose"
-        );
+        self.solved.fetch_add(1, Ordering::SeqCst);
+        assert!(self.panics_in != Some(pattern.id), "a defect on purpose");
         let Deviations::PerBlade(values) = &pattern.deviations else {
             unreachable!("the studies here have no modes");
         };
