@@ -22,7 +22,11 @@ fn check_tells_the_size_of_the_study() {
     let place = Place::with(GOOD);
     let check = place.run(&["check", "study.toml"]);
     assert_eq!(check.code, 0, "{}", check.stderr);
-    assert!(check.stdout.contains("10 patterns x 3 scenarios = 30 rows"), "{}", check.stdout);
+    assert!(
+        check.stdout.contains("10 patterns x 3 scenarios = 30 rows"),
+        "{}",
+        check.stdout
+    );
     assert!(check.stderr.is_empty());
 }
 
@@ -72,7 +76,10 @@ fn the_digest_knows_numbers_and_no_names_places_or_order_of_keys() {
 fn patterns_from_a_file_lie_beside_the_study_and_count_for_themselves() {
     let place = Place::new();
     let lines: Vec<String> = (0..6).map(|blade| format!("3,{blade},0.01")).collect();
-    place.write("p.csv", &format!("pattern,blade,deviation\n{}\n", lines.join("\n")));
+    place.write(
+        "p.csv",
+        &format!("pattern,blade,deviation\n{}\n", lines.join("\n")),
+    );
     let study = GOOD
         .replace("distribution = { kind = \"normal\" }", "file = \"p.csv\"")
         .replace("standard_deviation = [0.03]\n", "")
@@ -80,13 +87,28 @@ fn patterns_from_a_file_lie_beside_the_study_and_count_for_themselves() {
     place.write("study.toml", &study);
     let check = place.run(&["check", "study.toml"]);
     assert_eq!(check.code, 0, "{}", check.stderr);
-    assert!(check.stdout.contains("1 patterns x 3 scenarios"), "{}", check.stdout);
+    assert!(
+        check.stdout.contains("1 patterns x 3 scenarios"),
+        "{}",
+        check.stdout
+    );
 }
 
 #[test]
 fn wrong_use_of_the_command_line_exits_with_2_and_says_what_is_accepted() {
-    let place = Place::with(&GOOD.replace("[2]", "[2, 3]").replace("[0.03]", "[0.03, 0.01]"));
-    let response = ["response", "study.toml", "--frequencies", "340:370:5", "--out", "c.csv"];
+    let place = Place::with(
+        &GOOD
+            .replace("[2]", "[2, 3]")
+            .replace("[0.03]", "[0.03, 0.01]"),
+    );
+    let response = [
+        "response",
+        "study.toml",
+        "--frequencies",
+        "340:370:5",
+        "--out",
+        "c.csv",
+    ];
     let with = |more: &[&'static str]| -> Vec<&'static str> { [&response[..], more].concat() };
     let tuned = ["--pattern", "tuned", "--load", "50"];
     let cases: Vec<(Vec<&str>, &str)> = vec![
@@ -95,23 +117,45 @@ fn wrong_use_of_the_command_line_exits_with_2_and_says_what_is_accepted() {
         (vec!["run"], "STUDY"),
         (vec!["run", "study.toml", "--threads", "0"], "1..=1024"),
         (with(&["--pattern", "tuned", "--load", "-3"]), "--load"),
-        (with(&["--pattern", "tuned", "--load", "sticky"]), "stuck, slide or free"),
-        (with(&["--pattern", "first", "--load", "50"]), "accepted: tuned"),
+        (
+            with(&["--pattern", "tuned", "--load", "sticky"]),
+            "stuck, slide or free",
+        ),
+        (
+            with(&["--pattern", "first", "--load", "50"]),
+            "accepted: tuned",
+        ),
         (with(&tuned), "--engine-order, one of 2, 3"),
-        (with(&[&tuned[..], &["--engine-order", "4"]].concat()), "accepted: 2, 3"),
+        (
+            with(&[&tuned[..], &["--engine-order", "4"]].concat()),
+            "accepted: 2, 3",
+        ),
         (
             with(&["--pattern", "1", "--load", "50", "--engine-order", "2"]),
             "--standard-deviation, one of 0.03, 0.01",
         ),
         (
-            with(&["--pattern", "1", "--load", "50", "--engine-order", "2", "--standard-deviation", "0.5"]),
+            with(&[
+                "--pattern",
+                "1",
+                "--load",
+                "50",
+                "--engine-order",
+                "2",
+                "--standard-deviation",
+                "0.5",
+            ]),
             "accepted: 0.03, 0.01",
         ),
     ];
     for (arguments, fragment) in cases {
         let ended = place.run(&arguments);
         assert_eq!(ended.code, 2, "{arguments:?}: {}", ended.stderr);
-        assert!(ended.stderr.contains(fragment), "{arguments:?}: {}", ended.stderr);
+        assert!(
+            ended.stderr.contains(fragment),
+            "{arguments:?}: {}",
+            ended.stderr
+        );
         assert!(ended.stdout.is_empty(), "{arguments:?}");
     }
 }
@@ -119,20 +163,53 @@ fn wrong_use_of_the_command_line_exits_with_2_and_says_what_is_accepted() {
 #[test]
 fn a_frequency_grid_that_is_none_is_refused() {
     let place = Place::with(GOOD);
-    for grid in ["340:370", "340:370:1", "370:340:5", "0:10:5", "a:b:c", "340:370:0", "1:inf:3", "1:nan:3"] {
+    for grid in [
+        "340:370",
+        "340:370:1",
+        "370:340:5",
+        "0:10:5",
+        "a:b:c",
+        "340:370:0",
+        "1:inf:3",
+        "1:nan:3",
+    ] {
         let ended = place.run(&[
-            "response", "study.toml", "--pattern", "tuned", "--load", "free", "--frequencies", grid,
-            "--out", "c.csv",
+            "response",
+            "study.toml",
+            "--pattern",
+            "tuned",
+            "--load",
+            "free",
+            "--frequencies",
+            grid,
+            "--out",
+            "c.csv",
         ]);
         assert_eq!(ended.code, 2, "{grid}");
-        assert!(ended.stderr.contains("START:STOP:COUNT"), "{grid}: {}", ended.stderr);
+        assert!(
+            ended.stderr.contains("START:STOP:COUNT"),
+            "{grid}: {}",
+            ended.stderr
+        );
     }
     let ended = place.run(&[
-        "response", "study.toml", "--pattern", "tuned", "--load", "free", "--frequencies", "1:2:3",
-        "--out", "curve.txt",
+        "response",
+        "study.toml",
+        "--pattern",
+        "tuned",
+        "--load",
+        "free",
+        "--frequencies",
+        "1:2:3",
+        "--out",
+        "curve.txt",
     ]);
     assert_eq!(ended.code, 2);
-    assert!(ended.stderr.contains(".csv or .parquet"), "{}", ended.stderr);
+    assert!(
+        ended.stderr.contains(".csv or .parquet"),
+        "{}",
+        ended.stderr
+    );
 }
 
 #[test]
@@ -144,7 +221,15 @@ fn help_and_version_are_results() {
         assert!(ended.stdout.contains("blisk") && ended.stderr.is_empty());
     }
     let help = place.run(&["--help"]).stdout;
-    for command in ["init", "check", "model", "run", "response", "stats", "Exit codes"] {
+    for command in [
+        "init",
+        "check",
+        "model",
+        "run",
+        "response",
+        "stats",
+        "Exit codes",
+    ] {
         assert!(help.contains(command), "{command}");
     }
 }
@@ -158,13 +243,22 @@ fn files_that_are_not_there_exit_with_7_and_are_named() {
     let stats = place.run(&["stats", "nowhere"]);
     assert_eq!(stats.code, 7);
     assert!(stats.stderr.contains("manifest.json"), "{}", stats.stderr);
-    place.write("study.toml", &GOOD.replace(
-        "distribution = { kind = \"normal\" }\n",
-        "file = \"absent.csv\"\n",
-    ).replace("standard_deviation = [0.03]\n", ""));
+    place.write(
+        "study.toml",
+        &GOOD
+            .replace(
+                "distribution = { kind = \"normal\" }\n",
+                "file = \"absent.csv\"\n",
+            )
+            .replace("standard_deviation = [0.03]\n", ""),
+    );
     let patterns = place.run(&["check", "study.toml"]);
     assert_eq!(patterns.code, 7);
-    assert!(patterns.stderr.contains("absent.csv"), "{}", patterns.stderr);
+    assert!(
+        patterns.stderr.contains("absent.csv"),
+        "{}",
+        patterns.stderr
+    );
 }
 
 #[test]
@@ -195,7 +289,10 @@ fn a_model_is_exported_as_a_bundle_that_another_study_reads() {
     assert_eq!(check.code, 0, "{}", check.stderr);
     // A bundle with a matrix of the wrong size is a matter of the model, not of the study.
     let matrix = std::fs::read_to_string(place.path("bundle/M.mtx")).expect("read");
-    place.write("bundle/M.mtx", &matrix.replacen("symmetric", "skew-symmetric", 1));
+    place.write(
+        "bundle/M.mtx",
+        &matrix.replacen("symmetric", "skew-symmetric", 1),
+    );
     let refused = place.run(&["check", "second.toml"]);
     assert_eq!(refused.code, 4, "{}", refused.stderr);
     assert!(refused.stderr.contains("M.mtx:1"), "{}", refused.stderr);

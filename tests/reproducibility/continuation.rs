@@ -19,7 +19,10 @@ struct Interrupting {
 
 impl Progress for Interrupting {
     fn row(&self, _status: Status) {
-        assert!(self.rows_left.fetch_sub(1, Ordering::SeqCst) > 0, "interrupted on purpose");
+        assert!(
+            self.rows_left.fetch_sub(1, Ordering::SeqCst) > 0,
+            "interrupted on purpose"
+        );
     }
 }
 
@@ -250,8 +253,19 @@ fn a_folder_in_use_is_refused() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let lock = std::fs::File::create(folder.path().join(".lock")).expect("create");
     lock.lock().expect("lock");
-    let error = run_in(folder.path(), &study(5, |text| text), 1, &MockSource::default());
+    let error = run_in(
+        folder.path(),
+        &study(5, |text| text),
+        1,
+        &MockSource::default(),
+    );
     assert!(matches!(error, Err(PipelineError::Locked { .. })));
     drop(lock);
-    run_in(folder.path(), &study(5, |text| text), 1, &MockSource::default()).expect("free again");
+    run_in(
+        folder.path(),
+        &study(5, |text| text),
+        1,
+        &MockSource::default(),
+    )
+    .expect("free again");
 }
