@@ -1,0 +1,97 @@
+//! The command line as clap sees it.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+
+use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
+
+/// Forced response of randomly mistuned bladed disks with a friction ring damper.
+#[derive(Debug, Parser)]
+#[command(name = "blisk", version, about, disable_help_subcommand = true)]
+#[command(
+    after_help = "Exit codes: 0 done, 1 internal error, 2 usage, 3 study invalid, 4 model invalid,\n5 failures leave a statistic without a value, 7 input/output, 8 store damaged,\n9 different study, 10 locked by another process."
+)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Write a commented study file to start from.
+    Init {
+        /// The file; it must not exist yet.
+        #[arg(long, value_name = "FILE", default_value = "study.toml")]
+        out: PathBuf,
+    },
+    /// Check a study, its model and its patterns without solving anything.
+    Check {
+        /// The study file.
+        study: PathBuf,
+        /// Print the resolved study as JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Build the reduced model and show sizes, frequencies, rank and condition.
+    Model {
+        /// The study file.
+        study: PathBuf,
+        /// Write the sector model as a bundle into this folder.
+        #[arg(long, value_name = "DIR")]
+        export: Option<PathBuf>,
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Solve a study, or continue it; a finished study is shown, not solved again.
+    Run {
+        /// The study file.
+        study: PathBuf,
+        /// The results folder [default: results/<name>].
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Number of threads [default: all cores]; results do not depend on it.
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+        threads: Option<u16>,
+        /// Print the summary as JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Amplitude of every blade over frequency, for one pattern and one contact condition.
+    Response {
+        /// The study file.
+        study: PathBuf,
+        /// `tuned`, or the id of a pattern of the study.
+        #[arg(long, value_name = "tuned|ID")]
+        pattern: PatternArgument,
+        /// Normal load per sector in N, or a linear limit.
+        #[arg(long, value_name = "N|stuck|slide|free")]
+        load: LoadArgument,
+        /// First and last frequency in Hz, both included, and the number of frequencies.
+        #[arg(long, value_name = "START:STOP:COUNT")]
+        frequencies: FrequencyGrid,
+        /// The file to write: .csv or .parquet.
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+        /// Engine order, where the study lists several.
+        #[arg(long, value_name = "EO")]
+        engine_order: Option<u32>,
+        /// Standard deviation, where the study lists several.
+        #[arg(long, value_name = "S")]
+        standard_deviation: Option<f64>,
+        /// Print what was written as JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Show the statistics of a results folder again, from its tables.
+    Stats {
+        /// The results folder.
+        results: PathBuf,
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+    },
+}

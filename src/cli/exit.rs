@@ -1,0 +1,82 @@
+//! Exit codes, the same for every command.
+
+use std::process::ExitCode;
+
+use crate::model::sector::ModelError;
+use crate::population::table::PatternParquetError;
+use crate::population::table::TableError;
+use crate::response::mistuning::PatternFileError;
+use crate::study::{PipelineError, StudyError};
+
+/// How a command ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExitStatus {
+    /// Done.
+    Done = 0,
+    /// A defect of the program.
+    InternalError = 1,
+    /// Wrong use of the command line.
+    Usage = 2,
+    /// The study is invalid.
+    StudyInvalid = 3,
+    /// The model or a matrix is invalid.
+    ModelInvalid = 4,
+    /// Failures leave a wanted statistic without a value.
+    FailureGate = 5,
+    /// A file or folder cannot be read or written.
+    InputOutput = 7,
+    /// Stored results are damaged.
+    StoreDamaged = 8,
+    /// The folder holds a different study.
+    DifferentStudy = 9,
+    /// The folder is in use by another process.
+    Locked = 10,
+}
+
+impl From<ExitStatus> for ExitCode {
+    fn from(status: ExitStatus) -> Self {
+        Self::from(status as u8)
+    }
+}
+
+impl From<&PipelineError> for ExitStatus {
+    fn from(error: &PipelineError) -> Self {
+        match error {
+            PipelineError::Study(error) => error.into(),
+            PipelineError::Model(ModelError::File { .. }) | PipelineError::NoResults { .. } => {
+                Self::InputOutput
+            }
+            PipelineError::Model(_) => Self::ModelInvalid,
+            PipelineError::Table(error) => error.into(),
+            PipelineError::DifferentStudy { .. } => Self::DifferentStudy,
+            PipelineError::Locked { .. } => Self::Locked,
+            PipelineError::Unfinished { .. } | PipelineError::NoPattern { .. } => Self::Usage,
+            PipelineError::Threads { .. } => Self::InternalError,
+        }
+    }
+}
+
+impl From<&StudyError> for ExitStatus {
+    fn from(error: &StudyError) -> Self {
+        match error {
+            StudyError::Unreadable { .. }
+            | StudyError::Input { .. }
+            | StudyError::Patterns(PatternFileError::Unreadable { .. })
+            | StudyError::PatternTable(PatternParquetError::Table(TableError::Io { .. })) => {
+                Self::InputOutput
+            }
+            StudyError::Invalid { .. } | StudyError::Patterns(_) | StudyError::PatternTable(_) => {
+                Self::StudyInvalid
+            }
+        }
+    }
+}
+
+impl From<&TableError> for ExitStatus {
+    fn from(error: &TableError) -> Self {
+        match error {
+            TableError::Io { .. } | TableError::Encoding { .. } => Self::InputOutput,
+            TableError::Damaged { .. } => Self::StoreDamaged,
+        }
+    }
+}

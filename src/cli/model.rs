@@ -1,0 +1,25 @@
+//! `blisk model`: the reduced model of a study, and the export of its sector as a bundle.
+
+use std::path::Path;
+
+use super::engine::engine_source;
+use super::run_command::Failure;
+use super::{ExitStatus, output};
+use crate::model::sector::bundle;
+use crate::study::{EngineSource, PipelineError, Study, load_sector_model};
+
+pub(super) fn command(
+    study: &Path,
+    export: Option<&Path>,
+    json: bool,
+) -> Result<ExitStatus, Failure> {
+    let study = Study::read(study)?;
+    let model = load_sector_model(&study)?;
+    if let Some(folder) = export {
+        bundle::write(&model, folder).map_err(PipelineError::from)?;
+        output::message(&format!("wrote the sector bundle {}", folder.display()));
+    }
+    let engine = engine_source().build(&study, &model, None)?;
+    output::result(json, &engine.model_report());
+    Ok(ExitStatus::Done)
+}

@@ -1,0 +1,239 @@
+//! `blisk response`: amplitude of every blade over frequency for one pattern.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use serde_json::json;
+
+use super::engine::engine_source;
+use super::run_command::Failure;
+use super::{ExitStatus, output};
+use crate::population::table::{CurveFormat, TableHeader, write_curve};
+use crate::response::forced_response::ContactCondition;
+use crate::response::harmonic_balance::Status;
+use crate::study::{CurveRequest, Study, StudyDigest, response_curve};
+
+/// Largest number of frequencies of a curve.
+const MAX_FREQUENCIES: usize = 1_000_000;
+
+/// `--pattern`: the tuned wheel or a pattern of the study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PatternArgument(Option<u32>);
+
+/// `--load`: a normal load or a linear limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoadArgument(ContactCondition);
+
+/// `--frequencies`: equally spaced, both ends included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrequencyGrid {
+    start_hz: f64,
+    stop_hz: f64,
+    count: usize,
+}
+
+impl FromStr for PatternArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "tuned" => Ok(Self(None)),
+            id => id.parse().map(|id| Self(Some(id))).map_err(|_| {
+                "accepted: tuned, or the id of a pattern, a whole number from 0".to_owned()
+            }),
+        }
+    }
+}
+
+impl FromStr for LoadArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let contact = match text {
+            "stuck" => ContactCondition::Stuck,
+            "slide" => ContactCondition::Slide,
+            "free" => ContactCondition::Free,
+            number => number
+                .parse()
+                .ok()
+                .filter(|load: &f64| load.is_finite() && *load >= 0.0)
+                .map(|normal_load_n| ContactCondition::Full { normal_load_n })
+                .ok_or("accepted: a number of at least 0 in N, stuck, slide or free")?,
+        };
+        Ok(Self(contact))
+    }
+}
+
+impl FromStr for FrequencyGrid {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let accepted = format!(
+            "accepted: START:STOP:COUNT with 0 < START < STOP in Hz and COUNT from 2 to \
+             {MAX_FREQUENCIES}, or START = STOP and COUNT = 1"
+        );
+        let parts: Vec<&str> = text.split(':').collect();
+        let [start, stop, count] = parts.as_slice() else {
+            return Err(accepted);
+        };
+        let (Ok(start_hz), Ok(stop_hz), Ok(count)) = (
+            start.parse::<f64>(),
+            stop.parse::<f64>(),
+            count.parse::<usize>(),
+        ) else {
+            return Err(accepted);
+        };
+        let several = start_hz < stop_hz && (2..=MAX_FREQUENCIES).contains(&count);
+        let one = start_hz.total_cmp(&stop_hz).is_eq() && count == 1;
+        if start_hz > 0.0 && stop_hz.is_finite() && (several || one) {
+            Ok(Self {
+                start_hz,
+                stop_hz,
+                count,
+            })
+        } else {
+            Err(accepted)
+        }
+    }
+}
+
+impl FrequencyGrid {
+    /// The frequencies, Hz; the first and last are exactly those asked for.
+    fn frequencies_hz(&self) -> Vec<f64> {
+        let last = self.count - 1;
+        (0..self.count)
+            .map(|place| {
+                if place == last {
+                    self.stop_hz
+                } else {
+                    let step = (self.stop_hz - self.start_hz) / last as f64;
+                    self.start_hz + step * place as f64
+                }
+            })
+            .collect()
+    }
+}
+
+/// Arguments of the command.
+#[derive(Debug)]
+pub(super) struct ResponseArguments {
+    pub(super) study: PathBuf,
+    pub(super) pattern: PatternArgument,
+    pub(super) load: LoadArgument,
+    pub(super) frequencies: FrequencyGrid,
+    pub(super) out: PathBuf,
+    pub(super) engine_order: Option<u32>,
+    pub(super) standard_deviation: Option<f64>,
+    pub(super) json: bool,
+}
+
+pub(super) fn command(arguments: &ResponseArguments) -> Result<ExitStatus, Failure> {
+    let out = &arguments.out;
+    let format = CurveFormat::of(out).ok_or_else(|| {
+        Failure::usage(format!(
+            "--out {}: accepted: a file name ending in .csv or .parquet",
+            out.display()
+        ))
+    })?;
+    let study = Study::read(&arguments.study)?;
+    let frequencies_hz = arguments.frequencies.frequencies_hz();
+    let request = CurveRequest {
+        pattern: arguments.pattern.0,
+        contact: arguments.load.0,
+        engine_order: engine_order(&study, arguments.engine_order)?,
+        standard_deviation: match arguments.pattern.0 {
+            None => None,
+            Some(_) => standard_deviation(&study, arguments.standard_deviation)?,
+        },
+        frequencies_hz: &frequencies_hz,
+    };
+    let header = TableHeader {
+        study_digest: StudyDigest::of(&study)?.hex(),
+        compression: study.output.compression,
+    };
+    let points = response_curve(&study, &engine_source(), request)?;
+    write_curve(out, format, &points, &header)?;
+    let failed = points
+        .iter()
+        .filter(|point| point.status != Status::Ok)
+        .count();
+    let largest = points
+        .iter()
+        .filter_map(|point| Some((point.amplitude_m?, point)))
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    if arguments.json {
+        output::json_only(&json!({
+            "file": out,
+            "rows": points.len(),
+            "failed": failed,
+            "largest": largest.map(|(_, point)| point),
+        }));
+    } else {
+        let largest = largest.map_or_else(String::new, |(amplitude, point)| {
+            format!(
+                "; largest {amplitude:.6e} m at {} Hz, blade {}",
+                point.frequency_hz, point.blade
+            )
+        });
+        output::text(&format!(
+            "wrote {} rows to {}, {failed} without value{largest}",
+            points.len(),
+            out.display()
+        ));
+    }
+    Ok(if failed == 0 {
+        ExitStatus::Done
+    } else {
+        ExitStatus::FailureGate
+    })
+}
+
+fn engine_order(study: &Study, asked: Option<u32>) -> Result<u32, Failure> {
+    let choices = || {
+        study
+            .engine_orders
+            .iter()
+            .map(u32::to_string)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    match (asked, study.engine_orders.as_slice()) {
+        (Some(order), orders) if orders.contains(&order) => Ok(order),
+        (None, [only]) => Ok(*only),
+        (Some(order), _) => Err(Failure::usage(format!(
+            "--engine-order {order} is not in the study; accepted: {}",
+            choices()
+        ))),
+        (None, _) => Err(Failure::usage(format!(
+            "the study has several engine orders; give --engine-order, one of {}",
+            choices()
+        ))),
+    }
+}
+
+fn standard_deviation(study: &Study, asked: Option<f64>) -> Result<Option<f64>, Failure> {
+    let choices = || {
+        study
+            .standard_deviations
+            .iter()
+            .flatten()
+            .map(f64::to_string)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    match (asked, study.standard_deviations.as_slice()) {
+        (None, [only]) => Ok(*only),
+        (Some(asked), known) if known.contains(&Some(asked)) => Ok(Some(asked)),
+        (Some(asked), [None]) => Err(Failure::usage(format!(
+            "--standard-deviation {asked}: the patterns of this study come from a file and have none"
+        ))),
+        (Some(asked), _) => Err(Failure::usage(format!(
+            "--standard-deviation {asked} is not in the study; accepted: {}",
+            choices()
+        ))),
+        (None, _) => Err(Failure::usage(format!(
+            "the study has several standard deviations; give --standard-deviation, one of {}",
+            choices()
+        ))),
+    }
+}

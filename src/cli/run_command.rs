@@ -1,0 +1,94 @@
+//! From the command line to an exit code.
+
+use std::ffi::OsString;
+
+use clap::Parser;
+
+use super::{Arguments, Command, ExitStatus, check, init, model, output, response, run, stats};
+
+/// Carries out the command line `arguments` (the first is the program's name).
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are results; anything else is wrong use. A closed pipe is no error.
+            let _ = error.print();
+            return if error.use_stderr() {
+                ExitStatus::Usage
+            } else {
+                ExitStatus::Done
+            };
+        }
+    };
+    let ended = match arguments.command {
+        Command::Init { out } => init::command(&out),
+        Command::Check { study, json } => check::command(&study, json),
+        Command::Model {
+            study,
+            export,
+            json,
+        } => model::command(&study, export.as_deref(), json),
+        Command::Run {
+            study,
+            out,
+            threads,
+            json,
+        } => run::command(&study, out, threads, json),
+        Command::Response {
+            study,
+            pattern,
+            load,
+            frequencies,
+            out,
+            engine_order,
+            standard_deviation,
+            json,
+        } => response::command(&response::ResponseArguments {
+            study,
+            pattern,
+            load,
+            frequencies,
+            out,
+            engine_order,
+            standard_deviation,
+            json,
+        }),
+        Command::Stats { results, json } => stats::command(&results, json),
+    };
+    match ended {
+        Ok(status) => status,
+        Err(failure) => {
+            output::message(&format!("error: {}", failure.message));
+            failure.status
+        }
+    }
+}
+
+/// A command that failed: what to say and how to exit.
+#[derive(Debug)]
+pub(super) struct Failure {
+    pub(super) status: ExitStatus,
+    pub(super) message: String,
+}
+
+impl Failure {
+    pub(super) fn usage(message: String) -> Self {
+        Self {
+            status: ExitStatus::Usage,
+            message,
+        }
+    }
+}
+
+impl<E> From<E> for Failure
+where
+    E: std::error::Error,
+    for<'a> ExitStatus: From<&'a E>,
+{
+    fn from(error: E) -> Self {
+        Self {
+            status: ExitStatus::from(&error),
+            message: error.to_string(),
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Percentiles as order statistics with exact, distribution-free intervals that bound failures.
+//!
+//! Of n independent values, `x_(l) <= q_p <= x_(u)` fails below with probability
+//! `P(B <= l - 1)` and above with `P(B >= u)`, `B ~ Binomial(n, p)` (David & Nagaraja 2003,
+//! section 7.1); ties make it more certain. Failed rows have values too, which nobody knows: they
+//! stand at minus infinity for the lower end and at plus infinity for the upper end.
+
+use serde::Serialize;
+
+use super::binomial::{lower_tail, upper_tail};
+
+/// Two-sided confidence of the intervals; each tail has half of the rest.
+pub const CONFIDENCE: f64 = 0.95;
+
+/// Ranks of an equal-tailed interval, from 1; none where n values are too few.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PercentileRanks {
+    /// Rank of the lower end.
+    pub lower: Option<u64>,
+    /// Rank of the upper end.
+    pub upper: Option<u64>,
+    /// Probability that the interval holds the percentile, when both ends exist.
+    pub coverage: Option<f64>,
+}
+
+/// Whether a percentile has a point value, and why not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PointStatus {
+    /// It has.
+    Estimated,
+    /// The sample is too small for a two-sided interval.
+    TooFewPatterns {
+        /// Smallest sample that has one.
+        needed: u64,
+    },
+    /// More rows failed than a tenth of the smaller tail.
+    TooManyFailures,
+}
+
+/// A percentile of one quantity over the patterns of a scenario.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Percentile {
+    /// The percentile in percent.
+    pub percent: u32,
+    /// Order statistic `x_(ceil(p n))` of the good values.
+    pub value: Option<f64>,
+    /// Lower 95 % bound.
+    pub lower: Option<f64>,
+    /// Upper 95 % bound.
+    pub upper: Option<f64>,
+    /// Why `value` is there or not.
+    pub status: PointStatus,
+}
+
+/// Ranks of the equal-tailed interval of the `p`-quantile, `0 < p < 1`, among `n` values.
+#[must_use]
+pub fn percentile_ranks(n: u64, p: f64) -> PercentileRanks {
+    let tail = 0.5 * (1.0 - CONFIDENCE);
+    // Largest l in 1..=n with P(B <= l - 1) <= tail; the tail grows with l.
+    let lower = partition_point(n, |l| lower_tail(n, p, l - 1) <= tail);
+    // Smallest u in 1..=n with P(B >= u) <= tail; the tail falls with u.
+    let upper = partition_point(n, |u| upper_tail(n, p, u) > tail) + 1;
+    let lower = (lower >= 1).then_some(lower);
+    let upper = (upper <= n).then_some(upper);
+    PercentileRanks {
+        lower,
+        upper,
+        coverage: lower
+            .zip(upper)
+            .map(|(l, u)| 1.0 - lower_tail(n, p, l - 1) - upper_tail(n, p, u)),
+    }
+}
+
+/// Number of leading ranks of `1..=n` for which `holds`, which is true up to some rank only.
+fn partition_point(n: u64, holds: impl Fn(u64) -> bool) -> u64 {
+    let (mut yes, mut no) = (0, n + 1);
+    while no - yes > 1 {
+        let middle = yes + (no - yes) / 2;
+        if holds(middle) {
+            yes = middle;
+        } else {
+            no = middle;
+        }
+    }
+    yes
+}
+
+/// Largest share of failed rows under which the `p`-quantile keeps its point value.
+#[must_use]
+pub fn failure_gate(p: f64) -> f64 {
+    p.min(1.0 - p) / 10.0
+}
+
+/// Smallest n with a two-sided interval: `max(p, 1 - p)^n <= (1 - CONFIDENCE) / 2`.
+fn smallest_sample(p: f64) -> u64 {
+    let tail = 0.5 * (1.0 - CONFIDENCE);
+    (tail.ln() / p.max(1.0 - p).ln()).ceil() as u64
+}
+
+/// The percentile of `sorted` good values (ascending) beside `failed` rows without value.
+#[must_use]
+pub fn percentile(sorted: &[f64], failed: u64, percent: u32) -> Percentile {
+    let p = f64::from(percent) / 100.0;
+    let good = sorted.len() as u64;
+    let planned = good + failed;
+    let ranks = percentile_ranks(planned, p);
+    let at = |rank: u64| -> Option<f64> {
+        let place = usize::try_from(rank.checked_sub(1)?).ok()?;
+        sorted.get(place).copied()
+    };
+    let status = if ranks.lower.is_none() || ranks.upper.is_none() {
+        PointStatus::TooFewPatterns {
+            needed: smallest_sample(p),
+        }
+    } else if failed as f64 > failure_gate(p) * planned as f64 * (1.0 + 1e-12) {
+        PointStatus::TooManyFailures
+    } else {
+        PointStatus::Estimated
+    };
+    Percentile {
+        percent,
+        value: match status {
+            PointStatus::Estimated => at(point_rank(good, percent)),
+            _ => None,
+        },
+        lower: ranks.lower.and_then(|l| at(l.saturating_sub(failed))),
+        upper: ranks.upper.and_then(at),
+        status,
+    }
+}
+
+/// `ceil(percent n / 100)`, at least 1, in whole numbers so that no rounding shifts a rank.
+fn point_rank(n: u64, percent: u32) -> u64 {
+    (n * u64::from(percent)).div_ceil(100).max(1)
+}

@@ -1,0 +1,54 @@
+//! Moments and percentiles of one quantity over the patterns of a scenario.
+
+use serde::Serialize;
+
+use super::{Percentile, percentile};
+
+/// Percentiles that every table and summary gives, in percent.
+pub const PERCENTILES: [u32; 4] = [5, 50, 95, 99];
+
+/// Statistics of one quantity; moments are over the rows that have a value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SampleStatistics {
+    /// Mean.
+    pub mean: Option<f64>,
+    /// Standard deviation with divisor n - 1.
+    pub standard_deviation: Option<f64>,
+    /// Percentiles in the order of [`PERCENTILES`].
+    pub percentiles: [Percentile; PERCENTILES.len()],
+}
+
+impl SampleStatistics {
+    /// Statistics of `values` beside `failed` rows without value.
+    #[must_use]
+    pub fn new(mut values: Vec<f64>, failed: u64) -> Self {
+        values.sort_unstable_by(f64::total_cmp);
+        let (mean, standard_deviation) = moments(&values);
+        Self {
+            mean,
+            standard_deviation,
+            percentiles: PERCENTILES.map(|percent| percentile(&values, failed, percent)),
+        }
+    }
+
+    /// The percentile of `percent`, one of [`PERCENTILES`].
+    #[must_use]
+    pub fn percentile(&self, percent: u32) -> Option<&Percentile> {
+        self.percentiles
+            .iter()
+            .find(|found| found.percent == percent)
+    }
+}
+
+/// Mean and standard deviation in two passes, over values in ascending order: the result does not
+/// depend on the order of the rows.
+fn moments(sorted: &[f64]) -> (Option<f64>, Option<f64>) {
+    if sorted.is_empty() {
+        return (None, None);
+    }
+    let n = sorted.len() as f64;
+    let mean = sorted.iter().sum::<f64>() / n;
+    let squares: f64 = sorted.iter().map(|value| (value - mean).powi(2)).sum();
+    let deviation = (sorted.len() > 1).then(|| (squares / (n - 1.0)).sqrt());
+    (Some(mean), deviation)
+}

@@ -1,0 +1,79 @@
+//! Statistics of one scenario, gathered row by row.
+
+use serde::Serialize;
+
+use super::{Accounting, SampleStatistics};
+use crate::population::monte_carlo::ResponseRow;
+use crate::response::harmonic_balance::Status;
+
+/// Statistics of one scenario: a row of `scenarios.parquet` without its keys.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ScenarioStatistics {
+    /// Rows by status.
+    pub accounting: Accounting,
+    /// Amplification factor; rows without one count as failed.
+    pub amplification_factor: SampleStatistics,
+    /// Peak amplitude, m.
+    pub peak_amplitude_m: SampleStatistics,
+    /// Largest share of separated pairs of an `ok` row.
+    pub largest_separated_fraction: Option<f64>,
+    /// Share of `ok` rows in which a pair separates.
+    pub separated_rows: Option<f64>,
+    /// Mean share of slipping pairs over the `ok` rows.
+    pub mean_slipping_fraction: Option<f64>,
+}
+
+/// Gathers the rows of one scenario; holds 16 bytes per row.
+#[derive(Debug, Clone, Default)]
+pub struct ScenarioAccumulator {
+    accounting: Accounting,
+    amplification_factor: Vec<f64>,
+    peak_amplitude_m: Vec<f64>,
+    largest_separated_fraction: Option<f64>,
+    separated_rows: u64,
+    contact_rows: u64,
+    slipping_sum: f64,
+}
+
+impl ScenarioAccumulator {
+    /// Takes one row of the scenario.
+    pub fn add(&mut self, row: &ResponseRow) {
+        self.accounting.add(row.status);
+        if row.status != Status::Ok {
+            return;
+        }
+        self.amplification_factor.extend(row.amplification_factor);
+        self.peak_amplitude_m.extend(row.peak_amplitude_m);
+        if let Some(separated) = row.separated_fraction {
+            let largest = self.largest_separated_fraction.unwrap_or(0.0);
+            self.largest_separated_fraction = Some(largest.max(separated));
+            self.separated_rows += u64::from(separated > 0.0);
+        }
+        if let Some(slipping) = row.slipping_fraction {
+            self.contact_rows += 1;
+            self.slipping_sum += slipping;
+        }
+    }
+
+    /// The statistics of the rows taken.
+    #[must_use]
+    pub fn finish(self) -> ScenarioStatistics {
+        let planned = self.accounting.planned();
+        let ok = self.accounting.ok();
+        let statistics = |values: Vec<f64>| {
+            let failed = planned - values.len() as u64;
+            SampleStatistics::new(values, failed)
+        };
+        ScenarioStatistics {
+            accounting: self.accounting,
+            amplification_factor: statistics(self.amplification_factor),
+            peak_amplitude_m: statistics(self.peak_amplitude_m),
+            largest_separated_fraction: self.largest_separated_fraction,
+            separated_rows: self
+                .largest_separated_fraction
+                .map(|_| self.separated_rows as f64 / ok as f64),
+            mean_slipping_fraction: (self.contact_rows > 0)
+                .then(|| self.slipping_sum / self.contact_rows as f64),
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! `manifest.json`: what a results folder holds and what it was made from; and `runs/<n>.json`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::{TableError, write_atomically};
+use crate::population::monte_carlo::{Scenario, TunedReference};
+use crate::population::statistics::Accounting;
+use crate::response::forced_response::ContactCondition;
+use crate::response::harmonic_balance::Status;
+
+/// Whether a results folder is complete.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RunState {
+    /// Rows may be missing; the same command continues.
+    Running,
+    /// Every row is there.
+    Finished,
+}
+
+/// Rows by status, as [`Accounting`] counts them.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct StatusCounts {
+    /// All rows.
+    pub planned: u64,
+    /// Rows that are `ok`.
+    pub ok: u64,
+    /// Rows of every other status.
+    pub failed: u64,
+    /// Rows by status, those that are not zero.
+    pub by_status: BTreeMap<String, u64>,
+}
+
+impl From<&Accounting> for StatusCounts {
+    fn from(accounting: &Accounting) -> Self {
+        Self {
+            planned: accounting.planned(),
+            ok: accounting.ok(),
+            failed: accounting.failed(),
+            by_status: accounting
+                .by_status()
+                .into_iter()
+                .map(|(status, count)| (status.to_owned(), count))
+                .collect(),
+        }
+    }
+}
+
+/// One scenario in the manifest: keys, tuned reference, counts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ScenarioEntry {
+    /// Index.
+    pub scenario: usize,
+    /// Engine order.
+    pub engine_order: u32,
+    /// Standard deviation, if the study has one.
+    pub standard_deviation: Option<f64>,
+    /// Contact condition.
+    pub contact: ContactCondition,
+    /// How the tuned solution ended.
+    pub tuned_status: Status,
+    /// Tuned peak amplitude, m.
+    pub tuned_amplitude_m: Option<f64>,
+    /// Tuned peak frequency, Hz.
+    pub tuned_frequency_hz: Option<f64>,
+    /// Share of pairs that slip at the tuned peak.
+    pub tuned_slipping_fraction: Option<f64>,
+    /// Share of pairs that separate at the tuned peak.
+    pub tuned_separated_fraction: Option<f64>,
+    /// Rows by status.
+    pub counts: StatusCounts,
+}
+
+impl ScenarioEntry {
+    /// The entry of a scenario.
+    #[must_use]
+    pub fn new(scenario: &Scenario, tuned: &TunedReference, accounting: &Accounting) -> Self {
+        Self {
+            scenario: scenario.index,
+            engine_order: scenario.engine_order,
+            standard_deviation: scenario.standard_deviation,
+            contact: scenario.contact,
+            tuned_status: tuned.status,
+            tuned_amplitude_m: tuned.amplitude_m,
+            tuned_frequency_hz: tuned.frequency_hz,
+            tuned_slipping_fraction: tuned.slipping_fraction,
+            tuned_separated_fraction: tuned.separated_fraction,
+            counts: accounting.into(),
+        }
+    }
+
+    /// Its keys.
+    #[must_use]
+    pub fn keys(&self) -> Scenario {
+        Scenario {
+            index: self.scenario,
+            engine_order: self.engine_order,
+            standard_deviation: self.standard_deviation,
+            contact: self.contact,
+        }
+    }
+
+    /// Its tuned reference.
+    #[must_use]
+    pub fn tuned(&self) -> TunedReference {
+        TunedReference {
+            scenario: self.scenario,
+            status: self.tuned_status,
+            amplitude_m: self.tuned_amplitude_m,
+            frequency_hz: self.tuned_frequency_hz,
+            separated_fraction: self.tuned_separated_fraction,
+            slipping_fraction: self.tuned_slipping_fraction,
+        }
+    }
+}
+
+/// Content of `manifest.json`. The same study gives the same bytes on every machine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of the tables and of this file.
+    pub schema: u32,
+    /// Version of the program.
+    pub version: String,
+    /// Whether the folder is complete.
+    pub state: RunState,
+    /// Name of the study.
+    pub name: String,
+    /// Digest of everything that can change a number.
+    pub study_digest: String,
+    /// Seed of the patterns.
+    pub seed: u64,
+    /// Random number generator.
+    pub generator: String,
+    /// Number of patterns.
+    pub patterns: u64,
+    /// What the digest is made from, key by key.
+    pub number_keys: BTreeMap<String, String>,
+    /// Digests of the input files, by path as written in the study.
+    pub inputs: BTreeMap<String, String>,
+    /// The study with every default filled in.
+    pub study: Value,
+    /// Settings that the program chose where the study says `auto`.
+    pub chosen: Value,
+    /// Facts about the reduced model.
+    pub reduction: Value,
+    /// Rows by status over all scenarios.
+    pub counts: StatusCounts,
+    /// The scenarios, in order.
+    pub scenarios: Vec<ScenarioEntry>,
+}
+
+impl Manifest {
+    /// Reads `manifest.json` of the folder `results`; none if there is none.
+    ///
+    /// # Errors
+    /// The file cannot be read or is damaged.
+    pub fn read(results: &Path) -> Result<Option<Self>, TableError> {
+        let path = results.join("manifest.json");
+        if !path.exists() {
+            return Ok(None);
+        }
+        let text = std::fs::read_to_string(&path).map_err(TableError::io("read", &path))?;
+        serde_json::from_str(&text)
+            .map(Some)
+            .map_err(|error| TableError::damaged(&path, error.to_string()))
+    }
+
+    /// Writes `manifest.json` into the folder `results`.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, results: &Path) -> Result<(), TableError> {
+        write_json(&results.join("manifest.json"), self)
+    }
+}
+
+/// Content of `runs/<n>.json`: what a run took and where; never part of the results.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunRecord {
+    /// Start, seconds since 1970-01-01 UTC.
+    pub started_unix_s: u64,
+    /// Wall time, s.
+    pub wall_time_s: f64,
+    /// Host name.
+    pub host: String,
+    /// Threads.
+    pub threads: usize,
+    /// Version of the program.
+    pub version: String,
+    /// Rows solved by this run.
+    pub rows_solved: u64,
+    /// Rows taken over from earlier runs.
+    pub rows_reused: u64,
+}
+
+impl RunRecord {
+    /// Writes the record under the next free number of `runs/` in the folder `results`.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, results: &Path) -> Result<(), TableError> {
+        let folder = results.join("runs");
+        let free = (1..=u32::MAX)
+            .map(|number| folder.join(format!("{number}.json")))
+            .find(|path| !path.exists());
+        match free {
+            Some(path) => write_json(&path, self),
+            None => Ok(()),
+        }
+    }
+}
+
+fn write_json(path: &Path, content: &impl Serialize) -> Result<(), TableError> {
+    let mut text = serde_json::to_string_pretty(content)
+        .map_err(|error| TableError::encoding(path, error.to_string()))?;
+    text.push('\n');
+    write_atomically(path, text.as_bytes())
+}

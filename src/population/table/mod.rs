@@ -1,0 +1,26 @@
+//! Parquet tables and manifest of a results folder: schema, atomic writing, reading, parts.
+
+mod atomic;
+mod column;
+mod curve;
+mod error;
+mod manifest;
+mod parts;
+mod pattern_file;
+mod patterns;
+mod reader;
+mod responses;
+mod scenarios;
+mod writer;
+
+pub use atomic::write_atomically;
+pub use column::{ColumnKind, ColumnSpec};
+pub use curve::{CURVE_COLUMNS, CurveFormat, CurvePoint, write_curve};
+pub use error::TableError;
+pub use manifest::{Manifest, RunRecord, RunState, ScenarioEntry, StatusCounts};
+pub use parts::{PartSink, PartStore};
+pub use pattern_file::{PatternParquetError, read_pattern_parquet};
+pub use patterns::{PATTERN_COLUMNS, write_patterns};
+pub use responses::{RESPONSE_COLUMNS, ResponseReader, ResponseWriter};
+pub use scenarios::{SCENARIO_COLUMNS, ScenarioRecord, write_scenarios};
+pub use writer::{Compression, SCHEMA_VERSION, TableHeader};

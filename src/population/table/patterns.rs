@@ -1,0 +1,92 @@
+//! `patterns.parquet`: the deviation of every blade of every pattern.
+
+use std::path::Path;
+
+use super::column::{ColumnKind, ColumnSpec, Values};
+use super::writer::TableWriter;
+use super::{TableError, TableHeader};
+use crate::response::mistuning::PatternSource;
+
+use ColumnKind::{Float64, Int32};
+
+/// Columns of `patterns.parquet`.
+pub const PATTERN_COLUMNS: &[ColumnSpec] = &[
+    ColumnSpec::new(
+        "standard_deviation",
+        Float64,
+        "1",
+        "Standard deviation of the law, after truncation; null for patterns from a file",
+    ),
+    ColumnSpec::new("pattern", Int32, "", "Pattern id"),
+    ColumnSpec::new("blade", Int32, "", "Blade, from 0"),
+    ColumnSpec::new(
+        "mode",
+        Int32,
+        "",
+        "Blade-alone mode, from 0; null = all modes",
+    ),
+    ColumnSpec::new(
+        "deviation",
+        Float64,
+        "1",
+        "Relative deviation of the blade stiffness; per mode, of the eigenvalue",
+    ),
+];
+
+/// Standard deviation, pattern, blade, mode, deviation.
+type Row = (Option<f64>, u32, u32, Option<u32>, f64);
+
+/// Rows that are gathered before a row group is written.
+const ROW_GROUP: usize = 65_536;
+
+/// Writes the patterns of `source` once for each standard deviation (none: as they stand).
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_patterns(
+    path: &Path,
+    source: &PatternSource,
+    standard_deviations: &[Option<f64>],
+    header: &TableHeader,
+) -> Result<(), TableError> {
+    let mut writer = TableWriter::create(path, PATTERN_COLUMNS, header)?;
+    let mut rows: Vec<Row> = Vec::new();
+    for &standard_deviation in standard_deviations {
+        for id in source.ids() {
+            let Some(pattern) = source.pattern(id, standard_deviation) else {
+                continue;
+            };
+            rows.extend(
+                pattern
+                    .entries()
+                    .into_iter()
+                    .map(|(blade, mode, deviation)| {
+                        (standard_deviation, id, blade, mode, deviation)
+                    }),
+            );
+            while rows.len() >= ROW_GROUP {
+                let rest = rows.split_off(ROW_GROUP);
+                writer.write(columns_of(&rows))?;
+                rows = rest;
+            }
+        }
+    }
+    if !rows.is_empty() {
+        writer.write(columns_of(&rows))?;
+    }
+    writer.finish()
+}
+
+fn columns_of(rows: &[Row]) -> Vec<Values> {
+    vec![
+        Values::Float64(rows.iter().map(|row| row.0).collect()),
+        Values::Int32(rows.iter().map(|row| Some(row.1 as i32)).collect()),
+        Values::Int32(rows.iter().map(|row| Some(row.2 as i32)).collect()),
+        Values::Int32(
+            rows.iter()
+                .map(|row| row.3.map(|mode| mode as i32))
+                .collect(),
+        ),
+        Values::Float64(rows.iter().map(|row| Some(row.4)).collect()),
+    ]
+}

@@ -1,0 +1,147 @@
+//! Reader of one Parquet file: schema check, metadata, and columns of a slice of rows.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use polars::prelude::{
+    Column, DataFrame, DataType, ParallelStrategy, ParquetReader, PolarsError, SerReader,
+};
+
+use super::column::polars_type;
+use super::writer::STUDY_DIGEST_KEY;
+use super::{ColumnSpec, TableError};
+
+/// An open Parquet file whose columns have been checked.
+#[derive(Debug)]
+pub(super) struct TableReader {
+    path: PathBuf,
+    columns: &'static [ColumnSpec],
+    rows: usize,
+    study_digest: Option<String>,
+}
+
+impl TableReader {
+    /// Opens `path` and checks that it has `columns` with their types (others may follow).
+    pub(super) fn open(path: &Path, columns: &'static [ColumnSpec]) -> Result<Self, TableError> {
+        let mut reader = parquet(path)?;
+        let damaged = |error: PolarsError| TableError::damaged(path, error.to_string());
+        let metadata = reader.get_metadata().map_err(damaged)?.clone();
+        let schema = reader.schema().map_err(damaged)?;
+        for column in columns {
+            let expected = polars_type(column.kind);
+            let found = schema.get(column.name).map(DataType::from_arrow_field);
+            if found.as_ref() != Some(&expected) {
+                let found = found.map_or("missing".to_owned(), |kind| kind.to_string());
+                return Err(TableError::damaged(
+                    path,
+                    format!(
+                        "column {} should be {expected}, and is {found}",
+                        column.name
+                    ),
+                ));
+            }
+        }
+        let study_digest = metadata
+            .key_value_metadata()
+            .iter()
+            .flatten()
+            .find(|pair| pair.key == STUDY_DIGEST_KEY)
+            .and_then(|pair| pair.value.clone());
+        Ok(Self {
+            path: path.to_owned(),
+            columns,
+            rows: metadata.num_rows,
+            study_digest,
+        })
+    }
+
+    pub(super) fn rows(&self) -> usize {
+        self.rows
+    }
+
+    pub(super) fn study_digest(&self) -> Option<&str> {
+        self.study_digest.as_deref()
+    }
+
+    /// `count` rows from row `first` on.
+    pub(super) fn read(&self, first: usize, count: usize) -> Result<Slice<'_>, TableError> {
+        let names = self
+            .columns
+            .iter()
+            .map(|column| column.name.to_owned())
+            .collect();
+        let frame = parquet(&self.path)?
+            .with_columns(Some(names))
+            .with_slice(Some((first, count)))
+            .read_parallel(ParallelStrategy::None)
+            .set_rechunk(true)
+            .finish()
+            .map_err(|error| TableError::damaged(&self.path, error.to_string()))?;
+        Ok(Slice {
+            path: &self.path,
+            frame,
+        })
+    }
+}
+
+fn parquet(path: &Path) -> Result<ParquetReader<File>, TableError> {
+    let file = File::open(path).map_err(TableError::io("read", path))?;
+    Ok(ParquetReader::new(file))
+}
+
+/// Rows in memory, column by column.
+pub(super) struct Slice<'a> {
+    path: &'a Path,
+    frame: DataFrame,
+}
+
+impl Slice<'_> {
+    fn column(&self, name: &str) -> Result<&Column, TableError> {
+        self.frame
+            .column(name)
+            .map_err(|error| TableError::damaged(self.path, error.to_string()))
+    }
+
+    pub(super) fn int32(&self, name: &str) -> Result<Vec<Option<i32>>, TableError> {
+        let column = self.column(name)?;
+        let values = column
+            .i32()
+            .map_err(|error| TableError::damaged(self.path, error.to_string()))?;
+        Ok(values.iter().collect())
+    }
+
+    pub(super) fn int64(&self, name: &str) -> Result<Vec<Option<i64>>, TableError> {
+        let column = self.column(name)?;
+        let values = column
+            .i64()
+            .map_err(|error| TableError::damaged(self.path, error.to_string()))?;
+        Ok(values.iter().collect())
+    }
+
+    pub(super) fn float64(&self, name: &str) -> Result<Vec<Option<f64>>, TableError> {
+        let column = self.column(name)?;
+        let values = column
+            .f64()
+            .map_err(|error| TableError::damaged(self.path, error.to_string()))?;
+        Ok(values.iter().collect())
+    }
+
+    pub(super) fn boolean(&self, name: &str) -> Result<Vec<Option<bool>>, TableError> {
+        let column = self.column(name)?;
+        let values = column
+            .bool()
+            .map_err(|error| TableError::damaged(self.path, error.to_string()))?;
+        Ok(values.iter().collect())
+    }
+
+    pub(super) fn string(&self, name: &str) -> Result<Vec<Option<String>>, TableError> {
+        let column = self.column(name)?;
+        let values = column
+            .str()
+            .map_err(|error| TableError::damaged(self.path, error.to_string()))?;
+        Ok(values
+            .iter()
+            .map(|value| value.map(str::to_owned))
+            .collect())
+    }
+}

@@ -1,0 +1,346 @@
+//! `responses.parquet`: one row per (scenario, pattern), ordered by pattern, then scenario.
+
+use std::path::{Path, PathBuf};
+
+use super::column::{ColumnKind, ColumnSpec, Values};
+use super::reader::TableReader;
+use super::writer::TableWriter;
+use super::{TableError, TableHeader};
+use crate::population::monte_carlo::{ResponseRow, Scenario};
+use crate::response::harmonic_balance::Status;
+
+use ColumnKind::{Boolean, Float64, Int32, Int64, String as Text};
+
+/// Columns of `responses.parquet`.
+pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
+    ColumnSpec::new(
+        "scenario",
+        Int32,
+        "",
+        "Index in the order engine order, standard deviation, normal load of this study",
+    ),
+    ColumnSpec::new(
+        "contact",
+        Text,
+        "",
+        "full, or the linear limit stuck, slide or free",
+    ),
+    ColumnSpec::new("engine_order", Int32, "1", "Engine order of the excitation"),
+    ColumnSpec::new(
+        "normal_load_n",
+        Float64,
+        "N",
+        "Damper normal load per sector; null for the linear limits",
+    ),
+    ColumnSpec::new(
+        "standard_deviation",
+        Float64,
+        "1",
+        "Standard deviation of the blades' relative stiffness deviation, after truncation; null for patterns from a file",
+    ),
+    ColumnSpec::new("pattern", Int32, "", "Pattern id"),
+    ColumnSpec::new(
+        "status",
+        Text,
+        "",
+        "How the solution ended; every value but ok is a failure and has nulls",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m",
+        Float64,
+        "m",
+        "Largest amplitude over blades and frequency",
+    ),
+    ColumnSpec::new(
+        "peak_frequency_hz",
+        Float64,
+        "Hz",
+        "Excitation frequency of the peak",
+    ),
+    ColumnSpec::new("peak_blade", Int32, "", "Blade of the peak, from 0"),
+    ColumnSpec::new(
+        "amplification_factor",
+        Float64,
+        "1",
+        "Peak amplitude over the tuned peak of the same normal load, engine order and solver settings",
+    ),
+    ColumnSpec::new(
+        "peak_bracketed",
+        Boolean,
+        "",
+        "Lower amplitudes were seen on both sides of the peak",
+    ),
+    ColumnSpec::new(
+        "harmonics",
+        Text,
+        "",
+        "Temporal harmonics of the solution, for instance 1-3",
+    ),
+    ColumnSpec::new("nonlinear_solves", Int64, "1", "Nonlinear solves used"),
+    ColumnSpec::new("newton_iterations", Int64, "1", "Newton iterations used"),
+    ColumnSpec::new(
+        "residual",
+        Float64,
+        "1",
+        "Residual force relative to the excitation at the peak",
+    ),
+    ColumnSpec::new(
+        "slipping_fraction",
+        Float64,
+        "1",
+        "Share of contact pairs that slip in any direction at any instant, at the peak",
+    ),
+    ColumnSpec::new(
+        "separated_fraction",
+        Float64,
+        "1",
+        "Share of contact pairs without normal load at any instant, at the peak",
+    ),
+    ColumnSpec::new(
+        "shortcut",
+        Text,
+        "",
+        "Shortcut used instead of the full search, or none",
+    ),
+];
+
+/// Rows per row group and per batch in memory.
+const ROW_GROUP: usize = 65_536;
+
+/// Writer of `responses.parquet` and of its parts; holds one row group in memory.
+///
+/// Row groups have a fixed number of rows, so the file does not show how the rows arrived.
+pub struct ResponseWriter {
+    scenarios: Vec<Scenario>,
+    writer: TableWriter,
+    waiting: Vec<ResponseRow>,
+}
+
+impl ResponseWriter {
+    /// Begins the file `path`; `scenarios` are those of the study, in order.
+    ///
+    /// # Errors
+    /// The file cannot be created.
+    pub fn create(
+        path: &Path,
+        scenarios: &[Scenario],
+        header: &TableHeader,
+    ) -> Result<Self, TableError> {
+        Ok(Self {
+            scenarios: scenarios.to_vec(),
+            writer: TableWriter::create(path, RESPONSE_COLUMNS, header)?,
+            waiting: Vec::new(),
+        })
+    }
+
+    /// Appends rows in their order.
+    ///
+    /// # Errors
+    /// The file cannot be written, or a row belongs to no scenario.
+    pub fn write(&mut self, rows: impl IntoIterator<Item = ResponseRow>) -> Result<(), TableError> {
+        for row in rows {
+            self.waiting.push(row);
+            if self.waiting.len() == ROW_GROUP {
+                self.flush()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Completes the file and puts it in its place.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn finish(mut self) -> Result<(), TableError> {
+        self.flush()?;
+        self.writer.finish()
+    }
+
+    fn flush(&mut self) -> Result<(), TableError> {
+        let rows = std::mem::take(&mut self.waiting);
+        if rows.is_empty() {
+            return Ok(());
+        }
+        let values = columns_of(&rows, &self.scenarios)?;
+        self.writer.write(values)
+    }
+}
+
+fn columns_of(rows: &[ResponseRow], scenarios: &[Scenario]) -> Result<Vec<Values>, TableError> {
+    let keys: Vec<&Scenario> = rows
+        .iter()
+        .map(|row| {
+            scenarios.get(row.scenario).ok_or_else(|| {
+                let reason = format!(
+                    "a row names scenario {}, which does not exist",
+                    row.scenario
+                );
+                TableError::encoding(Path::new("responses.parquet"), reason)
+            })
+        })
+        .collect::<Result<_, _>>()?;
+    let ids = |id: &dyn Fn(&ResponseRow) -> Option<u32>| {
+        Values::Int32(rows.iter().map(|row| id(row).map(|id| id as i32)).collect())
+    };
+    let floats = |value: &dyn Fn(&ResponseRow) -> Option<f64>| {
+        Values::Float64(rows.iter().map(value).collect())
+    };
+    let counts = |value: &dyn Fn(&ResponseRow) -> u64| {
+        Values::Int64(rows.iter().map(|row| Some(value(row) as i64)).collect())
+    };
+    let names = |value: &dyn Fn(&ResponseRow) -> String| {
+        Values::String(rows.iter().map(|row| Some(value(row))).collect())
+    };
+    Ok(vec![
+        ids(&|row| Some(row.scenario as u32)),
+        Values::String(
+            keys.iter()
+                .map(|key| Some(key.contact.name().to_owned()))
+                .collect(),
+        ),
+        Values::Int32(
+            keys.iter()
+                .map(|key| Some(key.engine_order as i32))
+                .collect(),
+        ),
+        Values::Float64(keys.iter().map(|key| key.contact.normal_load_n()).collect()),
+        Values::Float64(keys.iter().map(|key| key.standard_deviation).collect()),
+        ids(&|row| Some(row.pattern)),
+        names(&|row| row.status.name().to_owned()),
+        floats(&|row| row.peak_amplitude_m),
+        floats(&|row| row.peak_frequency_hz),
+        ids(&|row| row.peak_blade),
+        floats(&|row| row.amplification_factor),
+        Values::Boolean(rows.iter().map(|row| row.peak_bracketed).collect()),
+        names(&|row| row.harmonics.clone()),
+        counts(&|row| row.nonlinear_solves),
+        counts(&|row| row.newton_iterations),
+        floats(&|row| row.residual),
+        floats(&|row| row.slipping_fraction),
+        floats(&|row| row.separated_fraction),
+        names(&|row| row.shortcut.clone()),
+    ])
+}
+
+/// Reader of `responses.parquet` and of its parts, batch by batch.
+#[derive(Debug)]
+pub struct ResponseReader {
+    path: PathBuf,
+    table: TableReader,
+    next: usize,
+}
+
+impl ResponseReader {
+    /// Opens the file `path` and checks its columns.
+    ///
+    /// # Errors
+    /// The file cannot be read or is no such table.
+    pub fn open(path: &Path) -> Result<Self, TableError> {
+        Ok(Self {
+            path: path.to_owned(),
+            table: TableReader::open(path, RESPONSE_COLUMNS)?,
+            next: 0,
+        })
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.table.rows()
+    }
+
+    /// Digest of the study that the file belongs to.
+    #[must_use]
+    pub fn study_digest(&self) -> Option<&str> {
+        self.table.study_digest()
+    }
+
+    /// The next rows, at most one row group; empty at the end.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn next_batch(&mut self) -> Result<Vec<ResponseRow>, TableError> {
+        let count = ROW_GROUP.min(self.rows() - self.next);
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        let rows = self.read(self.next, count)?;
+        if rows.len() != count {
+            return Err(TableError::damaged(
+                &self.path,
+                format!(
+                    "{} rows instead of {count} from row {} on",
+                    rows.len(),
+                    self.next
+                ),
+            ));
+        }
+        self.next += count;
+        Ok(rows)
+    }
+
+    fn read(&self, first: usize, count: usize) -> Result<Vec<ResponseRow>, TableError> {
+        let slice = self.table.read(first, count)?;
+        let gap = |row: usize, column: &str| {
+            TableError::damaged(
+                &self.path,
+                format!("row {}: no valid value in column {column}", first + row),
+            )
+        };
+        let ids = |name: &'static str| -> Result<Vec<u32>, TableError> {
+            let values = slice.int32(name)?;
+            let whole = |(row, value): (usize, Option<i32>)| {
+                value
+                    .and_then(|value| u32::try_from(value).ok())
+                    .ok_or_else(|| gap(row, name))
+            };
+            values.into_iter().enumerate().map(whole).collect()
+        };
+        let counts = |name: &'static str| -> Result<Vec<u64>, TableError> {
+            let values = slice.int64(name)?;
+            let whole = |(row, value): (usize, Option<i64>)| {
+                value
+                    .and_then(|value| u64::try_from(value).ok())
+                    .ok_or_else(|| gap(row, name))
+            };
+            values.into_iter().enumerate().map(whole).collect()
+        };
+        let (scenarios, patterns) = (ids("scenario")?, ids("pattern")?);
+        let mut statuses = slice.string("status")?;
+        let amplitudes = slice.float64("peak_amplitude_m")?;
+        let frequencies = slice.float64("peak_frequency_hz")?;
+        let blades = slice.int32("peak_blade")?;
+        let factors = slice.float64("amplification_factor")?;
+        let bracketed = slice.boolean("peak_bracketed")?;
+        let mut harmonics = slice.string("harmonics")?;
+        let (solves, iterations) = (counts("nonlinear_solves")?, counts("newton_iterations")?);
+        let residuals = slice.float64("residual")?;
+        let slipping = slice.float64("slipping_fraction")?;
+        let separated = slice.float64("separated_fraction")?;
+        let mut shortcuts = slice.string("shortcut")?;
+        (0..scenarios.len())
+            .map(|i| {
+                let status = statuses[i]
+                    .take()
+                    .and_then(|name| Status::ALL.into_iter().find(|status| status.name() == name));
+                Ok(ResponseRow {
+                    scenario: scenarios[i] as usize,
+                    pattern: patterns[i],
+                    status: status.ok_or_else(|| gap(i, "status"))?,
+                    peak_amplitude_m: amplitudes[i],
+                    peak_frequency_hz: frequencies[i],
+                    peak_blade: blades[i].and_then(|blade| u32::try_from(blade).ok()),
+                    amplification_factor: factors[i],
+                    peak_bracketed: bracketed[i],
+                    harmonics: harmonics[i].take().ok_or_else(|| gap(i, "harmonics"))?,
+                    nonlinear_solves: solves[i],
+                    newton_iterations: iterations[i],
+                    residual: residuals[i],
+                    slipping_fraction: slipping[i],
+                    separated_fraction: separated[i],
+                    shortcut: shortcuts[i].take().ok_or_else(|| gap(i, "shortcut"))?,
+                })
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,323 @@
+//! `scenarios.parquet`: one row of statistics per scenario.
+
+use std::path::Path;
+
+use super::column::{ColumnKind, ColumnSpec, Values};
+use super::writer::TableWriter;
+use super::{TableError, TableHeader};
+use crate::population::monte_carlo::{Scenario, TunedReference};
+use crate::population::statistics::{PERCENTILES, SampleStatistics, ScenarioStatistics};
+
+use ColumnKind::{Float64, Int32, String as Text};
+
+/// A scenario with its tuned reference and its statistics.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScenarioRecord {
+    /// Keys.
+    pub scenario: Scenario,
+    /// Tuned peak.
+    pub tuned: TunedReference,
+    /// Statistics over the patterns.
+    pub statistics: ScenarioStatistics,
+}
+
+/// Columns of `scenarios.parquet`.
+pub const SCENARIO_COLUMNS: &[ColumnSpec] = &[
+    ColumnSpec::new(
+        "scenario",
+        Int32,
+        "",
+        "Index in the order engine order, standard deviation, normal load of this study",
+    ),
+    ColumnSpec::new(
+        "contact",
+        Text,
+        "",
+        "full, or the linear limit stuck, slide or free",
+    ),
+    ColumnSpec::new("engine_order", Int32, "1", "Engine order of the excitation"),
+    ColumnSpec::new(
+        "normal_load_n",
+        Float64,
+        "N",
+        "Damper normal load per sector; null for the linear limits",
+    ),
+    ColumnSpec::new(
+        "standard_deviation",
+        Float64,
+        "1",
+        "Standard deviation of the blades' relative stiffness deviation, after truncation; null for patterns from a file",
+    ),
+    ColumnSpec::new(
+        "tuned_amplitude_m",
+        Float64,
+        "m",
+        "Peak amplitude of the tuned wheel",
+    ),
+    ColumnSpec::new(
+        "tuned_frequency_hz",
+        Float64,
+        "Hz",
+        "Frequency of the tuned peak",
+    ),
+    ColumnSpec::new("tuned_status", Text, "", "How the tuned solution ended"),
+    ColumnSpec::new("planned", Int32, "1", "Patterns of the study"),
+    ColumnSpec::new("ok", Int32, "1", "Patterns with a result"),
+    ColumnSpec::new(
+        "failed",
+        Int32,
+        "1",
+        "Patterns without a result; planned = ok + failed",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_mean",
+        Float64,
+        "1",
+        "Mean over the patterns with a result",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_standard_deviation",
+        Float64,
+        "1",
+        "Standard deviation over the patterns with a result",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_p5",
+        Float64,
+        "1",
+        "5th percentile, order statistic; null = not estimable",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_p5_lower",
+        Float64,
+        "1",
+        "Lower 95 % bound, distribution-free, failures at minus infinity",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_p5_upper",
+        Float64,
+        "1",
+        "Upper 95 % bound, distribution-free, failures at plus infinity",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_p50",
+        Float64,
+        "1",
+        "Median, order statistic; null = not estimable",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_p50_lower",
+        Float64,
+        "1",
+        "Lower 95 % bound, distribution-free, failures at minus infinity",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_p50_upper",
+        Float64,
+        "1",
+        "Upper 95 % bound, distribution-free, failures at plus infinity",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_p95",
+        Float64,
+        "1",
+        "95th percentile, order statistic; null = not estimable",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_p95_lower",
+        Float64,
+        "1",
+        "Lower 95 % bound, distribution-free, failures at minus infinity",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_p95_upper",
+        Float64,
+        "1",
+        "Upper 95 % bound, distribution-free, failures at plus infinity",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_p99",
+        Float64,
+        "1",
+        "99th percentile, order statistic; null = not estimable",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_p99_lower",
+        Float64,
+        "1",
+        "Lower 95 % bound, distribution-free, failures at minus infinity",
+    ),
+    ColumnSpec::new(
+        "amplification_factor_p99_upper",
+        Float64,
+        "1",
+        "Upper 95 % bound, distribution-free, failures at plus infinity",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_mean",
+        Float64,
+        "m",
+        "Mean over the patterns with a result",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_standard_deviation",
+        Float64,
+        "m",
+        "Standard deviation over the patterns with a result",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_p5",
+        Float64,
+        "m",
+        "5th percentile, order statistic; null = not estimable",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_p5_lower",
+        Float64,
+        "m",
+        "Lower 95 % bound, distribution-free, failures at minus infinity",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_p5_upper",
+        Float64,
+        "m",
+        "Upper 95 % bound, distribution-free, failures at plus infinity",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_p50",
+        Float64,
+        "m",
+        "Median, order statistic; null = not estimable",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_p50_lower",
+        Float64,
+        "m",
+        "Lower 95 % bound, distribution-free, failures at minus infinity",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_p50_upper",
+        Float64,
+        "m",
+        "Upper 95 % bound, distribution-free, failures at plus infinity",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_p95",
+        Float64,
+        "m",
+        "95th percentile, order statistic; null = not estimable",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_p95_lower",
+        Float64,
+        "m",
+        "Lower 95 % bound, distribution-free, failures at minus infinity",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_p95_upper",
+        Float64,
+        "m",
+        "Upper 95 % bound, distribution-free, failures at plus infinity",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_p99",
+        Float64,
+        "m",
+        "99th percentile, order statistic; null = not estimable",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_p99_lower",
+        Float64,
+        "m",
+        "Lower 95 % bound, distribution-free, failures at minus infinity",
+    ),
+    ColumnSpec::new(
+        "peak_amplitude_m_p99_upper",
+        Float64,
+        "m",
+        "Upper 95 % bound, distribution-free, failures at plus infinity",
+    ),
+];
+
+/// Writes `scenarios.parquet`.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_scenarios(
+    path: &Path,
+    records: &[ScenarioRecord],
+    header: &TableHeader,
+) -> Result<(), TableError> {
+    let ids = |value: &dyn Fn(&ScenarioRecord) -> u64| {
+        Values::Int32(
+            records
+                .iter()
+                .map(|record| Some(value(record) as i32))
+                .collect(),
+        )
+    };
+    let floats = |value: &dyn Fn(&ScenarioRecord) -> Option<f64>| {
+        Values::Float64(records.iter().map(value).collect())
+    };
+    let names = |value: &dyn Fn(&ScenarioRecord) -> &'static str| {
+        Values::String(
+            records
+                .iter()
+                .map(|record| Some(value(record).to_owned()))
+                .collect(),
+        )
+    };
+    let mut values = vec![
+        ids(&|record| record.scenario.index as u64),
+        names(&|record| record.scenario.contact.name()),
+        ids(&|record| u64::from(record.scenario.engine_order)),
+        floats(&|record| record.scenario.contact.normal_load_n()),
+        floats(&|record| record.scenario.standard_deviation),
+        floats(&|record| record.tuned.amplitude_m),
+        floats(&|record| record.tuned.frequency_hz),
+        names(&|record| record.tuned.status.name()),
+        ids(&|record| record.statistics.accounting.planned()),
+        ids(&|record| record.statistics.accounting.ok()),
+        ids(&|record| record.statistics.accounting.failed()),
+    ];
+    let quantities: [fn(&ScenarioRecord) -> &SampleStatistics; 2] = [
+        |record| &record.statistics.amplification_factor,
+        |record| &record.statistics.peak_amplitude_m,
+    ];
+    for quantity in quantities {
+        values.push(floats(&|record| quantity(record).mean));
+        values.push(floats(&|record| quantity(record).standard_deviation));
+        for place in 0..PERCENTILES.len() {
+            values.push(floats(&|record| quantity(record).percentiles[place].value));
+            values.push(floats(&|record| quantity(record).percentiles[place].lower));
+            values.push(floats(&|record| quantity(record).percentiles[place].upper));
+        }
+    }
+    let mut writer = TableWriter::create(path, SCENARIO_COLUMNS, header)?;
+    writer.write(values)?;
+    writer.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{PERCENTILES, SCENARIO_COLUMNS};
+
+    #[test]
+    fn every_statistic_has_its_column() {
+        let mut expected = Vec::new();
+        for quantity in ["amplification_factor", "peak_amplitude_m"] {
+            expected.push(format!("{quantity}_mean"));
+            expected.push(format!("{quantity}_standard_deviation"));
+            for percent in PERCENTILES {
+                for suffix in ["", "_lower", "_upper"] {
+                    expected.push(format!("{quantity}_p{percent}{suffix}"));
+                }
+            }
+        }
+        let names: Vec<_> = SCENARIO_COLUMNS[11..]
+            .iter()
+            .map(|column| column.name)
+            .collect();
+        assert_eq!(names, expected);
+    }
+}

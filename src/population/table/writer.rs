@@ -1,0 +1,113 @@
+//! Writer of one Parquet file, row group by row group, atomically, with described columns.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use polars::prelude::{BatchedWriter, KeyValueMetadata, ParquetCompression, ParquetWriter};
+use serde::{Deserialize, Serialize};
+
+use super::atomic::AtomicFile;
+use super::column::{Values, frame, polars_schema};
+use super::{ColumnSpec, TableError};
+
+/// Version of the tables; raised when a column changes its meaning.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// Key of the study digest in the metadata of a file.
+pub(super) const STUDY_DIGEST_KEY: &str = "blisk.study_digest";
+
+/// Compression of the pages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Compression {
+    /// Zstandard; small. Default.
+    #[default]
+    Zstd,
+    /// Snappy; for readers without Zstandard.
+    Snappy,
+}
+
+/// What every table of a study says about itself.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TableHeader {
+    /// Digest of the study, hexadecimal.
+    pub study_digest: String,
+    /// Compression of its tables.
+    pub compression: Compression,
+}
+
+impl TableHeader {
+    fn metadata(&self, columns: &[ColumnSpec]) -> KeyValueMetadata {
+        let mut pairs = vec![
+            (
+                "blisk.schema_version".to_owned(),
+                SCHEMA_VERSION.to_string(),
+            ),
+            (
+                "blisk.version".to_owned(),
+                env!("CARGO_PKG_VERSION").to_owned(),
+            ),
+            (STUDY_DIGEST_KEY.to_owned(), self.study_digest.clone()),
+        ];
+        for column in columns {
+            pairs.push((format!("unit.{}", column.name), column.unit.to_owned()));
+            pairs.push((
+                format!("description.{}", column.name),
+                column.description.to_owned(),
+            ));
+        }
+        KeyValueMetadata::from_static(pairs)
+    }
+}
+
+/// A Parquet file under construction.
+pub(super) struct TableWriter {
+    path: PathBuf,
+    columns: &'static [ColumnSpec],
+    file: AtomicFile,
+    writer: BatchedWriter<File>,
+}
+
+impl TableWriter {
+    pub(super) fn create(
+        path: &Path,
+        columns: &'static [ColumnSpec],
+        header: &TableHeader,
+    ) -> Result<Self, TableError> {
+        let file = AtomicFile::create(path)?;
+        let compression = match header.compression {
+            Compression::Zstd => ParquetCompression::Zstd(None),
+            Compression::Snappy => ParquetCompression::Snappy,
+        };
+        // One thread, so that the writer neither needs a pool of its own nor depends on its size.
+        let writer = ParquetWriter::new(file.handle()?)
+            .with_compression(compression)
+            .set_parallel(false)
+            .with_key_value_metadata(Some(header.metadata(columns)))
+            .batched(&polars_schema(columns))
+            .map_err(|error| TableError::encoding(path, error.to_string()))?;
+        Ok(Self {
+            path: path.to_owned(),
+            columns,
+            file,
+            writer,
+        })
+    }
+
+    /// Writes one row group.
+    pub(super) fn write(&mut self, values: Vec<Values>) -> Result<(), TableError> {
+        let frame =
+            frame(self.columns, values).map_err(|error| TableError::encoding(&self.path, error))?;
+        self.writer
+            .write_batch(&frame)
+            .map_err(|error| TableError::encoding(&self.path, error.to_string()))
+    }
+
+    /// Writes the footer and puts the file in its place.
+    pub(super) fn finish(self) -> Result<(), TableError> {
+        self.writer
+            .finish()
+            .map_err(|error| TableError::encoding(&self.path, error.to_string()))?;
+        self.file.commit()
+    }
+}

@@ -1,0 +1,11 @@
+//! The numbers of a report as one struct, warnings with advice, and the summary as text.
+
+mod model_report;
+mod summary;
+mod summary_text;
+mod text_table;
+mod warning;
+
+pub use model_report::{ModelReport, NodalDiameterFacts};
+pub use summary::{BestLoad, ScenarioSummary, StudySummary, SummaryContext};
+pub use warning::Warning;

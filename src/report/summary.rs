@@ -1,0 +1,303 @@
+//! Every number of the summary of a study, and the warnings that go with them.
+
+use serde::Serialize;
+
+use super::Warning;
+use crate::population::statistics::{
+    Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics,
+};
+use crate::population::table::ScenarioRecord;
+use crate::response::forced_response::{ContactCondition, Harmonics};
+use crate::response::harmonic_balance::Status;
+
+/// What a summary says about the study itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SummaryContext {
+    /// Name of the study.
+    pub name: String,
+    /// Its digest.
+    pub study_digest: String,
+    /// Seed of the patterns.
+    pub seed: u64,
+    /// Number of patterns.
+    pub patterns: u64,
+    /// Harmonics as the study has them.
+    pub harmonics: Harmonics,
+    /// Version of the program that made the results.
+    pub version: String,
+}
+
+/// One scenario of a summary.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ScenarioSummary {
+    /// Index.
+    pub scenario: usize,
+    /// Engine order.
+    pub engine_order: u32,
+    /// Standard deviation, if the study has one.
+    pub standard_deviation: Option<f64>,
+    /// `full`, `stuck`, `slide` or `free`.
+    pub contact: &'static str,
+    /// Normal load per sector, N.
+    pub normal_load_n: Option<f64>,
+    /// How the tuned solution ended.
+    pub tuned_status: &'static str,
+    /// Tuned peak amplitude, m.
+    pub tuned_amplitude_m: Option<f64>,
+    /// Tuned peak frequency, Hz.
+    pub tuned_frequency_hz: Option<f64>,
+    /// Rows by status.
+    pub rows: Accounting,
+    /// Peak amplitude, m.
+    pub peak_amplitude_m: SampleStatistics,
+    /// Amplification factor.
+    pub amplification_factor: SampleStatistics,
+    /// Mean share of slipping pairs at the peak.
+    pub mean_slipping_fraction: Option<f64>,
+    /// Share of rows in which a pair separates.
+    pub separated_rows: Option<f64>,
+}
+
+/// The contact condition with the lowest amplitude among those studied.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BestLoad {
+    /// Engine order.
+    pub engine_order: u32,
+    /// Standard deviation, if the study has one.
+    pub standard_deviation: Option<f64>,
+    /// `tuned_amplitude_m` or `peak_amplitude_m_p95`.
+    pub quantity: &'static str,
+    /// Scenario with the lowest value.
+    pub scenario: usize,
+    /// `full`, `stuck`, `slide` or `free`.
+    pub contact: &'static str,
+    /// Its normal load per sector, N.
+    pub normal_load_n: Option<f64>,
+    /// The lowest value, m.
+    pub amplitude_m: f64,
+    /// Whether a lower and a higher normal load were studied.
+    pub interior: bool,
+}
+
+/// Summary of a study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StudySummary {
+    /// Name of the study.
+    pub name: String,
+    /// Its digest.
+    pub study_digest: String,
+    /// Version of the program that made the results.
+    pub version: String,
+    /// Seed of the patterns.
+    pub seed: u64,
+    /// Number of patterns.
+    pub patterns: u64,
+    /// Rows by status over all scenarios.
+    pub rows: Accounting,
+    /// The scenarios, in order.
+    pub scenarios: Vec<ScenarioSummary>,
+    /// Best contact conditions.
+    pub best: Vec<BestLoad>,
+    /// Warnings.
+    pub warnings: Vec<Warning>,
+}
+
+impl StudySummary {
+    /// The summary of the scenarios of a study.
+    #[must_use]
+    pub fn new(context: &SummaryContext, records: &[ScenarioRecord]) -> Self {
+        let scenarios: Vec<ScenarioSummary> = records.iter().map(scenario_summary).collect();
+        let mut rows = Accounting::default();
+        for scenario in &scenarios {
+            rows.merge(&scenario.rows);
+        }
+        Self {
+            name: context.name.clone(),
+            study_digest: context.study_digest.clone(),
+            version: context.version.clone(),
+            seed: context.seed,
+            patterns: context.patterns,
+            rows,
+            best: best_loads(&scenarios),
+            warnings: warnings(context, records, &rows),
+            scenarios,
+        }
+    }
+
+    /// Whether failures leave a percentile or a tuned reference without value.
+    #[must_use]
+    pub fn failures_cost_a_statistic(&self) -> bool {
+        self.warnings.iter().any(|warning| {
+            matches!(
+                warning,
+                Warning::TooManyFailures { .. } | Warning::TunedFailures { .. }
+            )
+        })
+    }
+}
+
+fn scenario_summary(record: &ScenarioRecord) -> ScenarioSummary {
+    let ScenarioRecord {
+        scenario,
+        tuned,
+        statistics,
+    } = record;
+    ScenarioSummary {
+        scenario: scenario.index,
+        engine_order: scenario.engine_order,
+        standard_deviation: scenario.standard_deviation,
+        contact: scenario.contact.name(),
+        normal_load_n: scenario.contact.normal_load_n(),
+        tuned_status: tuned.status.name(),
+        tuned_amplitude_m: tuned.amplitude_m,
+        tuned_frequency_hz: tuned.frequency_hz,
+        rows: statistics.accounting,
+        peak_amplitude_m: statistics.peak_amplitude_m.clone(),
+        amplification_factor: statistics.amplification_factor.clone(),
+        mean_slipping_fraction: statistics.mean_slipping_fraction,
+        separated_rows: statistics.separated_rows,
+    }
+}
+
+/// For each engine order and standard deviation, the lowest tuned and the lowest P95 amplitude.
+fn best_loads(scenarios: &[ScenarioSummary]) -> Vec<BestLoad> {
+    let mut best = Vec::new();
+    let groups = scenarios.chunk_by(|a, b| {
+        a.engine_order == b.engine_order && a.standard_deviation == b.standard_deviation
+    });
+    for group in groups.filter(|group| group.len() > 1) {
+        let tuned = |scenario: &ScenarioSummary| scenario.tuned_amplitude_m;
+        let p95 = |scenario: &ScenarioSummary| {
+            scenario
+                .peak_amplitude_m
+                .percentile(95)
+                .and_then(|p| p.value)
+        };
+        best.extend(lowest(group, "tuned_amplitude_m", tuned));
+        best.extend(lowest(group, "peak_amplitude_m_p95", p95));
+    }
+    best
+}
+
+fn lowest(
+    group: &[ScenarioSummary],
+    quantity: &'static str,
+    value: impl Fn(&ScenarioSummary) -> Option<f64>,
+) -> Option<BestLoad> {
+    let (scenario, amplitude_m) = group
+        .iter()
+        .filter_map(|scenario| Some((scenario, value(scenario)?)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let loads = || group.iter().filter_map(|scenario| scenario.normal_load_n);
+    Some(BestLoad {
+        engine_order: scenario.engine_order,
+        standard_deviation: scenario.standard_deviation,
+        quantity,
+        scenario: scenario.scenario,
+        contact: scenario.contact,
+        normal_load_n: scenario.normal_load_n,
+        amplitude_m,
+        interior: scenario
+            .normal_load_n
+            .is_some_and(|best| loads().any(|load| load < best) && loads().any(|load| load > best)),
+    })
+}
+
+fn warnings(
+    context: &SummaryContext,
+    records: &[ScenarioRecord],
+    rows: &Accounting,
+) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    warnings.extend(separation(&context.harmonics, records));
+    let friction = records
+        .iter()
+        .any(|record| matches!(record.scenario.contact, ContactCondition::Full { .. }));
+    if friction && context.harmonics == Harmonics::Auto {
+        warnings.push(Warning::HarmonicsUnscreened {
+            harmonics: "[1, 3]".to_owned(),
+        });
+    }
+    if rows.failed() > 0 {
+        warnings.push(Warning::Failures {
+            failed: rows.failed(),
+            planned: rows.planned(),
+        });
+    }
+    let tuned_failures: Vec<usize> = records
+        .iter()
+        .filter(|record| record.tuned.status != Status::Ok)
+        .map(|record| record.scenario.index)
+        .collect();
+    if !tuned_failures.is_empty() {
+        warnings.push(Warning::TunedFailures {
+            scenarios: tuned_failures,
+        });
+    }
+    warnings.extend(unestimated(records));
+    warnings
+}
+
+/// Separation needs harmonic 0 and even harmonics.
+fn separation(harmonics: &Harmonics, records: &[ScenarioRecord]) -> Option<Warning> {
+    let even = match harmonics {
+        Harmonics::Auto => false,
+        Harmonics::Set(set) => set.contains(&0) && set.iter().any(|k| *k > 0 && k % 2 == 0),
+    };
+    let separated = |record: &ScenarioRecord| -> f64 {
+        let tuned = record.tuned.separated_fraction.unwrap_or(0.0);
+        record
+            .statistics
+            .largest_separated_fraction
+            .unwrap_or(0.0)
+            .max(tuned)
+    };
+    let largest_fraction = records.iter().map(separated).fold(0.0, f64::max);
+    (!even && largest_fraction > 0.0).then(|| Warning::SeparationWithFewHarmonics {
+        scenarios: records
+            .iter()
+            .filter(|record| separated(record) > 0.0)
+            .map(|record| record.scenario.index)
+            .collect(),
+        largest_fraction,
+    })
+}
+
+/// One warning per percentile and reason.
+fn unestimated(records: &[ScenarioRecord]) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    for percent in PERCENTILES {
+        let of = |record: &ScenarioRecord| -> Vec<Percentile> {
+            [
+                &record.statistics.amplification_factor,
+                &record.statistics.peak_amplitude_m,
+            ]
+            .into_iter()
+            .filter_map(|sample| sample.percentile(percent).copied())
+            .collect()
+        };
+        let needed = records
+            .iter()
+            .flat_map(of)
+            .find_map(|found| match found.status {
+                PointStatus::TooFewPatterns { needed } => Some(needed),
+                _ => None,
+            });
+        if let Some(needed) = needed {
+            warnings.push(Warning::TooFewPatterns { percent, needed });
+        }
+        let scenarios: Vec<usize> = records
+            .iter()
+            .filter(|record| {
+                of(record)
+                    .iter()
+                    .any(|found| found.status == PointStatus::TooManyFailures)
+            })
+            .map(|record| record.scenario.index)
+            .collect();
+        if !scenarios.is_empty() {
+            warnings.push(Warning::TooManyFailures { percent, scenarios });
+        }
+    }
+    warnings
+}

@@ -1,0 +1,220 @@
+//! The summary of a study as text for a terminal and for `summary.txt`.
+
+use std::fmt;
+
+use super::text_table::TextTable;
+use super::{BestLoad, ScenarioSummary, StudySummary};
+use crate::population::statistics::{Percentile, SampleStatistics};
+
+/// A unit of length in which amplitudes are shown.
+#[derive(Clone, Copy)]
+struct Unit {
+    name: &'static str,
+    metres: f64,
+}
+
+const UNITS: [Unit; 4] = [
+    Unit {
+        name: "m",
+        metres: 1.0,
+    },
+    Unit {
+        name: "mm",
+        metres: 1e-3,
+    },
+    Unit {
+        name: "um",
+        metres: 1e-6,
+    },
+    Unit {
+        name: "nm",
+        metres: 1e-9,
+    },
+];
+
+impl fmt::Display for StudySummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "study {}: {} patterns, {} scenarios, seed {}; {} rows ok, {} failed",
+            self.name,
+            self.patterns,
+            self.scenarios.len(),
+            self.seed,
+            self.rows.ok(),
+            self.rows.failed()
+        )?;
+        let unit = unit_of(&self.scenarios);
+        let groups = self.scenarios.chunk_by(|a, b| {
+            a.engine_order == b.engine_order && a.standard_deviation == b.standard_deviation
+        });
+        for group in groups {
+            writeln!(f, "\n{}", heading(&group[0]))?;
+            write!(f, "{}", amplitudes(group, unit))?;
+            write!(f, "\n{}", factors(group))?;
+        }
+        if !self.best.is_empty() {
+            writeln!(f)?;
+        }
+        for best in &self.best {
+            writeln!(f, "{}", best_line(best, unit))?;
+        }
+        if !self.warnings.is_empty() {
+            writeln!(f)?;
+        }
+        for warning in &self.warnings {
+            writeln!(f, "warning: {warning}")?;
+        }
+        writeln!(
+            f,
+            "\nP50, P95, P99 are order statistics over the patterns with 95 % bounds in brackets \
+             (distribution-free, failed rows at both infinities); - = not estimable.\n\
+             Amplification factor: peak over the tuned peak of the same normal load."
+        )
+    }
+}
+
+fn heading(scenario: &ScenarioSummary) -> String {
+    match scenario.standard_deviation {
+        Some(deviation) => format!(
+            "engine order {}, standard deviation {} %",
+            scenario.engine_order,
+            trimmed(100.0 * deviation)
+        ),
+        None => format!(
+            "engine order {}, patterns from a file",
+            scenario.engine_order
+        ),
+    }
+}
+
+fn amplitudes(group: &[ScenarioSummary], unit: Unit) -> TextTable {
+    let column = |name: &str| format!("{name} {}", unit.name);
+    let header = [
+        "load N".to_owned(),
+        column("tuned"),
+        "at Hz".to_owned(),
+        column("P50"),
+        column("P95"),
+        column("P99"),
+        "ok".to_owned(),
+        "failed".to_owned(),
+        "slip".to_owned(),
+        "separated".to_owned(),
+    ];
+    let mut table = TextTable::new(&header.each_ref().map(String::as_str));
+    for scenario in group {
+        let metres = |value: f64| four_digits(value / unit.metres);
+        let mut row = vec![
+            load(scenario.contact, scenario.normal_load_n),
+            scenario
+                .tuned_amplitude_m
+                .map_or_else(|| scenario.tuned_status.to_owned(), metres),
+            scenario
+                .tuned_frequency_hz
+                .map_or("-".to_owned(), |hz| format!("{hz:.2}")),
+        ];
+        row.extend(percentiles(&scenario.peak_amplitude_m, metres));
+        row.push(scenario.rows.ok().to_string());
+        row.push(scenario.rows.failed().to_string());
+        row.push(share(scenario.mean_slipping_fraction));
+        row.push(share(scenario.separated_rows));
+        table.row(row);
+    }
+    table
+}
+
+fn factors(group: &[ScenarioSummary]) -> TextTable {
+    let mut table = TextTable::new(&[
+        "load N",
+        "amplification P50",
+        "amplification P95",
+        "amplification P99",
+    ]);
+    for scenario in group {
+        let mut row = vec![load(scenario.contact, scenario.normal_load_n)];
+        row.extend(percentiles(&scenario.amplification_factor, |value| {
+            format!("{value:.3}")
+        }));
+        table.row(row);
+    }
+    table
+}
+
+fn percentiles(sample: &SampleStatistics, show: impl Fn(f64) -> String) -> Vec<String> {
+    [50, 95, 99]
+        .into_iter()
+        .map(|percent| match sample.percentile(percent) {
+            Some(Percentile {
+                value: Some(value),
+                lower,
+                upper,
+                ..
+            }) => {
+                let bound = |bound: Option<f64>| bound.map_or("-".to_owned(), &show);
+                format!("{} [{} {}]", show(*value), bound(*lower), bound(*upper))
+            }
+            _ => "-".to_owned(),
+        })
+        .collect()
+}
+
+fn best_line(best: &BestLoad, unit: Unit) -> String {
+    let what = match best.quantity {
+        "tuned_amplitude_m" => "tuned amplitude",
+        _ => "P95 amplitude",
+    };
+    let deviation = best
+        .standard_deviation
+        .map_or_else(String::new, |deviation| {
+            format!(", standard deviation {} %", trimmed(100.0 * deviation))
+        });
+    let place = if best.interior {
+        ""
+    } else {
+        "; not enclosed by a lower and a higher load"
+    };
+    format!(
+        "lowest {what} (engine order {}{deviation}): {} {} at load {}{place}",
+        best.engine_order,
+        four_digits(best.amplitude_m / unit.metres),
+        unit.name,
+        load(best.contact, best.normal_load_n),
+    )
+}
+
+fn load(contact: &str, normal_load_n: Option<f64>) -> String {
+    normal_load_n.map_or_else(|| contact.to_owned(), trimmed)
+}
+
+fn share(fraction: Option<f64>) -> String {
+    fraction.map_or("-".to_owned(), |fraction| {
+        format!("{:.1} %", 100.0 * fraction)
+    })
+}
+
+/// The largest unit in which no tuned amplitude or mean is below 1.
+fn unit_of(scenarios: &[ScenarioSummary]) -> Unit {
+    let smallest = scenarios
+        .iter()
+        .flat_map(|scenario| [scenario.tuned_amplitude_m, scenario.peak_amplitude_m.mean])
+        .flatten()
+        .fold(f64::INFINITY, f64::min);
+    UNITS
+        .into_iter()
+        .find(|unit| smallest >= unit.metres)
+        .unwrap_or(UNITS[UNITS.len() - 1])
+}
+
+/// `value` with four significant digits, or as a whole number.
+fn four_digits(value: f64) -> String {
+    let before_point = value.abs().max(1e-9).log10().floor() as i32;
+    let decimals = (3 - before_point).clamp(0, 9) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// `value` with at most six decimals and no trailing zeros.
+fn trimmed(value: f64) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

@@ -1,0 +1,102 @@
+//! Warnings: what a reader of the numbers must know, and what can be done about it.
+
+use std::fmt;
+
+use serde::Serialize;
+
+/// A warning about the results of a study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "warning", rename_all = "snake_case")]
+pub enum Warning {
+    /// Contacts separate, which the harmonics of the solution cannot represent.
+    SeparationWithFewHarmonics {
+        /// Scenarios concerned.
+        scenarios: Vec<usize>,
+        /// Largest share of separated pairs of a row, the tuned wheel included.
+        largest_fraction: f64,
+    },
+    /// The harmonics were chosen without looking at the ones left out.
+    HarmonicsUnscreened {
+        /// Set in use.
+        harmonics: String,
+    },
+    /// Rows without result.
+    Failures {
+        /// Rows that failed.
+        failed: u64,
+        /// All rows.
+        planned: u64,
+    },
+    /// Tuned wheels without result, so that there are no amplification factors.
+    TunedFailures {
+        /// Scenarios concerned.
+        scenarios: Vec<usize>,
+    },
+    /// A percentile has no value because there are too few patterns.
+    TooFewPatterns {
+        /// The percentile.
+        percent: u32,
+        /// Smallest number of patterns that gives a two-sided interval.
+        needed: u64,
+    },
+    /// A percentile has no value because too many rows failed.
+    TooManyFailures {
+        /// The percentile.
+        percent: u32,
+        /// Scenarios concerned.
+        scenarios: Vec<usize>,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::SeparationWithFewHarmonics {
+                scenarios,
+                largest_fraction,
+            } => write!(
+                f,
+                "contacts separate in scenarios {} (up to {:.0} % of the pairs of a wheel): \
+                 harmonic 1 or odd harmonics alone cannot represent that; raise the normal load, or \
+                 set solver.harmonics = [0, 1, 2, 3]",
+                list(scenarios),
+                100.0 * largest_fraction
+            ),
+            Self::HarmonicsUnscreened { harmonics } => write!(
+                f,
+                "harmonics \"auto\" means {harmonics} and what is left out has not been estimated; \
+                 compare with a larger set in solver.harmonics"
+            ),
+            Self::Failures { failed, planned } => write!(
+                f,
+                "{failed} of {planned} rows have no result; the bounds take them as infinitely low \
+                 and infinitely high; manifest.json counts them by status"
+            ),
+            Self::TunedFailures { scenarios } => write!(
+                f,
+                "the tuned wheel of scenarios {} has no peak, so these have no amplification factor; \
+                 widen solver.frequency_band_hz or raise solver.samples_per_period",
+                list(scenarios)
+            ),
+            Self::TooFewPatterns { percent, needed } => write!(
+                f,
+                "P{percent} is not estimable: a 95 % interval needs at least {needed} patterns; raise \
+                 study.patterns and run again, only the new ones are solved"
+            ),
+            Self::TooManyFailures { percent, scenarios } => write!(
+                f,
+                "P{percent} of scenarios {} has no value: too many rows failed; see their status in \
+                 responses.parquet",
+                list(scenarios)
+            ),
+        }
+    }
+}
+
+fn list(scenarios: &[usize]) -> String {
+    scenarios
+        .iter()
+        .map(usize::to_string)
+        .collect::<Vec<_>>()
+        .join(", ")
+}

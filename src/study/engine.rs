@@ -1,0 +1,59 @@
+//! The seam between a study and the solution of one row: all that the pipeline asks of the physics.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::{PipelineError, Study};
+use crate::model::sector::SectorModel;
+use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use crate::population::table::CurvePoint;
+use crate::report::ModelReport;
+use crate::response::mistuning::Pattern;
+
+/// A reduced model with the settings of a study, ready to be solved; shared between threads.
+pub trait Engine: Sync {
+    /// Sizes, frequencies, rank and condition of the reduced model.
+    fn model_report(&self) -> ModelReport;
+
+    /// Facts about the reduction for the manifest; the same on every machine.
+    fn reduction_facts(&self) -> Value;
+
+    /// Settings chosen where the study says `auto`.
+    fn chosen_settings(&self) -> Value;
+
+    /// Peak of the tuned wheel.
+    fn tuned(&self, scenario: &Scenario) -> TunedReference;
+
+    /// Rows of one pattern under scenarios of the same standard deviation, in their order.
+    ///
+    /// What a pattern costs once (its projected stiffness, its modes) is paid once here.
+    fn rows(
+        &self,
+        pattern: &Pattern,
+        scenarios: &[(&Scenario, &TunedReference)],
+    ) -> Vec<ResponseRow>;
+
+    /// Amplitude of every blade at each frequency, ordered by frequency, then blade; no pattern
+    /// means the tuned wheel.
+    fn curve(
+        &self,
+        scenario: &Scenario,
+        pattern: Option<&Pattern>,
+        frequencies_hz: &[f64],
+    ) -> Vec<CurvePoint>;
+}
+
+/// Maker of engines.
+pub trait EngineSource: Sync {
+    /// Reduces `model` for `study`, or takes the reduced model from the folder `cache`.
+    ///
+    /// # Errors
+    /// The model cannot be reduced, or the cache not be read or written.
+    fn build(
+        &self,
+        study: &Study,
+        model: &SectorModel,
+        cache: Option<&Path>,
+    ) -> Result<Box<dyn Engine>, PipelineError>;
+}

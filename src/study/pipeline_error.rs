@@ -1,0 +1,75 @@
+//! Why a study could not be carried out.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use super::StudyError;
+use crate::model::sector::ModelError;
+use crate::population::table::TableError;
+
+/// A stage of the pipeline that failed. Rows that fail are no errors: they are rows.
+#[derive(Debug, Error)]
+pub enum PipelineError {
+    /// The study is invalid.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// The model is invalid.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A table cannot be written or read.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// The results folder belongs to another study.
+    #[error("{} holds the results of a different study; choose another --out, or restore these keys:\n{}", folder.display(), listed(differences))]
+    DifferentStudy {
+        /// The folder.
+        folder: PathBuf,
+        /// `(key, value in the folder, value in the study)`.
+        differences: Vec<(String, String, String)>,
+    },
+    /// Another process works in the results folder.
+    #[error("{} is in use by {holder}; wait for it to end or choose another --out", folder.display())]
+    Locked {
+        /// The folder.
+        folder: PathBuf,
+        /// Who holds it.
+        holder: String,
+    },
+    /// The folder holds no results of a study.
+    #[error("{} holds no results: there is no manifest.json", folder.display())]
+    NoResults {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The results folder is not complete.
+    #[error("{} is not complete; `blisk run` continues it", folder.display())]
+    Unfinished {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The threads could not be started.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// Number of threads.
+        threads: usize,
+        /// Why.
+        reason: String,
+    },
+    /// The study has no such pattern.
+    #[error("there is no pattern {id}; accepted: tuned, or {accepted}")]
+    NoPattern {
+        /// The id asked for.
+        id: u32,
+        /// The ids there are, in words.
+        accepted: String,
+    },
+}
+
+fn listed(differences: &[(String, String, String)]) -> String {
+    differences
+        .iter()
+        .map(|(key, theirs, ours)| format!("  {key}: {theirs} in the folder, {ours} in the study"))
+        .collect::<Vec<_>>()
+        .join("\n")
+}

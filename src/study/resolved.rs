@@ -1,0 +1,184 @@
+//! A study in which every key has a value and all of them fit together.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::Mistuning;
+use super::source_map::SourceMap;
+use crate::model::reduction::ReductionOptions;
+use crate::model::sector::{LumpedOptions, ParametricOptions};
+use crate::population::monte_carlo::Scenario;
+use crate::population::table::Compression;
+use crate::response::forced_response::{ContactCondition, FrequencyBand, Harmonics, SolverOptions};
+use crate::response::friction::ContactOptions;
+use crate::response::harmonic_balance::Damping;
+
+/// Where the sector model comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ModelSource {
+    /// The built-in bladed disk.
+    Parametric(ParametricOptions),
+    /// Masses and springs.
+    Lumped(LumpedOptions),
+    /// A sector bundle.
+    Bundle {
+        /// The folder as written in the study.
+        written: String,
+        /// The folder, resolved against the study file.
+        path: PathBuf,
+    },
+}
+
+/// What is written beside the statistics, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct OutputOptions {
+    /// Whether `patterns.parquet` is written; absent: up to 10,000 patterns.
+    pub patterns: Option<bool>,
+    /// Compression of the tables.
+    pub compression: Compression,
+}
+
+/// A study that has been read, checked and filled in.
+#[derive(Debug, Clone)]
+pub struct Study {
+    /// The study file.
+    pub path: PathBuf,
+    /// Where its keys stand.
+    pub(super) map: SourceMap,
+    /// Name; also of the results folder.
+    pub name: String,
+    /// Seed of the patterns.
+    pub seed: u64,
+    /// Number of patterns.
+    pub patterns: u32,
+    /// Source of the model.
+    pub model: ModelSource,
+    /// Settings of the reduction.
+    pub reduction: ReductionOptions,
+    /// Contact law; none for a model without contact.
+    pub contact: Option<ContactOptions>,
+    /// Damping of the structure.
+    pub damping: Damping,
+    /// Engine orders, as written.
+    pub engine_orders: Vec<u32>,
+    /// Factor on the model's force vector.
+    pub amplitude_n: f64,
+    /// Mistuning and its source.
+    pub mistuning: Mistuning,
+    /// Contact conditions of the sweep, as written.
+    pub contacts: Vec<ContactCondition>,
+    /// Standard deviations of the sweep, as written; one `None` for patterns from a file.
+    pub standard_deviations: Vec<Option<f64>>,
+    /// Settings of the solution.
+    pub solver: SolverOptions,
+    /// Settings of the output.
+    pub output: OutputOptions,
+}
+
+impl Study {
+    /// The scenarios in product order engine order, standard deviation, normal load.
+    #[must_use]
+    pub fn scenarios(&self) -> Vec<Scenario> {
+        let mut scenarios = Vec::new();
+        for &engine_order in &self.engine_orders {
+            for &standard_deviation in &self.standard_deviations {
+                for &contact in &self.contacts {
+                    scenarios.push(Scenario {
+                        index: scenarios.len(),
+                        engine_order,
+                        standard_deviation,
+                        contact,
+                    });
+                }
+            }
+        }
+        scenarios
+    }
+
+    /// Whether a scenario is under the nonlinear contact law.
+    #[must_use]
+    pub fn has_friction(&self) -> bool {
+        self.contacts
+            .iter()
+            .any(|contact| matches!(contact, ContactCondition::Full { .. }))
+    }
+
+    /// `path` as seen from the folder of the study file.
+    #[must_use]
+    pub fn beside(study_file: &Path, path: &str) -> PathBuf {
+        study_file
+            .parent()
+            .map_or_else(|| PathBuf::from(path), |folder| folder.join(path))
+    }
+
+    /// The study with every default filled in, key by key as in a study file.
+    #[must_use]
+    pub fn resolved(&self) -> Value {
+        let mut study = json!({
+            "schema": super::validate::SCHEMA,
+            "study": { "name": self.name, "seed": self.seed, "patterns": self.patterns },
+            "model": self.model_value(),
+            "reduction": self.reduction,
+            "damping": match self.damping {
+                Damping::StructuralLossFactor(factor) => json!({ "structural_loss_factor": factor }),
+                Damping::ModalRatio(ratio) => json!({ "modal_ratio": ratio }),
+                Damping::Rayleigh { mass_per_s, stiffness_s } => {
+                    json!({ "rayleigh": { "mass_per_s": mass_per_s, "stiffness_s": stiffness_s } })
+                }
+            },
+            "excitation": { "engine_orders": self.engine_orders, "amplitude_n": self.amplitude_n },
+            "mistuning": self.mistuning.resolved(),
+            "sweep": self.sweep_value(),
+            "solver": {
+                "harmonics": match &self.solver.harmonics {
+                    Harmonics::Auto => json!("auto"),
+                    Harmonics::Set(harmonics) => json!(harmonics),
+                },
+                "samples_per_period": self.solver.samples_per_period,
+                "residual_tolerance": self.solver.residual_tolerance,
+                "peak_tolerance": self.solver.peak_tolerance,
+                "amplitude": self.solver.amplitude,
+                "time_samples": self.solver.time_samples,
+                "frequency_band_hz": match self.solver.frequency_band {
+                    FrequencyBand::Auto => json!("auto"),
+                    FrequencyBand::Fixed { start_hz, stop_hz } => json!([start_hz, stop_hz]),
+                },
+            },
+            "output": { "patterns": self.output.patterns, "compression": self.output.compression },
+        });
+        if let Some(contact) = &self.contact {
+            study["contact"] = json!(contact);
+        }
+        study
+    }
+
+    fn model_value(&self) -> Value {
+        match &self.model {
+            ModelSource::Parametric(options) => {
+                json!({ "source": "parametric", "parametric": options })
+            }
+            ModelSource::Lumped(options) => json!({ "source": "lumped", "lumped": options }),
+            ModelSource::Bundle { written, .. } => {
+                json!({ "source": "bundle", "bundle": { "path": written } })
+            }
+        }
+    }
+
+    fn sweep_value(&self) -> Value {
+        let loads: Vec<Value> = self
+            .contacts
+            .iter()
+            .map(|contact| match contact {
+                ContactCondition::Full { normal_load_n } => json!(normal_load_n),
+                limit => json!(limit.name()),
+            })
+            .collect();
+        let deviations: Vec<f64> = self.standard_deviations.iter().flatten().copied().collect();
+        if deviations.is_empty() {
+            json!({ "normal_load_n": loads })
+        } else {
+            json!({ "normal_load_n": loads, "standard_deviation": deviations })
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! The response of one pattern over frequency.
+
+use super::{
+    EngineSource, MistuningSource, PipelineError, Study, load_sector_model, pattern_source,
+};
+use crate::population::monte_carlo::Scenario;
+use crate::population::table::CurvePoint;
+use crate::response::forced_response::ContactCondition;
+
+/// Which curve is wanted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurveRequest<'a> {
+    /// Pattern id; none for the tuned wheel.
+    pub pattern: Option<u32>,
+    /// Contact condition; it need not be in the sweep of the study.
+    pub contact: ContactCondition,
+    /// Engine order.
+    pub engine_order: u32,
+    /// Standard deviation of the pattern; none for the tuned wheel or patterns from a file.
+    pub standard_deviation: Option<f64>,
+    /// Frequencies, Hz.
+    pub frequencies_hz: &'a [f64],
+}
+
+/// Amplitude of every blade at each frequency, ordered by frequency, then blade.
+///
+/// # Errors
+/// The model is refused or cannot be reduced, or the study has no such pattern.
+pub fn response_curve(
+    study: &Study,
+    source: &dyn EngineSource,
+    request: CurveRequest<'_>,
+) -> Result<Vec<CurvePoint>, PipelineError> {
+    let model = load_sector_model(study)?;
+    let patterns = pattern_source(study, model.sectors)?;
+    let pattern = match request.pattern {
+        None => None,
+        Some(id) => Some(
+            patterns
+                .pattern(id, request.standard_deviation)
+                .ok_or_else(|| PipelineError::NoPattern {
+                    id,
+                    accepted: ids_in_words(study, &patterns.ids()),
+                })?,
+        ),
+    };
+    let engine = source.build(study, &model, None)?;
+    let scenario = Scenario {
+        index: 0,
+        engine_order: request.engine_order,
+        standard_deviation: request.standard_deviation,
+        contact: request.contact,
+    };
+    Ok(engine.curve(&scenario, pattern.as_ref(), request.frequencies_hz))
+}
+
+fn ids_in_words(study: &Study, ids: &[u32]) -> String {
+    match (&study.mistuning.source, ids) {
+        (MistuningSource::File { written, .. }, [first, .., last]) => {
+            format!("an id of {written}, {first} to {last}")
+        }
+        (_, [first, .., last]) => format!("{first} to {last}"),
+        (_, [only]) => only.to_string(),
+        (_, []) => "no other".to_owned(),
+    }
+}

@@ -1,0 +1,106 @@
+//! The sector model that a study names, and the checks that need both.
+
+use super::{Finding, MistuningSource, ModelSource, PipelineError, Problem, Study, StudyError};
+use crate::model::sector::{ModelError, SectorModel, bundle, lumped, parametric};
+use crate::response::forced_response::ContactCondition;
+use crate::response::mistuning::PatternSource;
+
+/// Loads and validates the sector model of `study`.
+///
+/// # Errors
+/// The model is refused, its files cannot be read, or the study does not fit to it.
+pub fn load_sector_model(study: &Study) -> Result<SectorModel, PipelineError> {
+    let model = match &study.model {
+        ModelSource::Parametric(options) => parametric::build(options),
+        ModelSource::Lumped(options) => lumped::build(options),
+        ModelSource::Bundle { path, .. } => bundle::read(path),
+    }
+    .map_err(|error| refused(study, error))?;
+    check_contact(study, &model)?;
+    Ok(model)
+}
+
+/// The patterns of `study` for a wheel of `sectors` blades.
+///
+/// # Errors
+/// The file of patterns does not fit to the wheel.
+pub fn pattern_source(study: &Study, sectors: usize) -> Result<PatternSource, StudyError> {
+    match &study.mistuning.source {
+        MistuningSource::Law(distribution) => Ok(PatternSource::Random {
+            seed: study.seed,
+            count: study.patterns,
+            sectors,
+            distribution: *distribution,
+        }),
+        MistuningSource::File { records, .. } => {
+            Ok(PatternSource::Table(records.for_wheel(sectors)?))
+        }
+    }
+}
+
+/// A refused option is a mistake of the study file, which has its line.
+fn refused(study: &Study, error: ModelError) -> PipelineError {
+    match error {
+        ModelError::Option { ref key, .. } | ModelError::NeedsMass { ref key, .. } => {
+            StudyError::Invalid {
+                path: study.path.clone(),
+                findings: vec![Finding {
+                    line: study.map.line(key),
+                    key: key.clone(),
+                    problem: Problem::Conflict {
+                        reason: error.to_string(),
+                    },
+                }],
+            }
+            .into()
+        }
+        error => PipelineError::Model(error),
+    }
+}
+
+fn check_contact(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
+    let finding = |key: &str, problem: Problem| {
+        Err(StudyError::Invalid {
+            path: study.path.clone(),
+            findings: vec![Finding {
+                line: study.map.line(key),
+                key: key.to_owned(),
+                problem,
+            }],
+        })
+    };
+    let only_free = study
+        .contacts
+        .iter()
+        .all(|&contact| contact == ContactCondition::Free);
+    let has_contact = !model.contact_pairs.is_empty();
+    if !has_contact && !only_free {
+        return finding(
+            "sweep.normal_load_n",
+            Problem::NotAccepted {
+                value: study.map.value("sweep.normal_load_n"),
+                accepted: "[\"free\"], because the model has no contact".to_owned(),
+                suggestion: None,
+            },
+        );
+    }
+    if !has_contact && study.contact.is_some() {
+        return finding(
+            "contact",
+            Problem::Conflict {
+                reason: "the model has no contact; accepted: no [contact]".to_owned(),
+            },
+        );
+    }
+    if has_contact && !only_free && study.contact.is_none() {
+        return finding(
+            "contact",
+            Problem::Missing {
+                accepted: "a table with friction_coefficient, tangential_stiffness_n_per_m and \
+                           normal_stiffness_n_per_m, because the model has contact"
+                    .to_owned(),
+            },
+        );
+    }
+    Ok(())
+}

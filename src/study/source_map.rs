@@ -1,0 +1,206 @@
+//! Where each key of a study file stands, so that every message can name its line.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use strsim::damerau_levenshtein;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::{Finding, Problem};
+
+/// Spans of the keys and values of a TOML text, by full key.
+#[derive(Debug, Clone, Default)]
+pub(super) struct SourceMap {
+    text: String,
+    places: BTreeMap<String, Place>,
+}
+
+#[derive(Debug, Clone)]
+struct Place {
+    key: Range<usize>,
+    value: Range<usize>,
+}
+
+impl SourceMap {
+    /// Parses `text`; a finding if it is no TOML.
+    pub(super) fn new(text: &str) -> Result<Self, Finding> {
+        let mut map = Self {
+            text: text.to_owned(),
+            places: BTreeMap::new(),
+        };
+        match DeTable::parse(text) {
+            Ok(table) => {
+                map.add_table("", table.get_ref());
+                Ok(map)
+            }
+            Err(error) => Err(map.describe(&error)),
+        }
+    }
+
+    fn add_table(&mut self, path: &str, table: &DeTable<'_>) {
+        for (key, value) in table {
+            let full = if path.is_empty() {
+                key.get_ref().to_string()
+            } else {
+                format!("{path}.{}", key.get_ref())
+            };
+            self.add_value(full, key.span(), value);
+        }
+    }
+
+    fn add_value(&mut self, path: String, key: Range<usize>, value: &Spanned<DeValue<'_>>) {
+        match value.get_ref() {
+            DeValue::Table(table) => self.add_table(&path, table),
+            DeValue::Array(array) => {
+                for (index, element) in array.iter().enumerate() {
+                    self.add_value(format!("{path}[{index}]"), element.span(), element);
+                }
+            }
+            _ => {}
+        }
+        let value = value.span();
+        self.places.insert(path, Place { key, value });
+    }
+
+    /// Line of `key`, or of the innermost table above it that is there; 1 if there is none.
+    pub(super) fn line(&self, key: &str) -> usize {
+        let mut path = key;
+        loop {
+            if let Some(place) = self.places.get(path) {
+                return self.line_at(place.key.start);
+            }
+            match path.rfind(['.', '[']) {
+                Some(end) => path = &path[..end],
+                None => return 1,
+            }
+        }
+    }
+
+    /// The value of `key` as written.
+    pub(super) fn value(&self, key: &str) -> String {
+        self.places
+            .get(key)
+            .and_then(|place| self.text.get(place.value.clone()))
+            .unwrap_or("(absent)")
+            .to_owned()
+    }
+
+    fn line_at(&self, offset: usize) -> usize {
+        let before = self.text.get(..offset).unwrap_or(&self.text);
+        1 + before.matches('\n').count()
+    }
+
+    /// The innermost key whose name or value covers `offset`.
+    fn key_at(&self, offset: usize) -> String {
+        let covers = |range: &Range<usize>| range.contains(&offset);
+        self.places
+            .iter()
+            .filter(|(_, place)| covers(&place.key) || covers(&place.value))
+            .max_by_key(|(path, _)| path.len())
+            .map_or_else(String::new, |(path, _)| path.clone())
+    }
+
+    /// The finding that an error of the TOML reader stands for.
+    pub(super) fn describe(&self, error: &toml::de::Error) -> Finding {
+        let offset = error.span().map_or(0, |span| span.start);
+        let line = self.line_at(offset);
+        let key = self.key_at(offset);
+        let message = error.message();
+        let named = backticked(message);
+        let problem = if message.starts_with("unknown field") {
+            let (unknown, accepted) = split_first(named);
+            Problem::UnknownKey {
+                suggestion: nearest(&unknown, &accepted),
+                accepted,
+            }
+        } else if message.starts_with("unknown variant") {
+            let (unknown, accepted) = split_first(named);
+            Problem::NotAccepted {
+                value: self.value(&key),
+                suggestion: nearest(&unknown, &accepted).map(|name| format!("\"{name}\"")),
+                accepted: accepted
+                    .iter()
+                    .map(|name| format!("\"{name}\""))
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            }
+        } else if let Some((_, expected)) = message.rsplit_once(", expected ")
+            && !key.is_empty()
+        {
+            Problem::NotAccepted {
+                value: self.value(&key),
+                accepted: plain(expected),
+                suggestion: None,
+            }
+        } else if let Some(field) = message.strip_prefix("missing field ") {
+            let field = field.trim_matches('`');
+            return Finding {
+                line,
+                key: if key.is_empty() {
+                    field.to_owned()
+                } else {
+                    format!("{key}.{field}")
+                },
+                problem: Problem::Missing {
+                    accepted: "a value".to_owned(),
+                },
+            };
+        } else {
+            Problem::Syntax {
+                message: message.replace('\n', " "),
+            }
+        };
+        Finding { line, key, problem }
+    }
+}
+
+/// The names that stand between backticks.
+fn backticked(message: &str) -> Vec<String> {
+    message
+        .split('`')
+        .skip(1)
+        .step_by(2)
+        .map(str::to_owned)
+        .collect()
+}
+
+fn split_first(mut names: Vec<String>) -> (String, Vec<String>) {
+    if names.is_empty() {
+        (String::new(), names)
+    } else {
+        let rest = names.split_off(1);
+        (names.remove(0), rest)
+    }
+}
+
+/// The name nearest to `written`, if it is near enough to be meant.
+fn nearest(written: &str, names: &[String]) -> Option<String> {
+    names
+        .iter()
+        .map(|name| (damerau_levenshtein(written, name), name))
+        .min()
+        .filter(|&(distance, name)| {
+            distance
+                <= name
+                    .chars()
+                    .count()
+                    .max(written.chars().count())
+                    .div_ceil(3)
+                || name.starts_with(written)
+        })
+        .map(|(_, name)| name.clone())
+}
+
+/// Names of Rust types in the words of a user.
+fn plain(expected: &str) -> String {
+    match expected {
+        "f64" => "a number".to_owned(),
+        "u64" | "usize" => "a whole number of at least 0".to_owned(),
+        "u32" => "a whole number from 0 to 4294967295".to_owned(),
+        "a sequence" => "a list".to_owned(),
+        "a boolean" => "true or false".to_owned(),
+        other if other.starts_with("struct ") => "a table".to_owned(),
+        other => other.to_owned(),
+    }
+}

@@ -1,0 +1,457 @@
+//! From the study file as written to a [`Study`]: ranges, defaults and cross-checks, all at once.
+
+use std::path::Path;
+
+use super::raw::{
+    RawDamping, RawExcitation, RawHead, RawLoad, RawModel, RawModelKind, RawStudy, RawSweep,
+};
+use super::source_map::SourceMap;
+use super::validate_mistuning::mistuning;
+use super::validate_solver::solver;
+use super::{Finding, ModelSource, OutputOptions, Problem, Study, StudyError};
+use crate::model::reduction::{Basis, ReductionOptions};
+use crate::response::forced_response::ContactCondition;
+use crate::response::friction::{ContactLaw, ContactOptions};
+use crate::response::harmonic_balance::Damping;
+
+/// Version of the study file.
+pub(super) const SCHEMA: u64 = 1;
+
+/// Findings so far, and the text they refer to.
+pub(super) struct Check<'a> {
+    map: &'a SourceMap,
+    findings: Vec<Finding>,
+}
+
+impl Check<'_> {
+    pub(super) fn refuse(&mut self, key: &str, accepted: &str) {
+        self.add(
+            key,
+            Problem::NotAccepted {
+                value: self.map.value(key),
+                accepted: accepted.to_owned(),
+                suggestion: None,
+            },
+        );
+    }
+
+    pub(super) fn missing(&mut self, key: &str, accepted: &str) {
+        self.add(
+            key,
+            Problem::Missing {
+                accepted: accepted.to_owned(),
+            },
+        );
+    }
+
+    pub(super) fn conflict(&mut self, key: &str, reason: &str) {
+        self.add(
+            key,
+            Problem::Conflict {
+                reason: reason.to_owned(),
+            },
+        );
+    }
+
+    fn add(&mut self, key: &str, problem: Problem) {
+        self.findings.push(Finding {
+            line: self.map.line(key),
+            key: key.to_owned(),
+            problem,
+        });
+    }
+
+    /// `value` if `holds`, otherwise a finding and `fallback`.
+    pub(super) fn within<T: Copy>(
+        &mut self,
+        key: &str,
+        value: T,
+        holds: bool,
+        accepted: &str,
+    ) -> T {
+        if !holds {
+            self.refuse(key, accepted);
+        }
+        value
+    }
+
+    /// A number that must be there.
+    fn required(
+        &mut self,
+        key: &str,
+        value: Option<f64>,
+        holds: impl Fn(f64) -> bool,
+        accepted: &str,
+    ) -> f64 {
+        match value {
+            Some(value) => self.within(key, value, holds(value), accepted),
+            None => {
+                self.missing(key, accepted);
+                1.0
+            }
+        }
+    }
+}
+
+impl Study {
+    /// Reads and checks the study file `path`.
+    ///
+    /// # Errors
+    /// The file cannot be read, or everything in it that is not accepted.
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        let text = std::fs::read_to_string(path).map_err(|source| StudyError::Unreadable {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(path, &text)
+    }
+
+    /// Checks the text of the study file `path`; files it names are sought beside it.
+    ///
+    /// # Errors
+    /// Everything in it that is not accepted.
+    pub fn parse(path: &Path, text: &str) -> Result<Self, StudyError> {
+        let invalid = |findings| StudyError::Invalid {
+            path: path.to_owned(),
+            findings,
+        };
+        let map = SourceMap::new(text).map_err(|finding| invalid(vec![finding]))?;
+        let raw: RawStudy =
+            toml::from_str(text).map_err(|error| invalid(vec![map.describe(&error)]))?;
+        let mut check = Check {
+            map: &map,
+            findings: Vec::new(),
+        };
+        let study = resolve(&mut check, path, raw)?;
+        match study {
+            Some(study) if check.findings.is_empty() => {
+                let map = map.clone();
+                Ok(Self { map, ..study })
+            }
+            _ => {
+                check.findings.sort_by_key(|finding| finding.line);
+                Err(invalid(check.findings))
+            }
+        }
+    }
+}
+
+/// None where a study cannot even be put together; the findings then say why.
+fn resolve(check: &mut Check, path: &Path, raw: RawStudy) -> Result<Option<Study>, StudyError> {
+    match raw.schema {
+        Some(SCHEMA) => {}
+        Some(_) => check.refuse("schema", "1"),
+        None => check.missing("schema", "1"),
+    }
+    let head = raw.study.unwrap_or_default();
+    let (name, seed) = identity(check, &head);
+    let model = model(check, path, raw.model.unwrap_or_default());
+    reduction(check, &raw.reduction);
+    let damping = damping(check, raw.damping);
+    let (engine_orders, amplitude_n) = excitation(check, raw.excitation.unwrap_or_default());
+    let sweep = raw.sweep.unwrap_or_default();
+    let contacts = contacts(check, &sweep);
+    let solver = solver(check, raw.solver);
+    let contact = raw.contact.map(|raw| ContactOptions {
+        law: raw.law.unwrap_or(ContactLaw::Simplified3d),
+        friction_coefficient: check.required(
+            "contact.friction_coefficient",
+            raw.friction_coefficient,
+            |value| (0.0..=10.0).contains(&value),
+            "a number from 0 to 10",
+        ),
+        tangential_stiffness_n_per_m: check.required(
+            "contact.tangential_stiffness_n_per_m",
+            raw.tangential_stiffness_n_per_m,
+            |value| value.is_finite() && value > 0.0,
+            "a finite number above 0, in N/m",
+        ),
+        normal_stiffness_n_per_m: raw.normal_stiffness_n_per_m,
+    });
+    if let Some(contact) = &contact {
+        normal_stiffness(check, contact);
+    }
+    let mistuning = mistuning(check, path, raw.mistuning, &sweep, head.patterns)?;
+    let (Some(model), Some(damping), Some(mistuning)) = (model, damping, mistuning) else {
+        return Ok(None);
+    };
+    Ok(Some(Study {
+        path: path.to_owned(),
+        map: SourceMap::default(),
+        name,
+        seed,
+        patterns: mistuning.patterns,
+        model,
+        reduction: raw.reduction,
+        contact,
+        damping,
+        engine_orders,
+        amplitude_n,
+        mistuning: mistuning.mistuning,
+        contacts,
+        standard_deviations: mistuning.standard_deviations,
+        solver,
+        output: OutputOptions {
+            patterns: raw.output.patterns,
+            compression: raw.output.compression.unwrap_or_default(),
+        },
+    }))
+}
+
+fn identity(check: &mut Check, head: &RawHead) -> (String, u64) {
+    let accepted = "a name of letters, digits, - and _, beginning with a letter or digit";
+    let name = head.name.clone().unwrap_or_default();
+    let well_formed = name
+        .chars()
+        .all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_')
+        && name.starts_with(|c: char| c.is_ascii_alphanumeric());
+    if head.name.is_none() {
+        check.missing("study.name", accepted);
+    } else if !well_formed || name.len() > 100 {
+        check.refuse("study.name", accepted);
+    }
+    if head.seed.is_none() {
+        let accepted = "a whole number from 0 to 9223372036854775807; there is no default, so that \
+                        every study says which patterns it has";
+        check.missing("study.seed", accepted);
+    }
+    (name, head.seed.unwrap_or_default())
+}
+
+fn model(check: &mut Check, study_file: &Path, raw: RawModel) -> Option<ModelSource> {
+    let Some(kind) = raw.source else {
+        check.missing("model.source", "\"parametric\", \"lumped\" or \"bundle\"");
+        return None;
+    };
+    let tables = [
+        (
+            "parametric",
+            RawModelKind::Parametric,
+            raw.parametric.is_some(),
+        ),
+        ("lumped", RawModelKind::Lumped, raw.lumped.is_some()),
+        ("bundle", RawModelKind::Bundle, raw.bundle.is_some()),
+    ];
+    for (name, of_kind, given) in tables {
+        if given && of_kind != kind {
+            let reason = format!(
+                "it is not used with source = {}",
+                check.map.value("model.source")
+            );
+            check.conflict(&format!("model.{name}"), &reason);
+        }
+    }
+    match kind {
+        RawModelKind::Parametric => {
+            Some(ModelSource::Parametric(raw.parametric.unwrap_or_default()))
+        }
+        RawModelKind::Lumped => {
+            if raw.lumped.is_none() {
+                check.missing(
+                    "model.lumped",
+                    "a table with sectors, blade_mass_kg, blade_stiffness_n_per_m",
+                );
+            }
+            raw.lumped.map(ModelSource::Lumped)
+        }
+        RawModelKind::Bundle => {
+            let path = raw.bundle.and_then(|bundle| bundle.path);
+            if path.is_none() {
+                check.missing(
+                    "model.bundle.path",
+                    "the folder of a sector bundle, relative to the study file",
+                );
+            }
+            path.map(|written| ModelSource::Bundle {
+                path: Study::beside(study_file, &written),
+                written,
+            })
+        }
+    }
+}
+
+fn reduction(check: &mut Check, options: &ReductionOptions) {
+    let error = options.error;
+    check.within(
+        "reduction.error",
+        error,
+        error > 0.0 && error <= 0.5,
+        "a number above 0 and at most 0.5",
+    );
+    let counts = [
+        ("reduction.stick_modes", options.stick_modes, 1),
+        ("reduction.slide_modes", options.slide_modes, 1),
+        (
+            "reduction.craig_bampton_modes",
+            Some(options.craig_bampton_modes),
+            1,
+        ),
+        (
+            "reduction.sensitivity_vectors",
+            options.sensitivity_vectors,
+            0,
+        ),
+    ];
+    for (key, count, least) in counts {
+        if count.is_some_and(|count| !(least..=1000).contains(&count)) {
+            check.refuse(key, &format!("a whole number from {least} to 1000"));
+        }
+    }
+    match options.basis {
+        Basis::Auto => {
+            for (key, given) in [
+                ("reduction.stick_modes", options.stick_modes.is_some()),
+                ("reduction.slide_modes", options.slide_modes.is_some()),
+            ] {
+                if given {
+                    check.conflict(
+                        key,
+                        "basis = \"auto\" chooses the number of modes; accepted: reduction.error, or \
+                         basis = \"stick_slide\" or \"stick_attachment\" with fixed numbers",
+                    );
+                }
+            }
+        }
+        Basis::StickSlide => {
+            if options.stick_modes.is_some() && options.slide_modes.is_none() {
+                check.missing(
+                    "reduction.slide_modes",
+                    "a whole number from 1 to 1000, beside stick_modes",
+                );
+            }
+            if options.slide_modes.is_some() && options.stick_modes.is_none() {
+                check.missing(
+                    "reduction.stick_modes",
+                    "a whole number from 1 to 1000, beside slide_modes",
+                );
+            }
+        }
+        Basis::StickAttachment => {
+            if options.slide_modes.is_some() {
+                check.conflict(
+                    "reduction.slide_modes",
+                    "basis = \"stick_attachment\" has none; accepted: stick_modes",
+                );
+            }
+        }
+    }
+}
+
+fn normal_stiffness(check: &mut Check, contact: &ContactOptions) {
+    let key = "contact.normal_stiffness_n_per_m";
+    match (contact.law, contact.normal_stiffness_n_per_m) {
+        (ContactLaw::Simplified3d, None) => check.missing(key, "a finite number above 0, in N/m"),
+        (_, Some(value)) if !(value.is_finite() && value > 0.0) => {
+            check.refuse(key, "a finite number above 0, in N/m");
+        }
+        _ => {}
+    }
+}
+
+fn damping(check: &mut Check, raw: Option<RawDamping>) -> Option<Damping> {
+    let accepted = "exactly one of structural_loss_factor, modal_ratio and rayleigh";
+    let Some(raw) = raw else {
+        check.missing("damping", accepted);
+        return None;
+    };
+    let ratio = |value: f64| value > 0.0 && value < 1.0;
+    let in_words = "a number above 0 and below 1; a wheel without damping has no bounded resonance";
+    match (raw.structural_loss_factor, raw.modal_ratio, raw.rayleigh) {
+        (Some(factor), None, None) => Some(Damping::StructuralLossFactor(check.within(
+            "damping.structural_loss_factor",
+            factor,
+            ratio(factor),
+            in_words,
+        ))),
+        (None, Some(zeta), None) => Some(Damping::ModalRatio(check.within(
+            "damping.modal_ratio",
+            zeta,
+            ratio(zeta),
+            in_words,
+        ))),
+        (None, None, Some(rayleigh)) => {
+            let factor = |value: f64| value.is_finite() && value >= 0.0;
+            let mut required = |key: &str, value: Option<f64>| {
+                check.required(key, value, factor, "a finite number of at least 0")
+            };
+            let mass_per_s = required("damping.rayleigh.mass_per_s", rayleigh.mass_per_s);
+            let stiffness_s = required("damping.rayleigh.stiffness_s", rayleigh.stiffness_s);
+            if mass_per_s == 0.0 && stiffness_s == 0.0 {
+                check.refuse(
+                    "damping.rayleigh",
+                    "mass_per_s or stiffness_s above 0; a wheel without damping has no bounded resonance",
+                );
+            }
+            Some(Damping::Rayleigh {
+                mass_per_s,
+                stiffness_s,
+            })
+        }
+        (None, None, None) => {
+            check.missing("damping", accepted);
+            None
+        }
+        _ => {
+            check.conflict(
+                "damping",
+                &format!("several models of damping; accepted: {accepted}"),
+            );
+            None
+        }
+    }
+}
+
+fn excitation(check: &mut Check, raw: RawExcitation) -> (Vec<u32>, f64) {
+    let key = "excitation.engine_orders";
+    let accepted = "a list of different whole numbers from 0 to 10000, at least one";
+    let orders = raw.engine_orders.unwrap_or_default();
+    let mut sorted = orders.clone();
+    sorted.sort_unstable();
+    sorted.dedup();
+    if check.map.value(key) == "(absent)" {
+        check.missing(key, accepted);
+    } else if orders.is_empty() || sorted.len() < orders.len() || sorted.last() > Some(&10_000) {
+        check.refuse(key, accepted);
+    }
+    let amplitude = raw.amplitude_n.unwrap_or(1.0);
+    let amplitude = check.within(
+        "excitation.amplitude_n",
+        amplitude,
+        amplitude.is_finite() && amplitude > 0.0,
+        "a finite number above 0, in N",
+    );
+    (orders, amplitude)
+}
+
+fn contacts(check: &mut Check, sweep: &RawSweep) -> Vec<ContactCondition> {
+    let key = "sweep.normal_load_n";
+    let accepted = "a list of different normal loads per sector: numbers of at least 0 in N, \
+                    \"stuck\", \"slide\" or \"free\"; at least one";
+    let Some(loads) = &sweep.normal_load_n else {
+        check.missing(key, accepted);
+        return Vec::new();
+    };
+    if loads.is_empty() {
+        check.refuse(key, accepted);
+    }
+    let mut contacts: Vec<ContactCondition> = Vec::new();
+    for (place, load) in loads.iter().enumerate() {
+        let contact = match load {
+            RawLoad::Number(value) if value.is_finite() && *value >= 0.0 => {
+                // The sum turns -0.0 into 0.0.
+                Some(ContactCondition::Full {
+                    normal_load_n: value + 0.0,
+                })
+            }
+            RawLoad::Name(name) if name == "stuck" => Some(ContactCondition::Stuck),
+            RawLoad::Name(name) if name == "slide" => Some(ContactCondition::Slide),
+            RawLoad::Name(name) if name == "free" => Some(ContactCondition::Free),
+            _ => None,
+        };
+        match contact {
+            Some(contact) if !contacts.contains(&contact) => contacts.push(contact),
+            _ => check.refuse(&format!("{key}[{place}]"), accepted),
+        }
+    }
+    contacts
+}

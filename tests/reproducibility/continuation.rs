@@ -1,0 +1,271 @@
+//! A run in pieces comes to the same bytes as a run at once.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicI64, Ordering};
+
+use blisk::response::harmonic_balance::Status;
+use blisk::study::{PipelineError, Progress, RunOutcome, RunRequest, Study, run};
+
+use crate::mock_engine::{MockSource, study};
+
+struct Silent;
+
+impl Progress for Silent {}
+
+/// Ends a run by a panic after some rows, as far as a process can end itself in a test.
+struct Interrupting {
+    rows_left: AtomicI64,
+}
+
+impl Progress for Interrupting {
+    fn row(&self, _status: Status) {
+        assert!(
+            self.rows_left.fetch_sub(1, Ordering::SeqCst) > 0,
+            "interrupted on purpose"
+        );
+    }
+}
+
+fn run_in(
+    folder: &Path,
+    study: &Study,
+    threads: usize,
+    source: &MockSource,
+) -> Result<RunOutcome, PipelineError> {
+    let request = RunRequest {
+        study,
+        results: folder,
+        threads,
+    };
+    run(request, source, &Silent)
+}
+
+const FILES: [&str; 5] = [
+    "responses.parquet",
+    "scenarios.parquet",
+    "patterns.parquet",
+    "manifest.json",
+    "summary.txt",
+];
+
+fn bytes(folder: &Path) -> Vec<Vec<u8>> {
+    FILES
+        .iter()
+        .map(|file| std::fs::read(folder.join(file)).expect(file))
+        .collect()
+}
+
+fn reference(patterns: u32) -> Vec<Vec<u8>> {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let outcome = run_in(
+        folder.path(),
+        &study(patterns, |text| text),
+        1,
+        &MockSource::default(),
+    );
+    assert_eq!(
+        outcome.expect("the run").rows_solved,
+        u64::from(patterns) * 4
+    );
+    bytes(folder.path())
+}
+
+#[test]
+fn every_number_of_threads_gives_the_same_bytes() {
+    let expected = reference(500);
+    for threads in [2, 3, 8, 16] {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        run_in(
+            folder.path(),
+            &study(500, |text| text),
+            threads,
+            &MockSource::default(),
+        )
+        .expect("run");
+        assert!(bytes(folder.path()) == expected, "{threads} threads");
+    }
+}
+
+#[test]
+fn a_finished_study_is_not_solved_again() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let study = study(100, |text| text);
+    let first = run_in(folder.path(), &study, 2, &MockSource::default()).expect("run");
+    let before = bytes(folder.path());
+    let source = MockSource::default();
+    let second = run_in(folder.path(), &study, 2, &source).expect("second run");
+    assert_eq!(source.solved.load(Ordering::SeqCst), 0);
+    assert_eq!((second.rows_solved, second.rows_reused), (0, 400));
+    assert_eq!(second.summary.rows, first.summary.rows);
+    assert_eq!(second.summary.to_string(), first.summary.to_string());
+    assert!(bytes(folder.path()) == before);
+    assert!(!folder.path().join("parts").exists());
+}
+
+#[test]
+fn raising_the_number_of_patterns_solves_only_the_new_ones() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    run_in(
+        folder.path(),
+        &study(130, |text| text),
+        2,
+        &MockSource::default(),
+    )
+    .expect("run");
+    let source = MockSource::default();
+    let longer = run_in(folder.path(), &study(500, |text| text), 2, &source).expect("longer run");
+    // Two standard deviations are two calls a pattern.
+    assert_eq!(source.solved.load(Ordering::SeqCst), 2 * 370);
+    assert_eq!((longer.rows_solved, longer.rows_reused), (4 * 370, 4 * 130));
+    assert!(bytes(folder.path()) == reference(500));
+}
+
+#[test]
+fn an_interrupted_run_continues_to_the_same_bytes() {
+    let expected = reference(500);
+    for rows in [0, 1, 99, 800, 1960] {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let study = study(500, |text| text);
+        let progress = Interrupting {
+            rows_left: AtomicI64::new(rows),
+        };
+        let request = RunRequest {
+            study: &study,
+            results: folder.path(),
+            threads: 2,
+        };
+        let interrupted = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            run(request, &MockSource::default(), &progress)
+        }));
+        assert!(interrupted.is_err(), "the listener panics");
+        let source = MockSource::default();
+        let outcome = run_in(folder.path(), &study, 3, &source).expect("continued");
+        assert_eq!(outcome.rows_solved + outcome.rows_reused, 2000);
+        if rows >= 800 {
+            assert!(outcome.rows_reused > 0, "parts were used");
+        }
+        assert!(
+            bytes(folder.path()) == expected,
+            "stopped after {rows} rows"
+        );
+    }
+}
+
+#[test]
+fn another_study_in_the_folder_is_refused_with_the_keys_that_differ() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    run_in(
+        folder.path(),
+        &study(20, |text| text),
+        2,
+        &MockSource::default(),
+    )
+    .expect("run");
+    let before = bytes(folder.path());
+    let edits: [(&str, &str, &str); 5] = [
+        (
+            "seed = 7",
+            "seed = 8",
+            "study.seed: 7 in the folder, 8 in the study",
+        ),
+        (
+            "engine_orders = [3, 5]",
+            "engine_orders = [3]",
+            "excitation.engine_orders",
+        ),
+        ("[0.03, 0.01]", "[0.03, 0.02]", "sweep.standard_deviation"),
+        (
+            "= 0.01\n",
+            "= 0.02\n",
+            "damping.structural_loss_factor: 0.01",
+        ),
+        (
+            "patterns = 20",
+            "patterns = 19",
+            "study.patterns: 20 in the folder, 19",
+        ),
+    ];
+    for (old, new, expected) in edits {
+        let other = study(20, |text| text.replacen(old, new, 1));
+        let error = run_in(folder.path(), &other, 2, &MockSource::default()).expect_err(new);
+        assert!(
+            matches!(error, PipelineError::DifferentStudy { .. }),
+            "{error}"
+        );
+        assert!(error.to_string().contains(expected), "{error}");
+    }
+    assert!(bytes(folder.path()) == before);
+}
+
+#[test]
+fn neutral_keys_do_not_make_another_study() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    run_in(
+        folder.path(),
+        &study(20, |text| text),
+        2,
+        &MockSource::default(),
+    )
+    .expect("run");
+    let renamed = study(20, |text| {
+        text.replace("\"chain\"", "\"renamed\"") + "[output]\ncompression = \"snappy\"\n"
+    });
+    let outcome = run_in(folder.path(), &renamed, 1, &MockSource::default()).expect("same study");
+    assert_eq!(outcome.rows_solved, 0);
+}
+
+#[test]
+fn a_damaged_table_is_found_and_named() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    run_in(
+        folder.path(),
+        &study(20, |text| text),
+        2,
+        &MockSource::default(),
+    )
+    .expect("run");
+    let table = folder.path().join("responses.parquet");
+    let whole = std::fs::read(&table).expect("read");
+    for keep in [0, 4, 100, whole.len() / 2, whole.len() - 1] {
+        std::fs::write(&table, &whole[..keep]).expect("truncate");
+        let error = blisk::study::summarise(folder.path()).expect_err("damaged");
+        assert!(
+            error.to_string().contains("responses.parquet"),
+            "{keep}: {error}"
+        );
+    }
+}
+
+#[test]
+fn a_panic_in_one_pattern_costs_its_rows_and_not_the_run() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let source = MockSource {
+        panics_in: Some(5),
+        ..MockSource::default()
+    };
+    let outcome = run_in(folder.path(), &study(50, |text| text), 2, &source).expect("run");
+    assert_eq!(outcome.summary.rows.count(Status::Panicked), 4);
+    assert_eq!(outcome.summary.rows.ok(), 196);
+}
+
+#[test]
+fn a_folder_in_use_is_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let lock = std::fs::File::create(folder.path().join(".lock")).expect("create");
+    lock.lock().expect("lock");
+    let error = run_in(
+        folder.path(),
+        &study(5, |text| text),
+        1,
+        &MockSource::default(),
+    );
+    assert!(matches!(error, Err(PipelineError::Locked { .. })));
+    drop(lock);
+    run_in(
+        folder.path(),
+        &study(5, |text| text),
+        1,
+        &MockSource::default(),
+    )
+    .expect("free again");
+}

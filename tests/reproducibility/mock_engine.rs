@@ -1,0 +1,142 @@
+//! An engine whose rows are a formula, so that everything around the physics can be tested alone.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use blisk::model::sector::SectorModel;
+use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use blisk::population::table::CurvePoint;
+use blisk::report::ModelReport;
+use blisk::response::harmonic_balance::Status;
+use blisk::response::mistuning::{Deviations, Pattern};
+use blisk::study::{Engine, EngineSource, PipelineError, Study};
+use serde_json::{Value, json};
+
+/// Counts the patterns it solves and panics in pattern `panics_in`.
+#[derive(Debug, Default)]
+pub struct MockSource {
+    /// Calls of [`Engine::rows`] so far.
+    pub solved: std::sync::Arc<AtomicU64>,
+    /// Pattern in which it panics.
+    pub panics_in: Option<u32>,
+}
+
+struct MockEngine {
+    solved: std::sync::Arc<AtomicU64>,
+    panics_in: Option<u32>,
+}
+
+impl EngineSource for MockSource {
+    fn build(
+        &self,
+        _study: &Study,
+        _model: &SectorModel,
+        _cache: Option<&Path>,
+    ) -> Result<Box<dyn Engine>, PipelineError> {
+        Ok(Box::new(MockEngine {
+            solved: self.solved.clone(),
+            panics_in: self.panics_in,
+        }))
+    }
+}
+
+impl Engine for MockEngine {
+    fn model_report(&self) -> ModelReport {
+        unreachable!("no test asks for it")
+    }
+
+    fn reduction_facts(&self) -> Value {
+        json!({ "rank": 6 })
+    }
+
+    fn chosen_settings(&self) -> Value {
+        json!({ "harmonics": [1] })
+    }
+
+    fn tuned(&self, scenario: &Scenario) -> TunedReference {
+        TunedReference {
+            scenario: scenario.index,
+            status: Status::Ok,
+            amplitude_m: Some(1e-4 * f64::from(scenario.engine_order)),
+            frequency_hz: Some(500.0),
+            separated_fraction: None,
+            slipping_fraction: None,
+        }
+    }
+
+    /// The amplitude grows with the largest deviation; every 97th pattern fails.
+    fn rows(
+        &self,
+        pattern: &Pattern,
+        scenarios: &[(&Scenario, &TunedReference)],
+    ) -> Vec<ResponseRow> {
+        self.solved.fetch_add(1, Ordering::SeqCst);
+        assert!(self.panics_in != Some(pattern.id), "a defect on purpose");
+        let Deviations::PerBlade(values) = &pattern.deviations else {
+            unreachable!("the studies here have no modes");
+        };
+        let sum: f64 = values.iter().map(|value| value.sin()).sum();
+        scenarios
+            .iter()
+            .map(|(scenario, tuned)| {
+                let good = pattern.id % 97 != 96;
+                let amplitude = tuned.amplitude_m.map(|tuned| tuned * (1.0 + sum.abs()));
+                ResponseRow {
+                    scenario: scenario.index,
+                    pattern: pattern.id,
+                    status: if good { Status::Ok } else { Status::Stagnated },
+                    peak_amplitude_m: amplitude.filter(|_| good),
+                    peak_frequency_hz: good.then_some(500.0),
+                    peak_blade: good.then_some(pattern.id % 24),
+                    amplification_factor: good.then_some(1.0 + sum.abs()),
+                    peak_bracketed: good.then_some(true),
+                    harmonics: "1".to_owned(),
+                    nonlinear_solves: 0,
+                    newton_iterations: 7,
+                    residual: None,
+                    slipping_fraction: None,
+                    separated_fraction: None,
+                    shortcut: "none".to_owned(),
+                }
+            })
+            .collect()
+    }
+
+    fn curve(
+        &self,
+        _scenario: &Scenario,
+        _pattern: Option<&Pattern>,
+        _frequencies_hz: &[f64],
+    ) -> Vec<CurvePoint> {
+        Vec::new()
+    }
+}
+
+/// A study of the lumped chain of blades with two engine orders and two standard deviations.
+pub fn study(patterns: u32, edit: impl Fn(String) -> String) -> Study {
+    let text = format!(
+        "schema = 1
+[study]
+name = \"chain\"
+seed = 7
+patterns = {patterns}
+[model]
+source = \"lumped\"
+[model.lumped]
+sectors = 24
+blade_mass_kg = 0.0114
+blade_stiffness_n_per_m = 430000.0
+blade_coupling_stiffness_n_per_m = 45430.0
+[damping]
+structural_loss_factor = 0.01
+[excitation]
+engine_orders = [3, 5]
+[mistuning]
+distribution = {{ kind = \"normal\" }}
+[sweep]
+normal_load_n = [\"free\"]
+standard_deviation = [0.03, 0.01]
+"
+    );
+    Study::parse(Path::new("chain.toml"), &edit(text)).expect("a valid study")
+}

@@ -1,0 +1,144 @@
+//! Tables: what is written is what is read, described and bounded.
+
+use blisk::population::monte_carlo::{ResponseRow, Scenario};
+use blisk::population::table::{
+    Compression, CurveFormat, CurvePoint, RESPONSE_COLUMNS, ResponseReader, ResponseWriter,
+    TableHeader, write_curve,
+};
+use blisk::response::forced_response::ContactCondition;
+use blisk::response::harmonic_balance::Status;
+
+fn header(compression: Compression) -> TableHeader {
+    TableHeader {
+        study_digest: "abc".to_owned(),
+        compression,
+    }
+}
+
+fn scenarios() -> Vec<Scenario> {
+    let contacts = [
+        ContactCondition::Full {
+            normal_load_n: 160.0,
+        },
+        ContactCondition::Stuck,
+    ];
+    contacts
+        .into_iter()
+        .enumerate()
+        .map(|(index, contact)| Scenario {
+            index,
+            engine_order: 3,
+            standard_deviation: (index == 0).then_some(0.03),
+            contact,
+        })
+        .collect()
+}
+
+fn row(pattern: u32, scenario: usize) -> ResponseRow {
+    let status = Status::ALL[pattern as usize % Status::ALL.len()];
+    let good = status == Status::Ok;
+    ResponseRow {
+        scenario,
+        pattern,
+        status,
+        peak_amplitude_m: good.then_some(1.0 / f64::from(pattern + 3)),
+        peak_frequency_hz: good.then_some(1e3),
+        peak_blade: good.then_some(23),
+        amplification_factor: good.then_some(f64::MIN_POSITIVE),
+        peak_bracketed: good.then_some(true),
+        harmonics: "0-1-3".to_owned(),
+        nonlinear_solves: u64::from(pattern) << 33,
+        newton_iterations: 3,
+        residual: good.then_some(1e-300),
+        slipping_fraction: None,
+        separated_fraction: good.then_some(0.0),
+        shortcut: "none".to_owned(),
+    }
+}
+
+#[test]
+fn rows_come_back_as_they_were_written_over_several_row_groups() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for compression in [Compression::Zstd, Compression::Snappy] {
+        let path = folder.path().join("responses.parquet");
+        let rows: Vec<ResponseRow> = (0..70_000)
+            .flat_map(|pattern| [row(pattern, 0), row(pattern, 1)])
+            .collect();
+        let mut writer =
+            ResponseWriter::create(&path, &scenarios(), &header(compression)).expect("create");
+        // Batches of odd sizes must not show in the file.
+        for batch in rows.chunks(9_973) {
+            writer.write(batch.to_vec()).expect("write");
+        }
+        writer.finish().expect("finish");
+        let mut reader = ResponseReader::open(&path).expect("open");
+        assert_eq!(
+            (reader.rows(), reader.study_digest()),
+            (rows.len(), Some("abc"))
+        );
+        let mut read = Vec::new();
+        loop {
+            let batch = reader.next_batch().expect("batch");
+            if batch.is_empty() {
+                break;
+            }
+            read.extend(batch);
+        }
+        assert!(read == rows);
+    }
+    let leftovers = std::fs::read_dir(folder.path()).expect("read").count();
+    assert_eq!(leftovers, 1, "no temporary file stays");
+}
+
+#[test]
+fn an_unfinished_table_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("responses.parquet");
+    let mut writer =
+        ResponseWriter::create(&path, &scenarios(), &header(Compression::Zstd)).expect("create");
+    writer.write([row(0, 0)]).expect("write");
+    drop(writer);
+    assert_eq!(std::fs::read_dir(folder.path()).expect("read").count(), 0);
+}
+
+#[test]
+fn columns_are_the_documented_ones_in_order() {
+    let names: Vec<&str> = RESPONSE_COLUMNS.iter().map(|column| column.name).collect();
+    let documented = "scenario, contact, engine_order, normal_load_n, standard_deviation, pattern, \
+                      status, peak_amplitude_m, peak_frequency_hz, peak_blade, amplification_factor, \
+                      peak_bracketed, harmonics, nonlinear_solves, newton_iterations, residual, \
+                      slipping_fraction, separated_fraction, shortcut";
+    assert_eq!(names.join(", "), documented);
+}
+
+#[test]
+fn a_curve_in_csv_reads_back_to_the_last_digit() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let points = [
+        CurvePoint {
+            frequency_hz: 340.1,
+            blade: 0,
+            amplitude_m: Some(1.0 / 3.0 * 1e-4),
+            status: Status::Ok,
+        },
+        CurvePoint {
+            frequency_hz: 340.1,
+            blade: 1,
+            amplitude_m: None,
+            status: Status::Diverged,
+        },
+    ];
+    let path = folder.path().join("curve.csv");
+    write_curve(&path, CurveFormat::Csv, &points, &header(Compression::Zstd)).expect("write");
+    let text = std::fs::read_to_string(&path).expect("read");
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[0], "frequency_hz,blade,amplitude_m,status");
+    let amplitude: f64 = lines[1]
+        .split(',')
+        .nth(2)
+        .expect("a field")
+        .parse()
+        .expect("a number");
+    assert_eq!(Some(amplitude), points[0].amplitude_m);
+    assert_eq!(lines[2], "340.1,1,,diverged");
+}

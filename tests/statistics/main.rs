@@ -1,0 +1,5 @@
+//! Statistics: random patterns, order statistics with their intervals, accounting.
+
+mod order_statistics;
+mod patterns;
+mod summary;

@@ -1,0 +1,169 @@
+//! The summary: best loads, warnings, what costs a statistic.
+
+use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use blisk::population::statistics::ScenarioAccumulator;
+use blisk::population::table::ScenarioRecord;
+use blisk::report::{StudySummary, SummaryContext, Warning};
+use blisk::response::forced_response::{ContactCondition, Harmonics};
+use blisk::response::harmonic_balance::Status;
+
+fn context(harmonics: Harmonics) -> SummaryContext {
+    SummaryContext {
+        name: "made-up".to_owned(),
+        study_digest: "0123".to_owned(),
+        seed: 1,
+        patterns: 400,
+        harmonics,
+        version: "0".to_owned(),
+    }
+}
+
+/// 400 patterns whose amplitude is `scale` (1 + i / 1000), of which the first `failed` fail.
+fn record(
+    index: usize,
+    contact: ContactCondition,
+    scale: f64,
+    failed: u32,
+    separated: f64,
+) -> ScenarioRecord {
+    let mut rows = ScenarioAccumulator::default();
+    for i in 0..400 {
+        let good = i >= failed;
+        let amplitude = scale * (1.0 + f64::from(i) / 1000.0);
+        rows.add(&ResponseRow {
+            scenario: index,
+            pattern: i,
+            status: if good { Status::Ok } else { Status::Stagnated },
+            peak_amplitude_m: good.then_some(amplitude),
+            peak_frequency_hz: good.then_some(500.0),
+            peak_blade: good.then_some(3),
+            amplification_factor: good.then_some(amplitude / scale),
+            peak_bracketed: good.then_some(true),
+            harmonics: "1-3".to_owned(),
+            nonlinear_solves: 13,
+            newton_iterations: 40,
+            residual: good.then_some(1e-9),
+            slipping_fraction: good.then_some(0.5),
+            separated_fraction: good.then_some(separated),
+            shortcut: "none".to_owned(),
+        });
+    }
+    ScenarioRecord {
+        scenario: Scenario {
+            index,
+            engine_order: 3,
+            standard_deviation: Some(0.03),
+            contact,
+        },
+        tuned: TunedReference {
+            scenario: index,
+            status: Status::Ok,
+            amplitude_m: Some(scale),
+            frequency_hz: Some(500.0),
+            separated_fraction: Some(0.0),
+            slipping_fraction: Some(1.0),
+        },
+        statistics: rows.finish(),
+    }
+}
+
+fn load(normal_load_n: f64) -> ContactCondition {
+    ContactCondition::Full { normal_load_n }
+}
+
+#[test]
+fn the_best_load_is_the_lowest_and_says_whether_it_is_enclosed() {
+    let records = [
+        record(0, ContactCondition::Slide, 9e-4, 0, 0.0),
+        record(1, load(100.0), 3e-4, 0, 0.0),
+        record(2, load(200.0), 2e-4, 0, 0.0),
+        record(3, load(400.0), 4e-4, 0, 0.0),
+    ];
+    let harmonics = Harmonics::Set(vec![1, 3]);
+    let summary = StudySummary::new(&context(harmonics.clone()), &records);
+    assert_eq!(summary.best.len(), 2);
+    for best in &summary.best {
+        assert_eq!(
+            (best.scenario, best.normal_load_n, best.interior),
+            (2, Some(200.0), true)
+        );
+    }
+    assert!(summary.warnings.is_empty(), "{:?}", summary.warnings);
+    let text = summary.to_string();
+    for fragment in [
+        "load N",
+        "slide",
+        "200.0",
+        "lowest P95 amplitude",
+        "at load 200\n",
+    ] {
+        assert!(text.contains(fragment), "{fragment} in\n{text}");
+    }
+    let open = StudySummary::new(&context(harmonics), &records[..3]);
+    assert!(open.best.iter().all(|best| !best.interior));
+    assert!(open.to_string().contains("not enclosed"));
+}
+
+#[test]
+fn separation_is_a_warning_unless_harmonic_zero_and_even_ones_are_in() {
+    let records = [record(0, load(100.0), 3e-4, 0, 0.25)];
+    let with = |set: &[u32]| StudySummary::new(&context(Harmonics::Set(set.to_vec())), &records);
+    let warned = |summary: &StudySummary| {
+        summary
+            .warnings
+            .iter()
+            .any(|warning| matches!(warning, Warning::SeparationWithFewHarmonics { .. }))
+    };
+    assert!(warned(&with(&[1])) && warned(&with(&[1, 3])) && warned(&with(&[0, 1, 3])));
+    assert!(!warned(&with(&[0, 1, 2, 3])));
+    assert!(warned(&StudySummary::new(
+        &context(Harmonics::Auto),
+        &records
+    )));
+}
+
+#[test]
+fn harmonics_auto_says_that_its_remainder_is_unscreened() {
+    let auto = StudySummary::new(
+        &context(Harmonics::Auto),
+        &[record(0, load(9.0), 1.0, 0, 0.0)],
+    );
+    assert!(auto.to_string().contains("has not been estimated"));
+    let linear = record(0, ContactCondition::Free, 1.0, 0, 0.0);
+    let linear = StudySummary::new(&context(Harmonics::Auto), &[linear]);
+    assert!(linear.warnings.is_empty());
+}
+
+#[test]
+fn failures_are_counted_warned_of_and_cost_a_statistic_beyond_the_gate() {
+    let harmonics = || Harmonics::Set(vec![1]);
+    let few = StudySummary::new(&context(harmonics()), &[record(0, load(1.0), 1.0, 1, 0.0)]);
+    assert_eq!(
+        (few.rows.planned(), few.rows.ok(), few.rows.failed()),
+        (400, 399, 1)
+    );
+    assert!(few.warnings.contains(&Warning::Failures {
+        failed: 1,
+        planned: 400
+    }));
+    // One of 400 is 0.25 %: within a tenth of the 5 % tail of P95, beyond that of P99.
+    assert!(few.warnings.contains(&Warning::TooManyFailures {
+        percent: 99,
+        scenarios: vec![0]
+    }));
+    assert!(few.failures_cost_a_statistic());
+    let none = StudySummary::new(&context(harmonics()), &[record(0, load(1.0), 1.0, 0, 0.0)]);
+    assert!(!none.failures_cost_a_statistic());
+}
+
+#[test]
+fn all_rows_of_a_scenario_failing_gives_no_number_and_no_panic() {
+    let mut lost = record(0, load(1.0), 1.0, 400, 0.0);
+    lost.tuned.status = Status::Diverged;
+    lost.tuned.amplitude_m = None;
+    let summary = StudySummary::new(&context(Harmonics::Set(vec![1])), &[lost]);
+    assert_eq!(summary.scenarios[0].peak_amplitude_m.mean, None);
+    assert!(summary.failures_cost_a_statistic());
+    assert!(summary.to_string().contains("diverged"));
+    assert!(serde_json::to_string(&summary).is_ok());
+}
