@@ -49,7 +49,11 @@ pub fn hermitian_eigen<T: Scalar>(
         params,
     )
     .map_err(|_| NotPositiveDefinite)?;
-    let values: Vec<f64> = values.column(0).iter().map(|value| value.real_part()).collect();
+    let values: Vec<f64> = values
+        .column(0)
+        .iter()
+        .map(|value| value.real_part())
+        .collect();
     if values.iter().any(|value| !value.is_finite()) {
         return Err(NotPositiveDefinite);
     }

@@ -100,7 +100,12 @@ impl Case {
     }
 }
 
-pub fn settings(case: &Case, model: &ReducedModel, harmonics: &[u32], samples: usize) -> PointSettings {
+pub fn settings(
+    case: &Case,
+    model: &ReducedModel,
+    harmonics: &[u32],
+    samples: usize,
+) -> PointSettings {
     let options = SolverOptions {
         samples_per_period: samples,
         ..SolverOptions::default()
@@ -122,7 +127,7 @@ pub fn tuned(model: &ReducedModel, harmonics: &[u32]) -> Excited {
 
 /// Mistuned wheel.
 pub fn mistuned(model: &ReducedModel, deviations: &[f64], harmonics: &[u32]) -> Excited {
-    let basis = WheelBasis::new(model);
+    let basis = WheelBasis::new(std::sync::Arc::new(model.clone()));
     let modes =
         StructuralModes::of_wheel(&basis, &basis.blade_stiffness_change(deviations)).unwrap();
     let force = wheel_force(&basis, &modes, ENGINE_ORDER, 1.0);

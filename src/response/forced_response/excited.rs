@@ -232,7 +232,7 @@ impl Excited {
 /// Modal force on a mistuned wheel, of `f e^{i EO n alpha}` scaled by `amplitude_n`.
 #[must_use]
 pub fn wheel_force(
-    basis: &WheelBasis<'_>,
+    basis: &WheelBasis,
     modes: &StructuralModes,
     engine_order: u32,
     amplitude_n: f64,
