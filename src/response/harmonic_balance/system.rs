@@ -13,35 +13,13 @@
 
 use std::sync::Arc;
 
-use super::structure::{ContactStiffnessMatrix, Structure};
-use super::{HarmonicTransform, PairHarmonics, PairJacobian};
+use super::{
+    ContactInterface, ContactShares, HarmonicBlock, HarmonicTransform, PairHarmonics, PairJacobian,
+};
 use crate::linalg::{
     Complex64, Matrix, add_times_vector, add_transpose_times, add_transpose_times_vector,
 };
-use crate::model::cyclic::ContactGeometry;
-use crate::response::friction::{ContactLaw, PairParameters};
-
-/// One harmonic of the set: its number, and the structure it lives in.
-#[derive(Debug, Clone)]
-pub struct HarmonicBlock {
-    /// Harmonic k.
-    pub harmonic: u32,
-    /// Structure; the wheel's is shared by all harmonics, a tuned wave has one per harmonic.
-    pub structure: Arc<Structure>,
-    /// Linear stuck contact stiffness of that structure.
-    pub stuck: Arc<ContactStiffnessMatrix>,
-}
-
-/// Contact law and pair parameters of one sector.
-#[derive(Debug, Clone)]
-pub struct ContactInterface {
-    /// Law of every pair.
-    pub law: ContactLaw,
-    /// Rows and weights of the pairs of one sector.
-    pub geometry: ContactGeometry,
-    /// Parameters of each pair of one sector.
-    pub pairs: Vec<PairParameters>,
-}
+use crate::response::friction::PairParameters;
 
 /// The nonlinear equation at any frequency.
 #[derive(Debug, Clone)]
@@ -57,15 +35,6 @@ pub struct HarmonicSystem {
     transform: Arc<HarmonicTransform>,
     /// Number of contact rows over all sectors.
     rows: usize,
-}
-
-/// Share of contact pairs in a state at any sample.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ContactShares {
-    /// Pairs slipping in any direction.
-    pub slipping: f64,
-    /// Pairs with no normal load.
-    pub separated: f64,
 }
 
 /// Buffers of one thread for one [`HarmonicSystem`].
