@@ -47,6 +47,8 @@ impl From<&PipelineError> for ExitStatus {
                 Self::InputOutput
             }
             PipelineError::Model(_) => Self::ModelInvalid,
+            PipelineError::Cache(_) => Self::InputOutput,
+            PipelineError::Harmonics(_) => Self::StudyInvalid,
             PipelineError::Table(error) => error.into(),
             PipelineError::DifferentStudy { .. } => Self::DifferentStudy,
             PipelineError::Locked { .. } => Self::Locked,

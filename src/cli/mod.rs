@@ -2,7 +2,6 @@
 
 mod arguments;
 mod check;
-mod engine;
 mod exit;
 mod init;
 mod model;

@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use super::engine::engine_source;
 use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::model::sector::bundle;
-use crate::study::{EngineSource, PipelineError, Study, load_sector_model};
+use crate::study::{EngineSource, PipelineError, ReducedEngineSource, Study, load_sector_model};
 
 pub(super) fn command(
     study: &Path,
@@ -19,7 +18,7 @@ pub(super) fn command(
         bundle::write(&model, folder).map_err(PipelineError::from)?;
         output::message(&format!("wrote the sector bundle {}", folder.display()));
     }
-    let engine = engine_source().build(&study, &model, None)?;
+    let engine = ReducedEngineSource.build(&study, &model, None)?;
     output::result(json, &engine.model_report());
     Ok(ExitStatus::Done)
 }

@@ -5,13 +5,12 @@ use std::str::FromStr;
 
 use serde_json::json;
 
-use super::engine::engine_source;
 use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::population::table::{CurveFormat, TableHeader, write_curve};
 use crate::response::forced_response::ContactCondition;
 use crate::response::harmonic_balance::Status;
-use crate::study::{CurveRequest, Study, StudyDigest, response_curve};
+use crate::study::{CurveRequest, ReducedEngineSource, Study, StudyDigest, response_curve};
 
 /// Largest number of frequencies of a curve.
 const MAX_FREQUENCIES: usize = 1_000_000;
@@ -151,7 +150,7 @@ pub(super) fn command(arguments: &ResponseArguments) -> Result<ExitStatus, Failu
         study_digest: StudyDigest::of(&study)?.hex(),
         compression: study.output.compression,
     };
-    let points = response_curve(&study, &engine_source(), request)?;
+    let points = response_curve(&study, &ReducedEngineSource, request)?;
     write_curve(out, format, &points, &header)?;
     let failed = points
         .iter()

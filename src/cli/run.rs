@@ -3,11 +3,10 @@
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
-use super::engine::engine_source;
 use super::progress::RunProgress;
 use super::run_command::Failure;
 use super::{ExitStatus, output};
-use crate::study::{RunRequest, Study, run};
+use crate::study::{ReducedEngineSource, RunRequest, Study, run};
 
 pub(super) fn command(
     study: &Path,
@@ -28,7 +27,7 @@ pub(super) fn command(
             results: &results,
             threads,
         },
-        &engine_source(),
+        &ReducedEngineSource,
         &progress,
     );
     progress.finish();

@@ -10,7 +10,9 @@ pub use dense::{
     NotPositiveDefinite, OrthonormalBasis, hermitian_eigen, hermitian_pencil, orthonormal_basis,
 };
 pub use lu::LuWorkspace;
-pub use matrix::{Matrix, Scalar, transpose_times_into};
+pub use matrix::{
+    Matrix, Scalar, add_times_vector, add_transpose_times, add_transpose_times_vector,
+};
 pub use rustfft::num_complex::Complex64;
 pub use sparse::{HermitianSparse, SparseFactor, lowest_modes};
 pub use symmetric_sparse::SymmetricSparse;

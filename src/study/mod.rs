@@ -1,5 +1,6 @@
 //! The study file: as written, checked, resolved; and the pipeline that turns it into tables.
 
+mod basis_choice;
 mod digest;
 mod engine;
 mod error;
@@ -7,6 +8,7 @@ mod mistuning;
 mod pipeline;
 mod pipeline_error;
 mod raw;
+mod reduced_engine;
 mod resolved;
 mod response_curve;
 mod results_folder;
@@ -23,6 +25,7 @@ pub use error::{Finding, Problem, StudyError};
 pub use mistuning::{Mistuning, MistuningSource};
 pub use pipeline::{Progress, RunOutcome, RunRequest, Stage, run, summarise};
 pub use pipeline_error::PipelineError;
+pub use reduced_engine::ReducedEngineSource;
 pub use resolved::{ModelSource, OutputOptions, Study};
 pub use response_curve::{CurveRequest, response_curve};
 pub use sector_model::{load_sector_model, pattern_source};

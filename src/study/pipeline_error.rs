@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use super::StudyError;
+use crate::model::CacheError;
 use crate::model::sector::ModelError;
 use crate::population::table::TableError;
+use crate::response::harmonic_balance::TransformError;
 
 /// A stage of the pipeline that failed. Rows that fail are no errors: they are rows.
 #[derive(Debug, Error)]
@@ -56,6 +58,12 @@ pub enum PipelineError {
         /// Why.
         reason: String,
     },
+    /// The reduced model cannot be stored.
+    #[error(transparent)]
+    Cache(#[from] CacheError),
+    /// The samples per period cannot tell the harmonics apart.
+    #[error("solver.harmonics and solver.samples_per_period do not fit: {0}")]
+    Harmonics(#[from] TransformError),
     /// The study has no such pattern.
     #[error("there is no pattern {id}; accepted: tuned, or {accepted}")]
     NoPattern {

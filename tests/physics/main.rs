@@ -2,3 +2,5 @@
 #![allow(clippy::unwrap_used)]
 
 mod contact;
+mod finite_element;
+mod sector_sources;

@@ -91,7 +91,11 @@ fn attachment_vectors(
     springs: &ContactSprings,
 ) -> Result<Matrix<Complex64>, ModelError> {
     let h = model.nodal_diameter;
-    let (eigenvalues, modes) = pencil(&model.stiffness_with_contact(&springs.stick), &model.mass, h)?;
+    let (eigenvalues, modes) = pencil(
+        &model.stiffness_with_contact(&springs.stick),
+        &model.mass,
+        h,
+    )?;
     if eigenvalues.first().is_some_and(|&lowest| lowest <= 0.0) {
         return Err(ModelError::StiffnessNotPositiveDefinite {
             nodal_diameter: h,
@@ -101,7 +105,11 @@ fn attachment_vectors(
     // K^-1 = Phi Lambda^-1 Phi^H over all modes of the model.
     let mut participation = modes.adjoint_times(&model.contact.adjoint());
     for column in 0..participation.columns() {
-        for (entry, eigenvalue) in participation.column_mut(column).iter_mut().zip(&eigenvalues) {
+        for (entry, eigenvalue) in participation
+            .column_mut(column)
+            .iter_mut()
+            .zip(&eigenvalues)
+        {
             *entry /= *eigenvalue;
         }
     }

@@ -1,6 +1,8 @@
 //! Craig-Bampton model of one nodal diameter: contact dofs kept, the rest in fixed-interface modes.
 
-use crate::linalg::{Complex64, HermitianSparse, Matrix, SparseFactor, hermitian_pencil, lowest_modes};
+use crate::linalg::{
+    Complex64, HermitianSparse, Matrix, SparseFactor, hermitian_pencil, lowest_modes,
+};
 use crate::model::cyclic::CyclicSector;
 use crate::model::sector::{ModelError, StiffnessKind};
 
@@ -43,7 +45,15 @@ impl CraigBampton {
             .map_err(|_| ModelError::MassNotPositiveDefinite { nodal_diameter: h })?;
         let n = sector.dimension();
         if n <= WHOLE_SPACE_DOFS {
-            return Ok(Self::project(sector, h, &stiffness, &mass, Matrix::identity(n), 0, true));
+            return Ok(Self::project(
+                sector,
+                h,
+                &stiffness,
+                &mass,
+                Matrix::identity(n),
+                0,
+                true,
+            ));
         }
         let boundary = sector.contact_dofs();
         let mut is_boundary = vec![false; n];
@@ -69,7 +79,15 @@ impl CraigBampton {
             }
         }
         let whole_space = columns == n;
-        Ok(Self::project(sector, h, &stiffness, &mass, recovery, 0, whole_space))
+        Ok(Self::project(
+            sector,
+            h,
+            &stiffness,
+            &mass,
+            recovery,
+            0,
+            whole_space,
+        ))
     }
 
     /// The same model with T enlarged by the sensitivity to blade stiffness of `count` stick modes,
@@ -114,7 +132,9 @@ impl CraigBampton {
         let sensitivity = factor.solve(&chosen);
         let recovery = self.enlarge(&mass, &sensitivity)?;
         let added = recovery.columns() - self.size();
-        Ok(Self::project(sector, h, &stiffness, &mass, recovery, added, false))
+        Ok(Self::project(
+            sector, h, &stiffness, &mass, recovery, added, false,
+        ))
     }
 
     /// Eigenvalues (rad/s)^2, ascending, and M-orthonormal modes of the model with contact
@@ -123,7 +143,11 @@ impl CraigBampton {
     /// # Errors
     /// If the mass is not positive definite.
     pub fn modes(&self, springs: &[f64]) -> Result<(Vec<f64>, Matrix<Complex64>), ModelError> {
-        pencil(&self.stiffness_with_contact(springs), &self.mass, self.nodal_diameter)
+        pencil(
+            &self.stiffness_with_contact(springs),
+            &self.mass,
+            self.nodal_diameter,
+        )
     }
 
     /// `T^H (K + C^T diag(springs) C) T`.
@@ -133,11 +157,7 @@ impl CraigBampton {
             self.contact[(i, j)] * springs[i]
         });
         let mut sum = self.contact.adjoint_times(&scaled);
-        for (entry, &structure) in sum
-            .as_mut_slice()
-            .iter_mut()
-            .zip(self.stiffness.as_slice())
-        {
+        for (entry, &structure) in sum.as_mut_slice().iter_mut().zip(self.stiffness.as_slice()) {
             *entry += structure;
         }
         sum

@@ -9,8 +9,8 @@ use super::blade::{blade_gram, cantilever_modes};
 use super::craig_bampton::{CraigBampton, pencil};
 use crate::linalg::{Complex64, Matrix};
 use crate::model::cyclic::CyclicSector;
-use crate::model::{NodalDiameterReport, ReducedModel, ReducedNodalDiameter};
 use crate::model::sector::{ModelError, SectorModel};
+use crate::model::{NodalDiameterReport, ReducedModel, ReducedNodalDiameter};
 
 /// Number of frequencies per nodal diameter in the report.
 const REPORTED_FREQUENCIES: usize = 6;

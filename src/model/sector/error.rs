@@ -196,10 +196,14 @@ pub enum ModelError {
         what: StiffnessKind,
     },
     /// No blade dof moves when the blade's root is held.
-    #[error("every blade dof also belongs to other structure, so the blade has no cantilever modes; accepted: projection = \"exact\", or a blade with dofs of its own")]
+    #[error(
+        "every blade dof also belongs to other structure, so the blade has no cantilever modes; accepted: projection = \"exact\", or a blade with dofs of its own"
+    )]
     NoFreeBladeDof,
     /// The blade held at its root has no positive definite stiffness and mass.
-    #[error("the blade held at its root has no positive definite stiffness and mass; accepted: a K_blade that is positive definite on the blade's own dofs")]
+    #[error(
+        "the blade held at its root has no positive definite stiffness and mass; accepted: a K_blade that is positive definite on the blade's own dofs"
+    )]
     CantileverNotPositiveDefinite,
     /// A blade stiffness stands where the structure has none.
     #[error(

@@ -17,7 +17,7 @@ pub struct Material {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElementMatrices {
     /// Stiffness blocks, N/m: `stiffness[a][b][i][j]` couples direction `i` of node `a` to `j` of `b`.
-    pub stiffness: Box<[[Block; NODES]; NODES]>,
+    pub stiffness: Vec<[Block; NODES]>,
     /// Mass factors, kg: the mass block of nodes `a` and `b` is `mass[a][b]` times the identity.
     pub mass: [[f64; NODES]; NODES],
 }
@@ -130,7 +130,7 @@ pub fn matrices(
     let lambda = material.youngs_modulus_pa * material.poisson_ratio
         / ((1.0 + material.poisson_ratio) * (1.0 - 2.0 * material.poisson_ratio));
     let mu = material.youngs_modulus_pa / (2.0 * (1.0 + material.poisson_ratio));
-    let mut stiffness = Box::new([[[[0.0; 3]; 3]; NODES]; NODES]);
+    let mut stiffness = vec![[[[0.0; 3]; 3]; NODES]; NODES];
     let mut mass = [[0.0; NODES]; NODES];
     for point in 0..27 {
         let rule = [GAUSS[point % 3], GAUSS[point / 3 % 3], GAUSS[point / 9]];

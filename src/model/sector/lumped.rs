@@ -51,7 +51,7 @@ const RADIUS_M: [f64; 3] = [1.5, 1.0, 0.9];
 
 /// One kind of mass with the springs that need no other mass.
 struct Mass {
-    mass_kg: f64,
+    kg: f64,
     ground: f64,
     coupling: f64,
     radius_m: f64,
@@ -179,7 +179,7 @@ impl LumpedOptions {
         .zip(RADIUS_M)
         .filter(|((mass_kg, ..), _)| *mass_kg > 0.0)
         .map(|((mass_kg, ground, coupling, body), radius_m)| Mass {
-            mass_kg,
+            kg: mass_kg,
             ground,
             coupling,
             radius_m,
@@ -205,7 +205,7 @@ pub fn build(options: &LumpedOptions) -> Result<SectorModel, ModelError> {
     let mut mass = Vec::new();
     for (index, part) in masses.iter().enumerate() {
         dofs.push(dof(index, part.radius_m, 0.0, part.body));
-        mass.push((index, index, part.mass_kg));
+        mass.push((index, index, part.kg));
         push_spring(&mut stiffness, index, None, part.ground);
     }
     let mut blade_stiffness = Vec::new();

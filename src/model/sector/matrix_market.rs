@@ -55,6 +55,10 @@ struct Entry {
 }
 
 /// Parses the text; an error carries its line.
+#[expect(
+    clippy::float_cmp,
+    reason = "symmetry to the last bit is what the format asks for"
+)]
 fn parse(text: &str) -> Result<SymmetricSparse, (usize, LineProblem)> {
     let mut lines = text
         .lines()

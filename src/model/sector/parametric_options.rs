@@ -16,67 +16,67 @@ use super::hexahedron20::Material;
 pub struct ParametricOptions {
     /// Number of sectors N. Default 24.
     pub sectors: usize,
-    /// Radius of the bore, where the disk is clamped.
+    /// Radius of the bore, where the disk is clamped. Default 0.06.
     pub bore_radius_m: f64,
-    /// Outer radius of the rim, on which the blade stands.
+    /// Outer radius of the rim, on which the blade stands. Default 0.205.
     pub rim_radius_m: f64,
-    /// Radial thickness of the rim.
+    /// Radial thickness of the rim. Default 0.010.
     pub rim_thickness_m: f64,
-    /// Axial width of the rim.
+    /// Axial width of the rim. Default 0.040.
     pub rim_axial_width_m: f64,
-    /// Axial thickness of the disk's web.
+    /// Axial thickness of the disk's web. Default 0.006.
     pub disk_thickness_m: f64,
-    /// Axial length of the flange beyond the rim.
+    /// Axial length of the flange beyond the rim. Default 0.014.
     pub flange_length_m: f64,
-    /// Radial thickness of the flange, at most that of the rim.
+    /// Radial thickness of the flange, at most that of the rim. Default 0.010.
     pub flange_thickness_m: f64,
-    /// Axial width of the ring, which ends where the flange ends; at most the flange's length.
+    /// Axial width of the ring, which ends where the flange ends; at most the flange's length. Default 0.014.
     pub ring_axial_width_m: f64,
-    /// Radial thickness of the ring.
+    /// Radial thickness of the ring. Default 0.005.
     pub ring_thickness_m: f64,
-    /// Height of the blade above the rim.
+    /// Height of the blade above the rim. Default 0.080.
     pub blade_height_m: f64,
-    /// Axial chord at the root, at most the rim's width; the chord is this over cos(stagger).
+    /// Axial chord at the root, at most the rim's width; the chord is this over cos(stagger). Default 0.040.
     pub blade_root_axial_chord_m: f64,
-    /// Axial chord at the tip.
+    /// Axial chord at the tip. Default 0.032.
     pub blade_tip_axial_chord_m: f64,
-    /// Thickness at the root, normal to the chord.
+    /// Thickness at the root, normal to the chord. Default 0.0055.
     pub blade_root_thickness_m: f64,
-    /// Thickness at the tip, normal to the chord.
+    /// Thickness at the tip, normal to the chord. Default 0.003.
     pub blade_tip_thickness_m: f64,
-    /// Angle from the axis to the chord at the root, positive from +z towards +theta.
+    /// Angle from the axis to the chord at the root, positive from +z towards +theta. Default 30.0.
     pub blade_stagger_angle_deg: f64,
-    /// Stagger angle at the tip less that at the root; linear in between.
+    /// Stagger angle at the tip less that at the root; linear in between. Default 20.0.
     pub blade_twist_deg: f64,
-    /// Young's modulus of disk and blade, Pa.
+    /// Young's modulus of disk and blade, Pa. Default 2.1e11.
     pub blisk_youngs_modulus_pa: f64,
-    /// Poisson's ratio of disk and blade.
+    /// Poisson's ratio of disk and blade. Default 0.3.
     pub blisk_poisson_ratio: f64,
-    /// Density of disk and blade.
+    /// Density of disk and blade. Default 7850.0.
     pub blisk_density_kg_per_m3: f64,
-    /// Young's modulus of the ring, Pa.
+    /// Young's modulus of the ring, Pa. Default 2.1e11.
     pub ring_youngs_modulus_pa: f64,
-    /// Poisson's ratio of the ring.
+    /// Poisson's ratio of the ring. Default 0.3.
     pub ring_poisson_ratio: f64,
-    /// Density of the ring.
+    /// Density of the ring. Default 7850.0.
     pub ring_density_kg_per_m3: f64,
-    /// Frequency f of the weak grounding `(2 pi f)^2 M` of the ring, which contact alone holds otherwise.
+    /// Frequency f of the weak grounding `(2 pi f)^2 M` of the ring, which contact alone holds otherwise. Default 5.0.
     pub ring_grounding_frequency_hz: f64,
-    /// Elements along the radius of the web.
+    /// Elements along the radius of the web. Default 3.
     pub disk_radial_elements: usize,
-    /// Elements through the axial thickness of the web.
+    /// Elements through the axial thickness of the web. Default 1.
     pub disk_axial_elements: usize,
-    /// Elements of the rim and the root along z, on each side of the web.
+    /// Elements of the rim and the root along z, on each side of the web. Default 1.
     pub rim_axial_elements: usize,
-    /// Elements along the flange over the ring's width.
+    /// Elements along the flange over the ring's width. Default 1.
     pub flange_axial_elements: usize,
-    /// Elements between the blade and each cyclic face.
+    /// Elements between the blade and each cyclic face. Default 1.
     pub passage_elements: usize,
-    /// Elements through the thickness of the blade.
+    /// Elements through the thickness of the blade. Default 1.
     pub blade_thickness_elements: usize,
-    /// Elements along the height of the blade.
+    /// Elements along the height of the blade. Default 5.
     pub blade_radial_elements: usize,
-    /// Elements through the radial thickness of the ring.
+    /// Elements through the radial thickness of the ring. Default 1.
     pub ring_radial_elements: usize,
 }
 
@@ -92,13 +92,13 @@ impl Default for ParametricOptions {
             flange_length_m: 0.014,
             flange_thickness_m: 0.010,
             ring_axial_width_m: 0.014,
-            ring_thickness_m: 0.007,
+            ring_thickness_m: 0.005,
             blade_height_m: 0.080,
             blade_root_axial_chord_m: 0.040,
             blade_tip_axial_chord_m: 0.032,
-            blade_root_thickness_m: 0.0045,
-            blade_tip_thickness_m: 0.0025,
-            blade_stagger_angle_deg: 20.0,
+            blade_root_thickness_m: 0.0055,
+            blade_tip_thickness_m: 0.003,
+            blade_stagger_angle_deg: 30.0,
             blade_twist_deg: 20.0,
             blisk_youngs_modulus_pa: 2.1e11,
             blisk_poisson_ratio: 0.3,

@@ -119,6 +119,10 @@ fn check_matrix(matrix: Matrix, values: &SymmetricSparse, dofs: usize) -> Result
 }
 
 /// Positions finite, components once, one position and body per node.
+#[expect(
+    clippy::float_cmp,
+    reason = "the dofs of one node carry the very same numbers"
+)]
 fn check_dofs(dofs: &[Dof]) -> Result<HashMap<usize, Vec<usize>>, ModelError> {
     let mut node_dofs: HashMap<usize, Vec<usize>> = HashMap::new();
     for (index, dof) in dofs.iter().enumerate() {

@@ -3,11 +3,13 @@
 mod blocks;
 mod parallel;
 mod row;
+mod row_solver;
 mod scenario;
 mod sink;
 
 pub use blocks::{PatternBlock, block_size, plan_blocks};
 pub use parallel::solve_blocks;
 pub use row::{ResponseRow, TunedReference};
+pub use row_solver::{CurveResult, RowSettings, RowSolver, amplification_factor, harmonics_name};
 pub use scenario::Scenario;
 pub use sink::{MemorySink, RowSink};

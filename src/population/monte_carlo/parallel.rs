@@ -23,19 +23,22 @@ where
     S::Error: Send,
 {
     let sink = Mutex::new(sink);
-    (0..blocks.len()).into_par_iter().with_max_len(1).try_for_each(|index| {
-        let rows: Vec<ResponseRow> = blocks[index]
-            .patterns
-            .par_iter()
-            .with_max_len(1)
-            .map(|&pattern| solve(pattern))
-            .collect::<Vec<_>>()
-            .into_iter()
-            .flatten()
-            .collect();
-        // A sink that panicked in another thread has lost its rows; ours go on to the same end.
-        sink.lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
-            .block(index, rows)
-    })
+    (0..blocks.len())
+        .into_par_iter()
+        .with_max_len(1)
+        .try_for_each(|index| {
+            let rows: Vec<ResponseRow> = blocks[index]
+                .patterns
+                .par_iter()
+                .with_max_len(1)
+                .map(|&pattern| solve(pattern))
+                .collect::<Vec<_>>()
+                .into_iter()
+                .flatten()
+                .collect();
+            // A sink that panicked in another thread has lost its rows; ours go on to the same end.
+            sink.lock()
+                .unwrap_or_else(std::sync::PoisonError::into_inner)
+                .block(index, rows)
+        })
 }

@@ -1,5 +1,14 @@
 //! Linear limits, sweep, peak search, and the one definition of the amplification factor.
 
+mod excited;
+mod linear_peaks;
 mod options;
+mod peak;
+mod peak_search;
+mod point_solver;
 
+pub use excited::{Excited, LimitsWanted, LinearStructure, Wheel, wheel_force};
+pub use linear_peaks::LinearPeak;
 pub use options::{AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, SolverOptions};
+pub use peak::{Peak, Window, dominant_resonance, mistuned_window, peak};
+pub use point_solver::{Point, PointSettings, PointSolver, Work};

@@ -1,11 +1,21 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
+mod convergence;
 mod damping;
+mod linear;
+mod newton;
 mod pair_harmonics;
 mod status;
+mod structure;
+mod system;
 mod transform;
 
+pub use convergence::NewtonBounds;
 pub use damping::Damping;
+pub use linear::linear_response;
+pub use newton::{NewtonOutcome, NewtonWorkspace, solve};
 pub use pair_harmonics::{PairHarmonics, PairJacobian};
 pub use status::Status;
+pub use structure::{ContactStiffnessMatrix, Structure};
+pub use system::{ContactInterface, ContactShares, HarmonicBlock, HarmonicSystem, SystemWorkspace};
 pub use transform::{HarmonicTransform, TransformError, TransformScratch};

@@ -46,7 +46,7 @@ impl StructuralModes {
     /// Modes of the wheel whose stiffness is changed by `change`, `size x size`; none if a value
     /// is not finite or the stiffness is no longer positive definite where it was.
     #[must_use]
-    pub fn of_wheel(basis: &WheelBasis<'_>, change: &Matrix<f64>) -> Option<Self> {
+    pub fn of_wheel(basis: &WheelBasis, change: &Matrix<f64>) -> Option<Self> {
         let mut stiffness = change.clone();
         for (i, &eigenvalue) in basis.eigenvalues().iter().enumerate() {
             stiffness[(i, i)] += eigenvalue;

@@ -87,6 +87,17 @@ pub struct PatternTable {
 type Entries = BTreeMap<(u32, Option<u32>), (usize, f64)>;
 
 impl PatternRecords {
+    /// Root mean square of all deviations; 0 for an empty file.
+    #[must_use]
+    pub fn root_mean_square(&self) -> f64 {
+        let squares: f64 = self
+            .records
+            .iter()
+            .map(|record| record.deviation.powi(2))
+            .sum();
+        (squares / self.records.len().max(1) as f64).sqrt()
+    }
+
     /// Checks the records of the file `path`.
     ///
     /// # Errors

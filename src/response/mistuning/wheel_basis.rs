@@ -1,5 +1,7 @@
 //! The whole wheel in real coordinates: every nodal diameter as a cosine and a sine wave.
 
+use std::sync::Arc;
+
 use crate::linalg::{Complex64, Matrix};
 use crate::model::ReducedModel;
 use crate::model::cyclic::{nodal_diameter_of, phase};
@@ -12,8 +14,8 @@ use crate::model::cyclic::{nodal_diameter_of, phase};
 /// so that every matrix of a mistuned wheel is real symmetric. `size` coordinates in all, nodal
 /// diameters ascending, cosine before sine.
 #[derive(Debug, Clone)]
-pub struct WheelBasis<'a> {
-    model: &'a ReducedModel,
+pub struct WheelBasis {
+    model: Arc<ReducedModel>,
     waves: Vec<Wave>,
     eigenvalues: Vec<f64>,
     contact: Matrix<f64>,
@@ -31,10 +33,10 @@ struct Wave {
     imaginary: Vec<f64>,
 }
 
-impl<'a> WheelBasis<'a> {
+impl WheelBasis {
     /// Expands a reduced model to its wheel.
     #[must_use]
-    pub fn new(model: &'a ReducedModel) -> Self {
+    pub fn new(model: Arc<ReducedModel>) -> Self {
         let sectors = model.sectors;
         let mut waves = Vec::new();
         let mut eigenvalues = Vec::new();
@@ -63,7 +65,7 @@ impl<'a> WheelBasis<'a> {
             }
         }
         let mut basis = Self {
-            model,
+            model: Arc::clone(&model),
             waves,
             eigenvalues,
             contact: Matrix::zeros(0, 0),
@@ -76,8 +78,8 @@ impl<'a> WheelBasis<'a> {
 
     /// The reduced model.
     #[must_use]
-    pub fn model(&self) -> &'a ReducedModel {
-        self.model
+    pub fn model(&self) -> &ReducedModel {
+        &self.model
     }
 
     /// Number of coordinates.

@@ -65,9 +65,10 @@ impl Header {
     pub(super) fn parse(text: &str) -> Result<Self, (usize, LineProblem)> {
         let header: Self = toml::from_str(text).map_err(|error| {
             let offset = error.span().map_or(0, |span| span.start.min(text.len()));
-            let line = 1 + text.as_bytes()[..offset]
-                .iter()
-                .filter(|&&byte| byte == b'\n')
+            let line = 1 + text
+                .bytes()
+                .take(offset)
+                .filter(|&byte| byte == b'\n')
                 .count();
             (
                 line,

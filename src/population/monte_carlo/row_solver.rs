@@ -1,0 +1,332 @@
+//! One (scenario, pattern) -> one row, and the tuned reference of a scenario.
+
+use std::sync::Arc;
+
+use super::{ResponseRow, Scenario, TunedReference};
+use crate::model::ReducedModel;
+use crate::response::forced_response::{
+    ContactCondition, Excited, FrequencyBand, LimitsWanted, Peak, Point, PointSettings,
+    PointSolver, SolverOptions, Wheel, Window, dominant_resonance, mistuned_window, peak,
+    wheel_force,
+};
+use crate::response::friction::{ContactLaw, PairParameters};
+use crate::response::harmonic_balance::{Damping, Status, TransformError};
+use crate::response::mistuning::{Deviations, Pattern, Projection, StructuralModes, WheelBasis};
+
+/// What a study says about the physics of a row.
+#[derive(Debug, Clone)]
+pub struct RowSettings {
+    /// Harmonic set under the contact law, ascending, with 1.
+    pub harmonics: Vec<u32>,
+    /// Contact law and its parameters per sector; none for a model without contact.
+    pub contact: Option<(ContactLaw, PairParameters)>,
+    /// Damping of the structure.
+    pub damping: Damping,
+    /// Factor on the model's force vector.
+    pub amplitude_n: f64,
+    /// How a deviation enters the reduced stiffness.
+    pub projection: Projection,
+    /// Settings of the solution.
+    pub solver: SolverOptions,
+}
+
+/// Solves rows on one reduced model; shared between threads.
+#[derive(Debug)]
+pub struct RowSolver {
+    basis: WheelBasis,
+    settings: RowSettings,
+    full: PointSettings,
+    linear: PointSettings,
+}
+
+/// Amplitudes of every blade at one frequency.
+pub type CurveResult = (f64, Result<Vec<f64>, Status>);
+
+impl RowSolver {
+    /// A solver for `model`.
+    ///
+    /// # Errors
+    /// If the samples per period cannot tell the harmonics apart.
+    pub fn new(model: Arc<ReducedModel>, settings: RowSettings) -> Result<Self, TransformError> {
+        let points = |harmonics: &[u32]| {
+            PointSettings::new(
+                &settings.solver,
+                harmonics,
+                settings.contact,
+                model.contact.clone(),
+            )
+        };
+        Ok(Self {
+            full: points(&settings.harmonics)?,
+            linear: points(&[1])?,
+            basis: WheelBasis::new(Arc::clone(&model)),
+            settings,
+        })
+    }
+
+    /// The wheel's coordinates.
+    #[must_use]
+    pub fn basis(&self) -> &WheelBasis {
+        &self.basis
+    }
+
+    /// Harmonic set under the contact law.
+    #[must_use]
+    pub fn harmonics(&self) -> &[u32] {
+        &self.settings.harmonics
+    }
+
+    /// Peak of the tuned wheel, on one sector.
+    #[must_use]
+    pub fn tuned_peak(&self, engine_order: u32, contact: ContactCondition) -> Peak {
+        let excited = self.tuned_excited(engine_order, contact);
+        let window = Window {
+            resonances_hz: None,
+            band: self.settings.solver.frequency_band,
+        };
+        peak(
+            &excited,
+            contact,
+            self.points(contact),
+            window,
+            self.settings.solver.peak_tolerance,
+        )
+    }
+
+    /// Tuned reference of a scenario.
+    #[must_use]
+    pub fn tuned(&self, scenario: &Scenario) -> TunedReference {
+        let found = self.tuned_peak(scenario.engine_order, scenario.contact);
+        let point = found.point.as_ref().filter(|_| found.status == Status::Ok);
+        TunedReference {
+            scenario: scenario.index,
+            status: found.status,
+            amplitude_m: found.amplitude_m(),
+            frequency_hz: point.map(|point| point.frequency_hz),
+            separated_fraction: point.map(|point| point.shares.separated),
+            slipping_fraction: point.map(|point| point.shares.slipping),
+        }
+    }
+
+    /// Rows of one pattern under several scenarios of one standard deviation, in their order. The
+    /// projected stiffness, its modes and the modes of the linear limits are found once.
+    #[must_use]
+    pub fn rows(
+        &self,
+        pattern: &Pattern,
+        scenarios: &[(&Scenario, &TunedReference)],
+    ) -> Vec<ResponseRow> {
+        let conditions: Vec<ContactCondition> = scenarios
+            .iter()
+            .map(|(scenario, _)| scenario.contact)
+            .collect();
+        let wheel = self.mistuned(pattern, LimitsWanted::of(&conditions));
+        scenarios
+            .iter()
+            .map(|(scenario, tuned)| {
+                let found = match &wheel {
+                    Ok((modes, wheel)) => self.mistuned_peak(modes, wheel, pattern, scenario),
+                    Err(status) => Err(*status),
+                };
+                self.row(pattern, scenario, tuned, found)
+            })
+            .collect()
+    }
+
+    /// Amplitude of every blade at each frequency, Hz; no pattern means the tuned wheel, of which
+    /// one sector stands for all.
+    ///
+    /// # Errors
+    /// The status of a pattern that cannot be applied.
+    pub fn curve(
+        &self,
+        engine_order: u32,
+        contact: ContactCondition,
+        pattern: Option<&Pattern>,
+        frequencies_hz: &[f64],
+    ) -> Result<Vec<CurveResult>, Status> {
+        let excited = match pattern {
+            None => self.tuned_excited(engine_order, contact),
+            Some(pattern) => {
+                let (modes, wheel) = self.mistuned(pattern, LimitsWanted::default())?;
+                self.wheel_excited(&modes, &wheel, engine_order, contact)
+            }
+        };
+        let mut solver = PointSolver::new(&excited, contact, self.points(contact));
+        let sectors = self.basis.model().sectors;
+        Ok(frequencies_hz
+            .iter()
+            .map(|&frequency| {
+                let amplitudes =
+                    solver
+                        .solve(frequency)
+                        .map(|point| match point.amplitudes_m.as_slice() {
+                            [one] => vec![*one; sectors],
+                            all => all.to_vec(),
+                        });
+                (frequency, amplitudes)
+            })
+            .collect())
+    }
+
+    fn points(&self, contact: ContactCondition) -> &PointSettings {
+        match contact {
+            ContactCondition::Full { .. } => &self.full,
+            _ => &self.linear,
+        }
+    }
+
+    fn tuned_excited(&self, engine_order: u32, contact: ContactCondition) -> Excited {
+        Excited::tuned(
+            self.basis.model(),
+            engine_order,
+            self.settings.amplitude_n,
+            self.settings.damping,
+            self.points(contact).harmonics(),
+            LimitsWanted::of(&[contact]),
+        )
+    }
+
+    fn wheel_excited(
+        &self,
+        modes: &StructuralModes,
+        wheel: &Wheel,
+        engine_order: u32,
+        contact: ContactCondition,
+    ) -> Excited {
+        let force = wheel_force(&self.basis, modes, engine_order, self.settings.amplitude_n);
+        Excited::wheel(wheel, force, self.points(contact).harmonics())
+    }
+
+    /// The wheel with the pattern applied.
+    fn mistuned(
+        &self,
+        pattern: &Pattern,
+        wanted: LimitsWanted,
+    ) -> Result<(StructuralModes, Wheel), Status> {
+        let physical = pattern
+            .entries()
+            .iter()
+            .all(|&(_, _, deviation)| deviation > -1.0 && deviation.is_finite());
+        if !physical {
+            return Err(Status::InvalidPattern);
+        }
+        let change = match (&pattern.deviations, self.settings.projection) {
+            (Deviations::PerBlade(values), Projection::Exact) => {
+                Some(self.basis.blade_stiffness_change(values))
+            }
+            (Deviations::PerBlade(values), Projection::CantileverModes) => self
+                .basis
+                .cantilever_stiffness_change(|blade, _| values[blade]),
+            (Deviations::PerMode { modes, values }, _) => {
+                self.basis.cantilever_stiffness_change(|blade, mode| {
+                    let place = modes.iter().position(|&own| own as usize == mode);
+                    place.map_or(0.0, |place| values[blade * modes.len() + place])
+                })
+            }
+        };
+        let modes = change
+            .and_then(|change| StructuralModes::of_wheel(&self.basis, &change))
+            .ok_or(Status::InvalidPattern)?;
+        let wheel = Wheel::mistuned(
+            modes.clone(),
+            self.basis.model(),
+            self.settings.damping,
+            wanted,
+        );
+        Ok((modes, wheel))
+    }
+
+    fn mistuned_peak(
+        &self,
+        modes: &StructuralModes,
+        wheel: &Wheel,
+        pattern: &Pattern,
+        scenario: &Scenario,
+    ) -> Result<Peak, Status> {
+        let band = self.settings.solver.frequency_band;
+        let tuned = self.tuned_excited(scenario.engine_order, scenario.contact);
+        let window = match (band, dominant_resonance(&tuned, scenario.contact)) {
+            (FrequencyBand::Auto, Some(resonance)) => {
+                mistuned_window(resonance, pattern.largest_deviation(), band)
+            }
+            (FrequencyBand::Auto, None) => return Err(Status::NotBracketed),
+            (FrequencyBand::Fixed { .. }, _) => Window {
+                resonances_hz: None,
+                band,
+            },
+        };
+        let excited = self.wheel_excited(modes, wheel, scenario.engine_order, scenario.contact);
+        Ok(peak(
+            &excited,
+            scenario.contact,
+            self.points(scenario.contact),
+            window,
+            self.settings.solver.peak_tolerance,
+        ))
+    }
+
+    fn row(
+        &self,
+        pattern: &Pattern,
+        scenario: &Scenario,
+        tuned: &TunedReference,
+        found: Result<Peak, Status>,
+    ) -> ResponseRow {
+        let (status, found) = match found {
+            Ok(found) => (found.status, Some(found)),
+            Err(status) => (status, None),
+        };
+        let good: Option<(&Peak, &Point)> = found
+            .as_ref()
+            .filter(|found| found.status == Status::Ok)
+            .and_then(|found| Some((found, found.point.as_ref()?)));
+        let work = found.as_ref().map(|found| found.work).unwrap_or_default();
+        let amplitude = good.map(|(found, point)| point.amplitudes_m[found.blade]);
+        ResponseRow {
+            scenario: scenario.index,
+            pattern: pattern.id,
+            status,
+            peak_amplitude_m: amplitude,
+            peak_frequency_hz: good.map(|(_, point)| point.frequency_hz),
+            peak_blade: good.map(|(found, _)| found.blade as u32),
+            amplification_factor: amplification_factor(amplitude, tuned.amplitude_m),
+            peak_bracketed: found.as_ref().map(|found| found.bracketed),
+            harmonics: harmonics_name(self.points(scenario.contact).harmonics()),
+            nonlinear_solves: work.nonlinear_solves,
+            newton_iterations: work.newton_iterations,
+            residual: good.map(|(_, point)| point.residual),
+            slipping_fraction: good.map(|(_, point)| point.shares.slipping),
+            separated_fraction: good.map(|(_, point)| point.shares.separated),
+            shortcut: shortcut(scenario.contact, good.map(|(_, point)| point)).to_owned(),
+        }
+    }
+}
+
+/// Largest amplitude over blades and frequency of the mistuned wheel over that of the tuned wheel
+/// with the same normal load, engine order and settings.
+#[must_use]
+pub fn amplification_factor(mistuned_m: Option<f64>, tuned_m: Option<f64>) -> Option<f64> {
+    Some(mistuned_m? / tuned_m?)
+}
+
+/// Harmonic set in the column `harmonics`, like `1-3`.
+#[must_use]
+pub fn harmonics_name(harmonics: &[u32]) -> String {
+    let names: Vec<String> = harmonics.iter().map(u32::to_string).collect();
+    names.join("-")
+}
+
+/// `linear` for a linear limit; `stuck` where every pair sticks at the peak, so that the linear
+/// solution is the exact one.
+fn shortcut(contact: ContactCondition, point: Option<&Point>) -> &'static str {
+    match (contact, point) {
+        (ContactCondition::Full { .. }, Some(point))
+            if point.shares.slipping == 0.0 && point.shares.separated == 0.0 =>
+        {
+            "stuck"
+        }
+        (ContactCondition::Full { .. }, _) => "none",
+        _ => "linear",
+    }
+}

@@ -1,0 +1,221 @@
+//! The peak of a row: band, starting points, search, and what was found.
+
+use super::excited::Excited;
+use super::linear_peaks::LinearPeak;
+use super::options::{ContactCondition, FrequencyBand};
+use super::peak_search::{Envelope, SearchEnd, SearchSettings, find_peak};
+use super::point_solver::{Point, PointSettings, PointSolver, Work};
+use crate::response::harmonic_balance::Status;
+
+/// Tolerance of peaks of linear limits, which cost almost nothing.
+const LINEAR_PEAK_TOLERANCE: f64 = 1e-11;
+/// Largest number of points of one row.
+const EVALUATIONS: usize = 240;
+/// Starting points between the dominant stuck and slide peaks.
+const STARTS_BETWEEN: usize = 5;
+/// Times the automatic band is widened while the largest value lies at its end.
+const BAND_EXTENSIONS: usize = 5;
+
+/// What was found of one row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Peak {
+    /// How the search ended.
+    pub status: Status,
+    /// The point of the largest amplitude; none if no point converged.
+    pub point: Option<Point>,
+    /// Blade of the largest amplitude.
+    pub blade: usize,
+    /// Whether lower amplitudes were seen on both sides.
+    pub bracketed: bool,
+    /// Work done.
+    pub work: Work,
+}
+
+impl Peak {
+    /// Largest amplitude, m; none unless the search succeeded.
+    #[must_use]
+    pub fn amplitude_m(&self) -> Option<f64> {
+        (self.status == Status::Ok).then_some(())?;
+        Some(self.point.as_ref()?.amplitudes_m[self.blade])
+    }
+}
+
+/// Where the peak of a row is sought.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// Frequencies to look for linear resonances in, Hz; none = anywhere.
+    pub resonances_hz: Option<(f64, f64)>,
+    /// Band asked for.
+    pub band: FrequencyBand,
+}
+
+/// The tuned resonance that answers an excitation most, under any of the linear limits that bound
+/// the condition.
+#[must_use]
+pub fn dominant_resonance(excited: &Excited, condition: ContactCondition) -> Option<LinearPeak> {
+    excited
+        .linear_peaks(condition)
+        .into_iter()
+        .flatten()
+        .reduce(|best, peak| {
+            if peak.amplitude_m > best.amplitude_m {
+                peak
+            } else {
+                best
+            }
+        })
+}
+
+/// Window of a mistuned wheel: resonances within `0.6 max|delta| + 5 %` of the tuned one.
+#[must_use]
+pub fn mistuned_window(tuned: LinearPeak, largest_deviation: f64, band: FrequencyBand) -> Window {
+    let share = 0.6 * largest_deviation + 0.05;
+    Window {
+        resonances_hz: Some((
+            tuned.frequency_hz * (1.0 - share),
+            tuned.frequency_hz * (1.0 + share),
+        )),
+        band,
+    }
+}
+
+/// Finds the peak of one row.
+#[must_use]
+pub fn peak(
+    excited: &Excited,
+    condition: ContactCondition,
+    settings: &PointSettings,
+    window: Window,
+    peak_tolerance: f64,
+) -> Peak {
+    let nothing = |status| Peak {
+        status,
+        point: None,
+        blade: 0,
+        bracketed: false,
+        work: Work::default(),
+    };
+    let limits: Vec<Vec<LinearPeak>> = excited
+        .linear_peaks(condition)
+        .into_iter()
+        .map(|peaks| within(&peaks, window))
+        .collect();
+    let all: Vec<LinearPeak> = limits.iter().flatten().copied().collect();
+    let Some(largest) = all.iter().map(|peak| peak.amplitude_m).reduce(f64::max) else {
+        return nothing(Status::NotBracketed);
+    };
+    if !largest.is_finite() {
+        return nothing(Status::NonFinite);
+    }
+    if largest <= 0.0 {
+        return nothing(Status::NotBracketed);
+    }
+    let candidates: Vec<LinearPeak> = all
+        .iter()
+        .copied()
+        .filter(|peak| peak.amplitude_m > 0.5 * largest)
+        .collect();
+    let (band_hz, extensions) = match window.band {
+        FrequencyBand::Fixed { start_hz, stop_hz } => ((start_hz, stop_hz), 0),
+        FrequencyBand::Auto => (band_of(&candidates), BAND_EXTENSIONS),
+    };
+    let envelope = Envelope {
+        strength: candidates
+            .iter()
+            .map(|peak| peak.amplitude_m * peak.half_bandwidth_hz)
+            .fold(0.0, f64::max),
+        linear_half_bandwidth_hz: candidates
+            .iter()
+            .map(|peak| peak.half_bandwidth_hz)
+            .fold(f64::INFINITY, f64::min),
+    };
+    let nonlinear = matches!(condition, ContactCondition::Full { .. });
+    let search = SearchSettings {
+        tolerance: if nonlinear {
+            peak_tolerance
+        } else {
+            LINEAR_PEAK_TOLERANCE
+        },
+        evaluations: EVALUATIONS,
+        extensions,
+    };
+    let mut solver = PointSolver::new(excited, condition, settings);
+    let starts = starting_points(&limits, &candidates);
+    let result = find_peak(band_hz, &starts, envelope, search, |frequency| {
+        solver
+            .solve(frequency)
+            .ok()
+            .map(|point| point.amplitudes_m.clone())
+    });
+    let best = result.best.map(|best| &result.samples[best]);
+    let point = best.and_then(|best| {
+        solver
+            .points()
+            .iter()
+            .find(|point| point.frequency_hz == best.frequency_hz)
+            .cloned()
+    });
+    let status = match result.end {
+        SearchEnd::Found if result.bracketed => Status::Ok,
+        SearchEnd::Found | SearchEnd::Open => Status::NotBracketed,
+        SearchEnd::Exhausted => Status::WorkBudget,
+        SearchEnd::Incomplete => solver
+            .failures()
+            .last()
+            .map_or(Status::SweepIncomplete, |&(_, status)| status),
+    };
+    Peak {
+        status,
+        point,
+        blade: best.map_or(0, |best| best.blade),
+        bracketed: result.bracketed,
+        work: solver.work(),
+    }
+}
+
+fn within(peaks: &[LinearPeak], window: Window) -> Vec<LinearPeak> {
+    let (low, high) = match (window.band, window.resonances_hz) {
+        (FrequencyBand::Fixed { start_hz, stop_hz }, _) => (start_hz, stop_hz),
+        (FrequencyBand::Auto, Some(range)) => range,
+        (FrequencyBand::Auto, None) => (0.0, f64::INFINITY),
+    };
+    peaks
+        .iter()
+        .copied()
+        .filter(|peak| peak.frequency_hz >= low && peak.frequency_hz <= high)
+        .collect()
+}
+
+/// From the lowest to the highest candidate, widened by 1 % and 10 half-bandwidths.
+fn band_of(candidates: &[LinearPeak]) -> (f64, f64) {
+    candidates
+        .iter()
+        .fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), peak| {
+            let margin = 0.01 * peak.frequency_hz + 10.0 * peak.half_bandwidth_hz;
+            (
+                low.min((peak.frequency_hz - margin).max(0.1 * peak.frequency_hz)),
+                high.max(peak.frequency_hz + margin),
+            )
+        })
+}
+
+/// Every candidate resonance, and points between the dominant ones of the limits.
+fn starting_points(limits: &[Vec<LinearPeak>], candidates: &[LinearPeak]) -> Vec<f64> {
+    let mut starts: Vec<f64> = candidates.iter().map(|peak| peak.frequency_hz).collect();
+    let dominant: Vec<f64> = limits
+        .iter()
+        .filter_map(|peaks| {
+            peaks
+                .iter()
+                .max_by(|a, b| a.amplitude_m.total_cmp(&b.amplitude_m))
+        })
+        .map(|peak| peak.frequency_hz)
+        .collect();
+    if let [first, second] = dominant[..] {
+        for i in 1..=STARTS_BETWEEN {
+            let share = i as f64 / (STARTS_BETWEEN + 1) as f64;
+            starts.push(first + share * (second - first));
+        }
+    }
+    starts
+}

@@ -1,0 +1,461 @@
+//! One frequency of one row: the solution, found by a fixed ladder of attempts, and its amplitudes.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use super::excited::Excited;
+use super::options::{AmplitudeMeasure, ContactCondition, SolverOptions};
+use crate::linalg::{Complex64, LuWorkspace, add_times_vector};
+use crate::model::cyclic::ContactGeometry;
+use crate::response::friction::{ContactLaw, PairParameters};
+use crate::response::harmonic_balance::{
+    ContactInterface, ContactShares, HarmonicSystem, HarmonicTransform, NewtonBounds,
+    NewtonWorkspace, Status, Structure, TransformError, linear_response, solve,
+};
+
+/// Everything of a study that the solution of a point needs besides the structure.
+#[derive(Debug, Clone)]
+pub struct PointSettings {
+    harmonics: Vec<u32>,
+    transform: Arc<HarmonicTransform>,
+    /// Transform of the observed displacement for [`AmplitudeMeasure::TimeMaximum`].
+    time_grid: Option<Arc<HarmonicTransform>>,
+    bounds: NewtonBounds,
+    contact: Option<(ContactLaw, PairParameters)>,
+    geometry: ContactGeometry,
+}
+
+impl PointSettings {
+    /// `harmonics` ascending, with 1; `contact` is the law with its per-sector parameters (the
+    /// normal load is set per scenario).
+    ///
+    /// # Errors
+    /// If the harmonics cannot be told apart with the samples asked for.
+    pub fn new(
+        options: &SolverOptions,
+        harmonics: &[u32],
+        contact: Option<(ContactLaw, PairParameters)>,
+        geometry: ContactGeometry,
+    ) -> Result<Self, TransformError> {
+        let set: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
+        let transform = HarmonicTransform::new(&set, options.samples_per_period)?;
+        let time_grid = match options.amplitude {
+            AmplitudeMeasure::Fundamental => None,
+            AmplitudeMeasure::TimeMaximum => Some(Arc::new(HarmonicTransform::new(
+                &set,
+                options.time_samples,
+            )?)),
+        };
+        Ok(Self {
+            harmonics: harmonics.to_vec(),
+            transform: Arc::new(transform),
+            time_grid,
+            bounds: NewtonBounds::with_tolerance(options.residual_tolerance),
+            contact,
+            geometry,
+        })
+    }
+
+    /// Harmonic set of the nonlinear solution.
+    #[must_use]
+    pub fn harmonics(&self) -> &[u32] {
+        &self.harmonics
+    }
+}
+
+/// Work done for a row.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Points solved nonlinearly.
+    pub nonlinear_solves: u64,
+    /// Newton iterations, all attempts.
+    pub newton_iterations: u64,
+    /// Jacobians assembled and factored.
+    pub factorisations: u64,
+    /// Points that needed more than the first attempt.
+    pub retries: u64,
+}
+
+/// A converged point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Real unknowns of the harmonic balance, see [`HarmonicSystem`]; for a linear limit those of
+    /// harmonic 1 alone.
+    pub solution: Vec<f64>,
+    /// Amplitude of every blade, m.
+    pub amplitudes_m: Vec<f64>,
+    /// Residual relative to the excitation; 0 for a linear limit.
+    pub residual: f64,
+    /// Shares of slipping and separated pairs.
+    pub shares: ContactShares,
+}
+
+/// Solver of the points of one row; keeps the converged points as starts for others.
+pub struct PointSolver<'a> {
+    excited: &'a Excited,
+    condition: ContactCondition,
+    settings: &'a PointSettings,
+    linear: LuWorkspace<Complex64>,
+    nonlinear: Option<(HarmonicSystem, NewtonWorkspace)>,
+    points: Vec<Point>,
+    failures: Vec<(f64, Status)>,
+    work: Work,
+}
+
+impl<'a> PointSolver<'a> {
+    /// A solver for `condition`, with no point solved yet.
+    #[must_use]
+    pub fn new(
+        excited: &'a Excited,
+        condition: ContactCondition,
+        settings: &'a PointSettings,
+    ) -> Self {
+        let nonlinear = match (condition, settings.contact) {
+            (ContactCondition::Full { normal_load_n }, Some((law, sector))) => {
+                let interface = ContactInterface {
+                    law,
+                    geometry: settings.geometry.clone(),
+                    pairs: pairs_under(sector, normal_load_n, &settings.geometry),
+                };
+                let system = HarmonicSystem::new(
+                    excited.blocks.clone(),
+                    excited.force.clone(),
+                    interface,
+                    Arc::clone(&settings.transform),
+                );
+                let workspace = NewtonWorkspace::new(&system);
+                Some((system, workspace))
+            }
+            _ => None,
+        };
+        Self {
+            excited,
+            condition,
+            settings,
+            linear: LuWorkspace::new(excited.linear.structure.size()),
+            nonlinear,
+            points: Vec::new(),
+            failures: Vec::new(),
+            work: Work::default(),
+        }
+    }
+
+    /// Converged points, in the order in which they were solved.
+    #[must_use]
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// Frequencies that could not be solved, Hz, with the status of the last attempt.
+    #[must_use]
+    pub fn failures(&self) -> &[(f64, Status)] {
+        &self.failures
+    }
+
+    /// Work done so far.
+    #[must_use]
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// Solves at one frequency, Hz.
+    ///
+    /// # Errors
+    /// The status of the last attempt, if none converged.
+    pub fn solve(&mut self, frequency_hz: f64) -> Result<&Point, Status> {
+        let solved = if self.nonlinear.is_some() {
+            self.solve_nonlinear(frequency_hz)
+        } else {
+            self.solve_linear(frequency_hz)
+        };
+        match solved {
+            Ok(point) => {
+                self.points.push(point);
+                Ok(&self.points[self.points.len() - 1])
+            }
+            Err(status) => {
+                self.failures.push((frequency_hz, status));
+                Err(status)
+            }
+        }
+    }
+
+    fn solve_linear(&mut self, frequency_hz: f64) -> Result<Point, Status> {
+        let response = self.linear_at(frequency_hz)?;
+        let solution = real_parts(&response);
+        let blocks = [(1, &*self.excited.linear.structure)];
+        Ok(Point {
+            frequency_hz,
+            amplitudes_m: self.blade_amplitudes(&blocks, &solution),
+            solution,
+            residual: 0.0,
+            shares: ContactShares::default(),
+        })
+    }
+
+    /// Linear response with the springs of the condition, stuck ones for the full law.
+    fn linear_at(&mut self, frequency_hz: f64) -> Result<Vec<Complex64>, Status> {
+        linear_response(
+            &self.excited.linear.structure,
+            self.excited.linear.contact(self.condition),
+            TAU * frequency_hz,
+            &self.excited.force,
+            &mut self.linear,
+        )
+        .ok_or(Status::SingularJacobian)
+    }
+
+    fn stuck_start(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
+        let stuck = self.linear_at(frequency_hz)?;
+        let Some((system, _)) = &self.nonlinear else {
+            return Err(Status::SingularJacobian);
+        };
+        let mut start = vec![0.0; system.unknowns()];
+        let at = system.block_start(system.fundamental());
+        start[at..at + 2 * stuck.len()].copy_from_slice(&real_parts(&stuck));
+        Ok(start)
+    }
+
+    fn solve_nonlinear(&mut self, frequency_hz: f64) -> Result<Point, Status> {
+        self.work.nonlinear_solves += 1;
+        let mut last = Status::IterationLimit;
+        for (rung, attempt) in Attempt::LADDER.into_iter().enumerate() {
+            match self.attempt(attempt, frequency_hz) {
+                Ok(point) => {
+                    self.work.retries += u64::from(rung > 0);
+                    return Ok(point);
+                }
+                Err(status) => last = status,
+            }
+        }
+        self.work.retries += 1;
+        Err(last)
+    }
+
+    fn attempt(&mut self, attempt: Attempt, frequency_hz: f64) -> Result<Point, Status> {
+        match attempt {
+            Attempt::Nearest => {
+                let start = match self.nearest(frequency_hz) {
+                    Some(point) => point.solution.clone(),
+                    None => self.stuck_start(frequency_hz)?,
+                };
+                self.newton(frequency_hz, start, 1.0)
+            }
+            Attempt::Stuck => {
+                let start = self.stuck_start(frequency_hz)?;
+                self.newton(frequency_hz, start, 1.0)
+            }
+            Attempt::FrequencySteps => self.step_in_frequency(frequency_hz),
+            Attempt::LoadHomotopy => self.lower_normal_load(frequency_hz),
+        }
+    }
+
+    fn nearest(&self, frequency_hz: f64) -> Option<&Point> {
+        self.points.iter().min_by(|a, b| {
+            let distance = |point: &Point| (point.frequency_hz - frequency_hz).abs();
+            distance(a).total_cmp(&distance(b))
+        })
+    }
+
+    /// Newton's method from `start`, the normal load multiplied by `load_factor`.
+    fn newton(
+        &mut self,
+        frequency_hz: f64,
+        start: Vec<f64>,
+        load_factor: f64,
+    ) -> Result<Point, Status> {
+        let Some((system, workspace)) = &mut self.nonlinear else {
+            return Err(Status::SingularJacobian);
+        };
+        let mut x = start;
+        let omega = TAU * frequency_hz;
+        let bounds = self.settings.bounds;
+        let outcome = if load_factor == 1.0 {
+            solve(system, omega, &mut x, bounds, workspace)
+        } else {
+            let scaled = system
+                .pairs()
+                .iter()
+                .map(|pair| PairParameters {
+                    normal_load_n: load_factor * pair.normal_load_n,
+                    ..*pair
+                })
+                .collect();
+            solve(&system.with_pairs(scaled), omega, &mut x, bounds, workspace)
+        };
+        self.work.newton_iterations += outcome.iterations;
+        self.work.factorisations += outcome.factorisations;
+        if outcome.status != Status::Ok {
+            return Err(outcome.status);
+        }
+        let blocks: Vec<(u32, &Structure)> = self
+            .excited
+            .blocks
+            .iter()
+            .map(|block| (block.harmonic, &*block.structure))
+            .collect();
+        Ok(Point {
+            frequency_hz,
+            amplitudes_m: self.blade_amplitudes(&blocks, &x),
+            solution: x,
+            residual: outcome.residual,
+            shares: outcome.shares,
+        })
+    }
+
+    /// Continuation in frequency from the nearest converged point, the step halved on failure.
+    fn step_in_frequency(&mut self, frequency_hz: f64) -> Result<Point, Status> {
+        const SMALLEST_SHARE: f64 = 1.0 / 64.0;
+        let Some(from) = self.nearest(frequency_hz).cloned() else {
+            return Err(Status::StepTooSmall);
+        };
+        let span = frequency_hz - from.frequency_hz;
+        let (mut done, mut share, mut current) = (0.0, 0.25, from.solution);
+        loop {
+            let next: f64 = f64::min(done + share, 1.0);
+            let at = if next >= 1.0 {
+                frequency_hz
+            } else {
+                from.frequency_hz + next * span
+            };
+            match self.newton(at, current.clone(), 1.0) {
+                Ok(point) if next >= 1.0 => return Ok(point),
+                Ok(point) => {
+                    current = point.solution;
+                    done = next;
+                }
+                Err(_) if share > SMALLEST_SHARE => share *= 0.5,
+                Err(_) => return Err(Status::StepTooSmall),
+            }
+        }
+    }
+
+    /// Homotopy in normal load: from a load at which every pair sticks down to that of the
+    /// scenario, the step (in the logarithm of the load) halved on failure.
+    fn lower_normal_load(&mut self, frequency_hz: f64) -> Result<Point, Status> {
+        const FIRST_FACTOR: f64 = 64.0;
+        const SMALLEST_STEP: f64 = 1.0 / 64.0;
+        let mut current = self.stuck_start(frequency_hz)?;
+        let (mut exponent, mut step) = (1.0, 0.25);
+        loop {
+            let next = f64::max(exponent - step, 0.0);
+            match self.newton(frequency_hz, current.clone(), FIRST_FACTOR.powf(next)) {
+                Ok(point) if next <= 0.0 => return Ok(point),
+                Ok(point) => {
+                    current = point.solution;
+                    exponent = next;
+                }
+                Err(_) if step > SMALLEST_STEP => step *= 0.5,
+                Err(_) => return Err(Status::StepTooSmall),
+            }
+        }
+    }
+
+    /// Amplitude of each blade: of the fundamental harmonic, or the largest over a period.
+    fn blade_amplitudes(&self, blocks: &[(u32, &Structure)], solution: &[f64]) -> Vec<f64> {
+        let rows = blocks[0].1.observed().real.rows();
+        let mut start = 0;
+        let mut coefficients: Vec<(u32, Vec<f64>, Vec<f64>)> = Vec::new();
+        for &(harmonic, structure) in blocks {
+            let observed = structure.observed();
+            let real = &observed.real;
+            let n = structure.size();
+            let mut re = vec![0.0; rows];
+            let mut im = vec![0.0; rows];
+            if harmonic > 0 {
+                let (x_re, x_im) = solution[start..start + 2 * n].split_at(n);
+                add_times_vector(&mut re, 1.0, real.as_slice(), x_re);
+                add_times_vector(&mut im, 1.0, real.as_slice(), x_im);
+                if let Some(imaginary) = &observed.imaginary {
+                    add_times_vector(&mut re, -1.0, imaginary.as_slice(), x_im);
+                    add_times_vector(&mut im, 1.0, imaginary.as_slice(), x_re);
+                }
+            }
+            start += n * if harmonic == 0 { 1 } else { 2 };
+            coefficients.push((harmonic, re, im));
+        }
+        (0..rows / 3)
+            .map(|blade| match &self.settings.time_grid {
+                None => coefficients
+                    .iter()
+                    .filter(|(harmonic, ..)| *harmonic == 1)
+                    .flat_map(|(_, re, im)| {
+                        (3 * blade..3 * blade + 3).map(|i| re[i].powi(2) + im[i].powi(2))
+                    })
+                    .sum::<f64>()
+                    .sqrt(),
+                Some(grid) => time_maximum(grid, &coefficients, blade),
+            })
+            .collect()
+    }
+}
+
+/// Largest norm over one period of a blade's displacement, harmonic 0 left out.
+fn time_maximum(
+    grid: &HarmonicTransform,
+    coefficients: &[(u32, Vec<f64>, Vec<f64>)],
+    blade: usize,
+) -> f64 {
+    let mut channels = Vec::with_capacity(3 * grid.n_coefficients());
+    for component in 0..3 {
+        let row = 3 * blade + component;
+        for &harmonic in grid.harmonics() {
+            let found = coefficients
+                .iter()
+                .find(|(own, ..)| *own as usize == harmonic);
+            let (re, im) = found.map_or((0.0, 0.0), |(_, re, im)| (re[row], im[row]));
+            channels.push(re);
+            if harmonic > 0 {
+                channels.push(im);
+            }
+        }
+    }
+    grid.largest_norm(&channels)
+}
+
+/// Attempts at one point, in order.
+#[derive(Debug, Clone, Copy)]
+enum Attempt {
+    /// From the nearest converged point, or from the stuck solution if there is none.
+    Nearest,
+    /// From the stuck solution.
+    Stuck,
+    /// Continuation in frequency.
+    FrequencySteps,
+    /// Homotopy in normal load.
+    LoadHomotopy,
+}
+
+impl Attempt {
+    const LADDER: [Self; 4] = [
+        Self::Nearest,
+        Self::Stuck,
+        Self::FrequencySteps,
+        Self::LoadHomotopy,
+    ];
+}
+
+fn real_parts(x: &[Complex64]) -> Vec<f64> {
+    x.iter()
+        .map(|x| x.re)
+        .chain(x.iter().map(|x| x.im))
+        .collect()
+}
+
+fn pairs_under(
+    sector: PairParameters,
+    normal_load_n: f64,
+    geometry: &ContactGeometry,
+) -> Vec<PairParameters> {
+    let sector = PairParameters {
+        normal_load_n,
+        ..sector
+    };
+    geometry
+        .weights
+        .iter()
+        .map(|&weight| sector.share(weight))
+        .collect()
+}

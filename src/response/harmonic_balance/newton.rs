@@ -1,0 +1,133 @@
+//! Newton's method on the harmonic balance equation, damped, with a Jacobian kept while it serves.
+
+use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
+use crate::linalg::LuWorkspace;
+
+/// A kept Jacobian must reduce the residual at least to this share, else it is renewed.
+const KEPT_JACOBIAN_CONTRACTION: f64 = 0.4;
+
+/// Outcome of one nonlinear solve; the solution itself is left in the caller's vector.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NewtonOutcome {
+    /// How the iteration ended.
+    pub status: Status,
+    /// Newton steps taken.
+    pub iterations: u64,
+    /// Jacobians assembled and factored.
+    pub factorisations: u64,
+    /// Residual norm relative to the excitation.
+    pub residual: f64,
+    /// Shares of slipping and separated pairs.
+    pub shares: ContactShares,
+}
+
+/// Buffers of Newton's method for one system.
+pub struct NewtonWorkspace {
+    system: SystemWorkspace,
+    jacobian: LuWorkspace<f64>,
+    residual: Vec<f64>,
+    step: Vec<f64>,
+    trial: Vec<f64>,
+    trial_step: Vec<f64>,
+}
+
+impl NewtonWorkspace {
+    /// Buffers for `system`.
+    #[must_use]
+    pub fn new(system: &HarmonicSystem) -> Self {
+        let n = system.unknowns();
+        Self {
+            system: system.workspace(),
+            jacobian: LuWorkspace::new(n),
+            residual: vec![0.0; n],
+            step: vec![0.0; n],
+            trial: vec![0.0; n],
+            trial_step: vec![0.0; n],
+        }
+    }
+}
+
+/// Solves `R(x) = 0` at angular frequency `omega` from the given `x`, in place.
+///
+/// A step is `s = -J^-1 R(x)`, damped by the natural monotonicity test of Deuflhard (2004, Newton
+/// Methods for Nonlinear Problems, section 3.3): a damped step is taken where the next simplified step
+/// `-J^-1 R(x + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual itself this does
+/// not depend on how the equations are scaled, and contact forces are far from well scaled. While
+/// the simplified step is much shorter, it is taken as the next step and the Jacobian is kept.
+pub fn solve(
+    system: &HarmonicSystem,
+    omega: f64,
+    x: &mut Vec<f64>,
+    bounds: NewtonBounds,
+    workspace: &mut NewtonWorkspace,
+) -> NewtonOutcome {
+    let NewtonWorkspace {
+        system: buffers,
+        jacobian,
+        residual,
+        step,
+        trial,
+        trial_step,
+    } = workspace;
+    let (first, shares) = system.residual(omega, x, residual, true, buffers);
+    let mut state = NewtonOutcome {
+        status: Status::IterationLimit,
+        iterations: 0,
+        factorisations: 0,
+        residual: first,
+        shares,
+    };
+    // Whether `step` holds a simplified step with the kept Jacobian.
+    let mut kept = false;
+    loop {
+        let ended = |state: NewtonOutcome, status| NewtonOutcome { status, ..state };
+        if let Some(status) = bounds.judge(first, state.residual, state.iterations as usize) {
+            return ended(state, status);
+        }
+        if !kept {
+            system.jacobian(omega, buffers, jacobian.matrix_mut());
+            if !jacobian.factor() {
+                return ended(state, Status::SingularJacobian);
+            }
+            state.factorisations += 1;
+            step.copy_from_slice(residual);
+            jacobian.solve(step);
+        }
+        state.iterations += 1;
+        let length = norm_of(step);
+        let halvings = if kept { 0 } else { bounds.halvings };
+        let accepted = (0..=halvings).find_map(|halving| {
+            let factor = 0.5_f64.powi(halving as i32);
+            for ((t, x), s) in trial.iter_mut().zip(x.iter()).zip(step.iter()) {
+                *t = x - factor * s;
+            }
+            let (norm, shares) = system.residual(omega, trial, residual, true, buffers);
+            trial_step.copy_from_slice(residual);
+            jacobian.solve(trial_step);
+            let contraction = norm_of(trial_step) / length;
+            let monotone = contraction <= 1.0 - 0.25 * factor;
+            (monotone || norm <= bounds.residual_tolerance).then_some((norm, shares, contraction))
+        });
+        match accepted {
+            Some((norm, shares, contraction)) => {
+                std::mem::swap(x, trial);
+                (state.residual, state.shares) = (norm, shares);
+                kept = contraction <= KEPT_JACOBIAN_CONTRACTION;
+                if kept {
+                    std::mem::swap(step, trial_step);
+                }
+            }
+            None if kept => {
+                // The kept Jacobian failed: residual and derivative data must be those of x again.
+                system.residual(omega, x, residual, true, buffers);
+                kept = false;
+            }
+            None if state.residual.is_finite() => return ended(state, Status::Stagnated),
+            None => return ended(state, Status::NonFinite),
+        }
+    }
+}
+
+fn norm_of(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}

@@ -1,0 +1,517 @@
+//! The harmonic balance equation of a wheel, or of one travelling wave, and its derivative.
+//!
+//! On the stuck base, for every harmonic k of the set,
+//!
+//! ```text
+//! R_k(x) = (Z(k omega) + C^H k_c C) x_k + C^H G_k(C x) - f_k,     G = F - k_c C x
+//! ```
+//!
+//! with G the correction of the contact force to that of the stuck springs, evaluated in time and
+//! projected back (alternating frequency/time, Cameron & Griffin 1989). Unknowns are real: for
+//! harmonic 0 the modal coordinates, for every other harmonic first the real, then the imaginary
+//! parts. The residual is measured relative to the excitation in M-orthonormal coordinates.
+
+use std::sync::Arc;
+
+use super::structure::{ContactStiffnessMatrix, Structure};
+use super::{HarmonicTransform, PairHarmonics, PairJacobian};
+use crate::linalg::{
+    Complex64, Matrix, add_times_vector, add_transpose_times, add_transpose_times_vector,
+};
+use crate::model::cyclic::ContactGeometry;
+use crate::response::friction::{ContactLaw, PairParameters};
+
+/// One harmonic of the set: its number, and the structure it lives in.
+#[derive(Debug, Clone)]
+pub struct HarmonicBlock {
+    /// Harmonic k.
+    pub harmonic: u32,
+    /// Structure; the wheel's is shared by all harmonics, a tuned wave has one per harmonic.
+    pub structure: Arc<Structure>,
+    /// Linear stuck contact stiffness of that structure.
+    pub stuck: Arc<ContactStiffnessMatrix>,
+}
+
+/// Contact law and pair parameters of one sector.
+#[derive(Debug, Clone)]
+pub struct ContactInterface {
+    /// Law of every pair.
+    pub law: ContactLaw,
+    /// Rows and weights of the pairs of one sector.
+    pub geometry: ContactGeometry,
+    /// Parameters of each pair of one sector.
+    pub pairs: Vec<PairParameters>,
+}
+
+/// The nonlinear equation at any frequency.
+#[derive(Debug, Clone)]
+pub struct HarmonicSystem {
+    blocks: Vec<HarmonicBlock>,
+    /// First unknown of each block, and the number of unknowns at the end.
+    start: Vec<usize>,
+    /// First real coefficient of each block.
+    coefficient: Vec<usize>,
+    force: Vec<Complex64>,
+    force_norm: f64,
+    interface: ContactInterface,
+    transform: Arc<HarmonicTransform>,
+    /// Number of contact rows over all sectors.
+    rows: usize,
+}
+
+/// Share of contact pairs in a state at any sample.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ContactShares {
+    /// Pairs slipping in any direction.
+    pub slipping: f64,
+    /// Pairs with no normal load.
+    pub separated: f64,
+}
+
+/// Buffers of one thread for one [`HarmonicSystem`].
+#[derive(Debug)]
+pub struct SystemWorkspace {
+    pairs: PairHarmonics,
+    /// Displacement and correction at the contact rows, coefficient after coefficient (`n_coefficients x rows`).
+    displacement: Vec<f64>,
+    correction: Vec<f64>,
+    pair_input: Vec<f64>,
+    pair_output: Vec<f64>,
+    jacobians: Vec<PairJacobian>,
+    active: Vec<bool>,
+    /// Contact rows of the active pairs, then `G C` of them.
+    active_rows: Vec<f64>,
+    loaded_rows: Vec<f64>,
+}
+
+impl HarmonicSystem {
+    /// Assembles a system. `force` is the modal force of harmonic 1 (`n_modes` of its structure).
+    ///
+    /// # Panics
+    /// If the set lacks harmonic 1 or disagrees with `transform`, a defect of the caller.
+    #[must_use]
+    pub fn new(
+        blocks: Vec<HarmonicBlock>,
+        force: Vec<Complex64>,
+        interface: ContactInterface,
+        transform: Arc<HarmonicTransform>,
+    ) -> Self {
+        assert_eq!(
+            blocks.len(),
+            transform.harmonics().len(),
+            "one block per harmonic"
+        );
+        let mut start = vec![0];
+        let mut coefficient = Vec::new();
+        let (mut unknowns, mut coefficients) = (0, 0);
+        for block in &blocks {
+            let parts = if block.harmonic == 0 { 1 } else { 2 };
+            coefficient.push(coefficients);
+            coefficients += parts;
+            unknowns += parts * block.structure.size();
+            start.push(unknowns);
+        }
+        let force_norm = force.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+        let rows = blocks[0].structure.contact().real.rows();
+        Self {
+            blocks,
+            start,
+            coefficient,
+            force,
+            force_norm,
+            interface,
+            transform,
+            rows,
+        }
+    }
+
+    /// Number of real unknowns.
+    #[must_use]
+    pub fn unknowns(&self) -> usize {
+        self.start[self.blocks.len()]
+    }
+
+    /// The harmonics with their structures.
+    #[must_use]
+    pub fn blocks(&self) -> &[HarmonicBlock] {
+        &self.blocks
+    }
+
+    /// First unknown of the block at `index`.
+    #[must_use]
+    pub fn block_start(&self, index: usize) -> usize {
+        self.start[index]
+    }
+
+    /// Place of harmonic 1 among the blocks.
+    #[must_use]
+    pub fn fundamental(&self) -> usize {
+        self.blocks
+            .iter()
+            .position(|block| block.harmonic == 1)
+            .unwrap_or(0)
+    }
+
+    /// Modal force of harmonic 1.
+    #[must_use]
+    pub fn force(&self) -> &[Complex64] {
+        &self.force
+    }
+
+    /// The same system under another normal load per pair.
+    #[must_use]
+    pub fn with_pairs(&self, pairs: Vec<PairParameters>) -> Self {
+        let mut system = self.clone();
+        system.interface.pairs = pairs;
+        system
+    }
+
+    /// Pair parameters of one sector.
+    #[must_use]
+    pub fn pairs(&self) -> &[PairParameters] {
+        &self.interface.pairs
+    }
+
+    /// Buffers for this system.
+    #[must_use]
+    pub fn workspace(&self) -> SystemWorkspace {
+        let coefficients = self.transform.n_coefficients();
+        let sector_rows = self.interface.geometry.row_count().max(1);
+        let pairs = self.interface.pairs.len() * (self.rows / sector_rows);
+        let largest = self
+            .blocks
+            .iter()
+            .map(|block| block.structure.size())
+            .max()
+            .unwrap_or(0);
+        SystemWorkspace {
+            pairs: PairHarmonics::new(self.interface.law, Arc::clone(&self.transform)),
+            displacement: vec![0.0; coefficients * self.rows],
+            correction: vec![0.0; coefficients * self.rows],
+            pair_input: vec![0.0; 3 * coefficients],
+            pair_output: vec![0.0; 3 * coefficients],
+            jacobians: vec![PairJacobian::new(coefficients); pairs],
+            active: vec![false; pairs],
+            active_rows: vec![0.0; self.rows * largest],
+            loaded_rows: vec![0.0; self.rows * largest],
+        }
+    }
+
+    /// Residual at `x` into `residual`; returns its norm relative to the excitation and the
+    /// shares of slipping and separated pairs. With `derivative`, the pair Jacobians are kept in
+    /// the workspace for [`Self::jacobian`].
+    pub fn residual(
+        &self,
+        omega: f64,
+        x: &[f64],
+        residual: &mut [f64],
+        derivative: bool,
+        workspace: &mut SystemWorkspace,
+    ) -> (f64, ContactShares) {
+        self.linear_part(omega, x, residual);
+        let shares = if self.rows > 0 {
+            self.contact_displacement(x, &mut workspace.displacement);
+            let shares = self.contact_correction(derivative, workspace);
+            if shares != ContactShares::default() {
+                self.add_contact_force(&workspace.correction, residual);
+            }
+            shares
+        } else {
+            ContactShares::default()
+        };
+        let norm = residual.iter().map(|r| r * r).sum::<f64>().sqrt();
+        (norm / self.force_norm, shares)
+    }
+
+    /// `(Z + C^H k_c C) x - f` of every harmonic.
+    fn linear_part(&self, omega: f64, x: &[f64], residual: &mut [f64]) {
+        residual.fill(0.0);
+        let fundamental = self.fundamental();
+        for (index, block) in self.blocks.iter().enumerate() {
+            let n = block.structure.size();
+            let range = self.start[index]..self.start[index + 1];
+            let (x, r) = (&x[range.clone()], &mut residual[range]);
+            let k_omega = f64::from(block.harmonic) * omega;
+            let stuck = &block.stuck;
+            if block.harmonic == 0 {
+                add_times_vector(r, 1.0, stuck.real.as_slice(), x);
+                for (mode, lambda) in block.structure.eigenvalues().iter().enumerate() {
+                    r[mode] += lambda * x[mode];
+                }
+                continue;
+            }
+            let (x_real, x_imaginary) = x.split_at(n);
+            let (r_real, r_imaginary) = r.split_at_mut(n);
+            add_times_vector(r_real, 1.0, stuck.real.as_slice(), x_real);
+            add_times_vector(r_imaginary, 1.0, stuck.real.as_slice(), x_imaginary);
+            if let Some(imaginary) = &stuck.imaginary {
+                add_times_vector(r_real, -1.0, imaginary.as_slice(), x_imaginary);
+                add_times_vector(r_imaginary, 1.0, imaginary.as_slice(), x_real);
+            }
+            for (mode, lambda) in block.structure.eigenvalues().iter().enumerate() {
+                let stiffness = lambda - k_omega * k_omega;
+                r_real[mode] += stiffness * x_real[mode];
+                r_imaginary[mode] += stiffness * x_imaginary[mode];
+            }
+            block.structure.for_each_damping(k_omega, |i, j, d| {
+                r_real[i] -= d * x_imaginary[j];
+                r_imaginary[i] += d * x_real[j];
+            });
+            if index == fundamental {
+                for (mode, f) in self.force.iter().enumerate() {
+                    r_real[mode] -= f.re;
+                    r_imaginary[mode] -= f.im;
+                }
+            }
+        }
+    }
+
+    /// Coefficients of `C x`.
+    fn contact_displacement(&self, x: &[f64], displacement: &mut [f64]) {
+        displacement.fill(0.0);
+        for link in self.links() {
+            let x = &x[link.unknown..link.unknown + link.size];
+            let d = &mut displacement[link.coefficient * self.rows..][..self.rows];
+            add_times_vector(d, link.sign, link.rows.as_slice(), x);
+        }
+    }
+
+    /// `residual += C^H G`.
+    fn add_contact_force(&self, correction: &[f64], residual: &mut [f64]) {
+        for link in self.links() {
+            let r = &mut residual[link.unknown..link.unknown + link.size];
+            let g = &correction[link.coefficient * self.rows..][..self.rows];
+            add_transpose_times_vector(r, link.sign, link.rows.as_slice(), g);
+        }
+    }
+
+    /// The laws, pair by pair: displacement coefficients to correction coefficients.
+    fn contact_correction(
+        &self,
+        derivative: bool,
+        workspace: &mut SystemWorkspace,
+    ) -> ContactShares {
+        let coefficients = self.transform.n_coefficients();
+        let per_sector = self.interface.pairs.len();
+        let sector_rows = self.interface.geometry.row_count();
+        let (mut slipping, mut separated) = (0_usize, 0_usize);
+        workspace.correction.fill(0.0);
+        let count = workspace.active.len();
+        for pair in 0..count {
+            let base = pair / per_sector * sector_rows;
+            let places = self.interface.geometry.rows[pair % per_sector];
+            workspace.pair_input.fill(0.0);
+            for (direction, place) in places.iter().enumerate() {
+                if let Some(row) = *place {
+                    for c in 0..coefficients {
+                        workspace.pair_input[direction * coefficients + c] =
+                            workspace.displacement[c * self.rows + base + row];
+                    }
+                }
+            }
+            let state = workspace.pairs.evaluate(
+                &self.interface.pairs[pair % per_sector],
+                &workspace.pair_input,
+                &mut workspace.pair_output,
+                derivative.then_some(&mut workspace.jacobians[pair]),
+            );
+            slipping += usize::from(state.slipping);
+            separated += usize::from(state.separated);
+            workspace.active[pair] = state.slipping || state.separated;
+            if workspace.active[pair] {
+                for (direction, place) in places.iter().enumerate() {
+                    if let Some(row) = *place {
+                        for c in 0..coefficients {
+                            workspace.correction[c * self.rows + base + row] =
+                                workspace.pair_output[direction * coefficients + c];
+                        }
+                    }
+                }
+            }
+        }
+        ContactShares {
+            slipping: slipping as f64 / count as f64,
+            separated: separated as f64 / count as f64,
+        }
+    }
+
+    /// Derivative of the residual at the point last given to [`Self::residual`] with `derivative`,
+    /// column-major `n x n` into `jacobian`. Pairs that neither slip nor separate cost nothing.
+    pub fn jacobian(&self, omega: f64, workspace: &mut SystemWorkspace, jacobian: &mut [f64]) {
+        self.linear_jacobian(omega, jacobian);
+        let active: Vec<usize> = (0..workspace.active.len())
+            .filter(|&pair| workspace.active[pair])
+            .collect();
+        if active.is_empty() {
+            return;
+        }
+        let links = self.links();
+        for column in &links {
+            let n_rows = self.gather_active(&active, column.rows, &mut workspace.active_rows);
+            for c in 0..self.transform.n_coefficients() {
+                let size = column.size;
+                self.load_active(&active, c, column.coefficient, n_rows, size, workspace);
+                for row in links.iter().filter(|row| row.coefficient == c) {
+                    // The wheel's rows are the same for every coefficient: gathered already.
+                    let shared = std::ptr::eq(row.rows, column.rows);
+                    let gathered;
+                    let left = if shared {
+                        &workspace.active_rows[..n_rows * row.size]
+                    } else {
+                        gathered = self.gathered(&active, row.rows);
+                        &gathered[..]
+                    };
+                    let at = column.unknown * self.unknowns() + row.unknown;
+                    add_transpose_times(
+                        &mut jacobian[at..at + (size - 1) * self.unknowns() + row.size],
+                        self.unknowns(),
+                        row.sign * column.sign,
+                        left,
+                        &workspace.loaded_rows[..n_rows * size],
+                        (row.size, size, n_rows),
+                    );
+                }
+            }
+        }
+    }
+
+    /// Contact rows of the active pairs, packed; returns their number.
+    fn gather_active(&self, active: &[usize], rows: &Matrix<f64>, packed: &mut [f64]) -> usize {
+        let per_sector = self.interface.pairs.len();
+        let sector_rows = self.interface.geometry.row_count();
+        let mut at = 0;
+        for column in 0..rows.columns() {
+            let source = rows.column(column);
+            for &pair in active {
+                let base = pair / per_sector * sector_rows;
+                for row in self.interface.geometry.rows[pair % per_sector]
+                    .iter()
+                    .flatten()
+                {
+                    packed[at] = source[base + row];
+                    at += 1;
+                }
+            }
+        }
+        at / rows.columns().max(1)
+    }
+
+    fn gathered(&self, active: &[usize], rows: &Matrix<f64>) -> Vec<f64> {
+        let mut packed = vec![0.0; rows.as_slice().len()];
+        let count = self.gather_active(active, rows, &mut packed);
+        packed.truncate(count * rows.columns());
+        packed
+    }
+
+    /// `dG_c / dx_{c'}` of the active pairs times their packed rows, into `loaded_rows`.
+    fn load_active(
+        &self,
+        active: &[usize],
+        c: usize,
+        other: usize,
+        n_rows: usize,
+        columns: usize,
+        workspace: &mut SystemWorkspace,
+    ) {
+        let coefficients = self.transform.n_coefficients();
+        let entry = c * coefficients + other;
+        let per_sector = self.interface.pairs.len();
+        let packed = workspace.active_rows[..n_rows * columns].chunks_exact(n_rows);
+        let loaded = workspace.loaded_rows[..n_rows * columns].chunks_exact_mut(n_rows);
+        for (source, target) in packed.zip(loaded) {
+            let mut at = 0;
+            for &pair in active {
+                let jacobian = &workspace.jacobians[pair];
+                let places = &self.interface.geometry.rows[pair % per_sector];
+                let normal = places[0].map(|_| source[at]);
+                if let Some(normal) = normal {
+                    target[at] = jacobian.normal_normal[entry] * normal;
+                    at += 1;
+                }
+                for (tangent, place) in places[1..].iter().enumerate() {
+                    if place.is_some() {
+                        target[at] = jacobian.tangential_tangential[tangent][entry] * source[at]
+                            + normal.map_or(0.0, |normal| {
+                                jacobian.tangential_normal[tangent][entry] * normal
+                            });
+                        at += 1;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Derivative of the linear part, column-major.
+    fn linear_jacobian(&self, omega: f64, jacobian: &mut [f64]) {
+        let unknowns = self.unknowns();
+        jacobian.fill(0.0);
+        for (index, block) in self.blocks.iter().enumerate() {
+            let n = block.structure.size();
+            let start = self.start[index];
+            let k_omega = f64::from(block.harmonic) * omega;
+            let parts = if block.harmonic == 0 { 1 } else { 2 };
+            for part in 0..parts {
+                let offset = start + part * n;
+                for j in 0..n {
+                    let column = &mut jacobian[(offset + j) * unknowns..][..unknowns];
+                    column[offset..offset + n].copy_from_slice(block.stuck.real.column(j));
+                    column[offset + j] += block.structure.eigenvalues()[j] - k_omega * k_omega;
+                    if let (2, Some(imaginary)) = (parts, &block.stuck.imaginary) {
+                        let (other, sign) = if part == 0 {
+                            (start + n, 1.0)
+                        } else {
+                            (start, -1.0)
+                        };
+                        for (i, &value) in imaginary.column(j).iter().enumerate() {
+                            column[other + i] += sign * value;
+                        }
+                    }
+                }
+            }
+            if parts == 2 {
+                block.structure.for_each_damping(k_omega, |i, j, d| {
+                    jacobian[(start + j) * unknowns + start + n + i] += d;
+                    jacobian[(start + n + j) * unknowns + start + i] -= d;
+                });
+            }
+        }
+    }
+
+    /// How the real unknowns enter the real coefficients of the contact displacement:
+    /// `Re d = Re C Re x - Im C Im x`, `Im d = Re C Im x + Im C Re x`.
+    fn links(&self) -> Vec<Link<'_>> {
+        let mut links = Vec::new();
+        for (index, block) in self.blocks.iter().enumerate() {
+            let size = block.structure.size();
+            let (unknown, coefficient) = (self.start[index], self.coefficient[index]);
+            let contact = block.structure.contact();
+            let mut link = |from: usize, to: usize, sign: f64, rows| {
+                links.push(Link {
+                    unknown: unknown + from * size,
+                    size,
+                    coefficient: coefficient + to,
+                    sign,
+                    rows,
+                });
+            };
+            link(0, 0, 1.0, &contact.real);
+            if block.harmonic > 0 {
+                link(1, 1, 1.0, &contact.real);
+                if let Some(imaginary) = &contact.imaginary {
+                    link(1, 0, -1.0, imaginary);
+                    link(0, 1, 1.0, imaginary);
+                }
+            }
+        }
+        links
+    }
+}
+
+/// One real block of the map from unknowns to contact coefficients.
+struct Link<'a> {
+    unknown: usize,
+    size: usize,
+    coefficient: usize,
+    sign: f64,
+    rows: &'a Matrix<f64>,
+}

@@ -1,0 +1,282 @@
+//! The engine of the program: a sector model reduced for a study, cached, and ready to be solved.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::basis_choice::{BasisEvidence, choose_basis, judged_conditions};
+use super::{Engine, EngineSource, MistuningSource, PipelineError, Study};
+use crate::model::reduction::{ContactStiffness, Reduction};
+use crate::model::sector::SectorModel;
+use crate::model::{ReducedModel, read_cached, reduction_digest, write_cached};
+use crate::population::monte_carlo::{
+    ResponseRow, RowSettings, RowSolver, Scenario, TunedReference,
+};
+use crate::population::table::CurvePoint;
+use crate::report::{ModelReport, NodalDiameterFacts};
+use crate::response::forced_response::{ContactCondition, Harmonics};
+use crate::response::friction::{ContactLaw, ContactOptions, PairParameters};
+use crate::response::harmonic_balance::Status;
+use crate::response::mistuning::Pattern;
+
+/// Harmonics that `auto` stands for where there is friction; the remainder is not screened.
+const AUTOMATIC_HARMONICS: [u32; 2] = [1, 3];
+/// Standard deviation from which on sensitivity vectors are added by default.
+const LARGE_MISTUNING: f64 = 0.05;
+/// Sensitivity vectors added by default to a large mistuning.
+const SENSITIVITY_VECTORS: usize = 2;
+
+/// Reduces a model for a study with the basis that the study asks for.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ReducedEngineSource;
+
+/// A reduced model with the settings of a study.
+struct ReducedEngine {
+    solver: RowSolver,
+    evidence: BasisEvidence,
+    digest: String,
+    sector_dofs: usize,
+    observed: Vec<String>,
+}
+
+/// What the cache keeps.
+#[derive(Serialize, Deserialize)]
+struct Stored {
+    model: ReducedModel,
+    evidence: BasisEvidence,
+}
+
+impl EngineSource for ReducedEngineSource {
+    fn build(
+        &self,
+        study: &Study,
+        model: &SectorModel,
+        cache: Option<&Path>,
+    ) -> Result<Box<dyn Engine>, PipelineError> {
+        let settings = row_settings(study);
+        let stiffness = contact_stiffness(study.contact.as_ref());
+        let sensitivity = sensitivity_vectors(study);
+        let conditions = judged_conditions(&study.contacts);
+        // Everything the reduced model depends on besides the sector: with an automatic basis
+        // also what its error is judged by.
+        let key = format!(
+            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {conditions:?}",
+            study.reduction, study.mistuning.cantilever_mode_count, study.engine_orders
+        );
+        let digest = reduction_digest(model, &key);
+        let stored: Stored = match cache.and_then(|folder| read_cached(folder, &digest)) {
+            Some(stored) => stored,
+            None => {
+                let reduction = Reduction::new(
+                    model,
+                    stiffness,
+                    study.reduction.craig_bampton_modes,
+                    sensitivity,
+                )?;
+                let (choice, evidence) = choose_basis(
+                    &reduction,
+                    &study.reduction,
+                    &settings,
+                    &study.engine_orders,
+                    &conditions,
+                )?;
+                let stored = Stored {
+                    model: reduction.reduce(choice, study.mistuning.cantilever_mode_count)?,
+                    evidence,
+                };
+                if let Some(folder) = cache {
+                    write_cached(folder, &digest, &stored)?;
+                }
+                stored
+            }
+        };
+        Ok(Box::new(ReducedEngine {
+            solver: RowSolver::new(Arc::new(stored.model), settings)?,
+            evidence: stored.evidence,
+            digest,
+            sector_dofs: model.dofs.len(),
+            observed: model
+                .observed
+                .iter()
+                .map(|node| node.name.clone())
+                .collect(),
+        }))
+    }
+}
+
+impl Engine for ReducedEngine {
+    fn model_report(&self) -> ModelReport {
+        let model = self.solver.basis().model();
+        let basis = if self.evidence.whole_space {
+            "whole space".to_owned()
+        } else {
+            model.basis.to_string()
+        };
+        ModelReport {
+            name: model.name.clone(),
+            sectors: model.sectors,
+            sector_dofs: self.sector_dofs,
+            contact_pairs: model.contact.weights.len(),
+            observed: self.observed.clone(),
+            basis,
+            reduced_coordinates: self.solver.basis().size(),
+            error: self.evidence.tried.last().and_then(|tried| tried.error),
+            memory_bytes: memory_bytes(model),
+            digest: self.digest.clone(),
+            nodal_diameters: model
+                .report
+                .iter()
+                .map(|line| NodalDiameterFacts {
+                    nodal_diameter: line.nodal_diameter,
+                    dofs: line.craig_bampton_size,
+                    candidates: line.candidates,
+                    rank: line.rank,
+                    condition: line.condition,
+                    stick_frequencies_hz: line.stick_frequencies_hz.clone(),
+                    slide_frequencies_hz: line.slide_frequencies_hz.clone(),
+                })
+                .collect(),
+        }
+    }
+
+    fn reduction_facts(&self) -> Value {
+        let model = self.solver.basis().model();
+        json!({
+            "digest": self.digest,
+            "basis": model.basis.to_string(),
+            "whole_space": self.evidence.whole_space,
+            "reduced_coordinates": self.solver.basis().size(),
+            "tuned_peak_errors": self.evidence.tried,
+        })
+    }
+
+    fn chosen_settings(&self) -> Value {
+        json!({
+            "basis": self.solver.basis().model().basis.to_string(),
+            "harmonics": self.solver.harmonics(),
+        })
+    }
+
+    fn tuned(&self, scenario: &Scenario) -> TunedReference {
+        self.solver.tuned(scenario)
+    }
+
+    fn rows(
+        &self,
+        pattern: &Pattern,
+        scenarios: &[(&Scenario, &TunedReference)],
+    ) -> Vec<ResponseRow> {
+        self.solver.rows(pattern, scenarios)
+    }
+
+    fn curve(
+        &self,
+        scenario: &Scenario,
+        pattern: Option<&Pattern>,
+        frequencies_hz: &[f64],
+    ) -> Vec<CurvePoint> {
+        let sectors = self.solver.basis().model().sectors as u32;
+        let solved = self.solver.curve(
+            scenario.engine_order,
+            scenario.contact,
+            pattern,
+            frequencies_hz,
+        );
+        let results = solved.unwrap_or_else(|status| {
+            let failed = frequencies_hz.iter().map(|&f| (f, Err(status)));
+            failed.collect()
+        });
+        results
+            .into_iter()
+            .flat_map(|(frequency_hz, amplitudes)| {
+                (0..sectors).map(move |blade| CurvePoint {
+                    frequency_hz,
+                    blade,
+                    amplitude_m: amplitudes.as_ref().ok().map(|all| all[blade as usize]),
+                    status: amplitudes.as_ref().err().copied().unwrap_or(Status::Ok),
+                })
+            })
+            .collect()
+    }
+}
+
+/// The physics of a row as the study states it.
+fn row_settings(study: &Study) -> RowSettings {
+    let friction = study
+        .contacts
+        .iter()
+        .any(|contact| matches!(contact, ContactCondition::Full { .. }));
+    let harmonics = match &study.solver.harmonics {
+        Harmonics::Set(set) => set.clone(),
+        Harmonics::Auto if friction || study.contact.is_some() => AUTOMATIC_HARMONICS.to_vec(),
+        Harmonics::Auto => vec![1],
+    };
+    RowSettings {
+        harmonics,
+        contact: study
+            .contact
+            .as_ref()
+            .map(|contact| (contact.law, PairParameters::of_sector(contact, 0.0))),
+        damping: study.damping,
+        amplitude_n: study.amplitude_n,
+        projection: study.mistuning.projection,
+        solver: study.solver.clone(),
+    }
+}
+
+/// Linear contact springs of the law: `macro_slip_1d` has none along the second tangent.
+fn contact_stiffness(contact: Option<&ContactOptions>) -> ContactStiffness {
+    let Some(contact) = contact else {
+        return ContactStiffness {
+            normal_n_per_m: 0.0,
+            tangential_1_n_per_m: 0.0,
+            tangential_2_n_per_m: 0.0,
+        };
+    };
+    let tangential = contact.tangential_stiffness_n_per_m;
+    ContactStiffness {
+        normal_n_per_m: contact.normal_stiffness_n_per_m.unwrap_or(0.0),
+        tangential_1_n_per_m: tangential,
+        tangential_2_n_per_m: match contact.law {
+            ContactLaw::MacroSlip1d => 0.0,
+            ContactLaw::Simplified3d => tangential,
+        },
+    }
+}
+
+/// As the study says, or by the size of its mistuning.
+fn sensitivity_vectors(study: &Study) -> usize {
+    let largest = study
+        .standard_deviations
+        .iter()
+        .flatten()
+        .copied()
+        .fold(0.0, f64::max);
+    let of_file = match &study.mistuning.source {
+        MistuningSource::Law(_) => 0.0,
+        MistuningSource::File { records, .. } => records.root_mean_square(),
+    };
+    study.reduction.sensitivity_vectors.unwrap_or(
+        if f64::max(largest, of_file) >= LARGE_MISTUNING {
+            SENSITIVITY_VECTORS
+        } else {
+            0
+        },
+    )
+}
+
+fn memory_bytes(model: &ReducedModel) -> usize {
+    let complex = |entries: usize| 16 * entries;
+    let diameters: usize = model
+        .nodal_diameters
+        .iter()
+        .map(|nd| {
+            8 * nd.eigenvalues.len()
+                + complex(nd.contact.as_slice().len() + nd.observed.as_slice().len())
+                + complex(2 * nd.eigenvalues.len())
+        })
+        .sum();
+    diameters + 8 * model.blade_gram.as_slice().len()
+}

@@ -1,0 +1,350 @@
+//! Sector models that are refused, one case per kind, each with its place and value.
+
+use std::sync::LazyLock;
+
+use blisk::linalg::{Complex64, SymmetricSparse};
+use blisk::model::sector::{
+    Body, Component, ContactPair, ModelError, ObservedNode, SectorModel, bundle, validate,
+};
+
+use super::data;
+
+static WHEEL: LazyLock<SectorModel> = LazyLock::new(|| bundle::read(&data("wheel24")).unwrap());
+
+/// The same matrix with some entries replaced or added.
+fn with(matrix: &SymmetricSparse, row: usize, column: usize, value: f64) -> SymmetricSparse {
+    let mut triplets: Vec<_> = matrix
+        .lower_entries()
+        .filter(|&(i, j, _)| (i, j) != (row, column))
+        .collect();
+    triplets.push((row, column, value));
+    SymmetricSparse::from_lower_triplets(matrix.dimension(), &triplets)
+}
+
+/// A high dof, an inner dof and the node of each.
+fn high_dof(model: &SectorModel) -> usize {
+    model.cyclic_pairs[0].1
+}
+
+struct Case {
+    name: &'static str,
+    spoil: fn(&mut SectorModel),
+    kind: fn(&ModelError) -> bool,
+    message: &'static str,
+}
+
+const MATRIX_CASES: [Case; 9] = [
+    Case {
+        name: "no sectors",
+        spoil: |m| m.sectors = 0,
+        kind: |e| matches!(e, ModelError::NoSectors),
+        message: "sectors is 0",
+    },
+    Case {
+        name: "no dofs",
+        spoil: |m| m.dofs.clear(),
+        kind: |e| matches!(e, ModelError::NoDofs),
+        message: "at least 1",
+    },
+    Case {
+        name: "wrong size",
+        spoil: |m| m.mass = SymmetricSparse::from_lower_triplets(3, &[]),
+        kind: |e| matches!(e, ModelError::MatrixSize { .. }),
+        message: "M is 3 x 3 but there are 1068 dofs",
+    },
+    Case {
+        name: "NaN in K",
+        spoil: |m| m.stiffness = with(&m.stiffness, 7, 5, f64::NAN),
+        kind: |e| matches!(e, ModelError::NotFinite { .. }),
+        message: "K entry (dof 7, dof 5) is NaN",
+    },
+    Case {
+        name: "negative mass",
+        spoil: |m| m.mass = with(&m.mass, 7, 7, -0.5),
+        kind: |e| matches!(e, ModelError::NegativeDiagonal { .. }),
+        message: "M has -5e-1 on the diagonal of dof 7",
+    },
+    Case {
+        name: "indefinite mass",
+        spoil: |m| m.mass = with(&m.mass, 7, 5, 3.0),
+        kind: |e| matches!(e, ModelError::Indefinite { .. }),
+        message: "(dof 7, dof 5) is 3e0",
+    },
+    Case {
+        name: "blade entry outside K",
+        spoil: |m| {
+            // A small coupling of two blade dofs that K does not have.
+            let (row, column) = (617, 409);
+            let entries: Vec<_> = m
+                .stiffness
+                .lower_entries()
+                .filter(|&(i, j, _)| (i, j) != (row, column))
+                .collect();
+            m.stiffness = SymmetricSparse::from_lower_triplets(1068, &entries);
+            m.blade_stiffness = with(&m.blade_stiffness, row, column, 1e-3);
+        },
+        kind: |e| matches!(e, ModelError::BladeEntryOutsideStiffness { .. }),
+        message: "K_blade has 1e-3 at (dof 617, dof 409)",
+    },
+    Case {
+        name: "blade share above K",
+        spoil: |m| m.blade_stiffness = with(&m.blade_stiffness, 616, 616, 1e15),
+        kind: |e| matches!(e, ModelError::BladeShareExceedsStiffness { .. }),
+        message: "K_blade has 1e15 on the diagonal of dof 616",
+    },
+    Case {
+        name: "blade stiffness on the high face",
+        spoil: |m| m.blade_stiffness = with(&m.blade_stiffness, high_dof(m), high_dof(m), 1.0),
+        kind: |e| matches!(e, ModelError::OnHighFace { .. }),
+        message: "dof 9 on the high cyclic face",
+    },
+];
+
+const DOF_CASES: [Case; 10] = [
+    Case {
+        name: "position not finite",
+        spoil: |m| m.dofs[4].position_m[1] = f64::INFINITY,
+        kind: |e| matches!(e, ModelError::NotFinite { .. }),
+        message: "y of dof 4 is inf",
+    },
+    Case {
+        name: "dof twice",
+        spoil: |m| m.dofs[4].component = Component::Radial,
+        kind: |e| matches!(e, ModelError::DuplicateDof { .. }),
+        message: "dofs 3 and 4 are both component r",
+    },
+    Case {
+        name: "node in two places",
+        spoil: |m| m.dofs[4].position_m[0] += 1e-3,
+        kind: |e| matches!(e, ModelError::NodeInconsistent { .. }),
+        message: "dofs 3 and 4 of node",
+    },
+    Case {
+        name: "cyclic dof out of range",
+        spoil: |m| m.cyclic_pairs[2].1 = 5000,
+        kind: |e| matches!(e, ModelError::DofOutOfRange { .. }),
+        message: "cyclic pair 2 refers to dof 5000; accepted: 0 to 1067",
+    },
+    Case {
+        name: "cyclic dof twice",
+        spoil: |m| m.cyclic_pairs[2].1 = m.cyclic_pairs[1].1,
+        kind: |e| matches!(e, ModelError::CyclicDuplicate { .. }),
+        message: "cyclic pair 2 refers to dof 10, which cyclic pair 1 has too",
+    },
+    Case {
+        name: "cyclic components differ",
+        spoil: |m| {
+            let (first, second) = (m.cyclic_pairs[0].1, m.cyclic_pairs[1].1);
+            m.cyclic_pairs[0].1 = second;
+            m.cyclic_pairs[1].1 = first;
+        },
+        kind: |e| matches!(e, ModelError::CyclicMismatch { .. }),
+        message: "cyclic pair 0 (dofs 0 and 10)",
+    },
+    Case {
+        name: "cyclic nodes not one sector apart",
+        spoil: |m| m.sectors = 25,
+        kind: |e| matches!(e, ModelError::CyclicPosition { .. }),
+        message: "cyclic pair 0 (dofs 0 and 9)",
+    },
+    Case {
+        name: "one component unpaired",
+        spoil: |m| {
+            m.cyclic_pairs.remove(1);
+        },
+        kind: |e| matches!(e, ModelError::CyclicUnpaired { .. }),
+        message: "component t of node 0",
+    },
+    Case {
+        name: "a node unpaired",
+        spoil: |m| {
+            m.cyclic_pairs.drain(0..3);
+        },
+        kind: |e| matches!(e, ModelError::CyclicUnpaired { .. }),
+        message: "dof 0 (component r of node 0)",
+    },
+    Case {
+        name: "faces swapped",
+        spoil: |m| {
+            for pair in &mut m.cyclic_pairs {
+                *pair = (pair.1, pair.0);
+            }
+        },
+        kind: |e| matches!(e, ModelError::CyclicPosition { .. }),
+        message: "off the low node turned by one sector",
+    },
+];
+
+const CONTACT_CASES: [Case; 10] = [
+    Case {
+        name: "contact node unknown",
+        spoil: |m| m.contact_pairs[1].ring_node = 9999,
+        kind: |e| matches!(e, ModelError::NodeUnknown { .. }),
+        message: "contact pair 1 refers to node 9999",
+    },
+    Case {
+        name: "contact on the high face",
+        spoil: |m| m.contact_pairs[1].blisk_node = m.dofs[high_dof(m)].node,
+        kind: |e| matches!(e, ModelError::OnHighFace { .. }),
+        message: "contact pair 1 refers to node",
+    },
+    Case {
+        name: "contact on the wrong body",
+        spoil: |m| m.contact_pairs[1].ring_node = m.contact_pairs[1].blisk_node,
+        kind: |e| matches!(e, ModelError::ContactBody { .. }),
+        message: "contact pair 1 has node 302 on the wrong body",
+    },
+    Case {
+        name: "contact pair twice",
+        spoil: |m| {
+            let pair: ContactPair = m.contact_pairs[0].clone();
+            m.contact_pairs.push(pair);
+        },
+        kind: |e| matches!(e, ModelError::ContactDuplicate { .. }),
+        message: "contact pairs 0 and 6",
+    },
+    Case {
+        name: "contact nodes at different angles",
+        spoil: |m| m.contact_pairs[0].ring_node = m.contact_pairs[2].ring_node,
+        kind: |e| matches!(e, ModelError::ContactAngle { .. }),
+        message: "contact pair 0: nodes 269 and 341",
+    },
+    Case {
+        name: "normal not of unit length",
+        spoil: |m| m.contact_pairs[2].normal = [-2.0, 0.0, 0.0],
+        kind: |e| matches!(e, ModelError::ContactNormal { .. }),
+        message: "contact pair 2: the normal has length 2",
+    },
+    Case {
+        name: "normal not finite",
+        spoil: |m| m.contact_pairs[2].normal[1] = f64::NAN,
+        kind: |e| matches!(e, ModelError::NotFinite { .. }),
+        message: "contact pair 2 is NaN",
+    },
+    Case {
+        name: "weight of nought",
+        spoil: |m| m.contact_pairs[2].weight = 0.0,
+        kind: |e| matches!(e, ModelError::ContactWeight { .. }),
+        message: "contact pair 2: weight is 0",
+    },
+    Case {
+        name: "weights do not sum to one",
+        spoil: |m| {
+            m.contact_pairs.pop();
+        },
+        kind: |e| matches!(e, ModelError::ContactWeightSum { .. }),
+        message: "the contact weights sum to 0.819",
+    },
+    Case {
+        name: "contact nodes with different components",
+        spoil: |m| {
+            // Moves the axial dof of the first ring node to a node of its own.
+            let node = m.contact_pairs[0].ring_node;
+            for dof in &mut m.dofs {
+                if dof.node == node && dof.component == Component::Axial {
+                    dof.node = 100_000;
+                }
+            }
+        },
+        kind: |e| matches!(e, ModelError::ContactComponents { .. }),
+        message: "contact pair 0: nodes 269 and 339 have different components",
+    },
+];
+
+const LOAD_CASES: [Case; 8] = [
+    Case {
+        name: "force dof out of range",
+        spoil: |m| m.force[1].0 = 1068,
+        kind: |e| matches!(e, ModelError::DofOutOfRange { .. }),
+        message: "force entry 1 refers to dof 1068",
+    },
+    Case {
+        name: "force on the high face",
+        spoil: |m| m.force[1].0 = high_dof(m),
+        kind: |e| matches!(e, ModelError::OnHighFace { .. }),
+        message: "force entry 1 refers to dof 9 on the high cyclic face",
+    },
+    Case {
+        name: "force not finite",
+        spoil: |m| m.force[1].1.im = f64::NEG_INFINITY,
+        kind: |e| matches!(e, ModelError::NotFinite { .. }),
+        message: "force entry 1 is -inf",
+    },
+    Case {
+        name: "dof forced twice",
+        spoil: |m| m.force[1].0 = m.force[0].0,
+        kind: |e| matches!(e, ModelError::ForceDuplicate { .. }),
+        message: "force entries 0 and 1 both act on dof 616",
+    },
+    Case {
+        name: "force of nought",
+        spoil: |m| m.force = vec![(616, Complex64::new(0.0, 0.0))],
+        kind: |e| matches!(e, ModelError::NoForce),
+        message: "no force",
+    },
+    Case {
+        name: "nothing observed",
+        spoil: |m| m.observed.clear(),
+        kind: |e| matches!(e, ModelError::NoObservedNode),
+        message: "at least one",
+    },
+    Case {
+        name: "observed on the high face",
+        spoil: |m| m.observed[1].node = m.dofs[high_dof(m)].node,
+        kind: |e| matches!(e, ModelError::OnHighFace { .. }),
+        message: "observed node 1 refers to node",
+    },
+    Case {
+        name: "observed names alike",
+        spoil: |m| {
+            m.observed.push(ObservedNode {
+                name: "tip_le".to_owned(),
+                node: 100,
+            });
+        },
+        kind: |e| matches!(e, ModelError::ObservedDuplicate { .. }),
+        message: "observed nodes 0 and 2 are both named \"tip_le\"",
+    },
+];
+
+#[test]
+fn each_kind_of_bad_model_is_refused_with_place_and_value() {
+    validate(&WHEEL).unwrap();
+    let cases = MATRIX_CASES
+        .iter()
+        .chain(&DOF_CASES)
+        .chain(&CONTACT_CASES)
+        .chain(&LOAD_CASES);
+    for case in cases {
+        let mut model = WHEEL.clone();
+        (case.spoil)(&mut model);
+        let error = validate(&model).expect_err(case.name);
+        let message = error.to_string();
+        assert!((case.kind)(&error), "{}: {message}", case.name);
+        assert!(message.contains(case.message), "{}: {message}", case.name);
+        assert!(message.contains("accepted"), "{}: {message}", case.name);
+    }
+}
+
+#[test]
+fn a_body_of_its_own_is_no_partner() {
+    // The low face of the ring paired with the blisk's node at the same place.
+    let mut model = WHEEL.clone();
+    let pair = model
+        .cyclic_pairs
+        .iter()
+        .position(|&(low, _)| model.dofs[low].body == Body::Ring)
+        .unwrap();
+    let (low, high) = model.cyclic_pairs[pair];
+    let node = model.dofs[high].node;
+    for dof in &mut model.dofs {
+        if dof.node == node {
+            dof.body = Body::Blisk;
+        }
+    }
+    let error = validate(&model).unwrap_err();
+    assert!(
+        matches!(error, ModelError::CyclicMismatch { low: l, high: h, .. } if (l, h) == (low, high)),
+        "{error}"
+    );
+}
