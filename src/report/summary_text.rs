@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::text_table::TextTable;
 use super::{BestLoad, ScenarioSummary, StudySummary};
-use crate::population::statistics::{Percentile, SampleStatistics};
+use crate::population::statistics::{PointStatus, SampleStatistics};
 
 /// A unit of length in which amplitudes are shown.
 #[derive(Clone, Copy)]
@@ -144,17 +144,15 @@ fn factors(group: &[ScenarioSummary]) -> TextTable {
 fn percentiles(sample: &SampleStatistics, show: impl Fn(f64) -> String) -> Vec<String> {
     [50, 95, 99]
         .into_iter()
-        .map(|percent| match sample.percentile(percent) {
-            Some(Percentile {
-                value: Some(value),
-                lower,
-                upper,
-                ..
-            }) => {
-                let bound = |bound: Option<f64>| bound.map_or("-".to_owned(), &show);
-                format!("{} [{} {}]", show(*value), bound(*lower), bound(*upper))
+        .map(|percent| {
+            let bound = |bound: Option<f64>| bound.map_or("-".to_owned(), &show);
+            match sample.percentile(percent) {
+                Some(found) if !matches!(found.status, PointStatus::TooFewPatterns { .. }) => {
+                    let (lower, upper) = (bound(found.lower), bound(found.upper));
+                    format!("{} [{lower} {upper}]", bound(found.value))
+                }
+                _ => "-".to_owned(),
             }
-            _ => "-".to_owned(),
         })
         .collect()
 }

@@ -1,12 +1,14 @@
 //! A study from file to tables: one call per stage.
 
+use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
-use super::results_folder::{Found, ResultsFolder, host_name};
+use super::results_folder::{Found, ResultsFolder, host_name, verify_tables};
 use super::{
-    Engine, EngineSource, PipelineError, Study, StudyDigest, load_sector_model, pattern_source,
+    Engine, EngineSource, PipelineError, Study, StudyDigest, digest_file, load_sector_model,
+    pattern_source,
 };
 use crate::population::monte_carlo::{
     ResponseRow, Scenario, TunedReference, block_size, plan_blocks, solve_blocks,
@@ -14,7 +16,8 @@ use crate::population::monte_carlo::{
 use crate::population::statistics::{Accounting, ScenarioAccumulator};
 use crate::population::table::{
     Manifest, PartStore, ResponseReader, RunRecord, RunState, SCHEMA_VERSION, ScenarioEntry,
-    ScenarioRecord, StatusCounts, TableHeader, write_atomically, write_patterns, write_scenarios,
+    ScenarioRecord, StatusCounts, TableError, TableHeader, write_atomically, write_patterns,
+    write_scenarios,
 };
 use crate::report::{StudySummary, SummaryContext};
 use crate::response::forced_response::Harmonics;
@@ -130,6 +133,7 @@ pub fn summarise(results: &Path) -> Result<StudySummary, PipelineError> {
     if manifest.state != RunState::Finished {
         return Err(PipelineError::Unfinished { folder: folder() });
     }
+    verify_tables(results, &manifest)?;
     let keys: Vec<Scenario> = manifest.scenarios.iter().map(ScenarioEntry::keys).collect();
     let tuned: Vec<TunedReference> = manifest
         .scenarios
@@ -204,7 +208,8 @@ impl<'a> Work<'a> {
             .iter()
             .map(|record| record.statistics.accounting)
             .collect();
-        let manifest = self.manifest(RunState::Finished, &tuned, &counts);
+        let mut manifest = self.manifest(RunState::Finished, &tuned, &counts);
+        manifest.tables = self.table_digests()?;
         let summary = StudySummary::new(&context_of(&manifest), &records);
         write_atomically(
             &self.results.join("summary.txt"),
@@ -319,7 +324,7 @@ impl<'a> Work<'a> {
     ) -> Result<Vec<ScenarioRecord>, PipelineError> {
         let mut accumulators = vec![ScenarioAccumulator::default(); self.scenarios.len()];
         store.assemble(&self.patterns.ids(), |row| {
-            accumulators[row.scenario].add(row)
+            accumulators[row.scenario].add(row);
         })?;
         let records = records_of(&self.scenarios, tuned, accumulators);
         write_scenarios(
@@ -327,12 +332,7 @@ impl<'a> Work<'a> {
             &records,
             &self.header,
         )?;
-        let wanted = self
-            .study
-            .output
-            .patterns
-            .unwrap_or(self.study.patterns <= PATTERNS_WRITTEN);
-        if wanted {
+        if self.writes_patterns() {
             write_patterns(
                 &self.results.join("patterns.parquet"),
                 self.patterns,
@@ -341,6 +341,31 @@ impl<'a> Work<'a> {
             )?;
         }
         Ok(records)
+    }
+
+    /// Whether `patterns.parquet` is part of the results.
+    fn writes_patterns(&self) -> bool {
+        let few = self.study.patterns <= PATTERNS_WRITTEN;
+        self.study.output.patterns.unwrap_or(few)
+    }
+
+    fn table_digests(&self) -> Result<BTreeMap<String, String>, PipelineError> {
+        let mut names = vec!["responses.parquet", "scenarios.parquet"];
+        if self.writes_patterns() {
+            names.push("patterns.parquet");
+        }
+        let digest = |name: &str| {
+            let path = self.results.join(name);
+            match digest_file(&path) {
+                Ok(digest) => Ok((name.to_owned(), digest)),
+                Err(source) => Err(TableError::Io {
+                    action: "read",
+                    path,
+                    source,
+                }),
+            }
+        };
+        Ok(names.into_iter().map(digest).collect::<Result<_, _>>()?)
     }
 
     fn manifest(
@@ -375,6 +400,7 @@ impl<'a> Work<'a> {
             chosen: self.engine.chosen_settings(),
             reduction: self.engine.reduction_facts(),
             counts: StatusCounts::from(&total),
+            tables: BTreeMap::new(),
             scenarios,
         }
     }

@@ -4,7 +4,7 @@ use std::fs::{File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{PipelineError, Study, StudyDigest};
+use super::{PipelineError, Study, StudyDigest, digest_file};
 use crate::population::table::{Manifest, RunState, TableError};
 
 /// A results folder that this process alone writes to.
@@ -93,6 +93,9 @@ impl ResultsFolder {
                 differences,
             });
         }
+        if manifest.state == RunState::Finished {
+            verify_tables(&self.path, &manifest)?;
+        }
         let complete =
             manifest.state == RunState::Finished && manifest.patterns == u64::from(study.patterns);
         Ok(if complete {
@@ -101,6 +104,37 @@ impl ResultsFolder {
             Found::Unfinished
         })
     }
+}
+
+/// Checks that the tables of a finished run are those that were written.
+///
+/// # Errors
+/// A table is missing or has changed.
+pub(super) fn verify_tables(results: &Path, manifest: &Manifest) -> Result<(), TableError> {
+    for (name, expected) in &manifest.tables {
+        let path = results.join(name);
+        let reason = match digest_file(&path) {
+            Ok(found) if found == *expected => continue,
+            Ok(_) => {
+                "its content is not what was written; restore it, or remove the folder and run again"
+            }
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                "it is missing; restore it, or remove the folder and run again"
+            }
+            Err(source) => {
+                return Err(TableError::Io {
+                    action: "read",
+                    path,
+                    source,
+                });
+            }
+        };
+        return Err(TableError::Damaged {
+            path,
+            reason: reason.to_owned(),
+        });
+    }
+    Ok(())
 }
 
 /// Name of this machine, for people; empty if it has none.

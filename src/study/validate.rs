@@ -83,12 +83,11 @@ impl Check<'_> {
         holds: impl Fn(f64) -> bool,
         accepted: &str,
     ) -> f64 {
-        match value {
-            Some(value) => self.within(key, value, holds(value), accepted),
-            None => {
-                self.missing(key, accepted);
-                1.0
-            }
+        if let Some(value) = value {
+            self.within(key, value, holds(value), accepted)
+        } else {
+            self.missing(key, accepted);
+            1.0
         }
     }
 }

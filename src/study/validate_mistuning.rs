@@ -118,15 +118,12 @@ fn read_patterns(path: &Path) -> Result<PatternRecords, StudyError> {
 
 fn pattern_count(check: &mut Check, patterns: Option<u64>) -> u32 {
     let accepted = "a whole number from 1 to 2147483647";
-    match patterns {
-        Some(patterns) => {
-            let fits = (1..=MAX_PATTERNS).contains(&patterns);
-            check.within("study.patterns", patterns, fits, accepted) as u32
-        }
-        None => {
-            check.missing("study.patterns", accepted);
-            0
-        }
+    if let Some(patterns) = patterns {
+        let fits = (1..=MAX_PATTERNS).contains(&patterns);
+        check.within("study.patterns", patterns, fits, accepted) as u32
+    } else {
+        check.missing("study.patterns", accepted);
+        0
     }
 }
 

@@ -3,3 +3,4 @@
 mod bad_studies;
 mod blisk;
 mod commands;
+mod runs;

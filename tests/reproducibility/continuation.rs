@@ -226,46 +226,57 @@ fn a_damaged_table_is_found_and_named() {
     .expect("run");
     let table = folder.path().join("responses.parquet");
     let whole = std::fs::read(&table).expect("read");
-    for keep in [0, 4, 100, whole.len() / 2, whole.len() - 1] {
-        std::fs::write(&table, &whole[..keep]).expect("truncate");
+    let refused = |content: &[u8]| {
+        std::fs::write(&table, content).expect("write");
         let error = blisk::study::summarise(folder.path()).expect_err("damaged");
-        assert!(
-            error.to_string().contains("responses.parquet"),
-            "{keep}: {error}"
+        assert!(error.to_string().contains("responses.parquet"), "{error}");
+        let study = study(30, |text| text);
+        let error = run_in(folder.path(), &study, 1, &MockSource::default()).expect_err("damaged");
+        assert!(matches!(error, PipelineError::Table(_)), "{error}");
+    };
+    for keep in [0, 4, 100, whole.len() / 2, whole.len() - 1] {
+        refused(&whole[..keep]);
+    }
+    for place in (0..whole.len()).step_by(whole.len() / 100) {
+        let mut flipped = whole.clone();
+        flipped[place] ^= 1 << (place % 8);
+        refused(&flipped);
+    }
+    std::fs::write(&table, &whole).expect("restore");
+    assert!(blisk::study::summarise(folder.path()).is_ok());
+    std::fs::remove_file(&table).expect("remove");
+    let error = blisk::study::summarise(folder.path()).expect_err("missing");
+    assert!(error.to_string().contains("missing"), "{error}");
+}
+
+/// Peak memory of this process so far, MiB; Linux only.
+fn peak_memory_mib() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
+    let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kib / 1024.0)
+}
+
+/// What everything but the physics costs: `cargo test --release --test reproducibility -- --ignored
+/// --nocapture overhead`.
+#[test]
+#[ignore = "a measurement of about a minute"]
+#[expect(clippy::print_stderr, reason = "a measurement has to be told")]
+fn overhead_of_a_million_rows_is_small_and_memory_does_not_grow_with_them() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for patterns in [25_000, 250_000] {
+        let began = std::time::Instant::now();
+        let study = study(patterns, |text| text);
+        let outcome = run_in(folder.path(), &study, 2, &MockSource::default()).expect("run");
+        let seconds = began.elapsed().as_secs_f64();
+        let again = std::time::Instant::now();
+        run_in(folder.path(), &study, 2, &MockSource::default()).expect("nothing to solve");
+        eprintln!(
+            "{} rows: {seconds:.2} s, {:.2} us a row; shown again in {:.2} s; peak memory {:.0} MiB",
+            4 * patterns,
+            1e6 * seconds / outcome.rows_solved as f64,
+            again.elapsed().as_secs_f64(),
+            peak_memory_mib().unwrap_or(f64::NAN)
         );
     }
-}
-
-#[test]
-fn a_panic_in_one_pattern_costs_its_rows_and_not_the_run() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let source = MockSource {
-        panics_in: Some(5),
-        ..MockSource::default()
-    };
-    let outcome = run_in(folder.path(), &study(50, |text| text), 2, &source).expect("run");
-    assert_eq!(outcome.summary.rows.count(Status::Panicked), 4);
-    assert_eq!(outcome.summary.rows.ok(), 196);
-}
-
-#[test]
-fn a_folder_in_use_is_refused() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let lock = std::fs::File::create(folder.path().join(".lock")).expect("create");
-    lock.lock().expect("lock");
-    let error = run_in(
-        folder.path(),
-        &study(5, |text| text),
-        1,
-        &MockSource::default(),
-    );
-    assert!(matches!(error, Err(PipelineError::Locked { .. })));
-    drop(lock);
-    run_in(
-        folder.path(),
-        &study(5, |text| text),
-        1,
-        &MockSource::default(),
-    )
-    .expect("free again");
 }

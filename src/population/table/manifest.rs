@@ -149,6 +149,8 @@ pub struct Manifest {
     pub reduction: Value,
     /// Rows by status over all scenarios.
     pub counts: StatusCounts,
+    /// BLAKE3 digests of the tables of a finished run, by file name.
+    pub tables: BTreeMap<String, String>,
     /// The scenarios, in order.
     pub scenarios: Vec<ScenarioEntry>,
 }

@@ -1,6 +1,7 @@
 //! Reader of one Parquet file: schema check, metadata, and columns of a slice of rows.
 
 use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use polars::prelude::{
@@ -23,6 +24,10 @@ pub(super) struct TableReader {
 impl TableReader {
     /// Opens `path` and checks that it has `columns` with their types (others may follow).
     pub(super) fn open(path: &Path, columns: &'static [ColumnSpec]) -> Result<Self, TableError> {
+        guarded(path, || Self::open_unguarded(path, columns))
+    }
+
+    fn open_unguarded(path: &Path, columns: &'static [ColumnSpec]) -> Result<Self, TableError> {
         let mut reader = parquet(path)?;
         let damaged = |error: PolarsError| TableError::damaged(path, error.to_string());
         let metadata = reader.get_metadata().map_err(damaged)?.clone();
@@ -65,23 +70,38 @@ impl TableReader {
 
     /// `count` rows from row `first` on.
     pub(super) fn read(&self, first: usize, count: usize) -> Result<Slice<'_>, TableError> {
-        let names = self
-            .columns
-            .iter()
-            .map(|column| column.name.to_owned())
-            .collect();
-        let frame = parquet(&self.path)?
-            .with_columns(Some(names))
-            .with_slice(Some((first, count)))
-            .read_parallel(ParallelStrategy::None)
-            .set_rechunk(true)
-            .finish()
-            .map_err(|error| TableError::damaged(&self.path, error.to_string()))?;
+        let frame = guarded(&self.path, || self.read_unguarded(first, count))?;
+        let whole = frame.columns().iter().all(|column| column.len() == count);
+        if !whole || frame.width() != self.columns.len() {
+            let reason = format!("fewer than {count} rows from row {first} on");
+            return Err(TableError::damaged(&self.path, reason));
+        }
         Ok(Slice {
             path: &self.path,
             frame,
         })
     }
+
+    fn read_unguarded(&self, first: usize, count: usize) -> Result<DataFrame, TableError> {
+        let names = self
+            .columns
+            .iter()
+            .map(|column| column.name.to_owned())
+            .collect();
+        parquet(&self.path)?
+            .with_columns(Some(names))
+            .with_slice(Some((first, count)))
+            .read_parallel(ParallelStrategy::None)
+            .set_rechunk(true)
+            .finish()
+            .map_err(|error| TableError::damaged(&self.path, error.to_string()))
+    }
+}
+
+/// The Parquet decoder panics on some damaged files; that is the file's fault and said so.
+fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, TableError>) -> Result<T, TableError> {
+    catch_unwind(AssertUnwindSafe(read))
+        .unwrap_or_else(|_| Err(TableError::damaged(path, "the decoder gave up")))
 }
 
 fn parquet(path: &Path) -> Result<ParquetReader<File>, TableError> {

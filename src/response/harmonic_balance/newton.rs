@@ -25,6 +25,8 @@ pub struct NewtonOutcome {
 pub struct NewtonWorkspace {
     system: SystemWorkspace,
     jacobian: LuWorkspace<f64>,
+    /// Whether `jacobian` holds the factors of an earlier solve.
+    factored: bool,
     residual: Vec<f64>,
     step: Vec<f64>,
     trial: Vec<f64>,
@@ -39,6 +41,7 @@ impl NewtonWorkspace {
         Self {
             system: system.workspace(),
             jacobian: LuWorkspace::new(n),
+            factored: false,
             residual: vec![0.0; n],
             step: vec![0.0; n],
             trial: vec![0.0; n],
@@ -64,6 +67,7 @@ pub fn solve(
     let NewtonWorkspace {
         system: buffers,
         jacobian,
+        factored,
         residual,
         step,
         trial,
@@ -77,8 +81,13 @@ pub fn solve(
         residual: first,
         shares,
     };
-    // Whether `step` holds a simplified step with the kept Jacobian.
-    let mut kept = false;
+    // Whether `step` holds a simplified step with the kept Jacobian: at first that of an earlier
+    // solve of the same workspace, which a neighbouring frequency often allows to go on with.
+    let mut kept = *factored && first.is_finite();
+    if kept {
+        step.copy_from_slice(residual);
+        jacobian.solve(step);
+    }
     loop {
         let ended = |state: NewtonOutcome, status| NewtonOutcome { status, ..state };
         if let Some(status) = bounds.judge(first, state.residual, state.iterations as usize) {
@@ -86,7 +95,8 @@ pub fn solve(
         }
         if !kept {
             system.jacobian(omega, buffers, jacobian.matrix_mut());
-            if !jacobian.factor() {
+            *factored = jacobian.factor();
+            if !*factored {
                 return ended(state, Status::SingularJacobian);
             }
             state.factorisations += 1;

@@ -1,0 +1,189 @@
+//! Whole runs with the real engine on a wheel of six masses.
+
+use crate::blisk::{GOOD, Place};
+
+#[test]
+fn run_writes_tables_and_summary_and_a_second_run_solves_nothing() {
+    let place = Place::with(GOOD);
+    let first = place.run(&["run", "study.toml", "--threads", "2"]);
+    assert_eq!(first.code, 0, "{}", first.stderr);
+    assert!(
+        first.stderr.contains("solved 30 rows, reused 0"),
+        "{}",
+        first.stderr
+    );
+    for file in [
+        "responses.parquet",
+        "scenarios.parquet",
+        "patterns.parquet",
+        "manifest.json",
+        "runs/1.json",
+    ] {
+        assert!(place.path("results/small").join(file).exists(), "{file}");
+    }
+    let summary =
+        std::fs::read_to_string(place.path("results/small/summary.txt")).expect("summary");
+    assert_eq!(first.stdout.trim_end(), summary.trim_end());
+    assert!(!place.path("results/small/parts").exists());
+    let second = place.run(&["run", "study.toml"]);
+    assert_eq!(second.code, 0);
+    assert!(
+        second.stderr.contains("nothing to solve"),
+        "{}",
+        second.stderr
+    );
+    assert_eq!(second.stdout, first.stdout);
+    let stats = place.run(&["stats", "results/small"]);
+    assert_eq!((stats.code, &stats.stdout), (0, &first.stdout));
+}
+
+#[test]
+fn run_as_json_holds_the_numbers_of_the_summary() {
+    let place = Place::with(GOOD);
+    let run = place.run(&["run", "study.toml", "--json", "--out", "here"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let value: serde_json::Value = serde_json::from_str(&run.stdout).expect("JSON");
+    assert_eq!(value["rows"]["planned"], 30);
+    assert_eq!(value["scenarios"].as_array().expect("a list").len(), 3);
+    assert_eq!(value["scenarios"][1]["normal_load_n"], 50.0);
+    assert!(
+        value["scenarios"][1]["tuned_amplitude_m"]
+            .as_f64()
+            .expect("a number")
+            > 0.0
+    );
+    let stats = place.run(&["stats", "here", "--json"]);
+    assert_eq!(stats.stdout, run.stdout);
+}
+
+#[test]
+fn a_longer_study_continues_and_a_different_one_exits_with_9() {
+    let place = Place::with(GOOD);
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+    place.write(
+        "study.toml",
+        &GOOD.replace("patterns = 10", "patterns = 25"),
+    );
+    let longer = place.run(&["run", "study.toml"]);
+    assert_eq!(longer.code, 0, "{}", longer.stderr);
+    assert!(
+        longer.stderr.contains("solved 45 rows, reused 30"),
+        "{}",
+        longer.stderr
+    );
+    let fresh = Place::with(&GOOD.replace("patterns = 10", "patterns = 25"));
+    assert_eq!(fresh.run(&["run", "study.toml", "--threads", "1"]).code, 0);
+    for file in [
+        "responses.parquet",
+        "scenarios.parquet",
+        "patterns.parquet",
+        "manifest.json",
+    ] {
+        let read =
+            |place: &Place| std::fs::read(place.path("results/small").join(file)).expect(file);
+        assert!(read(&place) == read(&fresh), "{file}");
+    }
+    place.write("study.toml", &GOOD.replace("= 0.3\n", "= 0.4\n"));
+    let other = place.run(&["run", "study.toml"]);
+    assert_eq!(other.code, 9);
+    assert!(
+        other
+            .stderr
+            .contains("contact.friction_coefficient: 0.3 in the folder, 0.4 in the study"),
+        "{}",
+        other.stderr
+    );
+}
+
+#[test]
+fn response_writes_every_blade_at_every_frequency_both_ends_included() {
+    let place = Place::with(GOOD);
+    for (pattern, load, out) in [
+        ("tuned", "50", "a.csv"),
+        ("3", "50", "b.csv"),
+        ("9", "stuck", "c.csv"),
+    ] {
+        let curve = place.run(&[
+            "response",
+            "study.toml",
+            "--pattern",
+            pattern,
+            "--load",
+            load,
+            "--frequencies",
+            "340:370:4",
+            "--out",
+            out,
+        ]);
+        assert_eq!(curve.code, 0, "{}", curve.stderr);
+        let text = std::fs::read_to_string(place.path(out)).expect("read");
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "frequency_hz,blade,amplitude_m,status");
+        assert_eq!(lines.len(), 1 + 4 * 6);
+        assert!(
+            lines[1].starts_with("340,0,") && lines[24].starts_with("370,5,"),
+            "{text}"
+        );
+        assert!(
+            lines[1..].iter().all(|line| line.ends_with(",ok")),
+            "{text}"
+        );
+    }
+    let parquet = place.run(&[
+        "response",
+        "study.toml",
+        "--pattern",
+        "tuned",
+        "--load",
+        "free",
+        "--frequencies",
+        "340:370:4",
+        "--out",
+        "d.parquet",
+        "--json",
+    ]);
+    assert_eq!(parquet.code, 0, "{}", parquet.stderr);
+    let value: serde_json::Value = serde_json::from_str(&parquet.stdout).expect("JSON");
+    assert_eq!((&value["rows"], &value["failed"]), (&24.into(), &0.into()));
+    let absent = place.run(&[
+        "response",
+        "study.toml",
+        "--pattern",
+        "10",
+        "--load",
+        "50",
+        "--frequencies",
+        "340:370:4",
+        "--out",
+        "e.csv",
+    ]);
+    assert_eq!(absent.code, 2);
+    assert!(
+        absent.stderr.contains("accepted: tuned, or 0 to 9"),
+        "{}",
+        absent.stderr
+    );
+}
+
+#[test]
+fn model_tells_every_nodal_diameter() {
+    let place = Place::with(GOOD);
+    let model = place.run(&["model", "study.toml", "--json"]);
+    assert_eq!(model.code, 0, "{}", model.stderr);
+    let value: serde_json::Value = serde_json::from_str(&model.stdout).expect("JSON");
+    assert_eq!(
+        value["nodal_diameters"].as_array().expect("a list").len(),
+        4
+    );
+    let text = place.run(&["model", "study.toml"]).stdout;
+    assert!(text.contains("stick Hz"), "{text}");
+}
+
+#[test]
+fn an_unwritable_results_folder_exits_with_7_and_is_named() {
+    let place = Place::with(GOOD);
+    place.write("file", "");
+    let run = place.run(&["run", "study.toml", "--out", "file/results"]);
+    assert_eq!(run.code, 7);
+    assert!(run.stderr.contains("file/results"), "{}", run.stderr);
+}
