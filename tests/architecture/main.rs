@@ -3,9 +3,11 @@
 //! A module may name those that stand before it in [`WINGS`], inside a wing those that stand before
 //! it in its list of rooms; never one that stands after it.
 
+#![allow(clippy::unwrap_used)]
+
 mod paths;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use paths::{Source, sources};
 
@@ -210,7 +212,7 @@ fn every_file_is_short_and_says_what_it_is_for() {
 #[test]
 fn the_reading_of_paths_sees_nested_and_relative_ones() {
     let source = Source::new(
-        PathBuf::from("src/model/reduction/basis.rs"),
+        Path::new("src/model/reduction/basis.rs"),
         &["model", "reduction", "basis"],
         "//! Text.\n\
          use crate::linalg::{Complex64, dense::{self, Lu as Factor}};\n\

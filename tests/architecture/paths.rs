@@ -1,6 +1,6 @@
 //! Reads the paths from `crate`, `super` and `self` in Rust sources: no compiler, just enough grammar.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// One source file without comments, strings and tests, and the paths it names.
 pub struct Source {
@@ -32,7 +32,7 @@ pub fn sources(root: &Path) -> Vec<Source> {
                     module.pop();
                 }
                 let text = std::fs::read_to_string(&path).unwrap();
-                found.push(Source::new(path.clone(), &module, &text));
+                found.push(Source::new(&path, &module, &text));
             }
         }
     }
@@ -41,10 +41,9 @@ pub fn sources(root: &Path) -> Vec<Source> {
 }
 
 impl Source {
-    pub fn new(path: PathBuf, module: &[&str], text: &str) -> Self {
+    pub fn new(path: &Path, module: &[&str], text: &str) -> Self {
         let code = code_of(text);
         let module: Vec<String> = module.iter().map(|&part| part.to_owned()).collect();
-        // In `mod.rs`, `self` and a bare room name are the module itself; elsewhere too.
         Self {
             name: path.display().to_string(),
             paths: paths_of(&code, &module, path.ends_with("mod.rs")),

@@ -59,7 +59,7 @@ impl RowSolver {
         Ok(Self {
             full: points(&settings.harmonics)?,
             linear: points(&[1])?,
-            basis: WheelBasis::new(Arc::clone(&model)),
+            basis: WheelBasis::new(model),
             settings,
         })
     }

@@ -268,8 +268,7 @@ impl<'a> PointSolver<'a> {
         let (Some(below), Some(above)) = (below, above) else {
             return below.or(above).map(|point| point.solution.clone());
         };
-        let share =
-            (frequency_hz - below.frequency_hz) / (above.frequency_hz - below.frequency_hz);
+        let share = (frequency_hz - below.frequency_hz) / (above.frequency_hz - below.frequency_hz);
         let pairs = below.solution.iter().zip(&above.solution);
         Some(pairs.map(|(a, b)| a + share * (b - a)).collect())
     }
@@ -294,7 +293,7 @@ impl<'a> PointSolver<'a> {
         let mut x = start;
         let omega = TAU * frequency_hz;
         let bounds = self.settings.bounds;
-        let outcome = if load_factor == 1.0 {
+        let outcome = if load_factor.total_cmp(&1.0).is_eq() {
             solve(system, omega, &mut x, bounds, workspace)
         } else {
             let scaled = system
