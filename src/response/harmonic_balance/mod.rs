@@ -2,7 +2,7 @@
 
 mod convergence;
 mod damping;
-mod interface;
+mod jacobian;
 mod linear;
 mod newton;
 mod pair_harmonics;
@@ -13,11 +13,10 @@ mod transform;
 
 pub use convergence::NewtonBounds;
 pub use damping::Damping;
-pub use interface::{ContactInterface, ContactShares};
 pub use linear::linear_response;
 pub use newton::{NewtonOutcome, NewtonWorkspace, solve};
 pub use pair_harmonics::{PairHarmonics, PairJacobian};
 pub use status::Status;
-pub use structure::{ContactStiffnessMatrix, HarmonicBlock, Structure};
-pub use system::{HarmonicSystem, SystemWorkspace};
+pub use structure::{ContactStiffnessMatrix, Structure};
+pub use system::{ContactInterface, ContactShares, HarmonicBlock, HarmonicSystem, SystemWorkspace};
 pub use transform::{HarmonicTransform, TransformError, TransformScratch};

@@ -7,8 +7,6 @@
 //! with `lambda` the contact-free eigenvalues, mistuning included; contact springs are undamped
 //! and harmonic 0 has no damping.
 
-use std::sync::Arc;
-
 use super::Damping;
 use crate::linalg::{Complex64, Matrix};
 use crate::response::mistuning::{ModalRows, StructuralModes};
@@ -41,17 +39,6 @@ pub struct ContactStiffnessMatrix {
     pub real: Matrix<f64>,
     /// Imaginary part, antisymmetric; none where the contact rows are real.
     pub imaginary: Option<Matrix<f64>>,
-}
-
-/// One harmonic of the set: its number, and the structure it lives in.
-#[derive(Debug, Clone)]
-pub struct HarmonicBlock {
-    /// Harmonic k.
-    pub harmonic: u32,
-    /// Structure; the wheel's is shared by all harmonics, a tuned wave has one per harmonic.
-    pub structure: Arc<Structure>,
-    /// Linear stuck contact stiffness of that structure.
-    pub stuck: Arc<ContactStiffnessMatrix>,
 }
 
 impl Structure {
