@@ -1,5 +1,6 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
+mod broyden;
 mod convergence;
 mod damping;
 mod jacobian;
