@@ -17,7 +17,7 @@ import polars
 import pyarrow.parquet
 
 INT32 = {"scenario", "engine_order", "pattern", "peak_blade", "planned", "ok", "failed", "blade", "mode"}
-INT64 = {"nonlinear_solves", "newton_iterations"}
+INT64 = {"nonlinear_solves", "newton_iterations", "retries"}
 BOOLEAN = {"peak_bracketed"}
 STRING = {"contact", "status", "tuned_status", "harmonics", "shortcut"}
 
