@@ -1,6 +1,6 @@
 //! Broyden's rank-one updates of a kept Jacobian, by its inverse and the steps taken so far.
 //!
-//! With B_0 the kept Jacobian, t_0 .. t_n the full steps taken since (`x <- x - t`) and
+//! With `B_0` the kept Jacobian, `t_0 .. t_n` the full steps taken since (`x <- x - t`) and
 //! `w = B_0^-1 R(x)`, the next step is (Kelley 1995, Iterative Methods for Linear and Nonlinear
 //! Equations, section 7.3)
 //!
