@@ -2,5 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod lumped24;
+mod one_dof;
 mod support;
 mod wheels;
