@@ -268,8 +268,7 @@ impl<'a> PointSolver<'a> {
         let (Some(below), Some(above)) = (below, above) else {
             return below.or(above).map(|point| point.solution.clone());
         };
-        let share =
-            (frequency_hz - below.frequency_hz) / (above.frequency_hz - below.frequency_hz);
+        let share = (frequency_hz - below.frequency_hz) / (above.frequency_hz - below.frequency_hz);
         let pairs = below.solution.iter().zip(&above.solution);
         Some(pairs.map(|(a, b)| a + share * (b - a)).collect())
     }
