@@ -136,7 +136,7 @@ pub fn orthonormal_basis<T: Scalar>(
             .sqrt();
         if norm > 0.0 {
             for entry in scaled.column_mut(column) {
-                *entry = *entry * T::from_real(1.0 / norm);
+                *entry *= T::from_real(1.0 / norm);
             }
         }
     }

@@ -308,6 +308,7 @@ impl<'a> Work<'a> {
                     harmonics: String::new(),
                     nonlinear_solves: 0,
                     newton_iterations: 0,
+                    retries: 0,
                     residual: None,
                     slipping_fraction: None,
                     separated_fraction: None,

@@ -1,51 +1,12 @@
 //! Basis of one nodal diameter: stick and slide modes, or stick modes and attachment vectors.
 
-use serde::{Deserialize, Serialize};
-
 use super::craig_bampton::{CraigBampton, pencil};
 use crate::linalg::{Complex64, Matrix, OrthonormalBasis, orthonormal_basis};
+use crate::model::reduced_model::{BasisChoice, ContactSprings};
 use crate::model::sector::{ModelError, StiffnessKind};
 
 /// Singular values below this share of the largest are dropped.
 const DROP_BELOW: f64 = 1e-8;
-
-/// A basis of definite size; the same for every nodal diameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum BasisChoice {
-    /// Modes under global sticking and global sliding contact (Tang & Epureanu).
-    StickSlide {
-        /// Stick modes.
-        stick: usize,
-        /// Slide modes.
-        slide: usize,
-    },
-    /// Stick modes and one attachment vector per contact direction.
-    StickAttachment {
-        /// Stick modes.
-        stick: usize,
-    },
-    /// The whole Craig-Bampton space: the reference that every other basis is compared with.
-    CraigBampton,
-}
-
-impl std::fmt::Display for BasisChoice {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::StickSlide { stick, slide } => write!(f, "stick_slide {stick}+{slide}"),
-            Self::StickAttachment { stick } => write!(f, "stick_attachment {stick}"),
-            Self::CraigBampton => write!(f, "craig_bampton"),
-        }
-    }
-}
-
-/// Linear contact springs of a sector, N/m, one per contact row, under the two extreme states.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ContactSprings {
-    /// Sticking: normal and tangential springs.
-    pub stick: Vec<f64>,
-    /// Sliding: normal springs only.
-    pub slide: Vec<f64>,
-}
 
 /// M-orthonormal basis over the columns of a Craig-Bampton model.
 ///

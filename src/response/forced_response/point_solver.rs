@@ -293,7 +293,7 @@ impl<'a> PointSolver<'a> {
         let mut x = start;
         let omega = TAU * frequency_hz;
         let bounds = self.settings.bounds;
-        let outcome = if load_factor == 1.0 {
+        let outcome = if load_factor.total_cmp(&1.0).is_eq() {
             solve(system, omega, &mut x, bounds, workspace)
         } else {
             let scaled = system

@@ -1,7 +1,9 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
+mod broyden;
 mod convergence;
 mod damping;
+mod jacobian;
 mod linear;
 mod newton;
 mod pair_harmonics;

@@ -1,10 +1,14 @@
 //! Newton's method on the harmonic balance equation, damped, with a Jacobian kept while it serves.
 
+use super::broyden::Broyden;
 use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
 use crate::linalg::LuWorkspace;
 
 /// A kept Jacobian must reduce the residual at least to this share, else it is renewed.
 const KEPT_JACOBIAN_CONTRACTION: f64 = 0.4;
+
+/// Steps with one Jacobian that Broyden's updates remember.
+const REMEMBERED_STEPS: usize = 24;
 
 /// Outcome of one nonlinear solve; the solution itself is left in the caller's vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,12 +29,13 @@ pub struct NewtonOutcome {
 pub struct NewtonWorkspace {
     system: SystemWorkspace,
     jacobian: LuWorkspace<f64>,
-    /// Whether `jacobian` holds the factors of an earlier solve.
+    /// Whether `jacobian` holds the factors of an earlier point.
     factored: bool,
     residual: Vec<f64>,
     step: Vec<f64>,
     trial: Vec<f64>,
     trial_step: Vec<f64>,
+    updates: Broyden,
 }
 
 impl NewtonWorkspace {
@@ -46,6 +51,7 @@ impl NewtonWorkspace {
             step: vec![0.0; n],
             trial: vec![0.0; n],
             trial_step: vec![0.0; n],
+            updates: Broyden::new(REMEMBERED_STEPS, n),
         }
     }
 }
@@ -53,10 +59,11 @@ impl NewtonWorkspace {
 /// Solves `R(x) = 0` at angular frequency `omega` from the given `x`, in place.
 ///
 /// A step is `s = -J^-1 R(x)`, damped by the natural monotonicity test of Deuflhard (2004, Newton
-/// Methods for Nonlinear Problems, section 3.3): a damped step is taken where the next simplified step
-/// `-J^-1 R(x + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual itself this does
-/// not depend on how the equations are scaled, and contact forces are far from well scaled. While
-/// the simplified step is much shorter, it is taken as the next step and the Jacobian is kept.
+/// Methods for Nonlinear Problems, section 3.3): a damped step is taken where the next simplified
+/// step `-J^-1 R(x + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual
+/// itself this does not depend on how the equations are scaled, and contact forces are far from
+/// well scaled. While the simplified step is much shorter, the Jacobian is kept, also from one
+/// frequency to the next, and corrected by Broyden's updates.
 pub fn solve(
     system: &HarmonicSystem,
     omega: f64,
@@ -72,8 +79,9 @@ pub fn solve(
         step,
         trial,
         trial_step,
+        updates,
     } = workspace;
-    let (first, shares) = system.residual(omega, x, residual, true, buffers);
+    let (first, shares) = system.residual(omega, x, residual, false, buffers);
     let mut state = NewtonOutcome {
         status: Status::IterationLimit,
         iterations: 0,
@@ -81,25 +89,28 @@ pub fn solve(
         residual: first,
         shares,
     };
+    let ended = |state: NewtonOutcome, status| NewtonOutcome { status, ..state };
     // Whether `step` holds a simplified step with the kept Jacobian: at first that of an earlier
     // solve of the same workspace, which a neighbouring frequency often allows to go on with.
     let mut kept = *factored && first.is_finite();
+    updates.clear();
     if kept {
         step.copy_from_slice(residual);
         jacobian.solve(step);
     }
     loop {
-        let ended = |state: NewtonOutcome, status| NewtonOutcome { status, ..state };
         if let Some(status) = bounds.judge(first, state.residual, state.iterations as usize) {
             return ended(state, status);
         }
         if !kept {
+            system.residual(omega, x, residual, true, buffers);
             system.jacobian(omega, buffers, jacobian.matrix_mut());
             *factored = jacobian.factor();
             if !*factored {
                 return ended(state, Status::SingularJacobian);
             }
             state.factorisations += 1;
+            updates.clear();
             step.copy_from_slice(residual);
             jacobian.solve(step);
         }
@@ -111,10 +122,17 @@ pub fn solve(
             for ((t, x), s) in trial.iter_mut().zip(x.iter()).zip(step.iter()) {
                 *t = x - factor * s;
             }
-            let (norm, shares) = system.residual(omega, trial, residual, true, buffers);
+            let (norm, shares) = system.residual(omega, trial, residual, false, buffers);
             trial_step.copy_from_slice(residual);
             jacobian.solve(trial_step);
-            let contraction = norm_of(trial_step) / length;
+            let natural = norm_of(trial_step) / length;
+            if halving == 0 {
+                updates.push(step);
+                updates.update(trial_step);
+            } else {
+                updates.clear();
+            }
+            let contraction = f64::min(natural, norm_of(trial_step) / length);
             let monotone = contraction <= 1.0 - 0.25 * factor;
             (monotone || norm <= bounds.residual_tolerance).then_some((norm, shares, contraction))
         });
@@ -127,11 +145,7 @@ pub fn solve(
                     std::mem::swap(step, trial_step);
                 }
             }
-            None if kept => {
-                // The kept Jacobian failed: residual and derivative data must be those of x again.
-                system.residual(omega, x, residual, true, buffers);
-                kept = false;
-            }
+            None if kept => kept = false,
             None if state.residual.is_finite() => return ended(state, Status::Stagnated),
             None => return ended(state, Status::NonFinite),
         }
