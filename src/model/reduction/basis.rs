@@ -31,7 +31,11 @@ pub fn basis_of(
             stick_modes.beside(&attachment_vectors(model, springs)?)
         }
     };
-    let span = span.beside(&enrichment(model, &span));
+    let span = if span.columns() == model.size() {
+        span
+    } else {
+        span.beside(&model.enrichment)
+    };
     let real = |a: &Matrix<Complex64>| a.as_slice().iter().all(|x| x.im == 0.0);
     let basis = if real(&span) && real(&model.mass) {
         orthonormal_basis(&span.real(), &model.mass.real(), DROP_BELOW).map(|basis| {
@@ -75,19 +79,6 @@ fn attachment_vectors(
         }
     }
     Ok(modes.times(&participation))
-}
-
-/// Unit vectors of the enrichment columns of T (sensitivity vectors), kept in every basis.
-fn enrichment(model: &CraigBampton, span: &Matrix<Complex64>) -> Matrix<Complex64> {
-    let size = model.size();
-    let count = if span.columns() == size {
-        0
-    } else {
-        model.enrichment
-    };
-    Matrix::from_fn(size, count, |i, j| {
-        Complex64::new(f64::from(u8::from(i == size - count + j)), 0.0)
-    })
 }
 
 fn first(modes: &Matrix<Complex64>, count: usize) -> Matrix<Complex64> {
