@@ -1,6 +1,5 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
-mod broyden;
 mod convergence;
 mod damping;
 mod jacobian;

@@ -1,14 +1,10 @@
 //! Newton's method on the harmonic balance equation, damped, with a Jacobian kept while it serves.
 
-use super::broyden::Broyden;
 use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
 use crate::linalg::LuWorkspace;
 
 /// A kept Jacobian must reduce the residual at least to this share, else it is renewed.
-const KEPT_JACOBIAN_CONTRACTION: f64 = 0.4;
-
-/// Steps with one Jacobian that Broyden's updates remember.
-const REMEMBERED_STEPS: usize = 24;
+const KEPT_JACOBIAN_CONTRACTION: f64 = 0.6;
 
 /// Outcome of one nonlinear solve; the solution itself is left in the caller's vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,7 +31,6 @@ pub struct NewtonWorkspace {
     step: Vec<f64>,
     trial: Vec<f64>,
     trial_step: Vec<f64>,
-    updates: Broyden,
 }
 
 impl NewtonWorkspace {
@@ -51,7 +46,6 @@ impl NewtonWorkspace {
             step: vec![0.0; n],
             trial: vec![0.0; n],
             trial_step: vec![0.0; n],
-            updates: Broyden::new(REMEMBERED_STEPS, n),
         }
     }
 }
@@ -62,8 +56,8 @@ impl NewtonWorkspace {
 /// Methods for Nonlinear Problems, section 3.3): a damped step is taken where the next simplified
 /// step `-J^-1 R(x + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual
 /// itself this does not depend on how the equations are scaled, and contact forces are far from
-/// well scaled. While the simplified step is much shorter, the Jacobian is kept, also from one
-/// frequency to the next, and corrected by Broyden's updates.
+/// well scaled. While the simplified step is much shorter, it is taken as the next step and the
+/// Jacobian is kept, also from one frequency to the next.
 pub fn solve(
     system: &HarmonicSystem,
     omega: f64,
@@ -79,7 +73,6 @@ pub fn solve(
         step,
         trial,
         trial_step,
-        updates,
     } = workspace;
     let (first, shares) = system.residual(omega, x, residual, false, buffers);
     let mut state = NewtonOutcome {
@@ -93,7 +86,6 @@ pub fn solve(
     // Whether `step` holds a simplified step with the kept Jacobian: at first that of an earlier
     // solve of the same workspace, which a neighbouring frequency often allows to go on with.
     let mut kept = *factored && first.is_finite();
-    updates.clear();
     if kept {
         step.copy_from_slice(residual);
         jacobian.solve(step);
@@ -110,7 +102,6 @@ pub fn solve(
                 return ended(state, Status::SingularJacobian);
             }
             state.factorisations += 1;
-            updates.clear();
             step.copy_from_slice(residual);
             jacobian.solve(step);
         }
@@ -125,14 +116,7 @@ pub fn solve(
             let (norm, shares) = system.residual(omega, trial, residual, false, buffers);
             trial_step.copy_from_slice(residual);
             jacobian.solve(trial_step);
-            let natural = norm_of(trial_step) / length;
-            if halving == 0 {
-                updates.push(step);
-                updates.update(trial_step);
-            } else {
-                updates.clear();
-            }
-            let contraction = f64::min(natural, norm_of(trial_step) / length);
+            let contraction = norm_of(trial_step) / length;
             let monotone = contraction <= 1.0 - 0.25 * factor;
             (monotone || norm <= bounds.residual_tolerance).then_some((norm, shares, contraction))
         });
