@@ -291,7 +291,7 @@ impl RowSolver {
             peak_frequency_hz: good.map(|(_, point)| point.frequency_hz),
             peak_blade: good.map(|(found, _)| found.blade as u32),
             amplification_factor: amplification_factor(amplitude, tuned.amplitude_m),
-            peak_bracketed: found.as_ref().map(|found| found.bracketed),
+            peak_bracketed: good.map(|(found, _)| found.bracketed),
             harmonics: harmonics_name(self.points(scenario.contact).harmonics()),
             nonlinear_solves: work.nonlinear_solves,
             newton_iterations: work.newton_iterations,
