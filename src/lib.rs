@@ -1,4 +1,17 @@
 //! Monte Carlo forced response of randomly mistuned bladed disks with friction ring dampers.
+//!
+//! The way of the data, and the order in which modules may name each other (each only those before
+//! it; a test holds it):
+//!
+//! | wing | rooms, in order | holds |
+//! | --- | --- | --- |
+//! | [`linalg`] | | a thin layer over faer |
+//! | [`model`] | `sector`, `cyclic`, `reduced_model`, `reduction`, `cache` | from a sector to the reduced model |
+//! | [`response`] | `mistuning`, `friction`, `harmonic_balance`, `forced_response` | one wheel to its peak |
+//! | [`population`] | `monte_carlo`, `statistics`, `table` | all wheels to tables |
+//! | [`report`] | | the summary and its warnings |
+//! | [`study`] | | the study file and the pipeline |
+//! | [`cli`] | | the commands; the only code that prints |
 
 pub mod cli;
 pub mod linalg;

@@ -50,7 +50,7 @@ pub enum Command {
     Run {
         /// The study file.
         study: PathBuf,
-        /// The results folder [default: `results/` and the name of the study].
+        /// The results folder [default: results/NAME].
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
         /// Number of threads [default: all cores]; results do not depend on it.

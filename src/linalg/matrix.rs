@@ -12,6 +12,7 @@ pub trait Scalar: ComplexField + Copy + PartialEq + Default + std::fmt::Debug {
     /// From a real number.
     fn from_real(real: f64) -> Self;
     /// Complex conjugate.
+    #[must_use]
     fn conjugate(self) -> Self;
     /// Real part.
     fn real_part(self) -> f64;
@@ -225,6 +226,9 @@ impl<T: Scalar> Matrix<T> {
     }
 
     /// `[self, other]`, side by side.
+    ///
+    /// # Panics
+    /// If the numbers of rows differ, a defect of the caller.
     #[must_use]
     pub fn beside(&self, other: &Self) -> Self {
         assert_eq!(

@@ -9,8 +9,8 @@ use thiserror::Error;
 
 use super::sector::SectorModel;
 
-/// Layout of the stored bytes; part of every digest, so that an older file is never misread.
-const LAYOUT: u32 = 1;
+/// Layout and meaning of the stored bytes; part of every digest, so that an older file is never misread.
+const LAYOUT: u32 = 2;
 
 /// A cache that cannot be written. An unreadable entry is no error: it is made anew.
 #[derive(Debug, Error)]

@@ -3,8 +3,56 @@
 use serde::{Deserialize, Serialize};
 
 use super::cyclic::{ContactGeometry, NodalDiameter};
-use super::reduction::{BasisChoice, CantileverModes, ContactSprings};
 use crate::linalg::{Complex64, Matrix};
+
+/// A basis of definite size; the same for every nodal diameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BasisChoice {
+    /// Modes under global sticking and global sliding contact (Tang & Epureanu).
+    StickSlide {
+        /// Stick modes.
+        stick: usize,
+        /// Slide modes.
+        slide: usize,
+    },
+    /// Stick modes and one attachment vector per contact direction.
+    StickAttachment {
+        /// Stick modes.
+        stick: usize,
+    },
+    /// The whole Craig-Bampton space: the reference that every other basis is compared with.
+    CraigBampton,
+}
+
+impl std::fmt::Display for BasisChoice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::StickSlide { stick, slide } => write!(f, "stick_slide {stick}+{slide}"),
+            Self::StickAttachment { stick } => write!(f, "stick_attachment {stick}"),
+            Self::CraigBampton => write!(f, "craig_bampton"),
+        }
+    }
+}
+
+/// Linear contact springs of a sector, N/m, one per contact row, under the two extreme states.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ContactSprings {
+    /// Sticking: normal and tangential springs.
+    pub stick: Vec<f64>,
+    /// Sliding: normal springs only.
+    pub slide: Vec<f64>,
+}
+
+/// Cantilevered-blade modes: the blade alone, its root held (component mode mistuning,
+/// Lim, Bladh, Castanier & Pierre 2007, AIAA J. 45(9)).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CantileverModes {
+    /// Eigenvalues `omega_r^2`, (rad/s)^2, ascending.
+    pub eigenvalues: Vec<f64>,
+    /// Participation `q_h = diag(1/omega_r^2) U^T K_blade B_h` of each nodal diameter 0..=N/2,
+    /// `n_cantilever x n_modes`.
+    pub participation: Vec<Matrix<Complex64>>,
+}
 
 /// One nodal diameter in its own tuned contact-free modes: `M = I`, `K = diag(eigenvalues)`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -7,5 +7,5 @@ mod text_table;
 mod warning;
 
 pub use model_report::{ModelReport, NodalDiameterFacts};
-pub use summary::{BestLoad, ScenarioSummary, StudySummary, SummaryContext};
+pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use warning::Warning;

@@ -23,8 +23,21 @@ pub struct SummaryContext {
     pub patterns: u64,
     /// Harmonics as the study has them.
     pub harmonics: Harmonics,
+    /// Reduction basis in use.
+    pub basis: BasisSummary,
     /// Version of the program that made the results.
     pub version: String,
+}
+
+/// The reduction basis of a study and its measured error.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct BasisSummary {
+    /// The basis, in words.
+    pub name: String,
+    /// Measured relative error of the tuned peak; none where nothing is left out or no peak was found.
+    pub tuned_peak_error: Option<f64>,
+    /// Error that the study asks for.
+    pub wanted_error: f64,
 }
 
 /// One scenario of a summary.
@@ -92,6 +105,8 @@ pub struct StudySummary {
     pub seed: u64,
     /// Number of patterns.
     pub patterns: u64,
+    /// Reduction basis in use.
+    pub basis: BasisSummary,
     /// Rows by status over all scenarios.
     pub rows: Accounting,
     /// The scenarios, in order.
@@ -117,6 +132,7 @@ impl StudySummary {
             version: context.version.clone(),
             seed: context.seed,
             patterns: context.patterns,
+            basis: context.basis.clone(),
             rows,
             best: best_loads(&scenarios),
             warnings: warnings(context, records, &rows),
@@ -216,6 +232,16 @@ fn warnings(
     if friction && context.harmonics == Harmonics::Auto {
         warnings.push(Warning::HarmonicsUnscreened {
             harmonics: "[1, 3]".to_owned(),
+        });
+    }
+    let basis = &context.basis;
+    if let Some(error) = basis.tuned_peak_error
+        && error > basis.wanted_error
+    {
+        warnings.push(Warning::BasisError {
+            basis: basis.name.clone(),
+            error,
+            wanted: basis.wanted_error,
         });
     }
     if rows.failed() > 0 {

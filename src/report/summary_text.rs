@@ -44,6 +44,14 @@ impl fmt::Display for StudySummary {
             self.rows.ok(),
             self.rows.failed()
         )?;
+        if let Some(error) = self.basis.tuned_peak_error {
+            writeln!(
+                f,
+                "basis {}, tuned peak within {:.2} % of the full contact model at the same harmonics",
+                self.basis.name,
+                100.0 * error
+            )?;
+        }
         let unit = unit_of(&self.scenarios);
         let groups = self.scenarios.chunk_by(|a, b| {
             a.engine_order == b.engine_order && a.standard_deviation == b.standard_deviation

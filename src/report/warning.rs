@@ -20,6 +20,15 @@ pub enum Warning {
         /// Set in use.
         harmonics: String,
     },
+    /// The basis is less accurate than the study asks for.
+    BasisError {
+        /// The basis.
+        basis: String,
+        /// Measured relative error of the tuned peak.
+        error: f64,
+        /// Error asked for.
+        wanted: f64,
+    },
     /// Rows without result.
     Failures {
         /// Rows that failed.
@@ -66,6 +75,16 @@ impl fmt::Display for Warning {
                 f,
                 "harmonics \"auto\" means {harmonics} and what is left out has not been estimated; \
                  compare with a larger set in solver.harmonics"
+            ),
+            Self::BasisError {
+                basis,
+                error,
+                wanted,
+            } => write!(
+                f,
+                "basis {basis} misses the tuned peak by {:.2} %, more than reduction.error = {wanted}; \
+                 take more modes or basis = \"auto\", or accept it by a larger reduction.error",
+                100.0 * error
             ),
             Self::Failures { failed, planned } => write!(
                 f,

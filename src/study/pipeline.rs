@@ -19,7 +19,7 @@ use crate::population::table::{
     ScenarioRecord, StatusCounts, TableError, TableHeader, write_atomically, write_patterns,
     write_scenarios,
 };
-use crate::report::{StudySummary, SummaryContext};
+use crate::report::{BasisSummary, StudySummary, SummaryContext};
 use crate::response::forced_response::Harmonics;
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::{GENERATOR, Pattern, PatternSource};
@@ -308,6 +308,7 @@ impl<'a> Work<'a> {
                     harmonics: String::new(),
                     nonlinear_solves: 0,
                     newton_iterations: 0,
+                    retries: 0,
                     residual: None,
                     slipping_fraction: None,
                     separated_fraction: None,
@@ -434,7 +435,24 @@ fn context_of(manifest: &Manifest) -> SummaryContext {
         seed: manifest.seed,
         patterns: manifest.patterns,
         harmonics: harmonics.unwrap_or(Harmonics::Auto),
+        basis: basis_of(manifest),
         version: manifest.version.clone(),
+    }
+}
+
+/// The basis and its measured error, from the facts that the engine gave.
+fn basis_of(manifest: &Manifest) -> BasisSummary {
+    let tried = manifest.reduction["tuned_peak_errors"].as_array();
+    let wanted = manifest.study["reduction"]["error"].as_f64();
+    BasisSummary {
+        name: manifest.reduction["basis"]
+            .as_str()
+            .unwrap_or_default()
+            .to_owned(),
+        tuned_peak_error: tried
+            .and_then(|tried| tried.last())
+            .and_then(|last| last["error"].as_f64()),
+        wanted_error: wanted.unwrap_or(f64::INFINITY),
     }
 }
 

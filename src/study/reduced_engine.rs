@@ -66,31 +66,31 @@ impl EngineSource for ReducedEngineSource {
             study.reduction, study.mistuning.cantilever_mode_count, study.engine_orders
         );
         let digest = reduction_digest(model, &key);
-        let stored: Stored = match cache.and_then(|folder| read_cached(folder, &digest)) {
-            Some(stored) => stored,
-            None => {
-                let reduction = Reduction::new(
-                    model,
-                    stiffness,
-                    study.reduction.craig_bampton_modes,
-                    sensitivity,
-                )?;
-                let (choice, evidence) = choose_basis(
-                    &reduction,
-                    &study.reduction,
-                    &settings,
-                    &study.engine_orders,
-                    &conditions,
-                )?;
-                let stored = Stored {
-                    model: reduction.reduce(choice, study.mistuning.cantilever_mode_count)?,
-                    evidence,
-                };
-                if let Some(folder) = cache {
-                    write_cached(folder, &digest, &stored)?;
-                }
-                stored
+        let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
+        let stored = if let Some(stored) = cached {
+            stored
+        } else {
+            let reduction = Reduction::new(
+                model,
+                stiffness,
+                study.reduction.craig_bampton_modes,
+                sensitivity,
+            )?;
+            let (choice, evidence) = choose_basis(
+                &reduction,
+                &study.reduction,
+                &settings,
+                &study.engine_orders,
+                &conditions,
+            )?;
+            let stored = Stored {
+                model: reduction.reduce(choice, study.mistuning.cantilever_mode_count)?,
+                evidence,
+            };
+            if let Some(folder) = cache {
+                write_cached(folder, &digest, &stored)?;
             }
+            stored
         };
         Ok(Box::new(ReducedEngine {
             solver: RowSolver::new(Arc::new(stored.model), settings)?,

@@ -1,6 +1,9 @@
 //! Reference cases: solutions of the same problems by other programs, stored in `tests/data`.
 
-#![allow(clippy::unwrap_used)]
+// Measured figures are printed for `--nocapture`.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod lumped24;
+mod one_dof;
 mod support;
 mod wheels;

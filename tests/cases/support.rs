@@ -1,162 +1,177 @@
-//! Reading of reference tables and solution of a bundle at the reference's settings.
+//! Studies solved as the program solves them, and reading of the reference tables.
 
 use std::path::{Path, PathBuf};
 
-use blisk::model::ReducedModel;
-use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction};
-use blisk::model::sector::{SectorModel, bundle};
-use blisk::response::forced_response::{
-    ContactCondition, Excited, FrequencyBand, LimitsWanted, Peak, PointSettings, SolverOptions,
-    Wheel, Window, dominant_resonance, mistuned_window, peak, wheel_force,
+use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use blisk::response::forced_response::ContactCondition;
+use blisk::response::mistuning::{Pattern, PatternSource};
+use blisk::study::{
+    Engine, EngineSource, ReducedEngineSource, Study, load_sector_model, pattern_source,
 };
-use blisk::response::friction::{ContactLaw, PairParameters};
-use blisk::response::harmonic_balance::Damping;
-use blisk::response::mistuning::{StructuralModes, WheelBasis};
 
-/// A table of strings by column name.
+/// A file or folder of this package.
+pub fn package(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// A table of strings by column name; lines of comment before the header are passed over.
 pub struct Table {
     header: Vec<String>,
-    pub rows: Vec<Vec<String>>,
+    rows: Vec<Vec<String>>,
 }
 
 impl Table {
     pub fn read(path: &Path) -> Self {
-        let text = std::fs::read_to_string(path).unwrap();
-        let mut lines = text.lines().filter(|line| !line.starts_with('#'));
         let split = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
+        let text = std::fs::read_to_string(path).unwrap();
+        // In the lumped tables the header itself is a comment, the last one.
+        let (comments, rows): (Vec<&str>, Vec<&str>) =
+            text.lines().partition(|line| line.starts_with('#'));
+        let (header, rows) = match comments.last() {
+            Some(header) => (header.trim_start_matches("# "), &rows[..]),
+            None => (rows[0], &rows[1..]),
+        };
         Self {
-            header: split(lines.next().unwrap()),
-            rows: lines.map(split).collect(),
+            header: split(header),
+            rows: rows.iter().map(|line| split(line)).collect(),
         }
     }
 
-    pub fn text<'a>(&self, row: &'a [String], column: &str) -> &'a str {
-        let at = self.header.iter().position(|name| name == column).unwrap();
-        &row[at]
-    }
-
-    pub fn number(&self, row: &[String], column: &str) -> f64 {
-        self.text(row, column).parse().unwrap()
+    pub fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+        self.rows.iter().map(|cells| Row {
+            header: &self.header,
+            cells,
+        })
     }
 }
 
-pub fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data")
-        .join(name)
+/// One row of a [`Table`].
+#[derive(Clone, Copy)]
+pub struct Row<'a> {
+    header: &'a [String],
+    cells: &'a [String],
 }
 
-/// A bundle with the parameters of its reference.
+impl<'a> Row<'a> {
+    pub fn text(&self, column: &str) -> &'a str {
+        let at = self.header.iter().position(|name| name == column);
+        &self.cells[at.unwrap_or_else(|| panic!("no column {column}"))]
+    }
+
+    pub fn number(&self, column: &str) -> f64 {
+        self.text(column).parse().unwrap()
+    }
+
+    pub fn numbers(&self) -> Vec<f64> {
+        self.cells
+            .iter()
+            .map(|cell| cell.parse().unwrap())
+            .collect()
+    }
+}
+
+/// Height and place of a peak.
+#[derive(Debug, Clone, Copy)]
+pub struct Peak {
+    pub amplitude_m: f64,
+    pub frequency_hz: f64,
+    pub blade: usize,
+}
+
+/// A study with its reduced model, not yet solved.
 pub struct Case {
-    pub model: SectorModel,
-    pub stiffness: ContactStiffness,
-    pub sector: PairParameters,
-    pub deviations: Vec<f64>,
-    pub peaks: Table,
+    pub study: Study,
+    engine: Box<dyn Engine>,
+    patterns: PatternSource,
 }
-
-pub const ENGINE_ORDER: u32 = 3;
-pub const DAMPING: Damping = Damping::StructuralLossFactor(0.002);
 
 impl Case {
-    pub fn wheel8() -> Self {
-        Self::read("wheel8", 8e8, 4e8)
-    }
-
-    pub fn wheel24() -> Self {
-        Self::read("wheel24", 2e8, 1e8)
-    }
-
-    fn read(name: &str, kn: f64, kt: f64) -> Self {
-        let folder = data(name);
-        let patterns = Table::read(&folder.join("reference/patterns.csv"));
+    pub fn new(study: Study) -> Self {
+        let model = load_sector_model(&study).unwrap();
         Self {
-            model: bundle::read(&folder).unwrap(),
-            stiffness: ContactStiffness {
-                normal_n_per_m: kn,
-                tangential_1_n_per_m: kt,
-                tangential_2_n_per_m: kt,
-            },
-            sector: PairParameters {
-                normal_load_n: 0.0,
-                normal_stiffness_n_per_m: kn,
-                tangential_stiffness_n_per_m: kt,
-                friction_coefficient: 0.3,
-            },
-            deviations: patterns
-                .rows
-                .iter()
-                .map(|row| patterns.number(row, "deviation"))
-                .collect(),
-            peaks: Table::read(&folder.join("reference/peaks.csv")),
+            patterns: pattern_source(&study, model.sectors).unwrap(),
+            engine: ReducedEngineSource.build(&study, &model, None).unwrap(),
+            study,
         }
     }
 
-    pub fn reduce(&self, choice: BasisChoice) -> ReducedModel {
-        Reduction::new(&self.model, self.stiffness, 25, 0)
-            .unwrap()
-            .reduce(choice, None)
-            .unwrap()
+    /// The basis that was taken.
+    pub fn basis(&self) -> String {
+        self.engine.model_report().basis
     }
-}
 
-pub fn settings(
-    case: &Case,
-    model: &ReducedModel,
-    harmonics: &[u32],
-    samples: usize,
-) -> PointSettings {
-    let options = SolverOptions {
-        samples_per_period: samples,
-        ..SolverOptions::default()
-    };
-    let contact = Some((ContactLaw::Simplified3d, case.sector));
-    PointSettings::new(&options, harmonics, contact, model.contact.clone()).unwrap()
-}
+    pub fn pattern(&self, id: u32, standard_deviation: Option<f64>) -> Pattern {
+        self.patterns.pattern(id, standard_deviation).unwrap()
+    }
 
-pub const ALL_LIMITS: LimitsWanted = LimitsWanted {
-    stuck: true,
-    slide: true,
-    free: true,
-};
-
-/// Tuned wheel as one sector.
-pub fn tuned(model: &ReducedModel, harmonics: &[u32]) -> Excited {
-    Excited::tuned(model, ENGINE_ORDER, 1.0, DAMPING, harmonics, ALL_LIMITS)
-}
-
-/// Mistuned wheel.
-pub fn mistuned(model: &ReducedModel, deviations: &[f64], harmonics: &[u32]) -> Excited {
-    let basis = WheelBasis::new(std::sync::Arc::new(model.clone()));
-    let modes =
-        StructuralModes::of_wheel(&basis, &basis.blade_stiffness_change(deviations)).unwrap();
-    let force = wheel_force(&basis, &modes, ENGINE_ORDER, 1.0);
-    let wheel = Wheel::mistuned(modes, model, DAMPING, ALL_LIMITS);
-    Excited::wheel(&wheel, force, harmonics)
-}
-
-/// Peak of the tuned wheel (`deviations` none) or of the mistuned one.
-pub fn solve(
-    case: &Case,
-    model: &ReducedModel,
-    deviations: Option<&[f64]>,
-    condition: ContactCondition,
-    harmonics: &[u32],
-) -> Peak {
-    let settings = settings(case, model, harmonics, 512);
-    let one_sector = tuned(model, harmonics);
-    let anywhere = Window {
-        resonances_hz: None,
-        band: FrequencyBand::Auto,
-    };
-    match deviations {
-        None => peak(&one_sector, condition, &settings, anywhere, 1e-4),
-        Some(deviations) => {
-            let wheel = mistuned(model, deviations, harmonics);
-            let largest = deviations.iter().map(|d| d.abs()).fold(0.0, f64::max);
-            let tuned = dominant_resonance(&one_sector, condition).unwrap();
-            let window = mistuned_window(tuned, largest, FrequencyBand::Auto);
-            peak(&wheel, condition, &settings, window, 1e-4)
+    pub fn scenario(&self, contact: ContactCondition) -> Scenario {
+        Scenario {
+            index: 0,
+            engine_order: self.study.engine_orders[0],
+            standard_deviation: None,
+            contact,
         }
+    }
+
+    pub fn tuned(&self, contact: ContactCondition) -> TunedReference {
+        self.engine.tuned(&self.scenario(contact))
+    }
+
+    pub fn row(
+        &self,
+        pattern: &Pattern,
+        contact: ContactCondition,
+        tuned: &TunedReference,
+    ) -> ResponseRow {
+        let scenario = self.scenario(contact);
+        self.engine.rows(pattern, &[(&scenario, tuned)]).remove(0)
+    }
+
+    /// Peak of the tuned wheel, or of pattern `id` of a file.
+    pub fn peak(&self, id: Option<u32>, contact: ContactCondition) -> Peak {
+        let tuned = self.tuned(contact);
+        match id {
+            None => Peak {
+                amplitude_m: tuned.amplitude_m.unwrap(),
+                frequency_hz: tuned.frequency_hz.unwrap(),
+                blade: 0,
+            },
+            Some(id) => {
+                let row = self.row(&self.pattern(id, None), contact, &tuned);
+                assert!(
+                    row.peak_amplitude_m.is_some(),
+                    "{contact:?}: {}",
+                    row.status.name()
+                );
+                Peak {
+                    amplitude_m: row.peak_amplitude_m.unwrap(),
+                    frequency_hz: row.peak_frequency_hz.unwrap(),
+                    blade: row.peak_blade.unwrap() as usize,
+                }
+            }
+        }
+    }
+
+    /// Amplitude of every blade at each frequency; every point must converge.
+    pub fn amplitudes(
+        &self,
+        id: Option<u32>,
+        contact: ContactCondition,
+        frequencies_hz: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let pattern = id.map(|id| self.pattern(id, None));
+        let scenario = self.scenario(contact);
+        let points = self
+            .engine
+            .curve(&scenario, pattern.as_ref(), frequencies_hz);
+        let amplitudes: Vec<f64> = points
+            .iter()
+            .map(|point| {
+                let found = point.amplitude_m;
+                found.unwrap_or_else(|| panic!("{} Hz: {:?}", point.frequency_hz, point.status))
+            })
+            .collect();
+        let blades = amplitudes.len() / frequencies_hz.len();
+        amplitudes.chunks(blades).map(<[f64]>::to_vec).collect()
     }
 }

@@ -1,6 +1,13 @@
 //! Physics: exact solutions, limits and derivatives of the mechanics.
-#![allow(clippy::unwrap_used)]
+// Measured figures are printed for `--nocapture`.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod contact;
 mod finite_element;
+mod harmonic_balance;
+mod limits;
+mod mistuning;
+mod peaks;
+mod reduction;
 mod sector_sources;
+mod wheels;

@@ -93,6 +93,7 @@ impl Engine for MockEngine {
                     harmonics: "1".to_owned(),
                     nonlinear_solves: 0,
                     newton_iterations: 7,
+                    retries: 0,
                     residual: None,
                     slipping_fraction: None,
                     separated_fraction: None,

@@ -49,6 +49,7 @@ fn row(pattern: u32, scenario: usize) -> ResponseRow {
         harmonics: "0-1-3".to_owned(),
         nonlinear_solves: u64::from(pattern) << 33,
         newton_iterations: 3,
+        retries: 1,
         residual: good.then_some(1e-300),
         slipping_fraction: None,
         separated_fraction: good.then_some(0.0),
@@ -107,7 +108,7 @@ fn columns_are_the_documented_ones_in_order() {
     let documented = "scenario, contact, engine_order, normal_load_n, standard_deviation, pattern, \
                       status, peak_amplitude_m, peak_frequency_hz, peak_blade, amplification_factor, \
                       peak_bracketed, harmonics, nonlinear_solves, newton_iterations, residual, \
-                      slipping_fraction, separated_fraction, shortcut";
+                      slipping_fraction, separated_fraction, shortcut, retries";
     assert_eq!(names.join(", "), documented);
 }
 

@@ -3,12 +3,13 @@
 use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
 use blisk::population::statistics::ScenarioAccumulator;
 use blisk::population::table::ScenarioRecord;
-use blisk::report::{StudySummary, SummaryContext, Warning};
+use blisk::report::{BasisSummary, StudySummary, SummaryContext, Warning};
 use blisk::response::forced_response::{ContactCondition, Harmonics};
 use blisk::response::harmonic_balance::Status;
 
 fn context(harmonics: Harmonics) -> SummaryContext {
     SummaryContext {
+        basis: BasisSummary::default(),
         name: "made-up".to_owned(),
         study_digest: "0123".to_owned(),
         seed: 1,
@@ -42,6 +43,7 @@ fn record(
             harmonics: "1-3".to_owned(),
             nonlinear_solves: 13,
             newton_iterations: 40,
+            retries: 0,
             residual: good.then_some(1e-9),
             slipping_fraction: good.then_some(0.5),
             separated_fraction: good.then_some(separated),
@@ -166,4 +168,29 @@ fn all_rows_of_a_scenario_failing_gives_no_number_and_no_panic() {
     assert!(summary.failures_cost_a_statistic());
     assert!(summary.to_string().contains("diverged"));
     assert!(serde_json::to_string(&summary).is_ok());
+}
+
+#[test]
+fn a_basis_less_accurate_than_asked_for_is_a_warning_and_an_accurate_one_is_not() {
+    let summary = |error: f64| {
+        let basis = BasisSummary {
+            name: "stick_slide 2+2".to_owned(),
+            tuned_peak_error: Some(error),
+            wanted_error: 0.005,
+        };
+        let context = SummaryContext {
+            basis,
+            ..context(Harmonics::Set(vec![1, 3]))
+        };
+        StudySummary::new(&context, &[])
+    };
+    let warned = |summary: &StudySummary| {
+        let found = summary.warnings.iter();
+        found
+            .filter(|warning| matches!(warning, Warning::BasisError { .. }))
+            .count()
+    };
+    assert_eq!(warned(&summary(0.006)), 1);
+    assert_eq!(warned(&summary(0.005)), 0);
+    assert!(summary(0.006).to_string().contains("within 0.60 %"));
 }

@@ -9,7 +9,7 @@ use crate::model::sector::{Component, ContactPair, SectorModel};
 pub enum Direction {
     /// Along the outward normal of the blisk's surface; positive = pressed together.
     Normal,
-    /// First tangent: the normalised projection of e_theta (of e_z if the normal is nearly e_theta).
+    /// First tangent: the normalised projection of `e_theta` (of `e_z` if the normal is nearly `e_theta`).
     Tangent1,
     /// Second tangent `t2 = n x t1`.
     Tangent2,

@@ -1,51 +1,12 @@
 //! Basis of one nodal diameter: stick and slide modes, or stick modes and attachment vectors.
 
-use serde::{Deserialize, Serialize};
-
 use super::craig_bampton::{CraigBampton, pencil};
 use crate::linalg::{Complex64, Matrix, OrthonormalBasis, orthonormal_basis};
+use crate::model::reduced_model::{BasisChoice, ContactSprings};
 use crate::model::sector::{ModelError, StiffnessKind};
 
 /// Singular values below this share of the largest are dropped.
 const DROP_BELOW: f64 = 1e-8;
-
-/// A basis of definite size; the same for every nodal diameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum BasisChoice {
-    /// Modes under global sticking and global sliding contact (Tang & Epureanu).
-    StickSlide {
-        /// Stick modes.
-        stick: usize,
-        /// Slide modes.
-        slide: usize,
-    },
-    /// Stick modes and one attachment vector per contact direction.
-    StickAttachment {
-        /// Stick modes.
-        stick: usize,
-    },
-    /// The whole Craig-Bampton space: the reference that every other basis is compared with.
-    CraigBampton,
-}
-
-impl std::fmt::Display for BasisChoice {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::StickSlide { stick, slide } => write!(f, "stick_slide {stick}+{slide}"),
-            Self::StickAttachment { stick } => write!(f, "stick_attachment {stick}"),
-            Self::CraigBampton => write!(f, "craig_bampton"),
-        }
-    }
-}
-
-/// Linear contact springs of a sector, N/m, one per contact row, under the two extreme states.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ContactSprings {
-    /// Sticking: normal and tangential springs.
-    pub stick: Vec<f64>,
-    /// Sliding: normal springs only.
-    pub slide: Vec<f64>,
-}
 
 /// M-orthonormal basis over the columns of a Craig-Bampton model.
 ///
@@ -70,7 +31,11 @@ pub fn basis_of(
             stick_modes.beside(&attachment_vectors(model, springs)?)
         }
     };
-    let span = span.beside(&enrichment(model, &span));
+    let span = if span.columns() == model.size() {
+        span
+    } else {
+        span.beside(&model.enrichment)
+    };
     let real = |a: &Matrix<Complex64>| a.as_slice().iter().all(|x| x.im == 0.0);
     let basis = if real(&span) && real(&model.mass) {
         orthonormal_basis(&span.real(), &model.mass.real(), DROP_BELOW).map(|basis| {
@@ -114,19 +79,6 @@ fn attachment_vectors(
         }
     }
     Ok(modes.times(&participation))
-}
-
-/// Unit vectors of the enrichment columns of T (sensitivity vectors), kept in every basis.
-fn enrichment(model: &CraigBampton, span: &Matrix<Complex64>) -> Matrix<Complex64> {
-    let size = model.size();
-    let count = if span.columns() == size {
-        0
-    } else {
-        model.enrichment
-    };
-    Matrix::from_fn(size, count, |i, j| {
-        Complex64::new(f64::from(u8::from(i == size - count + j)), 0.0)
-    })
 }
 
 fn first(modes: &Matrix<Complex64>, count: usize) -> Matrix<Complex64> {

@@ -1,24 +1,12 @@
 //! The blade's stiffness in reduced coordinates: exact projection and cantilever participation.
 
-use serde::{Deserialize, Serialize};
-
 use crate::linalg::{Complex64, Matrix, hermitian_pencil, lowest_modes};
 use crate::model::cyclic::CyclicSector;
+use crate::model::reduced_model::CantileverModes;
 use crate::model::sector::ModelError;
 
 /// At most so many free blade dofs, the cantilever modes are found by a dense solution.
 const DENSE_BLADE: usize = 60;
-
-/// Cantilevered-blade modes: the blade alone, its root held (component mode mistuning,
-/// Lim, Bladh, Castanier & Pierre 2007, AIAA J. 45(9)).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CantileverModes {
-    /// Eigenvalues `omega_r^2`, (rad/s)^2, ascending.
-    pub eigenvalues: Vec<f64>,
-    /// Participation `q_h = diag(1/omega_r^2) U^T K_blade B_h` of each nodal diameter 0..=N/2,
-    /// `n_cantilever x n_modes`.
-    pub participation: Vec<Matrix<Complex64>>,
-}
 
 /// Gram matrix `W^T K_blade W` of the blade rows `W = [Re B_0, Im B_0, Re B_1, Im B_1, ...]`,
 /// real symmetric, `2 sum n_modes` square: every block `B_h^H K_blade B_h'` follows from it.

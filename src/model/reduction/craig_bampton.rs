@@ -21,8 +21,8 @@ pub struct CraigBampton {
     pub nodal_diameter: usize,
     /// Whether T spans all of the independent dofs.
     pub whole_space: bool,
-    /// Number of enrichment columns, the last of T.
-    pub enrichment: usize,
+    /// Enrichment vectors in the columns of T, `size x n_enrichment`: what every basis keeps besides its modes.
+    pub enrichment: Matrix<Complex64>,
     /// T, `n_dofs x size`.
     pub recovery: Matrix<Complex64>,
     /// `T^H K T`, contact-free, `size x size`.
@@ -51,7 +51,6 @@ impl CraigBampton {
                 &stiffness,
                 &mass,
                 Matrix::identity(n),
-                0,
                 true,
             ));
         }
@@ -85,7 +84,6 @@ impl CraigBampton {
             &stiffness,
             &mass,
             recovery,
-            0,
             whole_space,
         ))
     }
@@ -131,10 +129,13 @@ impl CraigBampton {
             })?;
         let sensitivity = factor.solve(&chosen);
         let recovery = self.enlarge(&mass, &sensitivity)?;
-        let added = recovery.columns() - self.size();
-        Ok(Self::project(
-            sector, h, &stiffness, &mass, recovery, added, false,
-        ))
+        let mut model = Self::project(sector, h, &stiffness, &mass, recovery, false);
+        // Whole vectors, not only their part outside of the Craig-Bampton space: a basis of few
+        // modes lacks the part inside as well. With M-orthonormal Phi, c = Phi Phi^H T^H M s.
+        let (_, phi) = pencil(&model.stiffness, &model.mass, h)?;
+        let loaded = model.recovery.adjoint_times(&mass.times(&sensitivity));
+        model.enrichment = phi.times(&phi.adjoint_times(&loaded));
+        Ok(model)
     }
 
     /// Eigenvalues (rad/s)^2, ascending, and M-orthonormal modes of the model with contact
@@ -208,7 +209,6 @@ impl CraigBampton {
         stiffness: &HermitianSparse,
         mass: &HermitianSparse,
         recovery: Matrix<Complex64>,
-        enrichment: usize,
         whole_space: bool,
     ) -> Self {
         let reduced_stiffness = recovery.adjoint_times(&stiffness.times(&recovery));
@@ -223,7 +223,7 @@ impl CraigBampton {
         Self {
             nodal_diameter,
             whole_space,
-            enrichment,
+            enrichment: Matrix::zeros(recovery.columns(), 0),
             recovery,
             stiffness: reduced_stiffness,
             mass: reduced_mass,

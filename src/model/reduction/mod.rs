@@ -6,8 +6,8 @@ mod craig_bampton;
 mod options;
 mod reduce;
 
-pub use basis::{BasisChoice, ContactSprings};
-pub use blade::{CantileverModes, blade_gram};
+pub use super::reduced_model::{BasisChoice, CantileverModes, ContactSprings};
+pub use blade::blade_gram;
 pub use craig_bampton::CraigBampton;
 pub use options::{Basis, ReductionOptions};
 pub use reduce::{ContactStiffness, Reduction};

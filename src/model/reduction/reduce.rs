@@ -4,13 +4,15 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
-use super::basis::{BasisChoice, ContactSprings, basis_of};
+use super::basis::basis_of;
 use super::blade::{blade_gram, cantilever_modes};
 use super::craig_bampton::{CraigBampton, pencil};
 use crate::linalg::{Complex64, Matrix};
 use crate::model::cyclic::CyclicSector;
+use crate::model::reduced_model::{
+    BasisChoice, ContactSprings, NodalDiameterReport, ReducedModel, ReducedNodalDiameter,
+};
 use crate::model::sector::{ModelError, SectorModel};
-use crate::model::{NodalDiameterReport, ReducedModel, ReducedNodalDiameter};
 
 /// Number of frequencies per nodal diameter in the report.
 const REPORTED_FREQUENCIES: usize = 6;

@@ -59,7 +59,7 @@ impl RowSolver {
         Ok(Self {
             full: points(&settings.harmonics)?,
             linear: points(&[1])?,
-            basis: WheelBasis::new(Arc::clone(&model)),
+            basis: WheelBasis::new(model),
             settings,
         })
     }
@@ -295,6 +295,7 @@ impl RowSolver {
             harmonics: harmonics_name(self.points(scenario.contact).harmonics()),
             nonlinear_solves: work.nonlinear_solves,
             newton_iterations: work.newton_iterations,
+            retries: work.retries,
             residual: good.map(|(_, point)| point.residual),
             slipping_fraction: good.map(|(_, point)| point.shares.slipping),
             separated_fraction: good.map(|(_, point)| point.shares.separated),

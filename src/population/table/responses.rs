@@ -102,6 +102,12 @@ pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
         "",
         "Shortcut used instead of the full search, or none",
     ),
+    ColumnSpec::new(
+        "retries",
+        Int64,
+        "1",
+        "Nonlinear solves that needed more than the first attempt of the retry ladder",
+    ),
 ];
 
 /// Rows per row group and per batch in memory.
@@ -219,6 +225,7 @@ fn columns_of(rows: &[ResponseRow], scenarios: &[Scenario]) -> Result<Vec<Values
         floats(&|row| row.slipping_fraction),
         floats(&|row| row.separated_fraction),
         names(&|row| row.shortcut.clone()),
+        counts(&|row| row.retries),
     ])
 }
 
@@ -314,6 +321,7 @@ impl ResponseReader {
         let bracketed = slice.boolean("peak_bracketed")?;
         let mut harmonics = slice.string("harmonics")?;
         let (solves, iterations) = (counts("nonlinear_solves")?, counts("newton_iterations")?);
+        let retries = counts("retries")?;
         let residuals = slice.float64("residual")?;
         let slipping = slice.float64("slipping_fraction")?;
         let separated = slice.float64("separated_fraction")?;
@@ -335,6 +343,7 @@ impl ResponseReader {
                     harmonics: harmonics[i].take().ok_or_else(|| gap(i, "harmonics"))?,
                     nonlinear_solves: solves[i],
                     newton_iterations: iterations[i],
+                    retries: retries[i],
                     residual: residuals[i],
                     slipping_fraction: slipping[i],
                     separated_fraction: separated[i],

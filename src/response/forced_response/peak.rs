@@ -152,7 +152,7 @@ pub fn peak(
         solver
             .points()
             .iter()
-            .find(|point| point.frequency_hz == best.frequency_hz)
+            .find(|point| point.frequency_hz.total_cmp(&best.frequency_hz).is_eq())
             .cloned()
     });
     let status = match result.end {

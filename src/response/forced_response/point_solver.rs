@@ -236,9 +236,9 @@ impl<'a> PointSolver<'a> {
 
     fn attempt(&mut self, attempt: Attempt, frequency_hz: f64) -> Result<Point, Status> {
         match attempt {
-            Attempt::Nearest => {
-                let start = match self.nearest(frequency_hz) {
-                    Some(point) => point.solution.clone(),
+            Attempt::Neighbours => {
+                let start = match self.between(frequency_hz) {
+                    Some(start) => start,
                     None => self.stuck_start(frequency_hz)?,
                 };
                 self.newton(frequency_hz, start, 1.0)
@@ -250,6 +250,27 @@ impl<'a> PointSolver<'a> {
             Attempt::FrequencySteps => self.step_in_frequency(frequency_hz),
             Attempt::LoadHomotopy => self.lower_normal_load(frequency_hz),
         }
+    }
+
+    /// Linear interpolation between the nearest converged points on either side, or the nearest
+    /// one where there is none on the other side.
+    fn between(&self, frequency_hz: f64) -> Option<Vec<f64>> {
+        let below = self
+            .points
+            .iter()
+            .filter(|point| point.frequency_hz <= frequency_hz)
+            .max_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+        let above = self
+            .points
+            .iter()
+            .filter(|point| point.frequency_hz > frequency_hz)
+            .min_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+        let (Some(below), Some(above)) = (below, above) else {
+            return below.or(above).map(|point| point.solution.clone());
+        };
+        let share = (frequency_hz - below.frequency_hz) / (above.frequency_hz - below.frequency_hz);
+        let pairs = below.solution.iter().zip(&above.solution);
+        Some(pairs.map(|(a, b)| a + share * (b - a)).collect())
     }
 
     fn nearest(&self, frequency_hz: f64) -> Option<&Point> {
@@ -272,7 +293,7 @@ impl<'a> PointSolver<'a> {
         let mut x = start;
         let omega = TAU * frequency_hz;
         let bounds = self.settings.bounds;
-        let outcome = if load_factor == 1.0 {
+        let outcome = if load_factor.total_cmp(&1.0).is_eq() {
             solve(system, omega, &mut x, bounds, workspace)
         } else {
             let scaled = system
@@ -418,8 +439,8 @@ fn time_maximum(
 /// Attempts at one point, in order.
 #[derive(Debug, Clone, Copy)]
 enum Attempt {
-    /// From the nearest converged point, or from the stuck solution if there is none.
-    Nearest,
+    /// From the converged points beside it, or from the stuck solution if there is none.
+    Neighbours,
     /// From the stuck solution.
     Stuck,
     /// Continuation in frequency.
@@ -430,7 +451,7 @@ enum Attempt {
 
 impl Attempt {
     const LADDER: [Self; 4] = [
-        Self::Nearest,
+        Self::Neighbours,
         Self::Stuck,
         Self::FrequencySteps,
         Self::LoadHomotopy,

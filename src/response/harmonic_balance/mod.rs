@@ -2,6 +2,7 @@
 
 mod convergence;
 mod damping;
+mod jacobian;
 mod linear;
 mod newton;
 mod pair_harmonics;

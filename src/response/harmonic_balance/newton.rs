@@ -4,7 +4,7 @@ use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace
 use crate::linalg::LuWorkspace;
 
 /// A kept Jacobian must reduce the residual at least to this share, else it is renewed.
-const KEPT_JACOBIAN_CONTRACTION: f64 = 0.4;
+const KEPT_JACOBIAN_CONTRACTION: f64 = 0.6;
 
 /// Outcome of one nonlinear solve; the solution itself is left in the caller's vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +25,8 @@ pub struct NewtonOutcome {
 pub struct NewtonWorkspace {
     system: SystemWorkspace,
     jacobian: LuWorkspace<f64>,
+    /// Whether `jacobian` holds the factors of an earlier point.
+    factored: bool,
     residual: Vec<f64>,
     step: Vec<f64>,
     trial: Vec<f64>,
@@ -39,6 +41,7 @@ impl NewtonWorkspace {
         Self {
             system: system.workspace(),
             jacobian: LuWorkspace::new(n),
+            factored: false,
             residual: vec![0.0; n],
             step: vec![0.0; n],
             trial: vec![0.0; n],
@@ -50,10 +53,11 @@ impl NewtonWorkspace {
 /// Solves `R(x) = 0` at angular frequency `omega` from the given `x`, in place.
 ///
 /// A step is `s = -J^-1 R(x)`, damped by the natural monotonicity test of Deuflhard (2004, Newton
-/// Methods for Nonlinear Problems, section 3.3): a damped step is taken where the next simplified step
-/// `-J^-1 R(x + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual itself this does
-/// not depend on how the equations are scaled, and contact forces are far from well scaled. While
-/// the simplified step is much shorter, it is taken as the next step and the Jacobian is kept.
+/// Methods for Nonlinear Problems, section 3.3): a damped step is taken where the next simplified
+/// step `-J^-1 R(x + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual
+/// itself this does not depend on how the equations are scaled, and contact forces are far from
+/// well scaled. While the simplified step is much shorter, it is taken as the next step and the
+/// Jacobian is kept, also from one frequency to the next.
 pub fn solve(
     system: &HarmonicSystem,
     omega: f64,
@@ -64,12 +68,13 @@ pub fn solve(
     let NewtonWorkspace {
         system: buffers,
         jacobian,
+        factored,
         residual,
         step,
         trial,
         trial_step,
     } = workspace;
-    let (first, shares) = system.residual(omega, x, residual, true, buffers);
+    let (first, shares) = system.residual(omega, x, residual, false, buffers);
     let mut state = NewtonOutcome {
         status: Status::IterationLimit,
         iterations: 0,
@@ -77,16 +82,23 @@ pub fn solve(
         residual: first,
         shares,
     };
-    // Whether `step` holds a simplified step with the kept Jacobian.
-    let mut kept = false;
+    let ended = |state: NewtonOutcome, status| NewtonOutcome { status, ..state };
+    // Whether `step` holds a simplified step with the kept Jacobian: at first that of an earlier
+    // solve of the same workspace, which a neighbouring frequency often allows to go on with.
+    let mut kept = *factored && first.is_finite();
+    if kept {
+        step.copy_from_slice(residual);
+        jacobian.solve(step);
+    }
     loop {
-        let ended = |state: NewtonOutcome, status| NewtonOutcome { status, ..state };
         if let Some(status) = bounds.judge(first, state.residual, state.iterations as usize) {
             return ended(state, status);
         }
         if !kept {
+            system.residual(omega, x, residual, true, buffers);
             system.jacobian(omega, buffers, jacobian.matrix_mut());
-            if !jacobian.factor() {
+            *factored = jacobian.factor();
+            if !*factored {
                 return ended(state, Status::SingularJacobian);
             }
             state.factorisations += 1;
@@ -101,7 +113,7 @@ pub fn solve(
             for ((t, x), s) in trial.iter_mut().zip(x.iter()).zip(step.iter()) {
                 *t = x - factor * s;
             }
-            let (norm, shares) = system.residual(omega, trial, residual, true, buffers);
+            let (norm, shares) = system.residual(omega, trial, residual, false, buffers);
             trial_step.copy_from_slice(residual);
             jacobian.solve(trial_step);
             let contraction = norm_of(trial_step) / length;
@@ -117,11 +129,7 @@ pub fn solve(
                     std::mem::swap(step, trial_step);
                 }
             }
-            None if kept => {
-                // The kept Jacobian failed: residual and derivative data must be those of x again.
-                system.residual(omega, x, residual, true, buffers);
-                kept = false;
-            }
+            None if kept => kept = false,
             None if state.residual.is_finite() => return ended(state, Status::Stagnated),
             None => return ended(state, Status::NonFinite),
         }

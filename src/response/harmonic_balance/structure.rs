@@ -68,7 +68,11 @@ impl Structure {
         let damping = match (damping, tuned_viscous, &modes.rotation) {
             (Damping::StructuralLossFactor(eta), ..) => ModalDamping::Structural(eta),
             (_, Some(viscous), None) => ModalDamping::ViscousDiagonal(viscous),
-            (_, Some(viscous), Some(_)) if viscous.windows(2).all(|pair| pair[0] == pair[1]) => {
+            (_, Some(viscous), Some(_))
+                if viscous
+                    .windows(2)
+                    .all(|pair| pair[0].total_cmp(&pair[1]).is_eq()) =>
+            {
                 ModalDamping::ViscousDiagonal(viscous)
             }
             (_, Some(viscous), Some(rotation)) => {

@@ -8,7 +8,7 @@ use crate::model::cyclic::{nodal_diameter_of, phase};
 
 /// Real coordinates of the tuned wheel, in which `M = I` and `K = diag(eigenvalues)`.
 ///
-/// With B_h the basis of nodal diameter h, sector n moves in the coordinates `(h, c)` and `(h, s)` as
+/// With `B_h` the basis of nodal diameter h, sector n moves in the coordinates `(h, c)` and `(h, s)` as
 /// `sqrt(2/N) Re(B_h e^{i h n alpha})` and `sqrt(2/N) Im(B_h e^{i h n alpha})`, and for h = 0 and
 /// N/2, whose basis is real, as `(1/sqrt N) B_h e^{i h n alpha}`. The coordinates are orthonormal,
 /// so that every matrix of a mistuned wheel is real symmetric. `size` coordinates in all, nodal
@@ -65,12 +65,13 @@ impl WheelBasis {
             }
         }
         let mut basis = Self {
-            model: Arc::clone(&model),
+            model,
             waves,
             eigenvalues,
             contact: Matrix::zeros(0, 0),
             observed: Matrix::zeros(0, 0),
         };
+        let model = Arc::clone(&basis.model);
         basis.contact = basis.expand(model.contact_rows(), |h| &model.nodal_diameters[h].contact);
         basis.observed = basis.expand(3, |h| &model.nodal_diameters[h].observed);
         basis

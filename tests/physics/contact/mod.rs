@@ -4,4 +4,4 @@ mod harmonic_transform;
 mod jenkins_oracles;
 mod pair_derivatives;
 mod periodic_state;
-mod random;
+pub mod random;

@@ -8,7 +8,7 @@ use blisk::model::sector::{LumpedOptions, ModelError, SectorModel, lumped, matri
 
 use super::data;
 
-fn lumped24() -> LumpedOptions {
+pub fn lumped24() -> LumpedOptions {
     LumpedOptions {
         sectors: 24,
         blade_mass_kg: 0.25,
@@ -23,7 +23,7 @@ fn lumped24() -> LumpedOptions {
     }
 }
 
-fn one_dof(sectors: usize) -> LumpedOptions {
+pub fn one_dof(sectors: usize) -> LumpedOptions {
     LumpedOptions {
         sectors,
         blade_mass_kg: 0.0114,
@@ -34,7 +34,7 @@ fn one_dof(sectors: usize) -> LumpedOptions {
 }
 
 /// The wheel of N sectors, `per_sector` independent dofs each, in the order of the sector model.
-fn wheel(model: &SectorModel, part: &SymmetricSparse, per_sector: usize) -> SymmetricSparse {
+pub fn wheel(model: &SectorModel, part: &SymmetricSparse, per_sector: usize) -> SymmetricSparse {
     let n = model.sectors * per_sector;
     let mut triplets = Vec::new();
     for sector in 0..model.sectors {

@@ -1,7 +1,7 @@
 //! Sources of a sector model: built-in geometry, masses and springs, bundles, and what they refuse.
 
 mod bundle;
-mod lumped;
+pub mod lumped;
 mod parametric;
 mod refused_files;
 mod refused_models;

@@ -1,0 +1,171 @@
+//! A study of `studies/`, reduced and ready to be timed: its first mistuned pattern under its loads.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction};
+use blisk::population::monte_carlo::{RowSettings, RowSolver};
+use blisk::response::forced_response::{
+    ContactCondition, Excited, FrequencyBand, Harmonics, LimitsWanted, Peak, PointSettings, Wheel,
+    dominant_resonance, mistuned_window, peak, wheel_force,
+};
+use blisk::response::friction::{ContactLaw, PairParameters};
+use blisk::response::harmonic_balance::{ContactInterface, HarmonicSystem, HarmonicTransform};
+use blisk::response::mistuning::{Deviations, Pattern, StructuralModes};
+use blisk::study::{Study, load_sector_model, pattern_source};
+
+/// A reduced study and its first patterns.
+pub struct Case {
+    pub name: &'static str,
+    pub study: Study,
+    pub solver: RowSolver,
+    pub patterns: Vec<Pattern>,
+    harmonics: Vec<u32>,
+    contact: (ContactLaw, PairParameters),
+}
+
+/// The study file `name` of `studies/`.
+pub fn study(name: &str) -> Study {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    Study::read(&root.join("studies").join(format!("{name}.toml"))).expect("a valid study")
+}
+
+impl Case {
+    /// The case `name` with its first `patterns` patterns; `basis` is the one that the study fixes.
+    pub fn new(name: &'static str, patterns: u32) -> Self {
+        let study = study(name);
+        let model = load_sector_model(&study).expect("a valid model");
+        let contact = study.contact.as_ref().expect("a study with contact");
+        let tangential = contact.tangential_stiffness_n_per_m;
+        let second = match contact.law {
+            ContactLaw::MacroSlip1d => 0.0,
+            ContactLaw::Simplified3d => tangential,
+        };
+        let stiffness = ContactStiffness {
+            normal_n_per_m: contact.normal_stiffness_n_per_m.unwrap_or(0.0),
+            tangential_1_n_per_m: tangential,
+            tangential_2_n_per_m: second,
+        };
+        let choice = match (study.reduction.stick_modes, study.reduction.slide_modes) {
+            (Some(stick), Some(slide)) => BasisChoice::StickSlide { stick, slide },
+            (stick, _) => BasisChoice::StickAttachment {
+                stick: stick.unwrap_or(4),
+            },
+        };
+        let reduction = Reduction::new(&model, stiffness, study.reduction.craig_bampton_modes, 0)
+            .expect("reduced");
+        let reduced = Arc::new(reduction.reduce(choice, None).expect("reduced"));
+        let harmonics = match &study.solver.harmonics {
+            Harmonics::Auto => vec![1, 3],
+            Harmonics::Set(set) => set.clone(),
+        };
+        let contact = (contact.law, PairParameters::of_sector(contact, 0.0));
+        let settings = RowSettings {
+            harmonics: harmonics.clone(),
+            contact: Some(contact),
+            damping: study.damping,
+            amplitude_n: study.amplitude_n,
+            projection: study.mistuning.projection,
+            solver: study.solver.clone(),
+        };
+        let source = pattern_source(&study, model.sectors).expect("patterns");
+        let deviation = study.standard_deviations[0];
+        let patterns = source
+            .ids()
+            .into_iter()
+            .take(patterns as usize)
+            .filter_map(|id| source.pattern(id, deviation))
+            .collect();
+        Self {
+            name,
+            solver: RowSolver::new(reduced, settings).expect("enough samples"),
+            patterns,
+            harmonics,
+            contact,
+            study,
+        }
+    }
+
+    /// The wheel of `pattern`, excited by the first engine order of the study.
+    pub fn excited(&self, pattern: &Pattern) -> Excited {
+        let basis = self.solver.basis();
+        let Deviations::PerBlade(values) = &pattern.deviations else {
+            panic!("one deviation per blade");
+        };
+        let change = basis.blade_stiffness_change(values);
+        let modes = StructuralModes::of_wheel(basis, &change).expect("finite");
+        let force = wheel_force(basis, &modes, self.engine_order(), self.study.amplitude_n);
+        let wanted = LimitsWanted {
+            stuck: true,
+            slide: true,
+            free: false,
+        };
+        let wheel = Wheel::mistuned(modes, basis.model(), self.study.damping, wanted);
+        Excited::wheel(&wheel, force, &self.harmonics)
+    }
+
+    fn engine_order(&self) -> u32 {
+        self.study.engine_orders[0]
+    }
+
+    /// The peak of a pattern whose wheel is `excited`.
+    pub fn peak(&self, pattern: &Pattern, excited: &Excited, condition: ContactCondition) -> Peak {
+        let model = self.solver.basis().model();
+        let tuned = Excited::tuned(
+            model,
+            self.engine_order(),
+            self.study.amplitude_n,
+            self.study.damping,
+            &self.harmonics,
+            LimitsWanted::of(&[condition]),
+        );
+        let resonance = dominant_resonance(&tuned, condition).expect("a resonance");
+        let window = mistuned_window(resonance, pattern.largest_deviation(), FrequencyBand::Auto);
+        let options = &self.study.solver;
+        let settings = PointSettings::new(
+            options,
+            &self.harmonics,
+            Some(self.contact),
+            model.contact.clone(),
+        )
+        .expect("enough samples");
+        peak(
+            excited,
+            condition,
+            &settings,
+            window,
+            options.peak_tolerance,
+        )
+    }
+
+    /// The harmonic balance equation of `excited` under a normal load per sector.
+    pub fn system(&self, excited: &Excited, normal_load_n: f64) -> HarmonicSystem {
+        let (law, sector) = self.contact;
+        let geometry = self.solver.basis().model().contact.clone();
+        let sector = PairParameters {
+            normal_load_n,
+            ..sector
+        };
+        let pairs = geometry.weights.iter().map(|&w| sector.share(w)).collect();
+        let interface = ContactInterface {
+            law,
+            geometry,
+            pairs,
+        };
+        let set: Vec<usize> = self.harmonics.iter().map(|&k| k as usize).collect();
+        let samples = self.study.solver.samples_per_period;
+        let transform = HarmonicTransform::new(&set, samples).expect("enough samples");
+        HarmonicSystem::new(
+            excited.blocks.clone(),
+            excited.force.clone(),
+            interface,
+            Arc::new(transform),
+        )
+    }
+
+    /// The loads of the study with friction, N.
+    pub fn loads(&self) -> Vec<f64> {
+        let conditions = self.study.contacts.iter();
+        conditions.filter_map(|c| c.normal_load_n()).collect()
+    }
+}

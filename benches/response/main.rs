@@ -1,0 +1,182 @@
+//! Time per Newton step, per peak and per pattern, beside the machine's dense LU and matrix product.
+//!
+//! `cargo bench` times the parts of a Newton step with criterion and the rest by the smallest of a
+//! few repetitions, all of it but the last table on one thread.
+
+#![allow(clippy::print_stdout)] // The tables are the result of this program.
+
+mod case;
+
+use std::f64::consts::TAU;
+use std::num::NonZero;
+use std::time::{Duration, Instant};
+
+use blisk::linalg::{LuWorkspace, Matrix};
+use blisk::population::monte_carlo::Scenario;
+use blisk::response::forced_response::{ContactCondition, Work};
+use blisk::study::{Progress, ReducedEngineSource, RunRequest, run};
+use criterion::{Criterion, criterion_group, criterion_main};
+
+use case::{Case, study};
+
+struct Silent;
+
+impl Progress for Silent {}
+
+/// Name of a case and the number of patterns over which peaks are averaged.
+const CASES: [(&str, u32); 2] = [("lumped24", 1), ("quickstart", 2)];
+
+fn newton_steps(criterion: &mut Criterion) {
+    for (name, _) in CASES {
+        let case = Case::new(name, 1);
+        let loads = case.loads();
+        let load = loads[loads.len() / 2];
+        let excited = case.excited(&case.patterns[0]);
+        let condition = ContactCondition::Full {
+            normal_load_n: load,
+        };
+        let found = case.peak(&case.patterns[0], &excited, condition);
+        let point = found.point.expect("a peak");
+        let omega = TAU * point.frequency_hz;
+        let system = case.system(&excited, load);
+        let mut workspace = system.workspace();
+        let n = system.unknowns();
+        println!(
+            "\n{name}: pattern 0 at {load} N, {n} unknowns, {:.0} % of the pairs slip",
+            100.0 * point.shares.slipping
+        );
+        let mut residual = vec![0.0; n];
+        let mut jacobian = vec![0.0; n * n];
+        let mut lu = LuWorkspace::<f64>::new(n);
+        let mut group = criterion.benchmark_group(name);
+        group.sample_size(10);
+        group.warm_up_time(Duration::from_millis(300));
+        group.measurement_time(Duration::from_secs(2));
+        group.bench_function("residual and pair derivatives", |bencher| {
+            bencher.iter(|| {
+                system.residual(omega, &point.solution, &mut residual, true, &mut workspace)
+            });
+        });
+        group.bench_function("jacobian", |bencher| {
+            bencher.iter(|| system.jacobian(omega, &mut workspace, &mut jacobian));
+        });
+        group.bench_function("factor", |bencher| {
+            bencher.iter(|| {
+                lu.matrix_mut().copy_from_slice(&jacobian);
+                lu.factor()
+            });
+        });
+        group.bench_function("solve", |bencher| bencher.iter(|| lu.solve(&mut residual)));
+        group.finish();
+        machine(criterion, n);
+    }
+}
+
+/// What the machine does with dense matrices of the same size.
+fn machine(criterion: &mut Criterion, n: usize) {
+    let noise = |i: usize, j: usize| ((7 * i + 13 * j + i * j) % 101) as f64 / 101.0;
+    let matrix = Matrix::from_fn(n, n, |i, j| {
+        noise(i, j) + if i == j { n as f64 } else { 0.0 }
+    });
+    let mut lu = LuWorkspace::<f64>::new(n);
+    let mut group = criterion.benchmark_group(format!("dense {n}"));
+    group.sample_size(10);
+    group.warm_up_time(Duration::from_millis(300));
+    group.measurement_time(Duration::from_secs(2));
+    let size = n as u64;
+    group.throughput(criterion::Throughput::Elements(2 * size.pow(3) / 3));
+    group.bench_function("LU (elements are flops)", |bencher| {
+        bencher.iter(|| {
+            lu.matrix_mut().copy_from_slice(matrix.as_slice());
+            lu.factor()
+        });
+    });
+    group.throughput(criterion::Throughput::Elements(2 * size.pow(3)));
+    group.bench_function("matrix product (elements are flops)", |bencher| {
+        bencher.iter(|| matrix.times(&matrix));
+    });
+    group.finish();
+}
+
+/// The smallest time of a few repetitions, and the last result.
+fn smallest<T>(repetitions: usize, mut work: impl FnMut() -> T) -> (Duration, T) {
+    let mut time = Duration::MAX;
+    let mut result = None;
+    for _ in 0..repetitions {
+        let start = Instant::now();
+        result = Some(work());
+        time = time.min(start.elapsed());
+    }
+    (time, result.expect("at least one repetition"))
+}
+
+fn peaks(_: &mut Criterion) {
+    for (name, patterns) in CASES {
+        let case = Case::new(name, patterns);
+        println!("\n{name}: one peak on one thread, mean over {patterns} pattern(s)");
+        println!("load N   time ms   solves   iterations   factorisations   retries   status");
+        let excited: Vec<_> = case.patterns.iter().map(|p| case.excited(p)).collect();
+        for load in case.loads() {
+            let condition = ContactCondition::Full {
+                normal_load_n: load,
+            };
+            let (time, found) = smallest(2, || {
+                let each = case.patterns.iter().zip(&excited);
+                each.map(|(pattern, excited)| case.peak(pattern, excited, condition))
+                    .collect::<Vec<_>>()
+            });
+            let mean = |count: fn(&Work) -> u64| {
+                let sum: u64 = found.iter().map(|peak| count(&peak.work)).sum();
+                sum as f64 / found.len() as f64
+            };
+            let statuses: Vec<&str> = found.iter().map(|peak| peak.status.name()).collect();
+            println!(
+                "{load:6} {:9.1} {:8.1} {:12.1} {:16.1} {:9.1}   {}",
+                1e3 * time.as_secs_f64() / found.len() as f64,
+                mean(|work| work.nonlinear_solves),
+                mean(|work| work.newton_iterations),
+                mean(|work| work.factorisations),
+                mean(|work| work.retries),
+                statuses.join(" ")
+            );
+        }
+        whole_pattern(&case);
+    }
+}
+
+/// One pattern under every scenario of its study, as a run solves it.
+fn whole_pattern(case: &Case) {
+    let scenarios: Vec<Scenario> = case.study.scenarios();
+    let tuned: Vec<_> = scenarios.iter().map(|s| case.solver.tuned(s)).collect();
+    let pairs: Vec<_> = scenarios.iter().zip(&tuned).collect();
+    let (time, _) = smallest(2, || case.solver.rows(&case.patterns[0], &pairs));
+    println!(
+        "{}: one pattern, {} scenarios, {:.0} ms",
+        case.name,
+        scenarios.len(),
+        1e3 * time.as_secs_f64()
+    );
+}
+
+/// A whole run of the chain of blades at one standard deviation, tables included.
+fn linear_population(_: &mut Criterion) {
+    let mut study = study("one-dof");
+    study.standard_deviations = vec![Some(0.03)];
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let request = RunRequest {
+        study: &study,
+        results: &folder.path().join("one-dof"),
+        threads,
+    };
+    let start = Instant::now();
+    let outcome = run(request, &ReducedEngineSource, &Silent).expect("a run");
+    println!(
+        "\none-dof: {} linear rows on {threads} threads, tables included: {:.1} s",
+        outcome.rows_solved,
+        start.elapsed().as_secs_f64()
+    );
+}
+
+criterion_group!(benches, newton_steps, peaks, linear_population);
+criterion_main!(benches);
