@@ -1,6 +1,7 @@
 //! The command line from outside: exit codes, messages, files.
 
 mod bad_studies;
+mod bad_study_table;
 mod blisk;
 mod commands;
 mod runs;
