@@ -187,3 +187,24 @@ fn an_unwritable_results_folder_exits_with_7_and_is_named() {
     assert_eq!(run.code, 7);
     assert!(run.stderr.contains("file/results"), "{}", run.stderr);
 }
+
+#[test]
+fn tables_are_byte_identical_on_1_2_and_8_threads() {
+    let place = Place::with(GOOD);
+    let tables = |threads: &str| -> Vec<Vec<u8>> {
+        let run = place.run(&["run", "study.toml", "--threads", threads, "--out", threads]);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let files = [
+            "responses.parquet",
+            "scenarios.parquet",
+            "patterns.parquet",
+            "manifest.json",
+        ];
+        files
+            .map(|file| std::fs::read(place.path(threads).join(file)).expect(file))
+            .to_vec()
+    };
+    let one = tables("1");
+    assert_eq!(one, tables("2"));
+    assert_eq!(one, tables("8"));
+}
