@@ -7,7 +7,7 @@ use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction};
 use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{
     ContactCondition, Excited, FrequencyBand, Harmonics, LimitsWanted, Peak, PointSettings, Wheel,
-    dominant_resonance, mistuned_window, peak, wheel_force,
+    mistuned_window, peak, tuned_span, wheel_force,
 };
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{ContactInterface, HarmonicSystem, HarmonicTransform};
@@ -119,8 +119,8 @@ impl Case {
             &self.harmonics,
             LimitsWanted::of(&[condition]),
         );
-        let resonance = dominant_resonance(&tuned, condition).expect("a resonance");
-        let window = mistuned_window(resonance, pattern.largest_deviation(), FrequencyBand::Auto);
+        let span = tuned_span(&tuned, condition, None).expect("a resonance");
+        let window = mistuned_window(span, pattern.largest_deviation(), FrequencyBand::Auto);
         let options = &self.study.solver;
         let settings = PointSettings::new(
             options,

@@ -6,8 +6,7 @@ use super::{ResponseRow, Scenario, TunedReference};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
     ContactCondition, Excited, FrequencyBand, LimitsWanted, Peak, Point, PointSettings,
-    PointSolver, SolverOptions, Wheel, Window, dominant_resonance, mistuned_window, peak,
-    wheel_force,
+    PointSolver, SolverOptions, Wheel, Window, mistuned_window, peak, tuned_span, wheel_force,
 };
 use crate::response::friction::{ContactLaw, PairParameters};
 use crate::response::harmonic_balance::{Damping, Status, TransformError};
@@ -125,7 +124,9 @@ impl RowSolver {
             .iter()
             .map(|(scenario, tuned)| {
                 let found = match &wheel {
-                    Ok((modes, wheel)) => self.mistuned_peak(modes, wheel, pattern, scenario),
+                    Ok((modes, wheel)) => {
+                        self.mistuned_peak(modes, wheel, pattern, scenario, tuned)
+                    }
                     Err(status) => Err(*status),
                 };
                 self.row(pattern, scenario, tuned, found)
@@ -243,15 +244,17 @@ impl RowSolver {
         wheel: &Wheel,
         pattern: &Pattern,
         scenario: &Scenario,
+        tuned: &TunedReference,
     ) -> Result<Peak, Status> {
         let band = self.settings.solver.frequency_band;
-        let tuned = self.tuned_excited(scenario.engine_order, scenario.contact);
-        let window = match (band, dominant_resonance(&tuned, scenario.contact)) {
-            (FrequencyBand::Auto, Some(resonance)) => {
-                mistuned_window(resonance, pattern.largest_deviation(), band)
+        let window = match band {
+            FrequencyBand::Auto => {
+                let waves = self.tuned_excited(scenario.engine_order, scenario.contact);
+                let span = tuned_span(&waves, scenario.contact, tuned.frequency_hz);
+                let span = span.ok_or(Status::NotBracketed)?;
+                mistuned_window(span, pattern.largest_deviation(), band)
             }
-            (FrequencyBand::Auto, None) => return Err(Status::NotBracketed),
-            (FrequencyBand::Fixed { .. }, _) => Window {
+            FrequencyBand::Fixed { .. } => Window {
                 resonances_hz: None,
                 band,
             },

@@ -10,5 +10,5 @@ mod point_solver;
 pub use excited::{Excited, LimitsWanted, LinearStructure, Wheel, wheel_force};
 pub use linear_peaks::LinearPeak;
 pub use options::{AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, SolverOptions};
-pub use peak::{Peak, Window, dominant_resonance, mistuned_window, peak};
+pub use peak::{Peak, Window, mistuned_window, peak, tuned_span};
 pub use point_solver::{Point, PointSettings, PointSolver, Work};

@@ -49,34 +49,49 @@ pub struct Window {
     pub band: FrequencyBand,
 }
 
-/// The tuned resonance that answers an excitation most, under any of the linear limits that bound
-/// the condition.
+/// Frequencies, Hz, between which the tuned wheel answers an excitation: from the lowest to the
+/// highest resonance that counts under any linear limit bounding the condition, and the tuned
+/// peak itself where it is known. None if nothing answers.
 #[must_use]
-pub fn dominant_resonance(excited: &Excited, condition: ContactCondition) -> Option<LinearPeak> {
+pub fn tuned_span(
+    excited: &Excited,
+    condition: ContactCondition,
+    tuned_peak_hz: Option<f64>,
+) -> Option<(f64, f64)> {
     excited
         .linear_peaks(condition)
-        .into_iter()
-        .flatten()
-        .reduce(|best, peak| {
-            if peak.amplitude_m > best.amplitude_m {
-                peak
-            } else {
-                best
-            }
+        .iter()
+        .flat_map(|limit| dominant(limit))
+        .map(|peak| peak.frequency_hz)
+        .chain(tuned_peak_hz)
+        .fold(None, |span: Option<(f64, f64)>, f| {
+            let (low, high) = span.unwrap_or((f, f));
+            Some((low.min(f), high.max(f)))
         })
 }
 
-/// Window of a mistuned wheel: resonances within `0.6 max|delta| + 5 %` of the tuned one.
+/// Window of a mistuned wheel: resonances within `0.6 max|delta| + 5 %` of where the tuned wheel
+/// answers.
 #[must_use]
-pub fn mistuned_window(tuned: LinearPeak, largest_deviation: f64, band: FrequencyBand) -> Window {
+pub fn mistuned_window(span_hz: (f64, f64), largest_deviation: f64, band: FrequencyBand) -> Window {
     let share = 0.6 * largest_deviation + 0.05;
     Window {
-        resonances_hz: Some((
-            tuned.frequency_hz * (1.0 - share),
-            tuned.frequency_hz * (1.0 + share),
-        )),
+        resonances_hz: Some((span_hz.0 * (1.0 - share), span_hz.1 * (1.0 + share))),
         band,
     }
+}
+
+/// The resonances of one limit that count: those above half of its highest.
+fn dominant(limit: &[LinearPeak]) -> Vec<LinearPeak> {
+    let highest = limit
+        .iter()
+        .map(|peak| peak.amplitude_m)
+        .fold(0.0, f64::max);
+    limit
+        .iter()
+        .copied()
+        .filter(|peak| peak.amplitude_m > 0.5 * highest)
+        .collect()
 }
 
 /// Finds the peak of one row.
@@ -95,26 +110,14 @@ pub fn peak(
         bracketed: false,
         work: Work::default(),
     };
-    let limits: Vec<Vec<LinearPeak>> = excited
-        .linear_peaks(condition)
-        .into_iter()
-        .map(|peaks| within(&peaks, window))
-        .collect();
-    let all: Vec<LinearPeak> = limits.iter().flatten().copied().collect();
-    let Some(largest) = all.iter().map(|peak| peak.amplitude_m).reduce(f64::max) else {
-        return nothing(Status::NotBracketed);
-    };
-    if !largest.is_finite() {
+    let limits = within(&excited.linear_peaks(condition), window);
+    let candidates: Vec<LinearPeak> = limits.iter().flat_map(|limit| dominant(limit)).collect();
+    if candidates.iter().any(|peak| !peak.amplitude_m.is_finite()) {
         return nothing(Status::NonFinite);
     }
-    if largest <= 0.0 {
+    if candidates.is_empty() {
         return nothing(Status::NotBracketed);
     }
-    let candidates: Vec<LinearPeak> = all
-        .iter()
-        .copied()
-        .filter(|peak| peak.amplitude_m > 0.5 * largest)
-        .collect();
     let (band_hz, extensions) = match window.band {
         FrequencyBand::Fixed { start_hz, stop_hz } => ((start_hz, stop_hz), 0),
         FrequencyBand::Auto => (band_of(&candidates), BAND_EXTENSIONS),
@@ -173,16 +176,28 @@ pub fn peak(
     }
 }
 
-fn within(peaks: &[LinearPeak], window: Window) -> Vec<LinearPeak> {
+/// Resonances of each limit inside the window, or all of them where none of a limit is: a
+/// nonlinear peak lies between those of its limits, which may both be outside of a fixed band.
+fn within(limits: &[Vec<LinearPeak>], window: Window) -> Vec<Vec<LinearPeak>> {
     let (low, high) = match (window.band, window.resonances_hz) {
         (FrequencyBand::Fixed { start_hz, stop_hz }, _) => (start_hz, stop_hz),
         (FrequencyBand::Auto, Some(range)) => range,
         (FrequencyBand::Auto, None) => (0.0, f64::INFINITY),
     };
-    peaks
+    limits
         .iter()
-        .copied()
-        .filter(|peak| peak.frequency_hz >= low && peak.frequency_hz <= high)
+        .map(|limit| {
+            let inside: Vec<LinearPeak> = limit
+                .iter()
+                .copied()
+                .filter(|peak| peak.frequency_hz >= low && peak.frequency_hz <= high)
+                .collect();
+            if dominant(&inside).is_empty() {
+                limit.clone()
+            } else {
+                inside
+            }
+        })
         .collect()
 }
 

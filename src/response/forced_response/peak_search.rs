@@ -25,9 +25,14 @@ impl Envelope {
     /// Share of the strongest resonance that a competing mode is assumed to have at least.
     const COMPETITOR: f64 = 0.7;
 
+    /// Half-bandwidth assumed of a hidden peak at most, over that of a linear resonance: where
+    /// friction holds the best peak far below the linear ones, a competitor need not be as broad.
+    const BROADEST: f64 = 5.0;
+
     /// Half-bandwidth, Hz, assumed of a hidden peak of height `amplitude`.
     fn half_bandwidth(&self, amplitude: f64) -> f64 {
-        Self::COMPETITOR * (self.strength / amplitude).max(self.linear_half_bandwidth_hz)
+        let linear = self.linear_half_bandwidth_hz;
+        Self::COMPETITOR * (self.strength / amplitude).clamp(linear, Self::BROADEST * linear)
     }
 }
 
@@ -119,7 +124,12 @@ pub fn find_peak(
         };
         if best == 0 || best + 1 == search.samples.len() {
             if extensions == settings.extensions {
-                break SearchEnd::Open;
+                // The band ends here, but the peak may still lie just inside of its end.
+                match search.inside_of_end(best) {
+                    Some(frequency) => search.add(frequency, &mut evaluate),
+                    None => break SearchEnd::Open,
+                }
+                continue;
             }
             extensions += 1;
             let width = (band_hz.1 - band_hz.0).max(resolution);
@@ -220,11 +230,35 @@ impl Search {
         })
     }
 
+    /// A point inside of the end of the band that is the best so far, until the next one inside is
+    /// nearer than a resonance as high could turn within, and no other interval can hide a higher peak.
+    fn inside_of_end(&self, best: usize) -> Option<f64> {
+        let at = self.samples[best].frequency_hz;
+        let inside = self
+            .samples
+            .get(if best == 0 { 1 } else { best - 1 })?
+            .frequency_hz;
+        let near = 0.1 * self.envelope.half_bandwidth(self.samples[best].largest);
+        let gap = inside - at;
+        if gap.abs() > near {
+            return Some(at + gap.signum() * f64::max(0.25 * gap.abs(), 0.9 * near));
+        }
+        match self.hidden(best) {
+            Next::Evaluate(frequency) => Some(frequency),
+            Next::Hole | Next::Done => None,
+        }
+    }
+
     /// The vertex of the best peak first; then the widest interval that could hide a higher one.
     fn next_frequency(&self, best: usize) -> Next {
         if let Some(vertex) = self.unsettled_vertex(best) {
             return self.short_of_failures(best, vertex);
         }
+        self.hidden(best)
+    }
+
+    /// The middle of the widest interval that could hide a peak higher than the best.
+    fn hidden(&self, best: usize) -> Next {
         let height = self.samples[best].largest * (1.0 + self.settings.tolerance);
         let gamma = self.envelope.half_bandwidth(height);
         let good: Vec<usize> = (0..self.samples.len())
