@@ -82,6 +82,23 @@ impl Wheel {
         )
     }
 
+    /// The same on a soft ground and with a held ring: the resonances of slide and stuck lie 30 % apart.
+    pub fn wide_gap() -> Self {
+        let mut options = lumped24();
+        options.disk_ground_stiffness_n_per_m = 0.3e6;
+        options.ring_ground_stiffness_n_per_m = 2e6;
+        Self::of(
+            &lumped::build(&options).unwrap(),
+            ContactLaw::MacroSlip1d,
+            parameters(0.0, LUMPED_KT),
+            Damping::Rayleigh {
+                mass_per_s: 0.0,
+                stiffness_s: 9e-7,
+            },
+            BasisChoice::CraigBampton,
+        )
+    }
+
     /// Solid elements, two stick and two slide modes per nodal diameter: 32 coordinates.
     pub fn wheel8() -> Self {
         Self::of(

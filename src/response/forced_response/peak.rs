@@ -10,7 +10,7 @@ use crate::response::harmonic_balance::Status;
 /// Tolerance of peaks of linear limits, which cost almost nothing.
 const LINEAR_PEAK_TOLERANCE: f64 = 1e-11;
 /// Largest number of points of one row.
-const EVALUATIONS: usize = 240;
+const EVALUATIONS: usize = 1500;
 /// Starting points between the dominant stuck and slide peaks.
 const STARTS_BETWEEN: usize = 5;
 /// Times the automatic band is widened while the largest value lies at its end.
