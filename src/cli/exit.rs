@@ -52,7 +52,9 @@ impl From<&PipelineError> for ExitStatus {
             PipelineError::Table(error) => error.into(),
             PipelineError::DifferentStudy { .. } => Self::DifferentStudy,
             PipelineError::Locked { .. } => Self::Locked,
-            PipelineError::Unfinished { .. } | PipelineError::NoPattern { .. } => Self::Usage,
+            PipelineError::Unfinished { .. }
+            | PipelineError::NoPattern { .. }
+            | PipelineError::NoContact { .. } => Self::Usage,
             PipelineError::Threads { .. } => Self::InternalError,
         }
     }

@@ -47,10 +47,16 @@ impl StudyDigest {
         flatten("", &study.resolved(), &mut number_keys);
         number_keys.retain(|key, _| !NEUTRAL.iter().any(|neutral| key.starts_with(neutral)));
         number_keys.insert("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned());
-        // The content of an input counts, not where it lies.
+        // The content of an input and its role count, not where it lies.
         for (name, digest) in &inputs {
-            let key = name.rsplit(['/', '\\']).next().unwrap_or(name);
-            number_keys.insert(format!("input {key}"), digest.clone());
+            let in_bundle = match &study.model {
+                ModelSource::Bundle { written, .. } => name.strip_prefix(&format!("{written}/")),
+                _ => None,
+            };
+            let role = in_bundle.map_or("mistuning.file".to_owned(), |file| {
+                format!("model.bundle/{file}")
+            });
+            number_keys.insert(format!("input {role}"), digest.clone());
         }
         Ok(Self {
             number_keys,

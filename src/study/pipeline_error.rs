@@ -64,6 +64,12 @@ pub enum PipelineError {
     /// The samples per period cannot tell the harmonics apart.
     #[error("solver.harmonics and solver.samples_per_period do not fit: {0}")]
     Harmonics(#[from] TransformError),
+    /// A load or a contact limit is asked for where there is no contact.
+    #[error("{reason}; accepted: --load free")]
+    NoContact {
+        /// What is missing.
+        reason: &'static str,
+    },
     /// The study has no such pattern.
     #[error("there is no pattern {id}; accepted: tuned, or {accepted}")]
     NoPattern {

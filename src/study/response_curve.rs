@@ -32,6 +32,16 @@ pub fn response_curve(
     request: CurveRequest<'_>,
 ) -> Result<Vec<CurvePoint>, PipelineError> {
     let model = load_sector_model(study)?;
+    if request.contact != ContactCondition::Free {
+        let reason = match (&study.contact, model.contact_pairs.is_empty()) {
+            (_, true) => Some("the model has no contact"),
+            (None, false) => Some("the study has no [contact]"),
+            (Some(_), false) => None,
+        };
+        if let Some(reason) = reason {
+            return Err(PipelineError::NoContact { reason });
+        }
+    }
     let patterns = pattern_source(study, model.sectors)?;
     let pattern = match request.pattern {
         None => None,

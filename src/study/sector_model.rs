@@ -33,7 +33,8 @@ pub fn pattern_source(study: &Study, sectors: usize) -> Result<PatternSource, St
             distribution: *distribution,
         }),
         MistuningSource::File { records, .. } => {
-            Ok(PatternSource::Table(records.for_wheel(sectors)?))
+            let modes = study.mistuning.cantilever_mode_count.unwrap_or(0);
+            Ok(PatternSource::Table(records.for_wheel(sectors, modes)?))
         }
     }
 }

@@ -208,3 +208,24 @@ fn tables_are_byte_identical_on_1_2_and_8_threads() {
     assert_eq!(one, tables("2"));
     assert_eq!(one, tables("8"));
 }
+
+#[test]
+fn a_load_on_a_wheel_without_contact_is_refused() {
+    let place = Place::with(GOOD);
+    let one_dof = concat!(env!("CARGO_MANIFEST_DIR"), "/studies/one-dof.toml");
+    let out = ["--frequencies", "900:1100:5", "--out", "curve.csv"];
+    let response = |load: &str| {
+        let mut arguments = vec!["response", one_dof, "--pattern", "tuned", "--load", load];
+        arguments.extend(["--standard-deviation", "0.01"]);
+        arguments.extend(out);
+        place.run(&arguments)
+    };
+    let refused = response("50");
+    assert_eq!(refused.code, 2, "{}", refused.stderr);
+    assert!(
+        refused.stderr.contains("the model has no contact"),
+        "{}",
+        refused.stderr
+    );
+    assert_eq!(response("free").code, 0);
+}

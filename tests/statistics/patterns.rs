@@ -171,7 +171,7 @@ fn patterns_of_a_file_keep_ids_blades_and_modes() {
     .expect("write");
     let records = read_pattern_csv(&path).expect("a good file");
     assert_eq!(records.ids(), [7, 9]);
-    let table = records.for_wheel(2).expect("complete");
+    let table = records.for_wheel(2, 10).expect("complete");
     let pattern = table.pattern(7).expect("pattern 7");
     assert_eq!(pattern.deviations, Deviations::PerBlade(vec![0.01, -0.02]));
     std::fs::write(
@@ -181,7 +181,7 @@ fn patterns_of_a_file_keep_ids_blades_and_modes() {
     .expect("write");
     let table = read_pattern_csv(&path)
         .expect("a good file")
-        .for_wheel(2)
+        .for_wheel(2, 10)
         .expect("complete");
     let expected = Deviations::PerMode {
         modes: vec![0, 2],
@@ -239,14 +239,14 @@ fn a_bad_file_of_patterns_is_refused_with_line_value_and_what_is_accepted() {
     ];
     for (content, fragments) in cases {
         std::fs::write(&path, content).expect("write");
-        let refused = read_pattern_csv(&path).and_then(|records| records.for_wheel(2));
+        let refused = read_pattern_csv(&path).and_then(|records| records.for_wheel(2, 10));
         let message = refused.expect_err(content).to_string();
         for fragment in fragments {
             assert!(message.contains(fragment), "{content:?}: {message}");
         }
     }
     std::fs::write(&path, "pattern,blade,mode,deviation\n0,0,,0\n0,1,1,0\n").expect("write");
-    let mixed = read_pattern_csv(&path).expect("records").for_wheel(2);
+    let mixed = read_pattern_csv(&path).expect("records").for_wheel(2, 10);
     assert!(
         mixed
             .expect_err("mixed modes")

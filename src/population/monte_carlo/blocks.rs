@@ -35,10 +35,10 @@ pub fn plan_blocks(ids: &[u32], done: &BTreeSet<u32>, size: usize) -> Vec<Patter
     blocks
 }
 
-/// Patterns per block for a study of `patterns`: about 64 blocks, between 8 and 1024 patterns each.
+/// Patterns per block for a study of `patterns`: about 1024 blocks, between 8 and 1024 patterns each.
 #[must_use]
 pub fn block_size(patterns: usize) -> usize {
-    (patterns / 64).next_power_of_two().clamp(8, 1024)
+    (patterns / 1024).next_power_of_two().clamp(8, 1024)
 }
 
 #[cfg(test)]
@@ -60,7 +60,7 @@ mod tests {
     fn block_size_stays_within_its_bounds() {
         assert_eq!(
             [1, 200, 20_000, 10_000_000].map(block_size),
-            [8, 8, 512, 1024]
+            [8, 8, 32, 1024]
         );
     }
 }

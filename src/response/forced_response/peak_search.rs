@@ -231,7 +231,7 @@ impl Search {
     }
 
     /// A point inside of the end of the band that is the best so far, until the next one inside is
-    /// nearer than a resonance as high could turn within, and no other interval can hide a higher peak.
+    /// nearer than a resonance as high could turn within.
     fn inside_of_end(&self, best: usize) -> Option<f64> {
         let at = self.samples[best].frequency_hz;
         let inside = self
@@ -240,13 +240,7 @@ impl Search {
             .frequency_hz;
         let near = 0.1 * self.envelope.half_bandwidth(self.samples[best].largest);
         let gap = inside - at;
-        if gap.abs() > near {
-            return Some(at + gap.signum() * f64::max(0.25 * gap.abs(), 0.9 * near));
-        }
-        match self.hidden(best) {
-            Next::Evaluate(frequency) => Some(frequency),
-            Next::Hole | Next::Done => None,
-        }
+        (gap.abs() > near).then(|| at + gap.signum() * f64::max(0.25 * gap.abs(), 0.9 * near))
     }
 
     /// The vertex of the best peak first; then the widest interval that could hide a higher one.

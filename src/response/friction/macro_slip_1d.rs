@@ -23,6 +23,6 @@ pub(super) fn respond(
     second.rest();
     history.state = PairState {
         slipping,
-        separated: false,
+        separated: parameters.normal_load_n <= 0.0,
     };
 }

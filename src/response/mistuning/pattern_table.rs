@@ -161,7 +161,11 @@ impl PatternRecords {
     /// # Errors
     /// A blade out of range, a blade or mode without deviation, a pattern that mixes deviations
     /// with and without mode.
-    pub fn for_wheel(&self, sectors: usize) -> Result<PatternTable, PatternFileError> {
+    pub fn for_wheel(
+        &self,
+        sectors: usize,
+        modes: usize,
+    ) -> Result<PatternTable, PatternFileError> {
         let mut by_pattern: BTreeMap<u32, Entries> = BTreeMap::new();
         for record in &self.records {
             if record.blade as usize >= sectors {
@@ -173,6 +177,20 @@ impl PatternRecords {
                     accepted: format!(
                         "0 to {} (the wheel has {sectors})",
                         sectors.saturating_sub(1)
+                    ),
+                });
+            }
+            if let Some(mode) = record.mode
+                && mode as usize >= modes
+            {
+                return Err(PatternFileError::Entry {
+                    path: self.path.clone(),
+                    line: record.line,
+                    column: "mode",
+                    value: mode.to_string(),
+                    accepted: format!(
+                        "0 to {} (mistuning.cantilever_mode_count is {modes})",
+                        modes.saturating_sub(1)
                     ),
                 });
             }
