@@ -206,7 +206,7 @@ impl PairHarmonics {
         } else {
             0.0
         };
-        if self.history.state().separated {
+        if self.law.has_variable_load() && self.history.state().separated {
             self.sums
                 .gather_separated(&self.transform, self.history.normal_load_n());
             self.sums.fill_normal(-kn, &mut jacobian.normal_normal);
