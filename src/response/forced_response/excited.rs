@@ -130,7 +130,7 @@ impl LimitModes {
 }
 
 impl Wheel {
-    /// A mistuned wheel; none if its stiffness cannot be decomposed.
+    /// A mistuned wheel with the modes of the limits that are wanted.
     #[must_use]
     pub fn mistuned(
         modes: StructuralModes,
@@ -159,7 +159,7 @@ pub struct Excited {
 }
 
 impl Excited {
-    /// A mistuned wheel under `engine_order` with force scale `amplitude_n`.
+    /// A mistuned wheel under a modal force, with one block per harmonic.
     #[must_use]
     pub fn wheel(wheel: &Wheel, modal_force: Vec<Complex64>, harmonics: &[u32]) -> Self {
         let blocks = harmonics

@@ -65,7 +65,7 @@ pub struct Sample {
 pub enum SearchEnd {
     /// The peak is bracketed and nothing higher can hide.
     Found,
-    /// The largest value lies at an end of the band, or a failed point could hide a higher one.
+    /// The largest value lies at an end of the band.
     Open,
     /// A failed evaluation lies where a higher peak could be.
     Incomplete,
