@@ -5,7 +5,7 @@ use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
 use faer::{MatMut, MatRef, Par};
 
-use super::matrix::Scalar;
+use super::matrix::{Matrix, Scalar};
 
 /// LU factorisation with partial pivoting of an `n x n` matrix; storage is reused.
 pub struct LuWorkspace<T> {
@@ -78,11 +78,26 @@ impl<T: Scalar> LuWorkspace<T> {
             MemStack::new(&mut self.memory),
         );
     }
+
+    /// Solves with the factors for every column of `right`, in place.
+    pub fn solve_columns(&self, right: &mut Matrix<T>) {
+        let n = self.dimension;
+        let need = solve::solve_in_place_scratch::<usize, T>(n, right.columns(), Par::Seq);
+        let factors = MatRef::from_column_major_slice(&self.matrix, n, n);
+        solve::solve_in_place(
+            factors,
+            factors,
+            PermRef::new_checked(&self.permutation, &self.inverse, n),
+            right.view_mut(),
+            Par::Seq,
+            MemStack::new(&mut MemBuffer::new(need)),
+        );
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::LuWorkspace;
+    use super::{LuWorkspace, Matrix};
 
     #[test]
     fn solves_what_it_factored_and_reports_a_singular_matrix() {
@@ -95,6 +110,12 @@ mod tests {
         for row in 0..3 {
             let product: f64 = (0..3).map(|column| a[3 * column + row] * x[column]).sum();
             assert!((product - (row as f64 + 1.0)).abs() < 1e-14);
+        }
+        let mut columns = Matrix::from_fn(3, 2, |i, j| (i + 1) as f64 * (1.0 - 3.0 * j as f64));
+        lu.solve_columns(&mut columns);
+        for row in 0..3 {
+            assert!((columns[(row, 0)] - x[row]).abs() < 1e-14);
+            assert!((columns[(row, 1)] + 2.0 * x[row]).abs() < 1e-14);
         }
         lu.matrix_mut().fill(1.0);
         assert!(!lu.factor());

@@ -4,6 +4,7 @@ mod basis_choice;
 mod digest;
 mod engine;
 mod error;
+mod full_model;
 mod mistuning;
 mod pipeline;
 mod pipeline_error;
@@ -21,6 +22,7 @@ mod validate_solver;
 
 pub use digest::{StudyDigest, digest_file};
 pub use engine::{Engine, EngineSource};
+pub use full_model::{FullModel, FullRow, FullSettings};
 pub use error::{Finding, Problem, StudyError};
 pub use mistuning::{Mistuning, MistuningSource};
 pub use pipeline::{Progress, RunOutcome, RunRequest, Stage, run, summarise};

@@ -203,7 +203,7 @@ impl Engine for ReducedEngine {
 }
 
 /// The physics of a row as the study states it.
-fn row_settings(study: &Study) -> RowSettings {
+pub(super) fn row_settings(study: &Study) -> RowSettings {
     let friction = study
         .contacts
         .iter()
@@ -227,7 +227,7 @@ fn row_settings(study: &Study) -> RowSettings {
 }
 
 /// Linear contact springs of the law: `macro_slip_1d` has none along the second tangent.
-fn contact_stiffness(contact: Option<&ContactOptions>) -> ContactStiffness {
+pub(super) fn contact_stiffness(contact: Option<&ContactOptions>) -> ContactStiffness {
     let Some(contact) = contact else {
         return ContactStiffness {
             normal_n_per_m: 0.0,
@@ -247,7 +247,7 @@ fn contact_stiffness(contact: Option<&ContactOptions>) -> ContactStiffness {
 }
 
 /// As the study says, or by the size of its mistuning.
-fn sensitivity_vectors(study: &Study) -> usize {
+pub(super) fn sensitivity_vectors(study: &Study) -> usize {
     let largest = study
         .standard_deviations
         .iter()

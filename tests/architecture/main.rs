@@ -25,6 +25,7 @@ const WINGS: &[(&str, &[&str])] = &[
             "friction",
             "harmonic_balance",
             "forced_response",
+            "reference",
         ],
     ),
     ("population", &["monte_carlo", "statistics", "table"]),

@@ -13,18 +13,18 @@ use super::support::{Case, Row, Table, package};
 
 /// A wheel of the reference.
 #[derive(Clone, Copy)]
-struct Wheel {
-    name: &'static str,
+pub struct Wheel {
+    pub name: &'static str,
     tangential_stiffness: f64,
-    loads: &'static str,
+    pub loads: &'static str,
 }
 
-const WHEEL8: Wheel = Wheel {
+pub const WHEEL8: Wheel = Wheel {
     name: "wheel8",
     tangential_stiffness: 4e8,
     loads: "200, 400, 1600",
 };
-const WHEEL24: Wheel = Wheel {
+pub const WHEEL24: Wheel = Wheel {
     name: "wheel24",
     tangential_stiffness: 1e8,
     loads: "160, 320, 1280",
@@ -48,6 +48,10 @@ impl Wheel {
 
     /// The wheel under conditions as listed in a study; an automatic basis is chosen for them.
     fn under(self, conditions: &str, reduction: &str, harmonics: &[u32]) -> Case {
+        Case::new(self.study(conditions, reduction, harmonics))
+    }
+
+    pub fn study(self, conditions: &str, reduction: &str, harmonics: &[u32]) -> Study {
         let (name, kt) = (self.name, self.tangential_stiffness);
         let kn = 2.0 * kt;
         let text = format!(
@@ -77,10 +81,10 @@ samples_per_period = 512
 peak_tolerance = 1e-4
 "#
         );
-        Case::new(Study::parse(&package("studies/reference.toml"), &text).unwrap())
+        Study::parse(&package("studies/reference.toml"), &text).unwrap()
     }
 
-    fn table(self, name: &str) -> Table {
+    pub fn table(self, name: &str) -> Table {
         Table::read(
             &package("tests/data")
                 .join(self.name)
@@ -91,7 +95,7 @@ peak_tolerance = 1e-4
 }
 
 /// What a row of the reference was solved for: pattern, contact.
-fn solved_for(row: Row<'_>) -> (Option<u32>, ContactCondition) {
+pub fn solved_for(row: Row<'_>) -> (Option<u32>, ContactCondition) {
     let contact = match row.text("contact") {
         "free" => ContactCondition::Free,
         "slide" => ContactCondition::Slide,
@@ -165,7 +169,7 @@ fn miss(wheel: Wheel, case: &Case, row: Row<'_>, bounds: Bounds) -> Option<Strin
 }
 
 /// Whether the peak's blade is the highest by 0.5 % or more.
-fn stands_out(wheel: Wheel, peak: Row<'_>) -> bool {
+pub fn stands_out(wheel: Wheel, peak: Row<'_>) -> bool {
     let blades = wheel.table("blades.csv");
     let mut heights: Vec<f64> = blades
         .rows()

@@ -6,7 +6,8 @@ use super::{ResponseRow, Scenario, TunedReference};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
     ContactCondition, Excited, FrequencyBand, LimitsWanted, Peak, Point, PointSettings,
-    PointSolver, SolverOptions, Wheel, Window, mistuned_window, peak, tuned_span, wheel_force,
+    PointSolver, SearchPlan, SolverOptions, Wheel, Window, mistuned_window, peak, search_plan,
+    tuned_span, wheel_force,
 };
 use crate::response::friction::{ContactLaw, PairParameters};
 use crate::response::harmonic_balance::{Damping, Status, TransformError};
@@ -238,6 +239,59 @@ impl RowSolver {
         Ok((modes, wheel))
     }
 
+    /// Where the linear limits of a row say that its peak can lie; no pattern means the tuned wheel.
+    /// `tuned_hz` is the frequency of the tuned peak.
+    ///
+    /// # Errors
+    /// The pattern cannot be applied, or nothing answers the excitation.
+    pub fn search_plan(
+        &self,
+        scenario: &Scenario,
+        pattern: Option<&Pattern>,
+        tuned_hz: Option<f64>,
+    ) -> Result<SearchPlan, Status> {
+        let (excited, window) = match pattern {
+            None => {
+                let window = Window {
+                    resonances_hz: None,
+                    band: self.settings.solver.frequency_band,
+                };
+                let excited = self.tuned_excited(scenario.engine_order, scenario.contact);
+                (excited, window)
+            }
+            Some(pattern) => {
+                let (modes, wheel) = self.mistuned(pattern, LimitsWanted::of(&[scenario.contact]))?;
+                let window = self.window(pattern, scenario, tuned_hz)?;
+                let excited =
+                    self.wheel_excited(&modes, &wheel, scenario.engine_order, scenario.contact);
+                (excited, window)
+            }
+        };
+        search_plan(&excited, scenario.contact, window)
+    }
+
+    /// Where the peak of a mistuned wheel is sought.
+    fn window(
+        &self,
+        pattern: &Pattern,
+        scenario: &Scenario,
+        tuned_hz: Option<f64>,
+    ) -> Result<Window, Status> {
+        let band = self.settings.solver.frequency_band;
+        Ok(match band {
+            FrequencyBand::Auto => {
+                let waves = self.tuned_excited(scenario.engine_order, scenario.contact);
+                let span = tuned_span(&waves, scenario.contact, tuned_hz);
+                let span = span.ok_or(Status::NotBracketed)?;
+                mistuned_window(span, pattern.largest_deviation(), band)
+            }
+            FrequencyBand::Fixed { .. } => Window {
+                resonances_hz: None,
+                band,
+            },
+        })
+    }
+
     fn mistuned_peak(
         &self,
         modes: &StructuralModes,
@@ -246,19 +300,7 @@ impl RowSolver {
         scenario: &Scenario,
         tuned: &TunedReference,
     ) -> Result<Peak, Status> {
-        let band = self.settings.solver.frequency_band;
-        let window = match band {
-            FrequencyBand::Auto => {
-                let waves = self.tuned_excited(scenario.engine_order, scenario.contact);
-                let span = tuned_span(&waves, scenario.contact, tuned.frequency_hz);
-                let span = span.ok_or(Status::NotBracketed)?;
-                mistuned_window(span, pattern.largest_deviation(), band)
-            }
-            FrequencyBand::Fixed { .. } => Window {
-                resonances_hz: None,
-                band,
-            },
-        };
+        let window = self.window(pattern, scenario, tuned.frequency_hz)?;
         let excited = self.wheel_excited(modes, wheel, scenario.engine_order, scenario.contact);
         Ok(peak(
             &excited,

@@ -10,5 +10,6 @@ mod point_solver;
 pub use excited::{Excited, LimitsWanted, LinearStructure, Wheel, wheel_force};
 pub use linear_peaks::LinearPeak;
 pub use options::{AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, SolverOptions};
-pub use peak::{Peak, Window, mistuned_window, peak, tuned_span};
+pub use peak::{Peak, SearchPlan, Window, mistuned_window, peak, search_plan, tuned_span};
+pub use peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
 pub use point_solver::{Point, PointSettings, PointSolver, Work};

@@ -94,29 +94,35 @@ fn dominant(limit: &[LinearPeak]) -> Vec<LinearPeak> {
         .collect()
 }
 
-/// Finds the peak of one row.
-#[must_use]
-pub fn peak(
+/// Where the linear limits of a row say that its peak can lie, and how wide a peak is there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SearchPlan {
+    /// Band, Hz.
+    pub band_hz: (f64, f64),
+    /// First frequencies to try, Hz.
+    pub starts_hz: Vec<f64>,
+    /// Least width of a peak.
+    pub envelope: Envelope,
+    /// Times the band may be widened while the largest value lies at its end.
+    pub extensions: usize,
+}
+
+/// The plan of the search for one row, from the resonances of its linear limits.
+///
+/// # Errors
+/// A resonance is not finite, or nothing answers the excitation.
+pub fn search_plan(
     excited: &Excited,
     condition: ContactCondition,
-    settings: &PointSettings,
     window: Window,
-    peak_tolerance: f64,
-) -> Peak {
-    let nothing = |status| Peak {
-        status,
-        point: None,
-        blade: 0,
-        bracketed: false,
-        work: Work::default(),
-    };
+) -> Result<SearchPlan, Status> {
     let limits = within(&excited.linear_peaks(condition), window);
     let candidates: Vec<LinearPeak> = limits.iter().flat_map(|limit| dominant(limit)).collect();
     if candidates.iter().any(|peak| !peak.amplitude_m.is_finite()) {
-        return nothing(Status::NonFinite);
+        return Err(Status::NonFinite);
     }
     if candidates.is_empty() {
-        return nothing(Status::NotBracketed);
+        return Err(Status::NotBracketed);
     }
     let (band_hz, extensions) = match window.band {
         FrequencyBand::Fixed { start_hz, stop_hz } => ((start_hz, stop_hz), 0),
@@ -132,6 +138,35 @@ pub fn peak(
             .map(|peak| peak.half_bandwidth_hz)
             .fold(f64::INFINITY, f64::min),
     };
+    Ok(SearchPlan {
+        band_hz,
+        starts_hz: starting_points(&limits, &candidates),
+        envelope,
+        extensions,
+    })
+}
+
+/// Finds the peak of one row.
+#[must_use]
+pub fn peak(
+    excited: &Excited,
+    condition: ContactCondition,
+    settings: &PointSettings,
+    window: Window,
+    peak_tolerance: f64,
+) -> Peak {
+    let plan = match search_plan(excited, condition, window) {
+        Ok(plan) => plan,
+        Err(status) => {
+            return Peak {
+                status,
+                point: None,
+                blade: 0,
+                bracketed: false,
+                work: Work::default(),
+            };
+        }
+    };
     let nonlinear = matches!(condition, ContactCondition::Full { .. });
     let search = SearchSettings {
         tolerance: if nonlinear {
@@ -140,16 +175,21 @@ pub fn peak(
             LINEAR_PEAK_TOLERANCE
         },
         evaluations: EVALUATIONS,
-        extensions,
+        extensions: plan.extensions,
     };
     let mut solver = PointSolver::new(excited, condition, settings);
-    let starts = starting_points(&limits, &candidates);
-    let result = find_peak(band_hz, &starts, envelope, search, |frequency| {
-        solver
-            .solve(frequency)
-            .ok()
-            .map(|point| point.amplitudes_m.clone())
-    });
+    let result = find_peak(
+        plan.band_hz,
+        &plan.starts_hz,
+        plan.envelope,
+        search,
+        |frequency| {
+            solver
+                .solve(frequency)
+                .ok()
+                .map(|point| point.amplitudes_m.clone())
+        },
+    );
     let best = result.best.map(|best| &result.samples[best]);
     let point = best.and_then(|best| {
         solver

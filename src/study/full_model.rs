@@ -1,0 +1,205 @@
+//! A study on the full-contact model: every contact dof of the whole wheel, at a high price per row.
+
+use std::sync::Arc;
+
+use super::reduced_engine::{contact_stiffness, row_settings, sensitivity_vectors};
+use super::{PipelineError, Study};
+use crate::model::ReducedModel;
+use crate::model::reduction::{BasisChoice, Reduction};
+use crate::model::sector::SectorModel;
+use crate::population::monte_carlo::{RowSettings, RowSolver, Scenario};
+use crate::population::table::CurvePoint;
+use crate::response::forced_response::FrequencyBand;
+use crate::response::harmonic_balance::{HarmonicTransform, Status, TransformError};
+use crate::response::mistuning::Pattern;
+use crate::response::reference::{
+    ReferencePeak, ReferenceSettings, ReferenceSolver, reference_peak,
+};
+
+/// Modes of either kind of the small model whose linear resonances bound the search for a peak.
+const SCOUT_MODES: usize = 6;
+
+/// The Craig-Bampton model with every contact dof, and the settings of a study.
+pub struct FullModel {
+    model: Arc<ReducedModel>,
+    row: RowSettings,
+    /// Says where the linear limits of a row resonate; no nonlinear solution is taken from it.
+    scout: RowSolver,
+    samples_per_period: usize,
+}
+
+/// Temporal harmonics and samples of a solution on the full-contact model.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FullSettings {
+    /// Harmonic set, ascending, with 1; none = that of the study.
+    pub harmonics: Option<Vec<u32>>,
+    /// Samples per period; at least those of the study.
+    pub samples_per_period: usize,
+}
+
+impl Default for FullSettings {
+    fn default() -> Self {
+        Self {
+            harmonics: None,
+            samples_per_period: ReferenceSettings::SAMPLES_PER_PERIOD,
+        }
+    }
+}
+
+/// What is to be solved on the full-contact model, and what is known of it beforehand.
+#[derive(Debug, Clone, Copy)]
+pub struct FullRow<'a> {
+    /// Scenario.
+    pub scenario: &'a Scenario,
+    /// Pattern; none for the tuned wheel.
+    pub pattern: Option<&'a Pattern>,
+    /// Settings, see [`FullModel::settings`].
+    pub settings: &'a ReferenceSettings,
+    /// Frequency of the tuned peak, Hz.
+    pub tuned_hz: Option<f64>,
+    /// Where the fast path found the peak, Hz: one of the first frequencies tried.
+    pub expected_hz: Option<f64>,
+}
+
+impl FullModel {
+    /// The full-contact model of `study`.
+    ///
+    /// # Errors
+    /// The model cannot be reduced, or the samples cannot tell the harmonics apart.
+    pub fn build(
+        study: &Study,
+        sector: &SectorModel,
+        options: &FullSettings,
+    ) -> Result<Self, PipelineError> {
+        let reduction = Reduction::new(
+            sector,
+            contact_stiffness(study.contact.as_ref()),
+            study.reduction.craig_bampton_modes,
+            sensitivity_vectors(study),
+        )?;
+        let cantilever = study.mistuning.cantilever_mode_count;
+        let mut settings = row_settings(study);
+        if let Some(harmonics) = &options.harmonics {
+            settings.harmonics.clone_from(harmonics);
+        }
+        let scout = BasisChoice::StickSlide {
+            stick: SCOUT_MODES,
+            slide: SCOUT_MODES,
+        };
+        let full = Self {
+            model: Arc::new(reduction.reduce(BasisChoice::CraigBampton, cantilever)?),
+            scout: RowSolver::new(
+                Arc::new(reduction.reduce(scout, cantilever)?),
+                settings.clone(),
+            )?,
+            samples_per_period: options.samples_per_period,
+            row: settings,
+        };
+        full.settings(full.harmonics())?;
+        Ok(full)
+    }
+
+    /// Harmonic set of the study, or the one asked for instead.
+    #[must_use]
+    pub fn harmonics(&self) -> &[u32] {
+        &self.row.harmonics
+    }
+
+    /// Number of complex coordinates of the wheel.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.model.wheel_size()
+    }
+
+    /// Samples per period.
+    #[must_use]
+    pub fn samples_per_period(&self) -> usize {
+        self.samples_per_period
+    }
+
+    /// Peak of one row, or of the tuned wheel.
+    #[must_use]
+    pub fn peak(&self, row: FullRow<'_>) -> ReferencePeak {
+        let plan = self.scout.search_plan(row.scenario, row.pattern, row.tuned_hz);
+        let solver = self.solver(row.scenario, row.pattern, row.settings);
+        match (plan, solver) {
+            (Ok(plan), Ok(mut solver)) => {
+                // A frequency that the fast path found outside of a fixed band is none of ours.
+                let inside = |f: &f64| match self.row.solver.frequency_band {
+                    FrequencyBand::Fixed { start_hz, stop_hz } => *f >= start_hz && *f <= stop_hz,
+                    FrequencyBand::Auto => true,
+                };
+                let expected = row.expected_hz.filter(inside);
+                reference_peak(&mut solver, &plan, expected)
+            }
+            (Err(status), _) | (_, Err(status)) => ReferencePeak::failed(status),
+        }
+    }
+
+    /// Amplitude of every blade at each frequency, ordered by frequency, then blade; no pattern means
+    /// the tuned wheel.
+    #[must_use]
+    pub fn curve(
+        &self,
+        scenario: &Scenario,
+        pattern: Option<&Pattern>,
+        settings: &ReferenceSettings,
+        frequencies_hz: &[f64],
+    ) -> Vec<CurvePoint> {
+        let sectors = self.model.sectors as u32;
+        let mut solver = self.solver(scenario, pattern, settings);
+        let mut points = Vec::new();
+        for &frequency_hz in frequencies_hz {
+            let solved = match &mut solver {
+                Ok(solver) => solver
+                    .solve(frequency_hz)
+                    .map(|point| point.amplitudes_m.clone()),
+                Err(status) => Err(*status),
+            };
+            points.extend((0..sectors).map(|blade| CurvePoint {
+                frequency_hz,
+                blade,
+                amplitude_m: match solved.as_deref() {
+                    Ok([one]) => Some(*one),
+                    Ok(all) => Some(all[blade as usize]),
+                    Err(_) => None,
+                },
+                status: solved.as_ref().err().copied().unwrap_or(Status::Ok),
+            }));
+        }
+        points
+    }
+
+    /// Settings of the study with a harmonic set of its own.
+    ///
+    /// # Errors
+    /// The samples per period cannot tell the harmonics apart.
+    pub fn settings(&self, harmonics: &[u32]) -> Result<ReferenceSettings, TransformError> {
+        let set: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
+        Ok(ReferenceSettings {
+            transform: Arc::new(HarmonicTransform::new(&set, self.samples_per_period)?),
+            residual_tolerance: ReferenceSettings::RESIDUAL_TOLERANCE,
+            peak_tolerance: ReferenceSettings::PEAK_TOLERANCE,
+            contact: self.row.contact,
+            damping: self.row.damping,
+            amplitude_n: self.row.amplitude_n,
+            amplitude: self.row.solver.amplitude,
+            time_samples: self.row.solver.time_samples,
+            projection: self.row.projection,
+        })
+    }
+
+    fn solver(
+        &self,
+        scenario: &Scenario,
+        pattern: Option<&Pattern>,
+        settings: &ReferenceSettings,
+    ) -> Result<ReferenceSolver, Status> {
+        let Scenario {
+            engine_order,
+            contact,
+            ..
+        } = *scenario;
+        ReferenceSolver::new(&self.model, settings, engine_order, contact, pattern)
+    }
+}
