@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use super::fidelity::FidelityArguments;
 use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
 
 /// Forced response of randomly mistuned bladed disks with a friction ring damper.
 #[derive(Debug, Parser)]
 #[command(name = "blisk", version, about, disable_help_subcommand = true)]
 #[command(
-    after_help = "Exit codes: 0 done, 1 internal error, 2 usage, 3 study invalid, 4 model invalid,\n5 failures leave a statistic without a value, 7 input/output, 8 store damaged,\n9 different study, 10 locked by another process."
+    after_help = "Exit codes: 0 done, 1 internal error, 2 usage, 3 study invalid, 4 model invalid,\n5 failures leave a statistic without a value, 7 input/output, 8 store damaged,\n9 different study, 10 locked by another process,\n11 a verification failed."
 )]
 pub struct Arguments {
     /// What to do.
@@ -82,7 +83,53 @@ pub enum Command {
         /// Standard deviation, where the study lists several.
         #[arg(long, value_name = "S")]
         standard_deviation: Option<f64>,
+        /// Which model is solved, and how finely.
+        #[command(flatten)]
+        fidelity: FidelityArguments,
         /// Print what was written as JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Solve one delivered row again and say whether it is the same bit for bit.
+    Replay {
+        /// The results folder.
+        results: PathBuf,
+        /// Scenario, counted from 0.
+        #[arg(long, value_name = "I")]
+        scenario: usize,
+        /// Id of the pattern.
+        #[arg(long, value_name = "ID")]
+        pattern: u32,
+        /// Which model the row is compared with besides.
+        #[command(flatten)]
+        fidelity: FidelityArguments,
+        /// Where the inputs lie now: beside this study file [default: that of the last run].
+        #[arg(long, value_name = "FILE")]
+        study: Option<PathBuf>,
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Solve a random sample of delivered rows again, on the same path and on the full-contact model.
+    ///
+    /// Writes verification.parquet into the results folder.
+    Verify {
+        /// The study file of results/NAME, or a results folder.
+        #[arg(value_name = "STUDY|DIR")]
+        target: PathBuf,
+        /// Number of rows to draw.
+        #[arg(long, value_name = "N", default_value = "10", value_parser = clap::value_parser!(u32).range(1..))]
+        sample: u32,
+        /// Seed of the sample [default: that of the study].
+        #[arg(long, value_name = "S")]
+        seed: Option<u64>,
+        /// Where the inputs lie now: beside this study file [default: that of the last run].
+        #[arg(long, value_name = "FILE")]
+        study: Option<PathBuf>,
+        /// Number of threads [default: all cores]; results do not depend on it.
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+        threads: Option<u16>,
+        /// Print JSON.
         #[arg(long)]
         json: bool,
     },

@@ -31,6 +31,8 @@ pub enum ExitStatus {
     DifferentStudy = 9,
     /// The folder is in use by another process.
     Locked = 10,
+    /// A comparison or verification failed.
+    VerificationFailed = 11,
 }
 
 impl From<ExitStatus> for ExitCode {
@@ -50,10 +52,13 @@ impl From<&PipelineError> for ExitStatus {
             PipelineError::Cache(_) => Self::InputOutput,
             PipelineError::Harmonics(_) => Self::StudyInvalid,
             PipelineError::Table(error) => error.into(),
-            PipelineError::DifferentStudy { .. } => Self::DifferentStudy,
+            PipelineError::DifferentStudy { .. } | PipelineError::InputsChanged { .. } => {
+                Self::DifferentStudy
+            }
             PipelineError::Locked { .. } => Self::Locked,
             PipelineError::Unfinished { .. }
             | PipelineError::NoPattern { .. }
+            | PipelineError::NoRow { .. }
             | PipelineError::NoContact { .. } => Self::Usage,
             PipelineError::Threads { .. } => Self::InternalError,
         }

@@ -3,13 +3,16 @@
 mod arguments;
 mod check;
 mod exit;
+mod fidelity;
 mod init;
 mod model;
 mod output;
 mod progress;
+mod replay;
 mod response;
 mod run;
 mod stats;
+mod verify;
 
 pub use arguments::{Arguments, Command};
 pub use exit::ExitStatus;

@@ -5,12 +5,15 @@ use std::str::FromStr;
 
 use serde_json::json;
 
+use super::fidelity::FidelityArguments;
 use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::population::table::{CurveFormat, TableHeader, write_curve};
 use crate::response::forced_response::ContactCondition;
 use crate::response::harmonic_balance::Status;
-use crate::study::{CurveRequest, ReducedEngineSource, Study, StudyDigest, response_curve};
+use crate::study::{
+    CurveRequest, ReducedEngineSource, Study, StudyDigest, full_response_curve, response_curve,
+};
 
 /// Largest number of frequencies of a curve.
 const MAX_FREQUENCIES: usize = 1_000_000;
@@ -123,6 +126,7 @@ pub(super) struct ResponseArguments {
     pub(super) out: PathBuf,
     pub(super) engine_order: Option<u32>,
     pub(super) standard_deviation: Option<f64>,
+    pub(super) fidelity: FidelityArguments,
     pub(super) json: bool,
 }
 
@@ -134,7 +138,9 @@ pub(super) fn command(arguments: &ResponseArguments) -> Result<ExitStatus, Failu
             out.display()
         ))
     })?;
-    let study = Study::read(&arguments.study)?;
+    let study = arguments
+        .fidelity
+        .applied_to(Study::read(&arguments.study)?)?;
     let frequencies_hz = arguments.frequencies.frequencies_hz();
     let request = CurveRequest {
         pattern: arguments.pattern.0,
@@ -150,7 +156,10 @@ pub(super) fn command(arguments: &ResponseArguments) -> Result<ExitStatus, Failu
         study_digest: StudyDigest::of(&study)?.hex(),
         compression: study.output.compression,
     };
-    let points = response_curve(&study, &ReducedEngineSource, request)?;
+    let points = match arguments.fidelity.full(&study)? {
+        None => response_curve(&study, &ReducedEngineSource, request)?,
+        Some(settings) => full_response_curve(&study, &settings, request)?,
+    };
     write_curve(out, format, &points, &header)?;
     let failed = points
         .iter()

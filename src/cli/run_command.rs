@@ -4,7 +4,9 @@ use std::ffi::OsString;
 
 use clap::Parser;
 
-use super::{Arguments, Command, ExitStatus, check, init, model, output, response, run, stats};
+use super::{
+    Arguments, Command, ExitStatus, check, init, model, output, replay, response, run, stats, verify,
+};
 
 /// Carries out the command line `arguments` (the first is the program's name).
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
@@ -42,6 +44,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             out,
             engine_order,
             standard_deviation,
+            fidelity,
             json,
         } => response::command(&response::ResponseArguments {
             study,
@@ -51,6 +54,37 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             out,
             engine_order,
             standard_deviation,
+            fidelity,
+            json,
+        }),
+        Command::Replay {
+            results,
+            scenario,
+            pattern,
+            fidelity,
+            study,
+            json,
+        } => replay::command(&replay::ReplayArguments {
+            results,
+            scenario,
+            pattern,
+            fidelity,
+            study,
+            json,
+        }),
+        Command::Verify {
+            target,
+            sample,
+            seed,
+            study,
+            threads,
+            json,
+        } => verify::command(&verify::VerifyArguments {
+            target,
+            sample,
+            seed,
+            study,
+            threads,
             json,
         }),
         Command::Stats { results, json } => stats::command(&results, json),

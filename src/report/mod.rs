@@ -4,8 +4,12 @@ mod model_report;
 mod summary;
 mod summary_text;
 mod text_table;
+mod verification;
 mod warning;
 
 pub use model_report::{ModelReport, NodalDiameterFacts};
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
+pub use verification::{
+    ErrorDistribution, RegimeErrors, VerificationContext, VerificationReport,
+};
 pub use warning::Warning;

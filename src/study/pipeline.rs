@@ -118,7 +118,7 @@ pub fn run(
         let work = Work::new(study, &digest, engine.as_ref(), &patterns, results);
         work.solve(progress)
     })?;
-    clock.record(threads, &outcome).write(results)?;
+    clock.record(study, threads, &outcome).write(results)?;
     Ok(outcome)
 }
 
@@ -472,7 +472,7 @@ impl Clock {
         }
     }
 
-    fn record(&self, threads: usize, outcome: &RunOutcome) -> RunRecord {
+    fn record(&self, study: &Study, threads: usize, outcome: &RunOutcome) -> RunRecord {
         RunRecord {
             started_unix_s: self.started_unix_s,
             wall_time_s: self.began.elapsed().as_secs_f64(),
@@ -481,6 +481,7 @@ impl Clock {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             rows_solved: outcome.rows_solved,
             rows_reused: outcome.rows_reused,
+            study_file: std::path::absolute(&study.path).unwrap_or_else(|_| study.path.clone()),
         }
     }
 }

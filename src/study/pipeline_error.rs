@@ -30,6 +30,14 @@ pub enum PipelineError {
         /// `(key, value in the folder, value in the study)`.
         differences: Vec<(String, String, String)>,
     },
+    /// What a results folder was made from is no longer the same.
+    #[error("{} was not made from the present inputs or by the present version; restore them, or run the study again:\n{}", folder.display(), listed(differences))]
+    InputsChanged {
+        /// The folder.
+        folder: PathBuf,
+        /// `(key, value in the folder, value now)`.
+        differences: Vec<(String, String, String)>,
+    },
     /// Another process works in the results folder.
     #[error("{} is in use by {holder}; wait for it to end or choose another --out", folder.display())]
     Locked {
@@ -77,6 +85,16 @@ pub enum PipelineError {
         id: u32,
         /// The ids there are, in words.
         accepted: String,
+    },
+    /// A results folder has no such row.
+    #[error("there is no row of scenario {scenario} and pattern {pattern}; accepted: a scenario below {scenarios}, and a pattern of the study")]
+    NoRow {
+        /// Scenario asked for.
+        scenario: usize,
+        /// Pattern asked for.
+        pattern: u32,
+        /// Number of scenarios.
+        scenarios: usize,
     },
 }
 

@@ -1,11 +1,14 @@
 //! The response of one pattern over frequency.
 
 use super::{
-    EngineSource, MistuningSource, PipelineError, Study, load_sector_model, pattern_source,
+    EngineSource, FullModel, FullSettings, MistuningSource, PipelineError, Study,
+    load_sector_model, pattern_source,
 };
+use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::Scenario;
 use crate::population::table::CurvePoint;
 use crate::response::forced_response::ContactCondition;
+use crate::response::mistuning::Pattern;
 
 /// Which curve is wanted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,37 +34,75 @@ pub fn response_curve(
     source: &dyn EngineSource,
     request: CurveRequest<'_>,
 ) -> Result<Vec<CurvePoint>, PipelineError> {
-    let model = load_sector_model(study)?;
-    if request.contact != ContactCondition::Free {
-        let reason = match (&study.contact, model.contact_pairs.is_empty()) {
-            (_, true) => Some("the model has no contact"),
-            (None, false) => Some("the study has no [contact]"),
-            (Some(_), false) => None,
-        };
-        if let Some(reason) = reason {
-            return Err(PipelineError::NoContact { reason });
+    let wanted = Wanted::of(study, request)?;
+    let engine = source.build(study, &wanted.sector, None)?;
+    let pattern = wanted.pattern.as_ref();
+    Ok(engine.curve(&wanted.scenario, pattern, request.frequencies_hz))
+}
+
+/// The same on the full-contact model.
+///
+/// # Errors
+/// As [`response_curve`].
+pub fn full_response_curve(
+    study: &Study,
+    settings: &FullSettings,
+    request: CurveRequest<'_>,
+) -> Result<Vec<CurvePoint>, PipelineError> {
+    let wanted = Wanted::of(study, request)?;
+    let full = FullModel::build(study, &wanted.sector, settings)?;
+    let settings = full.settings(full.harmonics())?;
+    Ok(full.curve(
+        &wanted.scenario,
+        wanted.pattern.as_ref(),
+        &settings,
+        request.frequencies_hz,
+    ))
+}
+
+/// What a curve is of: it exists in the study.
+struct Wanted {
+    sector: SectorModel,
+    pattern: Option<Pattern>,
+    scenario: Scenario,
+}
+
+impl Wanted {
+    fn of(study: &Study, request: CurveRequest<'_>) -> Result<Self, PipelineError> {
+        let sector = load_sector_model(study)?;
+        if request.contact != ContactCondition::Free {
+            let reason = match (&study.contact, sector.contact_pairs.is_empty()) {
+                (_, true) => Some("the model has no contact"),
+                (None, false) => Some("the study has no [contact]"),
+                (Some(_), false) => None,
+            };
+            if let Some(reason) = reason {
+                return Err(PipelineError::NoContact { reason });
+            }
         }
+        let patterns = pattern_source(study, sector.sectors)?;
+        let pattern = match request.pattern {
+            None => None,
+            Some(id) => Some(
+                patterns
+                    .pattern(id, request.standard_deviation)
+                    .ok_or_else(|| PipelineError::NoPattern {
+                        id,
+                        accepted: ids_in_words(study, &patterns.ids()),
+                    })?,
+            ),
+        };
+        Ok(Self {
+            sector,
+            pattern,
+            scenario: Scenario {
+                index: 0,
+                engine_order: request.engine_order,
+                standard_deviation: request.standard_deviation,
+                contact: request.contact,
+            },
+        })
     }
-    let patterns = pattern_source(study, model.sectors)?;
-    let pattern = match request.pattern {
-        None => None,
-        Some(id) => Some(
-            patterns
-                .pattern(id, request.standard_deviation)
-                .ok_or_else(|| PipelineError::NoPattern {
-                    id,
-                    accepted: ids_in_words(study, &patterns.ids()),
-                })?,
-        ),
-    };
-    let engine = source.build(study, &model, None)?;
-    let scenario = Scenario {
-        index: 0,
-        engine_order: request.engine_order,
-        standard_deviation: request.standard_deviation,
-        contact: request.contact,
-    };
-    Ok(engine.curve(&scenario, pattern.as_ref(), request.frequencies_hz))
 }
 
 fn ids_in_words(study: &Study, ids: &[u32]) -> String {

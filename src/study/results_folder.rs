@@ -111,16 +111,36 @@ impl ResultsFolder {
 /// # Errors
 /// A table is missing or has changed.
 pub(super) fn verify_tables(results: &Path, manifest: &Manifest) -> Result<(), TableError> {
+    let Some(name) = changed_tables(results, manifest)?.into_iter().next() else {
+        return Ok(());
+    };
+    let path = results.join(name);
+    let reason = if path.exists() {
+        "its content is not what was written; restore it, or remove the folder and run again"
+    } else {
+        "it is missing; restore it, or remove the folder and run again"
+    };
+    Err(TableError::Damaged {
+        path,
+        reason: reason.to_owned(),
+    })
+}
+
+/// Tables of a finished run that are missing or not as they were written.
+///
+/// # Errors
+/// A table cannot be read.
+pub(super) fn changed_tables(
+    results: &Path,
+    manifest: &Manifest,
+) -> Result<Vec<String>, TableError> {
+    let mut changed = Vec::new();
     for (name, expected) in &manifest.tables {
         let path = results.join(name);
-        let reason = match digest_file(&path) {
-            Ok(found) if found == *expected => continue,
-            Ok(_) => {
-                "its content is not what was written; restore it, or remove the folder and run again"
-            }
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                "it is missing; restore it, or remove the folder and run again"
-            }
+        match digest_file(&path) {
+            Ok(found) if found == *expected => {}
+            Ok(_) => changed.push(name.clone()),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => changed.push(name.clone()),
             Err(source) => {
                 return Err(TableError::Io {
                     action: "read",
@@ -128,13 +148,9 @@ pub(super) fn verify_tables(results: &Path, manifest: &Manifest) -> Result<(), T
                     source,
                 });
             }
-        };
-        return Err(TableError::Damaged {
-            path,
-            reason: reason.to_owned(),
-        });
+        }
     }
-    Ok(())
+    Ok(changed)
 }
 
 /// Name of this machine, for people; empty if it has none.

@@ -1,7 +1,7 @@
 //! `manifest.json`: what a results folder holds and what it was made from; and `runs/<n>.json`.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -197,9 +197,23 @@ pub struct RunRecord {
     pub rows_solved: u64,
     /// Rows taken over from earlier runs.
     pub rows_reused: u64,
+    /// The study file, beside which its inputs lie.
+    #[serde(default)]
+    pub study_file: PathBuf,
 }
 
 impl RunRecord {
+    /// The last record of the folder `results`; none if there is none that can be read.
+    #[must_use]
+    pub fn last(results: &Path) -> Option<Self> {
+        let folder = results.join("runs");
+        let last = (1..=u32::MAX)
+            .map(|number| folder.join(format!("{number}.json")))
+            .take_while(|path| path.exists())
+            .last()?;
+        serde_json::from_str(&std::fs::read_to_string(last).ok()?).ok()
+    }
+
     /// Writes the record under the next free number of `runs/` in the folder `results`.
     ///
     /// # Errors

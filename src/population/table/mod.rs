@@ -11,6 +11,7 @@ mod patterns;
 mod reader;
 mod responses;
 mod scenarios;
+mod verification;
 mod writer;
 
 pub use atomic::write_atomically;
@@ -23,4 +24,5 @@ pub use pattern_file::{PatternParquetError, read_pattern_parquet};
 pub use patterns::{PATTERN_COLUMNS, write_patterns};
 pub use responses::{RESPONSE_COLUMNS, ResponseReader, ResponseWriter};
 pub use scenarios::{SCENARIO_COLUMNS, ScenarioRecord, write_scenarios};
+pub use verification::{VERIFICATION_COLUMNS, VerificationRecord, write_verification};
 pub use writer::{Compression, SCHEMA_VERSION, TableHeader};

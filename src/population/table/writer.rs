@@ -37,7 +37,7 @@ pub struct TableHeader {
 }
 
 impl TableHeader {
-    fn metadata(&self, columns: &[ColumnSpec]) -> KeyValueMetadata {
+    fn metadata(&self, columns: &[ColumnSpec], more: &[(&str, String)]) -> KeyValueMetadata {
         let mut pairs = vec![
             (
                 "blisk.schema_version".to_owned(),
@@ -49,6 +49,9 @@ impl TableHeader {
             ),
             (STUDY_DIGEST_KEY.to_owned(), self.study_digest.clone()),
         ];
+        for (key, value) in more {
+            pairs.push(((*key).to_owned(), value.clone()));
+        }
         for column in columns {
             pairs.push((format!("unit.{}", column.name), column.unit.to_owned()));
             pairs.push((
@@ -74,6 +77,16 @@ impl TableWriter {
         columns: &'static [ColumnSpec],
         header: &TableHeader,
     ) -> Result<Self, TableError> {
+        Self::create_with(path, columns, header, &[])
+    }
+
+    /// The same with more key-value pairs in the metadata.
+    pub(super) fn create_with(
+        path: &Path,
+        columns: &'static [ColumnSpec],
+        header: &TableHeader,
+        more: &[(&str, String)],
+    ) -> Result<Self, TableError> {
         let file = AtomicFile::create(path)?;
         let compression = match header.compression {
             Compression::Zstd => ParquetCompression::Zstd(None),
@@ -83,7 +96,7 @@ impl TableWriter {
         let writer = ParquetWriter::new(file.handle()?)
             .with_compression(compression)
             .set_parallel(false)
-            .with_key_value_metadata(Some(header.metadata(columns)))
+            .with_key_value_metadata(Some(header.metadata(columns, more)))
             .batched(&polars_schema(columns))
             .map_err(|error| TableError::encoding(path, error.to_string()))?;
         Ok(Self {

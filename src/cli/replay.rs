@@ -1,0 +1,141 @@
+//! `blisk replay`: one delivered row solved again.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use serde_json::{Value, json};
+
+use super::fidelity::{Fidelity, FidelityArguments};
+use super::run_command::Failure;
+use super::{ExitStatus, output};
+use crate::population::monte_carlo::{ResponseRow, harmonics_name};
+use crate::study::{ReducedEngineSource, Replay, ReplayRequest, StoredStudy, replay};
+
+/// Arguments of the command.
+#[derive(Debug)]
+pub(super) struct ReplayArguments {
+    pub(super) results: PathBuf,
+    pub(super) scenario: usize,
+    pub(super) pattern: u32,
+    pub(super) fidelity: FidelityArguments,
+    pub(super) study: Option<PathBuf>,
+    pub(super) json: bool,
+}
+
+pub(super) fn command(arguments: &ReplayArguments) -> Result<ExitStatus, Failure> {
+    let fidelity = &arguments.fidelity;
+    let overridden = fidelity.harmonics.is_some() || fidelity.samples.is_some();
+    if fidelity.fidelity == Fidelity::Reduced && overridden {
+        return Err(Failure::usage(
+            "a row is solved again with its own harmonics and samples; accepted: --harmonics and --samples with --fidelity full"
+                .to_owned(),
+        ));
+    }
+    let stored = StoredStudy::open(&arguments.results, arguments.study.as_deref())?;
+    let request = ReplayRequest {
+        scenario: arguments.scenario,
+        pattern: arguments.pattern,
+        full: fidelity.full(&stored.study)?,
+    };
+    let replay = replay(&stored, &ReducedEngineSource, &request)?;
+    if arguments.json {
+        output::json_only(&as_json(&replay));
+    } else {
+        output::text(&as_text(&replay));
+    }
+    Ok(if replay.identical {
+        ExitStatus::Done
+    } else {
+        ExitStatus::VerificationFailed
+    })
+}
+
+fn as_json(replay: &Replay) -> Value {
+    let row = |row: &ResponseRow| {
+        json!({
+            "status": row.status.name(),
+            "peak_amplitude_m": row.peak_amplitude_m,
+            "peak_frequency_hz": row.peak_frequency_hz,
+            "peak_blade": row.peak_blade,
+            "amplification_factor": row.amplification_factor,
+            "harmonics": row.harmonics,
+            "newton_iterations": row.newton_iterations,
+        })
+    };
+    let mut value = json!({
+        "scenario": replay.scenario.index,
+        "pattern": replay.delivered.pattern,
+        "identical": replay.identical,
+        "delivered": row(&replay.delivered),
+        "replayed": row(&replay.replayed),
+    });
+    if let (Some((reference, tuned, harmonics)), Some(record)) = (&replay.full, replay.record()) {
+        value["full"] = json!({
+            "status": reference.status.name(),
+            "tuned_status": tuned.status.name(),
+            "harmonics": harmonics_name(harmonics),
+            "peak_amplitude_m": reference.amplitude_m,
+            "peak_frequency_hz": reference.frequency_hz,
+            "peak_blade": reference.blade,
+            "amplification_factor": record.reference_amplification_factor(),
+            "residual": reference.residual,
+            "amplitude_error": record.amplitude_error(),
+            "frequency_error": record.frequency_error(),
+            "amplification_factor_error": record.amplification_factor_error(),
+        });
+    }
+    value
+}
+
+fn as_text(replay: &Replay) -> String {
+    let mut text = format!(
+        "scenario {}, pattern {}: {}\n",
+        replay.scenario.index,
+        replay.delivered.pattern,
+        if replay.identical {
+            "bit-identical"
+        } else {
+            "NOT the same"
+        }
+    );
+    let mut line = |name: &str, status: &str, amplitude: Option<f64>, hz: Option<f64>, factor: Option<f64>| {
+        let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| value.to_string());
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "  {name}: {status}, {} m at {} Hz, amplification factor {}",
+            number(amplitude),
+            number(hz),
+            number(factor)
+        );
+    };
+    for (name, row) in [("delivered", &replay.delivered), ("replayed", &replay.replayed)] {
+        line(
+            name,
+            row.status.name(),
+            row.peak_amplitude_m,
+            row.peak_frequency_hz,
+            row.amplification_factor,
+        );
+    }
+    if let (Some((reference, _, harmonics)), Some(record)) = (&replay.full, replay.record()) {
+        line(
+            &format!("full-contact model, harmonics {}", harmonics_name(harmonics)),
+            reference.status.name(),
+            reference.amplitude_m,
+            reference.frequency_hz,
+            record.reference_amplification_factor(),
+        );
+        let percent = |error: Option<f64>| {
+            error.map_or("-".to_owned(), |error| format!("{:+.4} %", 100.0 * error))
+        };
+        let _ = writeln!(
+            text,
+            "  error of amplitude {}, frequency {}, amplification factor {}",
+            percent(record.amplitude_error()),
+            percent(record.frequency_error()),
+            percent(record.amplification_factor_error())
+        );
+    }
+    text
+}
