@@ -85,7 +85,10 @@ impl FidelityArguments {
             Some(samples) => samples as usize,
             None => ReferenceSettings::SAMPLES_PER_PERIOD.max(least),
         };
-        let harmonics = self.harmonics.as_ref().map(|HarmonicsArgument(set)| set.clone());
+        let harmonics = self
+            .harmonics
+            .as_ref()
+            .map(|HarmonicsArgument(set)| set.clone());
         if let Some(&highest) = harmonics.as_ref().and_then(|set| set.last()) {
             fits(highest, samples_per_period)?;
         }

@@ -98,18 +98,23 @@ fn as_text(replay: &Replay) -> String {
             "NOT the same"
         }
     );
-    let mut line = |name: &str, status: &str, amplitude: Option<f64>, hz: Option<f64>, factor: Option<f64>| {
-        let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| value.to_string());
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "  {name}: {status}, {} m at {} Hz, amplification factor {}",
-            number(amplitude),
-            number(hz),
-            number(factor)
-        );
-    };
-    for (name, row) in [("delivered", &replay.delivered), ("replayed", &replay.replayed)] {
+    let mut line =
+        |name: &str, status: &str, amplitude: Option<f64>, hz: Option<f64>, factor: Option<f64>| {
+            let number =
+                |value: Option<f64>| value.map_or("-".to_owned(), |value| value.to_string());
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                text,
+                "  {name}: {status}, {} m at {} Hz, amplification factor {}",
+                number(amplitude),
+                number(hz),
+                number(factor)
+            );
+        };
+    for (name, row) in [
+        ("delivered", &replay.delivered),
+        ("replayed", &replay.replayed),
+    ] {
         line(
             name,
             row.status.name(),
@@ -120,7 +125,10 @@ fn as_text(replay: &Replay) -> String {
     }
     if let (Some((reference, _, harmonics)), Some(record)) = (&replay.full, replay.record()) {
         line(
-            &format!("full-contact model, harmonics {}", harmonics_name(harmonics)),
+            &format!(
+                "full-contact model, harmonics {}",
+                harmonics_name(harmonics)
+            ),
             reference.status.name(),
             reference.amplitude_m,
             reference.frequency_hz,

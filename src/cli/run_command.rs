@@ -5,7 +5,8 @@ use std::ffi::OsString;
 use clap::Parser;
 
 use super::{
-    Arguments, Command, ExitStatus, check, init, model, output, replay, response, run, stats, verify,
+    Arguments, Command, ExitStatus, check, init, model, output, replay, response, run, stats,
+    verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).

@@ -9,7 +9,5 @@ mod warning;
 
 pub use model_report::{ModelReport, NodalDiameterFacts};
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
-pub use verification::{
-    ErrorDistribution, RegimeErrors, VerificationContext, VerificationReport,
-};
+pub use verification::{ErrorDistribution, RegimeErrors, VerificationContext, VerificationReport};
 pub use warning::Warning;

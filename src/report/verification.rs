@@ -150,7 +150,10 @@ impl VerificationReport {
             .map(|record| format!("{}/{}", record.scenario.index, record.delivered.pattern))
             .collect();
         let failed = |record: &&VerificationRecord| record.delivered.status != Status::Ok;
-        let unchecked_rows = records.iter().filter(|record| record.is_unchecked()).count();
+        let unchecked_rows = records
+            .iter()
+            .filter(|record| record.is_unchecked())
+            .count();
         Self {
             verified: context.changed_tables.is_empty()
                 && different_replays.is_empty()
@@ -199,7 +202,9 @@ impl fmt::Display for VerificationReport {
             self.failed_rows,
             self.unchecked_rows
         )?;
-        let mut table = TextTable::new(&["error of", "contact", "n", "median", "P95", "max", "accepted"]);
+        let mut table = TextTable::new(&[
+            "error of", "contact", "n", "median", "P95", "max", "accepted",
+        ]);
         for (contact, errors) in [("closed", &self.closed), ("separating", &self.separating)] {
             let accepted = percent(Some(errors.accepted_amplitude_error));
             for (name, distribution, accepted) in [
@@ -221,7 +226,15 @@ impl fmt::Display for VerificationReport {
             }
         }
         write!(f, "\n{table}\n")?;
-        writeln!(f, "{}", if self.verified { "verified" } else { "NOT verified" })
+        writeln!(
+            f,
+            "{}",
+            if self.verified {
+                "verified"
+            } else {
+                "NOT verified"
+            }
+        )
     }
 }
 
@@ -236,7 +249,10 @@ mod tests {
     #[test]
     fn a_distribution_is_of_sizes_and_by_rank() {
         let of = ErrorDistribution::of([0.1, -0.4, 0.2, -0.3]);
-        assert_eq!((of.n, of.median, of.p95, of.max), (4, Some(0.2), Some(0.4), Some(0.4)));
+        assert_eq!(
+            (of.n, of.median, of.p95, of.max),
+            (4, Some(0.2), Some(0.4), Some(0.4))
+        );
         let none = ErrorDistribution::of([]);
         assert_eq!((none.n, none.median, none.max), (0, None, None));
     }

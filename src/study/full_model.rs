@@ -120,7 +120,9 @@ impl FullModel {
     /// Peak of one row, or of the tuned wheel.
     #[must_use]
     pub fn peak(&self, row: FullRow<'_>) -> ReferencePeak {
-        let plan = self.scout.search_plan(row.scenario, row.pattern, row.tuned_hz);
+        let plan = self
+            .scout
+            .search_plan(row.scenario, row.pattern, row.tuned_hz);
         let solver = self.solver(row.scenario, row.pattern, row.settings);
         match (plan, solver) {
             (Ok(plan), Ok(mut solver)) => {

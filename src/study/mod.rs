@@ -25,8 +25,8 @@ mod verify;
 
 pub use digest::{StudyDigest, digest_file};
 pub use engine::{Engine, EngineSource};
-pub use full_model::{FullModel, FullRow, FullSettings};
 pub use error::{Finding, Problem, StudyError};
+pub use full_model::{FullModel, FullRow, FullSettings};
 pub use mistuning::{Mistuning, MistuningSource};
 pub use pipeline::{Progress, RunOutcome, RunRequest, Stage, run, summarise};
 pub use pipeline_error::PipelineError;

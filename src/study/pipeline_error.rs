@@ -87,7 +87,9 @@ pub enum PipelineError {
         accepted: String,
     },
     /// A results folder has no such row.
-    #[error("there is no row of scenario {scenario} and pattern {pattern}; accepted: a scenario below {scenarios}, and a pattern of the study")]
+    #[error(
+        "there is no row of scenario {scenario} and pattern {pattern}; accepted: a scenario below {scenarios}, and a pattern of the study"
+    )]
     NoRow {
         /// Scenario asked for.
         scenario: usize,

@@ -70,10 +70,14 @@ pub fn replay(
         .row(request.scenario, request.pattern)?
         .ok_or_else(no_row)?;
     let model = stored.model()?;
-    let pattern = model.pattern(request.pattern, &scenario).ok_or_else(no_row)?;
+    let pattern = model
+        .pattern(request.pattern, &scenario)
+        .ok_or_else(no_row)?;
     let engine = stored.engine(&model, source)?;
     let tuned_again = engine.tuned(&scenario);
-    let replayed = engine.rows(&pattern, &[(&scenario, &tuned_again)]).remove(0);
+    let replayed = engine
+        .rows(&pattern, &[(&scenario, &tuned_again)])
+        .remove(0);
     let full = match &request.full {
         None => None,
         Some(settings) => Some(full_peaks(

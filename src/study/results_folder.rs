@@ -140,7 +140,9 @@ pub(super) fn changed_tables(
         match digest_file(&path) {
             Ok(found) if found == *expected => {}
             Ok(_) => changed.push(name.clone()),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => changed.push(name.clone()),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                changed.push(name.clone())
+            }
             Err(source) => {
                 return Err(TableError::Io {
                     action: "read",

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use rand::{RngExt, SeedableRng};
 use chacha20::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
 use super::replay::{harmonics_of, same_bits};
@@ -217,7 +217,9 @@ fn verify_row(
         scenario: scenario.index,
         ..tuned.again.clone()
     };
-    let again = engine.rows(&pattern, &[(&scenario, &tuned_again)]).remove(0);
+    let again = engine
+        .rows(&pattern, &[(&scenario, &tuned_again)])
+        .remove(0);
     let reference = full.peak(FullRow {
         scenario: &scenario,
         pattern: Some(&pattern),
@@ -273,6 +275,9 @@ mod tests {
             }
         }
         // 600 expected of each, standard deviation 20.5.
-        assert!(counts.iter().all(|&count| count.abs_diff(600) < 100), "{counts:?}");
+        assert!(
+            counts.iter().all(|&count| count.abs_diff(600) < 100),
+            "{counts:?}"
+        );
     }
 }

@@ -52,6 +52,22 @@ impl Wheel {
     }
 
     pub fn study(self, conditions: &str, reduction: &str, harmonics: &[u32]) -> Study {
+        let solver = "samples_per_period = 512\npeak_tolerance = 1e-4";
+        self.study_with(conditions, reduction, harmonics, solver)
+    }
+
+    /// The wheel with all settings at their defaults but the harmonics.
+    pub fn default_study(self, conditions: &str, harmonics: &[u32]) -> Study {
+        self.study_with(conditions, "", harmonics, "")
+    }
+
+    fn study_with(
+        self,
+        conditions: &str,
+        reduction: &str,
+        harmonics: &[u32],
+        solver: &str,
+    ) -> Study {
         let (name, kt) = (self.name, self.tangential_stiffness);
         let kn = 2.0 * kt;
         let text = format!(
@@ -77,8 +93,7 @@ normal_stiffness_n_per_m = {kn:e}
 
 [solver]
 harmonics = {harmonics:?}
-samples_per_period = 512
-peak_tolerance = 1e-4
+{solver}
 "#
         );
         Study::parse(&package("studies/reference.toml"), &text).unwrap()

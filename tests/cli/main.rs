@@ -5,3 +5,4 @@ mod bad_study_table;
 mod blisk;
 mod commands;
 mod runs;
+mod verification;

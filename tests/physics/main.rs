@@ -9,5 +9,6 @@ mod limits;
 mod mistuning;
 mod peaks;
 mod reduction;
+mod reference;
 mod sector_sources;
 mod wheels;

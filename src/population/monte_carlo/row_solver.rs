@@ -260,7 +260,8 @@ impl RowSolver {
                 (excited, window)
             }
             Some(pattern) => {
-                let (modes, wheel) = self.mistuned(pattern, LimitsWanted::of(&[scenario.contact]))?;
+                let (modes, wheel) =
+                    self.mistuned(pattern, LimitsWanted::of(&[scenario.contact]))?;
                 let window = self.window(pattern, scenario, tuned_hz)?;
                 let excited =
                     self.wheel_excited(&modes, &wheel, scenario.engine_order, scenario.contact);

@@ -240,7 +240,12 @@ pub fn write_verification(
 ) -> Result<(), TableError> {
     type Record = VerificationRecord;
     let ids = |value: &dyn Fn(&Record) -> Option<u32>| {
-        Values::Int32(records.iter().map(|r| value(r).map(|id| id as i32)).collect())
+        Values::Int32(
+            records
+                .iter()
+                .map(|r| value(r).map(|id| id as i32))
+                .collect(),
+        )
     };
     let floats = |value: &dyn Fn(&Record) -> Option<f64>| {
         Values::Float64(records.iter().map(value).collect())

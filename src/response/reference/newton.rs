@@ -82,7 +82,12 @@ impl CondensedSystem<'_> {
     }
 
     /// `r(d) = d - d_0 + Y g`.
-    fn displacement_residual(&self, displacement: &[f64], stuck: &[f64], force: &[f64]) -> Vec<f64> {
+    fn displacement_residual(
+        &self,
+        displacement: &[f64],
+        stuck: &[f64],
+        force: &[f64],
+    ) -> Vec<f64> {
         let mut residual = self.compliance_times(force);
         for ((r, d), d_0) in residual.iter_mut().zip(displacement).zip(stuck) {
             *r += d - d_0;
@@ -99,7 +104,11 @@ impl CondensedSystem<'_> {
         force: &[f64],
         residual: &[f64],
     ) -> f64 {
-        let own: Vec<f64> = displacement.iter().zip(residual).map(|(d, r)| d - r).collect();
+        let own: Vec<f64> = displacement
+            .iter()
+            .zip(residual)
+            .map(|(d, r)| d - r)
+            .collect();
         let mut change = vec![0.0; force.len()];
         contact.evaluate(&own, &mut change, None);
         for (change, force) in change.iter_mut().zip(force) {
@@ -178,8 +187,13 @@ impl CondensedSystem<'_> {
                 let trial_residual = self.displacement_residual(&trial, &stuck, &trial_force);
                 let own = self.force_residual(contact, &trial, &trial_force, &trial_residual);
                 let contraction = norm(&factored.solve(self, &trial_residual)) / length;
-                (own <= tolerance || contraction <= 1.0 - 0.25 * factor)
-                    .then_some((trial, trial_residual, shares, own, contraction))
+                (own <= tolerance || contraction <= 1.0 - 0.25 * factor).then_some((
+                    trial,
+                    trial_residual,
+                    shares,
+                    own,
+                    contraction,
+                ))
             });
             match accepted {
                 Some((displacement, next_residual, shares, own, contraction)) => {
@@ -219,9 +233,9 @@ impl CondensedJacobian {
         let mut factors = LuWorkspace::new(active.len());
         let compliance = system.real_compliance();
         let columns = factors.matrix_mut().chunks_exact_mut(active.len().max(1));
-        let of_pairs = derivatives.iter().flat_map(|pair| {
-            (0..pair.places.len()).map(move |column| (pair, column))
-        });
+        let of_pairs = derivatives
+            .iter()
+            .flat_map(|pair| (0..pair.places.len()).map(move |column| (pair, column)));
         let mut moved = vec![0.0; system.unknowns()];
         for ((pair, column), target) in of_pairs.zip(columns) {
             moved.fill(0.0);
@@ -321,7 +335,11 @@ pub(super) fn parts(harmonic: u32) -> usize {
 pub(super) fn load(values: &[f64], harmonic: u32, rows: usize) -> Vec<Complex64> {
     (0..rows)
         .map(|row| {
-            let imaginary = if harmonic == 0 { 0.0 } else { values[rows + row] };
+            let imaginary = if harmonic == 0 {
+                0.0
+            } else {
+                values[rows + row]
+            };
             Complex64::new(values[row], imaginary)
         })
         .collect()

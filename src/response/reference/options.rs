@@ -41,6 +41,10 @@ impl ReferenceSettings {
     /// The harmonic set, ascending.
     #[must_use]
     pub fn harmonics(&self) -> Vec<u32> {
-        self.transform.harmonics().iter().map(|&k| k as u32).collect()
+        self.transform
+            .harmonics()
+            .iter()
+            .map(|&k| k as u32)
+            .collect()
     }
 }

@@ -64,10 +64,16 @@ pub fn reference_peak(
         evaluations: EVALUATIONS,
         extensions: plan.extensions,
     };
-    let result = find_peak(plan.band_hz, &starts, plan.envelope, settings, |frequency| {
-        let point = solver.solve(frequency).ok();
-        point.map(|point| point.amplitudes_m.clone())
-    });
+    let result = find_peak(
+        plan.band_hz,
+        &starts,
+        plan.envelope,
+        settings,
+        |frequency| {
+            let point = solver.solve(frequency).ok();
+            point.map(|point| point.amplitudes_m.clone())
+        },
+    );
     let status = match result.end {
         SearchEnd::Found if result.bracketed => Status::Ok,
         SearchEnd::Found | SearchEnd::Open => Status::NotBracketed,
@@ -77,12 +83,15 @@ pub fn reference_peak(
             last.map_or(Status::SweepIncomplete, |&(_, status)| status)
         }
     };
-    let found = result.best.filter(|_| status == Status::Ok).and_then(|best| {
-        let sample = &result.samples[best];
-        let same = |f: f64| f.total_cmp(&sample.frequency_hz).is_eq();
-        let mut points = solver.points().iter();
-        Some((sample, points.find(|point| same(point.frequency_hz))?))
-    });
+    let found = result
+        .best
+        .filter(|_| status == Status::Ok)
+        .and_then(|best| {
+            let sample = &result.samples[best];
+            let same = |f: f64| f.total_cmp(&sample.frequency_hz).is_eq();
+            let mut points = solver.points().iter();
+            Some((sample, points.find(|point| same(point.frequency_hz))?))
+        });
     ReferencePeak {
         status,
         amplitude_m: found.map(|(sample, _)| sample.largest),

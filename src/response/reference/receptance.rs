@@ -39,10 +39,7 @@ pub(super) struct FactoredStiffness<'a> {
 
 impl SprungStructure {
     /// `springs` are those of the rows of one sector, N/m, repeated over the sectors; none = free.
-    pub(super) fn new(
-        structure: std::sync::Arc<FullStructure>,
-        springs: Option<&[f64]>,
-    ) -> Self {
+    pub(super) fn new(structure: std::sync::Arc<FullStructure>, springs: Option<&[f64]>) -> Self {
         let contact = &structure.contact;
         let mut sprung = structure.stiffness.clone();
         if let Some(springs) = springs.filter(|springs| !springs.is_empty()) {
@@ -81,10 +78,9 @@ impl SprungStructure {
         for (i, viscous) in structure.viscous.iter().enumerate() {
             matrix[i * n + i] += Complex64::new(-k_omega * k_omega, k_omega * viscous);
         }
-        factors.factor().then_some(FactoredStiffness {
-            structure,
-            factors,
-        })
+        factors
+            .factor()
+            .then_some(FactoredStiffness { structure, factors })
     }
 }
 

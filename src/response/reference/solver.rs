@@ -76,9 +76,13 @@ impl ReferenceSolver {
             Arc::new(SprungStructure::new(Arc::new(structure), springs))
         };
         let nonlinear = match (condition, settings.contact) {
-            (ContactCondition::Full { normal_load_n }, Some((law, sector))) => {
-                Some((law, PairParameters { normal_load_n, ..sector }))
-            }
+            (ContactCondition::Full { normal_load_n }, Some((law, sector))) => Some((
+                law,
+                PairParameters {
+                    normal_load_n,
+                    ..sector
+                },
+            )),
             _ => None,
         };
         let harmonics = match nonlinear {
@@ -211,7 +215,12 @@ impl ReferenceSolver {
                 })
             })
             .collect();
-        let force_norm = self.force.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+        let force_norm = self
+            .force
+            .iter()
+            .map(Complex64::norm_sqr)
+            .sum::<f64>()
+            .sqrt();
         let system = CondensedSystem {
             harmonics: harmonics.ok_or(Status::SingularJacobian)?,
             force_norm,

@@ -322,10 +322,7 @@ impl<'a> Waves<'a> {
 }
 
 /// Row i of a matrix times `factor(i)`.
-fn scaled(
-    mut matrix: Matrix<Complex64>,
-    factor: impl Fn(usize) -> Complex64,
-) -> Matrix<Complex64> {
+fn scaled(mut matrix: Matrix<Complex64>, factor: impl Fn(usize) -> Complex64) -> Matrix<Complex64> {
     let rows = matrix.rows().max(1);
     for (at, entry) in matrix.as_mut_slice().iter_mut().enumerate() {
         *entry *= factor(at % rows);

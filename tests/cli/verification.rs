@@ -1,0 +1,369 @@
+//! `replay`, `verify` and `--fidelity full` on a wheel of six masses.
+
+use blisk::population::monte_carlo::ResponseRow;
+use blisk::population::table::{
+    Compression, Manifest, ResponseReader, ResponseWriter, ScenarioEntry, TableHeader,
+};
+use blisk::study::digest_file;
+use serde_json::Value;
+
+use crate::blisk::{Ended, GOOD, Place};
+
+const RESULTS: &str = "results/small";
+
+/// The study, solved.
+fn solved() -> Place {
+    let place = Place::with(GOOD);
+    let run = place.run(&["run", "study.toml"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    place
+}
+
+fn json(ended: &Ended) -> Value {
+    serde_json::from_str(&ended.stdout).unwrap_or_else(|_| panic!("{}", ended.stderr))
+}
+
+/// Writes `responses.parquet` again with its rows changed.
+fn tamper(place: &Place, change: impl Fn(&mut ResponseRow)) {
+    let results = place.path(RESULTS);
+    let manifest = Manifest::read(&results).expect("readable").expect("there");
+    let path = results.join("responses.parquet");
+    let mut rows = ResponseReader::open(&path)
+        .and_then(|mut reader| reader.next_batch())
+        .expect("rows");
+    rows.iter_mut().for_each(change);
+    let scenarios: Vec<_> = manifest.scenarios.iter().map(ScenarioEntry::keys).collect();
+    let header = TableHeader {
+        study_digest: manifest.study_digest,
+        compression: Compression::Zstd,
+    };
+    let mut writer = ResponseWriter::create(&path, &scenarios, &header).expect("writable");
+    writer.write(rows).expect("written");
+    writer.finish().expect("finished");
+}
+
+/// Gives the manifest the digest of the table as it is.
+fn forge_digest(place: &Place) {
+    let results = place.path(RESULTS);
+    let mut manifest = Manifest::read(&results).expect("readable").expect("there");
+    let digest = digest_file(&results.join("responses.parquet")).expect("readable");
+    manifest
+        .tables
+        .insert("responses.parquet".to_owned(), digest);
+    manifest.write(&results).expect("writable");
+}
+
+/// One unit in the last place more.
+fn nudge(row: &mut ResponseRow) {
+    if (row.scenario, row.pattern) == (1, 4) {
+        row.peak_amplitude_m = row.peak_amplitude_m.map(f64::next_up);
+    }
+}
+
+#[test]
+fn every_delivered_row_is_replayed_bit_for_bit() {
+    let place = solved();
+    for (scenario, pattern) in [("0", "0"), ("1", "3"), ("1", "9"), ("2", "5")] {
+        let replay = place.run(&[
+            "replay",
+            RESULTS,
+            "--scenario",
+            scenario,
+            "--pattern",
+            pattern,
+            "--json",
+        ]);
+        assert_eq!(replay.code, 0, "{}", replay.stderr);
+        let value = json(&replay);
+        assert_eq!(value["identical"], true);
+        assert_eq!(value["delivered"], value["replayed"]);
+        assert!(value.get("full").is_none());
+    }
+    let text = place.run(&["replay", RESULTS, "--scenario", "1", "--pattern", "3"]);
+    assert!(text.stdout.contains("bit-identical"), "{}", text.stdout);
+}
+
+#[test]
+fn a_row_is_compared_with_the_full_model() {
+    let place = solved();
+    let row = [
+        "replay",
+        RESULTS,
+        "--scenario",
+        "1",
+        "--pattern",
+        "3",
+        "--json",
+    ];
+    let full = |more: &[&str]| {
+        let ended = place.run(&[&row[..], &["--fidelity", "full"], more].concat());
+        assert_eq!(ended.code, 0, "{}", ended.stderr);
+        json(&ended)["full"].clone()
+    };
+    let same = full(&[]);
+    assert_eq!(
+        (&same["status"], &same["harmonics"]),
+        (&"ok".into(), &"1-3".into())
+    );
+    // A lumped wheel is not reduced: samples and the tolerance of the peak search remain.
+    for error in ["amplitude_error", "amplification_factor_error"] {
+        assert!(
+            same[error].as_f64().expect("a number").abs() < 2e-3,
+            "{same}"
+        );
+    }
+    let one = full(&["--harmonics", "1", "--samples", "128"]);
+    assert_eq!(one["harmonics"], "1");
+    assert_ne!(one["peak_amplitude_m"], same["peak_amplitude_m"]);
+    let refused = place.run(&[&row[..], &["--harmonics", "1"]].concat());
+    assert_eq!(refused.code, 2);
+    assert!(
+        refused.stderr.contains("--fidelity full"),
+        "{}",
+        refused.stderr
+    );
+}
+
+#[test]
+fn a_row_or_folder_that_is_not_there_is_named() {
+    let place = solved();
+    let absent = place.run(&["replay", RESULTS, "--scenario", "3", "--pattern", "0"]);
+    assert_eq!(absent.code, 2);
+    assert!(
+        absent.stderr.contains("a scenario below 3"),
+        "{}",
+        absent.stderr
+    );
+    let absent = place.run(&["replay", RESULTS, "--scenario", "0", "--pattern", "10"]);
+    assert_eq!(absent.code, 2);
+    assert_eq!(place.run(&["verify", "nowhere.toml"]).code, 7);
+    std::fs::create_dir(place.path("empty")).expect("a folder");
+    let empty = place.run(&["verify", "empty"]);
+    assert_eq!(empty.code, 7);
+    assert!(empty.stderr.contains("manifest.json"), "{}", empty.stderr);
+}
+
+#[test]
+fn verify_compares_a_sample_with_the_full_model_and_is_reproducible() {
+    let place = solved();
+    let table = || std::fs::read(place.path(RESULTS).join("verification.parquet")).expect("table");
+    let first = place.run(&[
+        "verify",
+        RESULTS,
+        "--sample",
+        "6",
+        "--seed",
+        "3",
+        "--threads",
+        "1",
+        "--json",
+    ]);
+    assert_eq!(first.code, 0, "{}", first.stderr);
+    let value = json(&first);
+    assert_eq!((&value["seed"], &value["sampled"]), (&3.into(), &6.into()));
+    assert_eq!(
+        (&value["rows"], &value["verified"]),
+        (&30.into(), &true.into())
+    );
+    assert_eq!(value["closed"]["amplitude"]["n"], 6);
+    let largest = value["closed"]["amplitude"]["max"]
+        .as_f64()
+        .expect("a number");
+    assert!(largest > 0.0 && largest < 2e-3, "{largest}");
+    let bytes = table();
+    let again = place.run(&[
+        "verify",
+        "study.toml",
+        "--sample",
+        "6",
+        "--seed",
+        "3",
+        "--threads",
+        "2",
+        "--json",
+    ]);
+    assert_eq!((again.code, &again.stdout), (0, &first.stdout));
+    assert!(table() == bytes);
+    let other = place.run(&["verify", RESULTS, "--sample", "6", "--seed", "4"]);
+    assert_eq!(other.code, 0);
+    assert!(
+        other.stdout.contains("6 of 6 bit-identical"),
+        "{}",
+        other.stdout
+    );
+    assert!(table() != bytes);
+    // The verification is no part of the results: a run finds them as they were.
+    assert!(
+        place
+            .run(&["run", "study.toml"])
+            .stderr
+            .contains("nothing to solve")
+    );
+}
+
+#[test]
+fn a_tampered_table_fails_the_verification() {
+    let place = solved();
+    tamper(&place, nudge);
+    let changed = place.run(&["verify", RESULTS, "--sample", "1", "--seed", "1"]);
+    assert_eq!(changed.code, 11, "{}", changed.stderr);
+    assert!(
+        changed
+            .stdout
+            .contains("responses.parquet is not what the run wrote")
+            && changed.stdout.contains("NOT verified"),
+        "{}",
+        changed.stdout
+    );
+    forge_digest(&place);
+    let forged = place.run(&["verify", RESULTS, "--sample", "30", "--json"]);
+    assert_eq!(forged.code, 11, "{}", forged.stderr);
+    let value = json(&forged);
+    assert!(
+        value["changed_tables"]
+            .as_array()
+            .expect("a list")
+            .is_empty()
+    );
+    assert_eq!(value["different_replays"], serde_json::json!(["1/4"]));
+    let row = ["replay", RESULTS, "--scenario", "1", "--pattern"];
+    let replay = |pattern: &str| place.run(&[&row[..], &[pattern]].concat());
+    assert_eq!((replay("4").code, replay("5").code), (11, 0));
+    assert!(replay("4").stdout.contains("NOT the same"));
+}
+
+#[test]
+fn a_wrong_amplitude_is_seen_by_the_full_model_as_well() {
+    let place = solved();
+    tamper(&place, |row| {
+        row.peak_amplitude_m = row.peak_amplitude_m.map(|amplitude| 1.004 * amplitude);
+    });
+    forge_digest(&place);
+    let verify = place.run(&["verify", RESULTS, "--sample", "3", "--json"]);
+    assert_eq!(verify.code, 11);
+    assert_eq!(json(&verify)["closed"]["beyond"], 3);
+}
+
+#[test]
+fn an_input_that_changed_since_is_refused() {
+    let mut patterns = String::from("pattern,blade,deviation\n");
+    for blade in 0..6 {
+        patterns += &format!("7,{blade},{}\n", 0.01 * f64::from(blade) - 0.02);
+    }
+    let study = GOOD
+        .replace(
+            "distribution = { kind = \"normal\" }",
+            "file = \"patterns.csv\"",
+        )
+        .replace("patterns = 10\n", "")
+        .replace("standard_deviation = [0.03]\n", "");
+    let place = Place::with(&study);
+    place.write("patterns.csv", &patterns);
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+    let replay = || place.run(&["replay", RESULTS, "--scenario", "1", "--pattern", "7"]);
+    assert_eq!(replay().code, 0, "{}", replay().stderr);
+    // Inputs are found beside the study file of the run, or of the one given.
+    std::fs::create_dir(place.path("moved")).expect("a folder");
+    for file in ["study.toml", "patterns.csv"] {
+        std::fs::rename(place.path(file), place.path("moved").join(file)).expect("moved");
+    }
+    assert_eq!(replay().code, 7, "{}", replay().stderr);
+    let moved = [
+        "replay",
+        RESULTS,
+        "--scenario",
+        "1",
+        "--pattern",
+        "7",
+        "--study",
+        "moved/study.toml",
+    ];
+    assert_eq!(place.run(&moved).code, 0, "{}", place.run(&moved).stderr);
+    place.write("moved/patterns.csv", &patterns.replace("0.03", "0.031"));
+    let changed = place.run(&moved);
+    assert_eq!(changed.code, 9, "{}", changed.stderr);
+    assert!(
+        changed.stderr.contains("input mistuning.file"),
+        "{}",
+        changed.stderr
+    );
+    let verify = place.run(&["verify", RESULTS, "--study", "moved/study.toml"]);
+    assert_eq!(verify.code, 9, "{}", verify.stderr);
+}
+
+#[test]
+fn verify_of_another_study_exits_with_9() {
+    let place = solved();
+    place.write("study.toml", &GOOD.replace("= 0.3\n", "= 0.4\n"));
+    let other = place.run(&["verify", "study.toml"]);
+    assert_eq!(other.code, 9);
+    assert!(
+        other.stderr.contains("contact.friction_coefficient"),
+        "{}",
+        other.stderr
+    );
+}
+
+#[test]
+fn response_on_the_full_model_agrees_where_nothing_is_reduced() {
+    let place = Place::with(GOOD);
+    let curve = |more: &[&str]| -> Vec<f64> {
+        let arguments = [
+            "response",
+            "study.toml",
+            "--load",
+            "50",
+            "--frequencies",
+            "340:370:7",
+        ];
+        let ended = place.run(&[&arguments[..], &["--out", "c.csv"], more].concat());
+        assert_eq!(ended.code, 0, "{}", ended.stderr);
+        let text = std::fs::read_to_string(place.path("c.csv")).expect("read");
+        let amplitude = |line: &str| {
+            line.split(',')
+                .nth(2)
+                .expect("a column")
+                .parse()
+                .expect("a number")
+        };
+        text.lines().skip(1).map(amplitude).collect()
+    };
+    for pattern in ["tuned", "3"] {
+        let own = ["--pattern", pattern];
+        let reduced = curve(&own);
+        let full = curve(&[&own[..], &["--fidelity", "full", "--samples", "128"]].concat());
+        let largest = reduced.iter().copied().fold(0.0, f64::max);
+        assert_eq!(full.len(), 42);
+        for (reduced, full) in reduced.iter().zip(&full) {
+            assert!((reduced - full).abs() < 1e-6 * largest, "{reduced} {full}");
+        }
+        let finer = curve(&[&own[..], &["--harmonics", "1,3,5", "--samples", "256"]].concat());
+        assert_ne!(finer, reduced);
+    }
+    let refused = |more: &[&str]| {
+        let arguments = [
+            "response",
+            "study.toml",
+            "--load",
+            "50",
+            "--frequencies",
+            "340:370:7",
+        ];
+        place.run(
+            &[
+                &arguments[..],
+                &["--pattern", "tuned", "--out", "c.csv"],
+                more,
+            ]
+            .concat(),
+        )
+    };
+    for more in [
+        &["--harmonics", "3,5"][..],
+        &["--harmonics", "3,1"],
+        &["--harmonics", "1,31", "--samples", "64"],
+        &["--fidelity", "half"],
+    ] {
+        assert_eq!(refused(more).code, 2, "{more:?}");
+    }
+}

@@ -1,0 +1,249 @@
+//! The full-contact model against the fast path on the very same space: two codes, one equation.
+
+use std::sync::Arc;
+
+use blisk::model::ReducedModel;
+use blisk::model::reduction::{BasisChoice, Reduction};
+use blisk::population::monte_carlo::{RowSettings, RowSolver};
+use blisk::response::forced_response::{AmplitudeMeasure, ContactCondition, SolverOptions};
+use blisk::response::friction::ContactLaw;
+use blisk::response::harmonic_balance::{Damping, HarmonicTransform, Status};
+use blisk::response::mistuning::{Deviations, Pattern, Projection};
+use blisk::response::reference::{ReferenceSettings, ReferenceSolver};
+
+use super::contact::random::Random;
+use super::wheels::{ENGINE_ORDER, Wheel, full, pattern, springs, wheel8_contact, wheel8_sector};
+
+/// Bound on the relative difference of two solutions of the same equation.
+const SAME: f64 = 1e-7;
+
+/// A wheel and how it is solved.
+struct Case {
+    model: Arc<ReducedModel>,
+    settings: RowSettings,
+}
+
+impl Case {
+    /// Solid elements, every contact dof and six fixed-interface modes per nodal diameter.
+    fn wheel8(damping: Damping, harmonics: &[u32], projection: Projection) -> Self {
+        let law = ContactLaw::Simplified3d;
+        let sector = wheel8_sector();
+        let reduction = Reduction::new(&sector, springs(law, wheel8_contact()), 6, 0).unwrap();
+        let cantilever = (projection == Projection::CantileverModes).then_some(3);
+        let model = reduction
+            .reduce(BasisChoice::CraigBampton, cantilever)
+            .unwrap();
+        Self {
+            model: Arc::new(model),
+            settings: RowSettings {
+                harmonics: harmonics.to_vec(),
+                contact: Some((law, wheel8_contact())),
+                damping,
+                amplitude_n: 1.0,
+                projection,
+                solver: options(AmplitudeMeasure::Fundamental),
+            },
+        }
+    }
+
+    fn lumped24(harmonics: &[u32], amplitude: AmplitudeMeasure) -> Self {
+        let wheel = Wheel {
+            amplitude_n: 10.0,
+            ..Wheel::lumped24()
+        };
+        Self {
+            settings: wheel.settings(harmonics, options(amplitude)),
+            model: wheel.model,
+        }
+    }
+
+    fn reference(&self) -> ReferenceSettings {
+        let solver = &self.settings.solver;
+        let set: Vec<usize> = self
+            .settings
+            .harmonics
+            .iter()
+            .map(|&k| k as usize)
+            .collect();
+        let transform = HarmonicTransform::new(&set, solver.samples_per_period).unwrap();
+        ReferenceSettings {
+            transform: Arc::new(transform),
+            residual_tolerance: 1e-11,
+            peak_tolerance: ReferenceSettings::PEAK_TOLERANCE,
+            contact: self.settings.contact,
+            damping: self.settings.damping,
+            amplitude_n: self.settings.amplitude_n,
+            amplitude: solver.amplitude,
+            time_samples: solver.time_samples,
+            projection: self.settings.projection,
+        }
+    }
+
+    /// Largest difference of any blade relative to the largest blade; slipping and separated shares of
+    /// the last frequency.
+    fn difference(
+        &self,
+        contact: ContactCondition,
+        pattern: Option<&Pattern>,
+        frequencies_hz: &[f64],
+    ) -> (f64, f64, f64) {
+        let fast = RowSolver::new(Arc::clone(&self.model), self.settings.clone()).unwrap();
+        let fast = fast
+            .curve(ENGINE_ORDER, contact, pattern, frequencies_hz)
+            .unwrap();
+        let mut reference = ReferenceSolver::new(
+            &self.model,
+            &self.reference(),
+            ENGINE_ORDER,
+            contact,
+            pattern,
+        )
+        .unwrap();
+        let mut worst = (0.0_f64, 0.0, 0.0);
+        for (frequency_hz, fast) in fast {
+            let fast = fast.unwrap();
+            let point = reference.solve(frequency_hz).unwrap();
+            let own: Vec<f64> = match point.amplitudes_m.as_slice() {
+                [one] => vec![*one; fast.len()],
+                all => all.to_vec(),
+            };
+            let largest = fast.iter().copied().fold(0.0, f64::max);
+            assert_eq!(own.len(), fast.len());
+            for (own, fast) in own.iter().zip(&fast) {
+                worst.0 = worst.0.max((own - fast).abs() / largest);
+            }
+            (worst.1, worst.2) = (point.shares.slipping, point.shares.separated);
+        }
+        worst
+    }
+
+    fn assert_same(
+        &self,
+        contact: ContactCondition,
+        pattern: &Pattern,
+        frequencies_hz: &[f64],
+    ) -> (f64, f64) {
+        let (tuned, ..) = self.difference(contact, None, frequencies_hz);
+        let (wheel, slipping, separated) = self.difference(contact, Some(pattern), frequencies_hz);
+        println!(
+            "{contact:?} {:?}: tuned {tuned:.1e}, mistuned {wheel:.1e}, slipping {slipping:.2}, separated {separated:.2}",
+            self.settings.harmonics
+        );
+        assert!(
+            tuned < SAME && wheel < SAME,
+            "{contact:?}: {tuned:e} {wheel:e}"
+        );
+        (slipping, separated)
+    }
+}
+
+fn options(amplitude: AmplitudeMeasure) -> SolverOptions {
+    SolverOptions {
+        residual_tolerance: 1e-11,
+        amplitude,
+        ..SolverOptions::default()
+    }
+}
+
+fn deviations(sectors: usize) -> Vec<f64> {
+    Random(91).vector(sectors, 0.05)
+}
+
+#[test]
+fn two_codes_agree_on_slipping_wheels_under_every_damping() {
+    let frequencies = [611.0, 614.0, 617.0];
+    for damping in [
+        Damping::StructuralLossFactor(0.002),
+        Damping::ModalRatio(1e-3),
+    ] {
+        let case = Case::wheel8(damping, &[1, 3], Projection::Exact);
+        let (slipping, _) = case.assert_same(full(300.0), &pattern(&deviations(8)), &frequencies);
+        assert!(slipping > 0.2, "{slipping}");
+    }
+    let lumped = Case::lumped24(&[1, 3], AmplitudeMeasure::Fundamental);
+    let (slipping, _) = lumped.assert_same(
+        full(50.0),
+        &pattern(&deviations(24)),
+        &[345.0, 350.0, 355.0],
+    );
+    assert!(slipping > 0.2, "{slipping}");
+}
+
+#[test]
+fn two_codes_agree_where_contacts_separate() {
+    let case = Case::wheel8(
+        Damping::StructuralLossFactor(0.002),
+        &[0, 1, 2],
+        Projection::Exact,
+    );
+    let (_, separated) = case.assert_same(full(120.0), &pattern(&deviations(8)), &[610.5, 612.5]);
+    assert!(separated > 0.1, "{separated}");
+}
+
+#[test]
+fn two_codes_agree_on_cantilever_modes_linear_limits_and_time_maxima() {
+    let case = Case::wheel8(
+        Damping::StructuralLossFactor(0.002),
+        &[1],
+        Projection::CantileverModes,
+    );
+    let per_mode = Pattern {
+        id: 0,
+        deviations: Deviations::PerMode {
+            modes: vec![0, 1, 2],
+            values: Random(17).vector(24, 0.05),
+        },
+    };
+    for pattern in [pattern(&deviations(8)), per_mode] {
+        for contact in [
+            ContactCondition::Stuck,
+            ContactCondition::Slide,
+            ContactCondition::Free,
+            full(400.0),
+        ] {
+            case.assert_same(contact, &pattern, &[612.0, 616.0]);
+        }
+    }
+    let lumped = Case::lumped24(&[1, 3, 5], AmplitudeMeasure::TimeMaximum);
+    lumped.assert_same(full(50.0), &pattern(&deviations(24)), &[350.0, 353.0]);
+}
+
+#[test]
+fn newton_on_the_contact_rows_converges_as_newton_does() {
+    let case = Case::wheel8(
+        Damping::StructuralLossFactor(0.002),
+        &[1, 3],
+        Projection::Exact,
+    );
+    let pattern = pattern(&deviations(8));
+    let mut solver = ReferenceSolver::new(
+        &case.model,
+        &case.reference(),
+        ENGINE_ORDER,
+        full(300.0),
+        Some(&pattern),
+    )
+    .unwrap();
+    let residual = solver.solve(613.0).unwrap().residual;
+    let from_stuck = solver.work().newton_iterations;
+    solver.solve(613.01).unwrap();
+    let from_beside = solver.work().newton_iterations - from_stuck;
+    println!("{from_stuck} from stuck, {from_beside} from beside, residual {residual:e}");
+    // A wrong derivative would converge linearly at best.
+    assert!(residual <= 1e-11 && from_stuck <= 20 && from_beside <= 6);
+}
+
+#[test]
+fn a_blade_of_no_stiffness_is_a_status() {
+    let case = Case::lumped24(&[1], AmplitudeMeasure::Fundamental);
+    let mut deviations = deviations(24);
+    deviations[3] = -1.0;
+    let refused = ReferenceSolver::new(
+        &case.model,
+        &case.reference(),
+        ENGINE_ORDER,
+        full(50.0),
+        Some(&pattern(&deviations)),
+    );
+    assert_eq!(refused.err(), Some(Status::InvalidPattern));
+}
