@@ -141,7 +141,7 @@ pub(super) fn changed_tables(
             Ok(found) if found == *expected => {}
             Ok(_) => changed.push(name.clone()),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                changed.push(name.clone())
+                changed.push(name.clone());
             }
             Err(source) => {
                 return Err(TableError::Io {

@@ -1,5 +1,7 @@
 //! `replay`, `verify` and `--fidelity full` on a wheel of six masses.
 
+use std::fmt::Write;
+
 use blisk::population::monte_carlo::ResponseRow;
 use blisk::population::table::{
     Compression, Manifest, ResponseReader, ResponseWriter, ScenarioEntry, TableHeader,
@@ -248,7 +250,7 @@ fn a_wrong_amplitude_is_seen_by_the_full_model_as_well() {
 fn an_input_that_changed_since_is_refused() {
     let mut patterns = String::from("pattern,blade,deviation\n");
     for blade in 0..6 {
-        patterns += &format!("7,{blade},{}\n", 0.01 * f64::from(blade) - 0.02);
+        writeln!(patterns, "7,{blade},{}", 0.01 * f64::from(blade) - 0.02).expect("a string");
     }
     let study = GOOD
         .replace(

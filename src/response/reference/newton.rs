@@ -161,15 +161,12 @@ impl CondensedSystem<'_> {
                 return now;
             }
             let kept = jacobian.is_some();
-            let mut factored = match jacobian.take() {
-                Some(kept) => kept,
-                None => {
-                    contact.evaluate(&now.displacement, &mut now.force, Some(&mut derivatives));
-                    match CondensedJacobian::new(self, std::mem::take(&mut derivatives)) {
-                        Some(factored) => factored,
-                        None => return ended(now, Status::SingularJacobian),
-                    }
-                }
+            let renewed = jacobian.take().or_else(|| {
+                contact.evaluate(&now.displacement, &mut now.force, Some(&mut derivatives));
+                CondensedJacobian::new(self, std::mem::take(&mut derivatives))
+            });
+            let Some(mut factored) = renewed else {
+                return ended(now, Status::SingularJacobian);
             };
             now.iterations += 1;
             let step = factored.solve(self, &residual);
