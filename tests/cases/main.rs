@@ -6,4 +6,5 @@
 mod lumped24;
 mod one_dof;
 mod support;
+mod validation;
 mod wheels;
