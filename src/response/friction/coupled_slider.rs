@@ -236,14 +236,7 @@ impl CoupledSlider {
     }
 
     /// One period from the offset `start`: fills offsets, slips and `I - P'`.
-    fn march(
-        &mut self,
-        kt: f64,
-        mu: f64,
-        x: [&[f64]; 2],
-        load: &[f64],
-        start: [f64; 2],
-    ) -> Period {
+    fn march(&mut self, kt: f64, mu: f64, x: [&[f64]; 2], load: &[f64], start: [f64; 2]) -> Period {
         let [mut y1, mut y2] = start;
         let mut slipped = 0.0;
         let mut lost_before = [[0.0; 2]; 2];

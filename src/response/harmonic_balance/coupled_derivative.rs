@@ -77,9 +77,7 @@ impl CoupledDerivative {
                 let from = cumulative[slip.sample];
                 let held = match slips.get(e + 1) {
                     Some(next) => cumulative[next.sample] - from,
-                    None => {
-                        (cumulative[cumulative.len() - 1] - from) + cumulative[slips[0].sample]
-                    }
+                    None => (cumulative[cumulative.len() - 1] - from) + cumulative[slips[0].sample],
                 };
                 let terms = rows.iter_mut().zip(&self.offset);
                 terms.for_each(|(sum, offset)| *sum += held * offset);

@@ -95,7 +95,7 @@ fn marched(
 fn periodic_state_is_where_every_marched_history_ends() {
     let mut random = Random(31);
     let (mut slipping, mut stuck, mut most_periods) = (0, 0, 0);
-    for case in 0..1500 {
+    for case in 0..600 {
         let motion = Motion::random(&mut random, [1.0, 0.1, 1e-3][case % 3]);
         let (kt, mu) = (random.magnitude(0.1, 10.0), random.uniform(0.05, 1.0));
         let slider = motion.solve(kt, mu);
@@ -119,7 +119,7 @@ fn periodic_state_is_where_every_marched_history_ends() {
         slipping += 1;
         for _ in 0..2 {
             let start = [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)];
-            let (force, change) = marched(&motion, kt, mu, start, 3000);
+            let (force, change) = marched(&motion, kt, mu, start, 1000);
             if change > 1e-14 * scale {
                 // A little slip fades slowly across its direction: not there yet.
                 continue;
@@ -133,7 +133,7 @@ fn periodic_state_is_where_every_marched_history_ends() {
         }
     }
     println!("{slipping} slipping, {stuck} stuck, at most {most_periods} periods");
-    assert!(slipping > 700 && stuck > 100);
+    assert!(slipping > 300 && stuck > 100);
     assert!(most_periods < 60);
 }
 

@@ -162,7 +162,10 @@ fn jacobian_of_coulomb_3d_is_the_difference_quotient_away_from_kinks() {
                 let difference = (4.0 * narrow - wide) / 3.0;
                 let error = (difference - entry(&jacobian, n, row, column)).abs();
                 worst = worst.max(error);
-                assert!(error < 1e-6, "case {case}, row {row}, column {column}: {error:e}");
+                assert!(
+                    error < 1e-6,
+                    "case {case}, row {row}, column {column}: {error:e}"
+                );
             }
         }
     }
