@@ -123,6 +123,11 @@ pub enum Command {
         /// Seed of the sample [default: that of the study].
         #[arg(long, value_name = "S")]
         seed: Option<u64>,
+        /// Sweep the drawn rows densely instead, and count the peaks that the search missed.
+        ///
+        /// Writes peak_audit.parquet into the results folder.
+        #[arg(long)]
+        dense_sweep: bool,
         /// Where the inputs lie now: beside this study file [default: that of the last run].
         #[arg(long, value_name = "FILE")]
         study: Option<PathBuf>,

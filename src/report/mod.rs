@@ -1,6 +1,7 @@
 //! The numbers of a report as one struct, warnings with advice, and the summary as text.
 
 mod model_report;
+mod peak_audit;
 mod summary;
 mod summary_text;
 mod text_table;
@@ -8,6 +9,7 @@ mod verification;
 mod warning;
 
 pub use model_report::{ModelReport, NodalDiameterFacts};
+pub use peak_audit::PeakAuditReport;
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use verification::{ErrorDistribution, RegimeErrors, VerificationContext, VerificationReport};
 pub use warning::Warning;

@@ -9,6 +9,8 @@ use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
 use crate::population::table::CurvePoint;
 use crate::report::ModelReport;
+use crate::response::forced_response::SearchPlan;
+use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
 
 /// A reduced model with the settings of a study, ready to be solved; shared between threads.
@@ -33,6 +35,18 @@ pub trait Engine: Sync {
         pattern: &Pattern,
         scenarios: &[(&Scenario, &TunedReference)],
     ) -> Vec<ResponseRow>;
+
+    /// Where the linear limits of a row say that its peak can lie. `tuned_hz` is the frequency of
+    /// the tuned peak.
+    ///
+    /// # Errors
+    /// The pattern cannot be applied, or nothing answers the excitation.
+    fn search_plan(
+        &self,
+        scenario: &Scenario,
+        pattern: &Pattern,
+        tuned_hz: Option<f64>,
+    ) -> Result<SearchPlan, Status>;
 
     /// Amplitude of every blade at each frequency, ordered by frequency, then blade; no pattern
     /// means the tuned wheel.

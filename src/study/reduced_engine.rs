@@ -16,7 +16,7 @@ use crate::population::monte_carlo::{
 };
 use crate::population::table::CurvePoint;
 use crate::report::{ModelReport, NodalDiameterFacts};
-use crate::response::forced_response::{ContactCondition, Harmonics};
+use crate::response::forced_response::{ContactCondition, Harmonics, SearchPlan};
 use crate::response::friction::{ContactLaw, ContactOptions, PairParameters};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
@@ -169,6 +169,15 @@ impl Engine for ReducedEngine {
         scenarios: &[(&Scenario, &TunedReference)],
     ) -> Vec<ResponseRow> {
         self.solver.rows(pattern, scenarios)
+    }
+
+    fn search_plan(
+        &self,
+        scenario: &Scenario,
+        pattern: &Pattern,
+        tuned_hz: Option<f64>,
+    ) -> Result<SearchPlan, Status> {
+        self.solver.search_plan(scenario, Some(pattern), tuned_hz)
     }
 
     fn curve(

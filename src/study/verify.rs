@@ -45,15 +45,22 @@ pub fn verify(
     progress: &dyn Progress,
 ) -> Result<VerificationReport, PipelineError> {
     let folder = ResultsFolder::open(&stored.folder)?;
-    let threads = request.threads;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|error| PipelineError::Threads {
-            threads,
-            reason: error.to_string(),
-        })?;
+    let pool = request.pool()?;
     pool.install(|| verify_in(&folder, stored, source, request, progress))
+}
+
+impl VerifyRequest {
+    /// The threads asked for.
+    pub(super) fn pool(&self) -> Result<rayon::ThreadPool, PipelineError> {
+        let threads = self.threads;
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|error| PipelineError::Threads {
+                threads,
+                reason: error.to_string(),
+            })
+    }
 }
 
 fn verify_in(
@@ -101,7 +108,7 @@ fn verify_in(
 }
 
 /// `count` different places of `0..rows`, ascending, all equally likely (Floyd 1987).
-fn draw(rows: usize, count: usize, seed: u64) -> Vec<usize> {
+pub(super) fn draw(rows: usize, count: usize, seed: u64) -> Vec<usize> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(SAMPLE_STREAM);
     let mut places = BTreeSet::new();

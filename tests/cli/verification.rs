@@ -369,3 +369,37 @@ fn response_on_the_full_model_agrees_where_nothing_is_reduced() {
         assert_eq!(refused(more).code, 2, "{more:?}");
     }
 }
+
+#[test]
+fn a_dense_sweep_of_delivered_rows_counts_the_peaks_that_were_missed() {
+    let place = solved();
+    let sweep = [
+        "verify",
+        RESULTS,
+        "--dense-sweep",
+        "--sample",
+        "4",
+        "--json",
+    ];
+    let good = place.run(&sweep);
+    assert_eq!(good.code, 0, "{}", good.stderr);
+    let found = json(&good);
+    assert_eq!(found["swept"], 4);
+    assert_eq!(
+        (&found["failed_points"], &found["open_sweeps"]),
+        (&0.into(), &0.into())
+    );
+    // No missed peak among 4: 1 - 0.05^(1/4).
+    let bound = found["missed_upper_bound"].as_f64().expect("a number");
+    assert!((bound - 0.527_129).abs() < 1e-6, "{bound}");
+    assert!(place.path(RESULTS).join("peak_audit.parquet").exists());
+
+    tamper(&place, |row| {
+        row.peak_amplitude_m = row.peak_amplitude_m.map(|amplitude| 0.998 * amplitude);
+    });
+    let missed = place.run(&sweep);
+    assert_eq!(missed.code, 11);
+    assert_eq!(json(&missed)["missed"].as_array().map(Vec::len), Some(4));
+    let under_read = &json(&missed)["under_read"]["max"];
+    assert!((under_read.as_f64().expect("a number") - 2e-3).abs() < 1e-3);
+}

@@ -7,6 +7,7 @@ use blisk::model::sector::SectorModel;
 use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
 use blisk::population::table::CurvePoint;
 use blisk::report::ModelReport;
+use blisk::response::forced_response::SearchPlan;
 use blisk::response::harmonic_balance::Status;
 use blisk::response::mistuning::{Deviations, Pattern};
 use blisk::study::{Engine, EngineSource, PipelineError, Study};
@@ -101,6 +102,15 @@ impl Engine for MockEngine {
                 }
             })
             .collect()
+    }
+
+    fn search_plan(
+        &self,
+        _scenario: &Scenario,
+        _pattern: &Pattern,
+        _tuned_hz: Option<f64>,
+    ) -> Result<SearchPlan, Status> {
+        unreachable!("no test asks for it")
     }
 
     fn curve(

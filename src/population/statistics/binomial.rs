@@ -1,5 +1,6 @@
 //! Tails of the binomial law, exact to rounding up to millions of trials.
 
+use super::CONFIDENCE;
 use statrs::function::gamma::ln_gamma;
 
 /// `P(B <= k)` for `B ~ Binomial(n, p)`, `0 < p < 1`.
@@ -28,6 +29,28 @@ pub fn upper_tail(n: u64, p: f64, k: u64) -> f64 {
     }
 }
 
+/// Upper bound on a proportion of which `k` of `n` trials show an instance, one-sided, exact (Clopper
+/// & Pearson 1934): the largest p with `P(B <= k) >= 1 - CONFIDENCE`.
+#[must_use]
+pub fn proportion_upper_bound(k: u64, n: u64) -> f64 {
+    if k >= n {
+        return 1.0;
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    // Halved until the bounds are neighbours in floating point.
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return high;
+        }
+        if lower_tail(n, middle, k) >= 1.0 - CONFIDENCE {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+}
+
 /// Sum of the terms `k, k - 1, ...` until they no longer count.
 fn sum_downwards(n: u64, p: f64, k: u64) -> f64 {
     let mut term = probability(n, p, k);
@@ -51,7 +74,7 @@ fn probability(n: u64, p: f64, k: u64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{lower_tail, upper_tail};
+    use super::{lower_tail, proportion_upper_bound, upper_tail};
 
     /// Pascal's rule in floating point, all terms.
     fn brute_force(n: usize, p: f64) -> Vec<f64> {
@@ -80,6 +103,18 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn upper_bounds_on_a_proportion_are_those_of_clopper_and_pearson() {
+        // Without an instance the bound is 1 - 0.05^(1/n).
+        for n in [10, 200, 3000] {
+            let expected = -(0.05_f64.ln() / n as f64).exp_m1();
+            assert!((proportion_upper_bound(0, n) / expected - 1.0).abs() < 1e-9);
+        }
+        // 5 of 100: the beta quantile 0.95 of (6, 95).
+        assert!((proportion_upper_bound(5, 100) - 0.102_253_377_643).abs() < 1e-11);
+        assert_eq!(proportion_upper_bound(7, 7), 1.0);
     }
 
     #[test]

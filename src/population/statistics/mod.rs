@@ -7,6 +7,7 @@ mod sample;
 mod scenario;
 
 pub use accounting::Accounting;
+pub use binomial::proportion_upper_bound;
 pub use order_statistics::{
     CONFIDENCE, Percentile, PercentileRanks, PointStatus, failure_gate, percentile,
     percentile_ranks,
