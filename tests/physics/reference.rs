@@ -9,10 +9,12 @@ use blisk::response::forced_response::{AmplitudeMeasure, ContactCondition, Solve
 use blisk::response::friction::ContactLaw;
 use blisk::response::harmonic_balance::{Damping, HarmonicTransform, Status};
 use blisk::response::mistuning::{Deviations, Pattern, Projection};
-use blisk::response::reference::{ReferenceSettings, ReferenceSolver};
+use blisk::response::reference::{ReferenceSettings, ReferenceSolver, reference_peak};
 
 use super::contact::random::Random;
-use super::wheels::{ENGINE_ORDER, Wheel, full, pattern, springs, wheel8_contact, wheel8_sector};
+use super::wheels::{
+    ENGINE_ORDER, Wheel, full, pattern, scenario, springs, wheel8_contact, wheel8_sector,
+};
 
 /// Bound on the relative difference of two solutions of the same equation.
 const SAME: f64 = 1e-9;
@@ -206,6 +208,57 @@ fn two_codes_agree_on_cantilever_modes_linear_limits_and_time_maxima() {
     }
     let lumped = Case::lumped24(&[1, 3, 5], AmplitudeMeasure::TimeMaximum);
     lumped.assert_same(full(50.0), &pattern(&deviations(24)), &[350.0, 353.0]);
+}
+
+#[test]
+fn the_peak_is_that_of_a_dense_sweep_wherever_it_was_expected() {
+    let case = Case::lumped24(&[1, 3], AmplitudeMeasure::Fundamental);
+    let fast = RowSolver::new(Arc::clone(&case.model), case.settings.clone()).unwrap();
+    for load in [20.0, 50.0, 200.0] {
+        let pattern = pattern(&deviations(24));
+        let scenario = scenario(full(load));
+        let tuned_hz = fast.tuned(&scenario).frequency_hz;
+        let plan = fast
+            .search_plan(&scenario, Some(&pattern), tuned_hz)
+            .unwrap();
+        let solver = || {
+            ReferenceSolver::new(
+                &case.model,
+                &case.reference(),
+                ENGINE_ORDER,
+                scenario.contact,
+                Some(&pattern),
+            )
+            .unwrap()
+        };
+        let mut sweep = solver();
+        let (low, high) = plan.band_hz;
+        let highest = (0..=600)
+            .map(|i| low + (high - low) * f64::from(i) / 600.0)
+            .map(|hz| {
+                let point = sweep.solve(hz).unwrap();
+                point.amplitudes_m.iter().copied().fold(0.0, f64::max)
+            })
+            .fold(0.0, f64::max);
+        for expected_hz in [
+            None,
+            Some(low + 0.1 * (high - low)),
+            Some(0.5 * (low + high)),
+        ] {
+            let found = reference_peak(&mut solver(), &plan, expected_hz);
+            assert_eq!(found.status, Status::Ok);
+            let gain = found.amplitude_m.unwrap() / highest - 1.0;
+            println!(
+                "{load} N, {expected_hz:?}: {gain:+.2e} in {} solves",
+                found.work.solves
+            );
+            // Above the best of the grid, by no more than the grid can miss.
+            assert!(
+                (-1e-4..5e-3).contains(&gain),
+                "{load} N {expected_hz:?}: {gain:e}"
+            );
+        }
+    }
 }
 
 #[test]
