@@ -7,4 +7,5 @@ mod full_model;
 mod lumped24;
 mod one_dof;
 mod support;
+mod validation;
 mod wheels;

@@ -1,7 +1,7 @@
 //! The peak search against dense sweeps of the same rows.
 
 use blisk::population::monte_carlo::RowSolver;
-use blisk::response::forced_response::{FrequencyBand, SolverOptions};
+use blisk::response::forced_response::{FrequencyBand, SolverOptions, dense_peak};
 use blisk::response::harmonic_balance::Status;
 use blisk::response::mistuning::Pattern;
 use rayon::prelude::*;
@@ -60,54 +60,28 @@ fn populations() -> [Population; 3] {
 
 const DEVIATIONS: [f64; 6] = [0.01, 0.02, 0.03, 0.05, 0.07, 0.1];
 
-/// Largest amplitude over blades at each frequency.
-fn sweep(solver: &RowSolver, row: &Row, frequencies: &[f64]) -> Vec<f64> {
-    let curve = solver.curve(
-        ENGINE_ORDER,
-        full(row.load),
-        Some(&row.pattern),
-        frequencies,
+/// The highest value of a dense sweep. A frequency that does not converge reads as nothing; more
+/// than one, and one in 300, fail the sweep.
+fn swept_peak(population: &Population, solver: &RowSolver, row: &Row) -> f64 {
+    let contact = full(row.load);
+    let found = dense_peak(
+        population.band_hz,
+        population.half_bandwidth_hz,
+        |frequencies| {
+            let curve = solver.curve(ENGINE_ORDER, contact, Some(&row.pattern), frequencies);
+            let largest = |all: Vec<f64>| all.into_iter().fold(0.0, f64::max);
+            let points = curve.unwrap().into_iter();
+            points.map(|(_, point)| point.ok().map(largest)).collect()
+        },
     );
-    let curve = curve.unwrap();
-    // A point that does not converge reads as nothing; more than one, and one in 300, fail the sweep.
-    let failed = curve.iter().filter(|(_, found)| found.is_err()).count();
+    assert!(found.inside, "case {}: the peak is at an end", row.case);
+    let failed = found.failed;
     assert!(
-        failed * 300 <= curve.len().max(300),
+        failed * 300 <= found.points.max(300),
         "case {}: {failed} failed",
         row.case
     );
-    curve
-        .into_iter()
-        .map(|(_, found)| found.unwrap_or_default().into_iter().fold(0.0, f64::max))
-        .collect()
-}
-
-fn grid(start: f64, stop: f64, step: f64) -> Vec<f64> {
-    let count = ((stop - start) / step).ceil() as usize;
-    (0..=count).map(|i| start + step * i as f64).collect()
-}
-
-/// The highest value of a sweep at a quarter half-bandwidth, every local maximum that could win
-/// swept again 25 times finer.
-fn dense_peak(population: &Population, solver: &RowSolver, row: &Row) -> f64 {
-    let coarse_step = 0.25 * population.half_bandwidth_hz;
-    let frequencies = grid(population.band_hz.0, population.band_hz.1, coarse_step);
-    let coarse = sweep(solver, row, &frequencies);
-    let highest = coarse.iter().copied().fold(0.0, f64::max);
-    let ends = coarse[0].max(coarse[coarse.len() - 1]);
-    assert!(
-        ends < 0.5 * highest,
-        "the band holds the peak: case {}",
-        row.case
-    );
-    // Half a step off, a resonance reads at least 0.992 of its height.
-    (1..coarse.len() - 1)
-        .filter(|&i| coarse[i] >= coarse[i - 1].max(coarse[i + 1]) && coarse[i] > 0.98 * highest)
-        .map(|i| {
-            let around = grid(frequencies[i - 1], frequencies[i + 1], 0.04 * coarse_step);
-            sweep(solver, row, &around).into_iter().fold(0.0, f64::max)
-        })
-        .fold(highest, f64::max)
+    found.amplitude_m
 }
 
 #[test]
@@ -133,7 +107,7 @@ fn the_search_finds_what_a_dense_sweep_finds() {
             .map(|row| {
                 let found = solve_row(&solver, &row.pattern, full(row.load)).1;
                 assert_eq!(found.status, Status::Ok, "case {}", row.case);
-                let dense = dense_peak(&population, &solver, row);
+                let dense = swept_peak(&population, &solver, row);
                 1.0 - found.peak_amplitude_m.unwrap() / dense
             })
             .collect();

@@ -1,5 +1,6 @@
 //! Linear limits, sweep, peak search, and the one definition of the amplification factor.
 
+mod dense_sweep;
 mod excited;
 mod linear_peaks;
 mod options;
@@ -7,6 +8,7 @@ mod peak;
 mod peak_search;
 mod point_solver;
 
+pub use dense_sweep::{DensePeak, dense_peak};
 pub use excited::{Excited, LimitsWanted, LinearStructure, Wheel, wheel_force};
 pub use linear_peaks::LinearPeak;
 pub use options::{AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, SolverOptions};

@@ -92,7 +92,9 @@ pub fn solve(
     }
     loop {
         if let Some(status) = bounds.judge(first, state.residual, state.iterations as usize) {
-            return ended(state, status);
+            // Forces of a pair without a periodic state prove nothing, however small the residual.
+            let unproven = status == Status::Ok && state.shares.unclosed > 0.0;
+            return ended(state, if unproven { Status::Stagnated } else { status });
         }
         if !kept {
             system.residual(omega, x, residual, true, buffers);

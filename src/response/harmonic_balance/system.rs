@@ -64,6 +64,8 @@ pub struct ContactShares {
     pub slipping: f64,
     /// Pairs with no normal load.
     pub separated: f64,
+    /// Pairs whose periodic state was not found; a solution with such pairs is none.
+    pub unclosed: f64,
 }
 
 /// Buffers of one thread for one [`HarmonicSystem`].
@@ -292,7 +294,7 @@ impl HarmonicSystem {
         let coefficients = self.transform.n_coefficients();
         let per_sector = self.interface.pairs.len();
         let sector_rows = self.interface.geometry.row_count();
-        let (mut slipping, mut separated) = (0_usize, 0_usize);
+        let (mut slipping, mut separated, mut unclosed) = (0_usize, 0_usize, 0_usize);
         workspace.correction.fill(0.0);
         let count = workspace.active.len();
         for pair in 0..count {
@@ -315,6 +317,7 @@ impl HarmonicSystem {
             );
             slipping += usize::from(state.slipping);
             separated += usize::from(state.separated);
+            unclosed += usize::from(state.unclosed);
             workspace.active[pair] = state.slipping || state.separated;
             if workspace.active[pair] {
                 for (direction, place) in places.iter().enumerate() {
@@ -330,6 +333,7 @@ impl HarmonicSystem {
         ContactShares {
             slipping: slipping as f64 / count as f64,
             separated: separated as f64 / count as f64,
+            unclosed: unclosed as f64 / count as f64,
         }
     }
 

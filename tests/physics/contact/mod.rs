@@ -1,5 +1,6 @@
 //! Contact laws: exact loops, brute force, limits, derivatives.
 
+mod coulomb;
 mod harmonic_transform;
 mod jenkins_oracles;
 mod pair_derivatives;
