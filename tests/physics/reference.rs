@@ -28,7 +28,15 @@ struct Case {
 impl Case {
     /// Solid elements, every contact dof and six fixed-interface modes per nodal diameter.
     fn wheel8(damping: Damping, harmonics: &[u32], projection: Projection) -> Self {
-        let law = ContactLaw::Simplified3d;
+        Self::wheel8_under(ContactLaw::Simplified3d, damping, harmonics, projection)
+    }
+
+    fn wheel8_under(
+        law: ContactLaw,
+        damping: Damping,
+        harmonics: &[u32],
+        projection: Projection,
+    ) -> Self {
         let sector = wheel8_sector();
         let reduction = Reduction::new(&sector, springs(law, wheel8_contact()), 6, 0).unwrap();
         let cantilever = (projection == Projection::CantileverModes).then_some(3);
@@ -168,6 +176,19 @@ fn two_codes_agree_on_slipping_wheels_under_every_damping() {
         &pattern(&deviations(24)),
         &[345.0, 350.0, 355.0],
     );
+    assert!(slipping > 0.2, "{slipping}");
+}
+
+#[test]
+fn two_codes_agree_on_the_friction_circle() {
+    let case = Case::wheel8_under(
+        ContactLaw::Coulomb3d,
+        Damping::StructuralLossFactor(0.002),
+        &[1, 3],
+        Projection::Exact,
+    );
+    let frequencies = [611.0, 614.0, 617.0];
+    let (slipping, _) = case.assert_same(full(300.0), &pattern(&deviations(8)), &frequencies);
     assert!(slipping > 0.2, "{slipping}");
 }
 
