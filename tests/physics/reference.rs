@@ -9,10 +9,12 @@ use blisk::response::forced_response::{AmplitudeMeasure, ContactCondition, Solve
 use blisk::response::friction::ContactLaw;
 use blisk::response::harmonic_balance::{Damping, HarmonicTransform, Status};
 use blisk::response::mistuning::{Deviations, Pattern, Projection};
-use blisk::response::reference::{ReferenceSettings, ReferenceSolver};
+use blisk::response::reference::{ReferenceSettings, ReferenceSolver, reference_peak};
 
 use super::contact::random::Random;
-use super::wheels::{ENGINE_ORDER, Wheel, full, pattern, springs, wheel8_contact, wheel8_sector};
+use super::wheels::{
+    ENGINE_ORDER, Wheel, full, pattern, scenario, springs, wheel8_contact, wheel8_sector,
+};
 
 /// Bound on the relative difference of two solutions of the same equation.
 const SAME: f64 = 1e-9;
@@ -26,7 +28,15 @@ struct Case {
 impl Case {
     /// Solid elements, every contact dof and six fixed-interface modes per nodal diameter.
     fn wheel8(damping: Damping, harmonics: &[u32], projection: Projection) -> Self {
-        let law = ContactLaw::Simplified3d;
+        Self::wheel8_under(ContactLaw::Simplified3d, damping, harmonics, projection)
+    }
+
+    fn wheel8_under(
+        law: ContactLaw,
+        damping: Damping,
+        harmonics: &[u32],
+        projection: Projection,
+    ) -> Self {
         let sector = wheel8_sector();
         let reduction = Reduction::new(&sector, springs(law, wheel8_contact()), 6, 0).unwrap();
         let cantilever = (projection == Projection::CantileverModes).then_some(3);
@@ -170,6 +180,19 @@ fn two_codes_agree_on_slipping_wheels_under_every_damping() {
 }
 
 #[test]
+fn two_codes_agree_on_the_friction_circle() {
+    let case = Case::wheel8_under(
+        ContactLaw::Coulomb3d,
+        Damping::StructuralLossFactor(0.002),
+        &[1, 3],
+        Projection::Exact,
+    );
+    let frequencies = [611.0, 614.0, 617.0];
+    let (slipping, _) = case.assert_same(full(300.0), &pattern(&deviations(8)), &frequencies);
+    assert!(slipping > 0.2, "{slipping}");
+}
+
+#[test]
 fn two_codes_agree_where_contacts_separate() {
     let case = Case::wheel8(
         Damping::StructuralLossFactor(0.002),
@@ -206,6 +229,57 @@ fn two_codes_agree_on_cantilever_modes_linear_limits_and_time_maxima() {
     }
     let lumped = Case::lumped24(&[1, 3, 5], AmplitudeMeasure::TimeMaximum);
     lumped.assert_same(full(50.0), &pattern(&deviations(24)), &[350.0, 353.0]);
+}
+
+#[test]
+fn the_peak_is_that_of_a_dense_sweep_wherever_it_was_expected() {
+    let case = Case::lumped24(&[1, 3], AmplitudeMeasure::Fundamental);
+    let fast = RowSolver::new(Arc::clone(&case.model), case.settings.clone()).unwrap();
+    for load in [20.0, 50.0, 200.0] {
+        let pattern = pattern(&deviations(24));
+        let scenario = scenario(full(load));
+        let tuned_hz = fast.tuned(&scenario).frequency_hz;
+        let plan = fast
+            .search_plan(&scenario, Some(&pattern), tuned_hz)
+            .unwrap();
+        let solver = || {
+            ReferenceSolver::new(
+                &case.model,
+                &case.reference(),
+                ENGINE_ORDER,
+                scenario.contact,
+                Some(&pattern),
+            )
+            .unwrap()
+        };
+        let mut sweep = solver();
+        let (low, high) = plan.band_hz;
+        let highest = (0..=600)
+            .map(|i| low + (high - low) * f64::from(i) / 600.0)
+            .map(|hz| {
+                let point = sweep.solve(hz).unwrap();
+                point.amplitudes_m.iter().copied().fold(0.0, f64::max)
+            })
+            .fold(0.0, f64::max);
+        for expected_hz in [
+            None,
+            Some(low + 0.1 * (high - low)),
+            Some(0.5 * (low + high)),
+        ] {
+            let found = reference_peak(&mut solver(), &plan, expected_hz);
+            assert_eq!(found.status, Status::Ok);
+            let gain = found.amplitude_m.unwrap() / highest - 1.0;
+            println!(
+                "{load} N, {expected_hz:?}: {gain:+.2e} in {} solves",
+                found.work.solves
+            );
+            // Above the best of the grid, by no more than the grid can miss.
+            assert!(
+                (-1e-4..5e-3).contains(&gain),
+                "{load} N {expected_hz:?}: {gain:e}"
+            );
+        }
+    }
 }
 
 #[test]

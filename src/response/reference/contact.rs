@@ -74,7 +74,7 @@ impl ContactForces {
         let mut jacobian = PairJacobian::new(coefficients);
         let mut input = vec![0.0; 3 * coefficients];
         let mut output = vec![0.0; 3 * coefficients];
-        let (mut slipping, mut separated) = (0_u32, 0_u32);
+        let (mut slipping, mut separated, mut unclosed) = (0_u32, 0_u32, 0_u32);
         force.fill(0.0);
         if let Some(derivatives) = derivatives.as_deref_mut() {
             derivatives.clear();
@@ -101,6 +101,7 @@ impl ContactForces {
                 let state = pair_law.evaluate(pair, &input, &mut output, wanted);
                 slipping += u32::from(state.slipping);
                 separated += u32::from(state.separated);
+                unclosed += u32::from(state.unclosed);
                 if !(state.slipping || state.separated) {
                     continue;
                 }
@@ -116,6 +117,7 @@ impl ContactForces {
         ContactShares {
             slipping: f64::from(slipping) / count,
             separated: f64::from(separated) / count,
+            unclosed: f64::from(unclosed) / count,
         }
     }
 }
@@ -140,10 +142,12 @@ impl PairDerivative {
 /// Derivative of the force along one direction (normal, first, second tangent) by the displacement
 /// along another; none where it is zero.
 fn block(jacobian: &PairJacobian, direction: usize, by: usize) -> Option<&[f64]> {
+    let cross = jacobian.tangential_cross.as_ref();
     match (direction, by) {
         (0, 0) => Some(&jacobian.normal_normal),
-        (1 | 2, 0) => Some(&jacobian.tangential_normal[direction - 1]),
-        (1 | 2, _) if direction == by => Some(&jacobian.tangential_tangential[direction - 1]),
-        _ => None,
+        (0, _) => None,
+        (_, 0) => Some(&jacobian.tangential_normal[direction - 1]),
+        _ if direction == by => Some(&jacobian.tangential_tangential[direction - 1]),
+        _ => cross.map(|cross| &*cross[direction - 1]),
     }
 }

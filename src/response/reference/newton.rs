@@ -155,7 +155,16 @@ impl CondensedSystem<'_> {
                 return ended(now, Status::NonFinite);
             }
             if now.residual <= tolerance {
-                return ended(now, Status::Ok);
+                // Forces of a pair without a periodic state prove nothing.
+                let proven = now.shares.unclosed == 0.0;
+                return ended(
+                    now,
+                    if proven {
+                        Status::Ok
+                    } else {
+                        Status::Stagnated
+                    },
+                );
             }
             if now.iterations == ITERATIONS {
                 return now;
