@@ -5,10 +5,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::PipelineError;
+use super::contact_displacement::{ContactDisplacementErrors, ContactMotion};
 use crate::model::ReducedModel;
 use crate::model::reduction::{Basis, BasisChoice, Reduction, ReductionOptions};
 use crate::population::monte_carlo::{RowSettings, RowSolver};
-use crate::response::forced_response::ContactCondition;
+use crate::response::forced_response::{ContactCondition, Peak};
 
 /// Stick modes of `stick_attachment` where the study does not say.
 const ATTACHMENT_STICK_MODES: usize = 4;
@@ -27,6 +28,9 @@ pub struct BasisError {
     /// Largest relative error of the tuned peak over the conditions compared; none if a peak was
     /// not found.
     pub error: Option<f64>,
+    /// Largest error of the relative displacement at the contact over the same conditions under
+    /// friction; none if there is none or a peak was not found.
+    pub contact_displacement: Option<ContactDisplacementErrors>,
 }
 
 /// The chosen basis and the evidence for it.
@@ -57,26 +61,20 @@ pub fn choose_basis(
         };
         return Ok((BasisChoice::CraigBampton, evidence));
     }
-    let reference = Peaks::of(
-        reduction.reduce(BasisChoice::CraigBampton, None)?,
-        settings,
-        engine_orders,
-        conditions,
-    )?;
+    let whole = Arc::new(reduction.tuned(BasisChoice::CraigBampton)?);
+    let reference = Peaks::of(Arc::clone(&whole), settings, engine_orders, conditions)?;
+    let motions = reference.contact_motions(&whole, settings, engine_orders, conditions)?;
     let mut tried = Vec::new();
     let mut chosen = None;
     for choice in candidates(reduction, options) {
-        let peaks = Peaks::of(
-            reduction.reduce(choice, None)?,
-            settings,
-            engine_orders,
-            conditions,
-        )?;
+        let model = Arc::new(reduction.tuned(choice)?);
+        let peaks = Peaks::of(Arc::clone(&model), settings, engine_orders, conditions)?;
         let error = peaks.error(&reference);
         tried.push(BasisError {
             basis: choice.to_string(),
             vectors: vectors(reduction, choice),
             error,
+            contact_displacement: largest_displacement_error(&motions, &model),
         });
         chosen = Some(choice);
         if error.is_some_and(|error| error <= options.error) {
@@ -138,30 +136,33 @@ fn vectors(reduction: &Reduction<'_>, choice: BasisChoice) -> usize {
     }
 }
 
-/// Tuned peak amplitudes, one per engine order and condition; none where no peak was found.
-struct Peaks(Vec<Option<f64>>);
+/// Largest error of the contact displacement over the tuned peaks; none without any.
+fn largest_displacement_error(
+    motions: &[ContactMotion<'_>],
+    model: &ReducedModel,
+) -> Option<ContactDisplacementErrors> {
+    motions
+        .iter()
+        .map(|motion| motion.errors_of(model))
+        .reduce(|a, b| Some(a?.larger(b?)))?
+}
+
+/// Tuned peaks, one per engine order and condition.
+struct Peaks(Vec<Peak>);
 
 impl Peaks {
     fn of(
-        model: ReducedModel,
+        model: Arc<ReducedModel>,
         settings: &RowSettings,
         engine_orders: &[u32],
         conditions: &[ContactCondition],
     ) -> Result<Self, PipelineError> {
         let mut settings = settings.clone();
         settings.solver.peak_tolerance = PEAK_TOLERANCE;
-        let solver = RowSolver::new(Arc::new(model), settings)?;
+        let solver = RowSolver::new(model, settings)?;
         Ok(Self(
-            engine_orders
-                .iter()
-                .flat_map(|&engine_order| {
-                    conditions
-                        .iter()
-                        .map(move |&condition| (engine_order, condition))
-                })
-                .map(|(engine_order, condition)| {
-                    solver.tuned_peak(engine_order, condition).amplitude_m()
-                })
+            each(engine_orders, conditions)
+                .map(|(engine_order, condition)| solver.tuned_peak(engine_order, condition))
                 .collect(),
         ))
     }
@@ -171,9 +172,46 @@ impl Peaks {
         self.0
             .iter()
             .zip(&reference.0)
-            .map(|(own, reference)| Some(((*own)? / (*reference)? - 1.0).abs()))
+            .map(|(own, reference)| {
+                Some((own.amplitude_m()? / reference.amplitude_m()? - 1.0).abs())
+            })
             .try_fold(0.0, |largest: f64, error| Some(largest.max(error?)))
     }
+
+    /// What happens at the contact at those that are nonlinear.
+    fn contact_motions<'a>(
+        &self,
+        model: &'a ReducedModel,
+        settings: &'a RowSettings,
+        engine_orders: &[u32],
+        conditions: &[ContactCondition],
+    ) -> Result<Vec<ContactMotion<'a>>, PipelineError> {
+        let mut motions = Vec::new();
+        for ((engine_order, condition), peak) in each(engine_orders, conditions).zip(&self.0) {
+            let harmonics = &settings.harmonics;
+            motions.extend(ContactMotion::of_peak(
+                model,
+                settings,
+                harmonics,
+                engine_order,
+                condition,
+                peak,
+            )?);
+        }
+        Ok(motions)
+    }
+}
+
+/// Every engine order with every condition.
+fn each<'a>(
+    engine_orders: &'a [u32],
+    conditions: &'a [ContactCondition],
+) -> impl Iterator<Item = (u32, ContactCondition)> + 'a {
+    engine_orders.iter().flat_map(|&engine_order| {
+        conditions
+            .iter()
+            .map(move |&condition| (engine_order, condition))
+    })
 }
 
 /// The conditions by which a basis is judged: lowest, middle and highest load of the study, and

@@ -5,5 +5,6 @@
 
 mod lumped24;
 mod one_dof;
+mod reduction_error;
 mod support;
 mod wheels;
