@@ -7,12 +7,13 @@ use serde::{Deserialize, Serialize};
 use super::PipelineError;
 use super::contact_displacement::{ContactDisplacementErrors, ContactMotion};
 use crate::model::ReducedModel;
+use crate::model::cyclic::nodal_diameter_of;
 use crate::model::reduction::{Basis, BasisChoice, Reduction, ReductionOptions};
 use crate::population::monte_carlo::{RowSettings, RowSolver};
 use crate::response::forced_response::{ContactCondition, Peak};
 
-/// Stick modes of `stick_attachment` where the study does not say.
-const ATTACHMENT_STICK_MODES: usize = 4;
+/// Numbers of stick modes of `stick_attachment` that are tried, ascending.
+const ATTACHMENT_LADDER: [usize; 5] = [4, 8, 14, 20, 28];
 /// Numbers of stick and of slide modes that are tried, ascending.
 const STICK_SLIDE_LADDER: [usize; 9] = [2, 3, 4, 6, 8, 10, 14, 20, 28];
 /// Relative tolerance of the peaks that are compared.
@@ -38,7 +39,10 @@ pub struct BasisError {
 pub struct BasisEvidence {
     /// Whether the basis is the whole space of every nodal diameter.
     pub whole_space: bool,
-    /// Errors of the bases that were tried; the last one was taken.
+    /// Smallest ratio of the highest fixed-interface frequency of a nodal diameter to the frequency
+    /// of the harmonic that the tuned peak has in it; none where no mode is left out.
+    pub craig_bampton_reach: Option<f64>,
+    /// Errors of the bases that were tried; the one that was taken stands last.
     pub tried: Vec<BasisError>,
 }
 
@@ -57,6 +61,7 @@ pub fn choose_basis(
     if reduction.is_whole_space() {
         let evidence = BasisEvidence {
             whole_space: true,
+            craig_bampton_reach: None,
             tried: Vec::new(),
         };
         return Ok((BasisChoice::CraigBampton, evidence));
@@ -64,61 +69,66 @@ pub fn choose_basis(
     let whole = Arc::new(reduction.tuned(BasisChoice::CraigBampton)?);
     let reference = Peaks::of(Arc::clone(&whole), settings, engine_orders, conditions)?;
     let motions = reference.contact_motions(&whole, settings, engine_orders, conditions)?;
-    let mut tried = Vec::new();
-    let mut chosen = None;
+    let mut tried: Vec<(BasisChoice, BasisError)> = Vec::new();
     for choice in candidates(reduction, options) {
         let model = Arc::new(reduction.tuned(choice)?);
         let peaks = Peaks::of(Arc::clone(&model), settings, engine_orders, conditions)?;
-        let error = peaks.error(&reference);
-        tried.push(BasisError {
+        let own = BasisError {
             basis: choice.to_string(),
             vectors: vectors(reduction, choice),
-            error,
+            error: peaks.error(&reference),
             contact_displacement: largest_displacement_error(&motions, &model),
-        });
-        chosen = Some(choice);
-        if error.is_some_and(|error| error <= options.error) {
+        };
+        let enough = own.error.is_some_and(|error| error <= options.error);
+        tried.push((choice, own));
+        if enough {
             break;
         }
     }
-    let choice = chosen.unwrap_or(BasisChoice::StickAttachment {
-        stick: ATTACHMENT_STICK_MODES,
-    });
+    // The last one where it meets the wanted error, else the best of all.
+    let size = |own: &BasisError| own.error.unwrap_or(f64::INFINITY);
+    let best = (0..tried.len())
+        .rev()
+        .min_by(|&a, &b| size(&tried[a].1).total_cmp(&size(&tried[b].1)));
+    if let Some(best) = best {
+        let taken = tried.remove(best);
+        tried.push(taken);
+    }
+    let choice = tried
+        .last()
+        .map_or(BasisChoice::CraigBampton, |(choice, _)| *choice);
     Ok((
         choice,
         BasisEvidence {
             whole_space: false,
-            tried,
+            craig_bampton_reach: reference.reach(reduction, settings, engine_orders, conditions),
+            tried: tried.into_iter().map(|(_, own)| own).collect(),
         },
     ))
 }
 
 /// Bases to try, the cheapest first; one that the user fixed stands alone.
 fn candidates(reduction: &Reduction<'_>, options: &ReductionOptions) -> Vec<BasisChoice> {
-    let attachment = BasisChoice::StickAttachment {
-        stick: options.stick_modes.unwrap_or(ATTACHMENT_STICK_MODES),
-    };
-    let ladder = STICK_SLIDE_LADDER
-        .iter()
-        .map(|&modes| BasisChoice::StickSlide {
-            stick: modes,
-            slide: modes,
-        });
+    let attachments = ATTACHMENT_LADDER.map(|stick| BasisChoice::StickAttachment { stick });
+    let ladder = STICK_SLIDE_LADDER.map(|modes| BasisChoice::StickSlide {
+        stick: modes,
+        slide: modes,
+    });
     match (options.basis, options.stick_modes, options.slide_modes) {
-        (Basis::StickAttachment, ..) => vec![attachment],
+        (Basis::StickAttachment, Some(stick), _) => vec![BasisChoice::StickAttachment { stick }],
+        (Basis::StickAttachment, None, _) => attachments.to_vec(),
         (_, Some(stick), Some(slide)) => vec![BasisChoice::StickSlide { stick, slide }],
         (_, Some(modes), None) | (_, None, Some(modes)) => vec![BasisChoice::StickSlide {
             stick: modes,
             slide: modes,
         }],
-        (Basis::StickSlide, None, None) => ladder.collect(),
-        (Basis::Auto, None, None) if reduction.contact_rows() == 0 => ladder.collect(),
+        (Basis::StickSlide, None, None) => ladder.to_vec(),
+        (Basis::Auto, None, None) if reduction.contact_rows() == 0 => ladder.to_vec(),
         (Basis::Auto, None, None) => {
-            let size = vectors(reduction, attachment);
-            ladder
-                .filter(|&choice| vectors(reduction, choice) < size)
-                .chain([attachment])
-                .collect()
+            // Of two of one size the attachment vectors, which also hold where contacts separate.
+            let mut all = [attachments.as_slice(), &ladder].concat();
+            all.sort_by_key(|&choice| vectors(reduction, choice));
+            all
         }
     }
 }
@@ -176,6 +186,35 @@ impl Peaks {
                 Some((own.amplitude_m()? / reference.amplitude_m()? - 1.0).abs())
             })
             .try_fold(0.0, |largest: f64, error| Some(largest.max(error?)))
+    }
+
+    /// How far the fixed-interface modes reach beyond the harmonics of the peaks.
+    fn reach(
+        &self,
+        reduction: &Reduction<'_>,
+        settings: &RowSettings,
+        engine_orders: &[u32],
+        conditions: &[ContactCondition],
+    ) -> Option<f64> {
+        let models = reduction.models();
+        let sectors = reduction.sectors();
+        each(engine_orders, conditions)
+            .zip(&self.0)
+            .filter_map(|((engine_order, condition), peak)| {
+                let linear = condition.normal_load_n().is_none();
+                Some((engine_order, linear, peak.point.as_ref()?.frequency_hz))
+            })
+            .flat_map(|(engine_order, linear, frequency_hz)| {
+                let harmonics = settings.harmonics.iter().copied();
+                harmonics
+                    .filter(move |&k| k == 1 || (k > 1 && !linear))
+                    .filter_map(move |k| {
+                        let h = nodal_diameter_of(k, engine_order, sectors).index;
+                        let highest = models[h].highest_fixed_interface_hz?;
+                        Some(highest / (f64::from(k) * frequency_hz))
+                    })
+            })
+            .min_by(f64::total_cmp)
     }
 
     /// What happens at the contact at those that are nonlinear.

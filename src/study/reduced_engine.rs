@@ -149,6 +149,7 @@ impl Engine for ReducedEngine {
             "whole_space": self.evidence.whole_space,
             "reduced_coordinates": self.solver.basis().size(),
             "tuned_peak_errors": self.evidence.tried,
+            "craig_bampton_reach": self.evidence.craig_bampton_reach,
         })
     }
 

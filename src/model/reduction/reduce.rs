@@ -79,6 +79,12 @@ impl<'a> Reduction<'a> {
         })
     }
 
+    /// Number of sectors N.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.sector.sectors()
+    }
+
     /// The Craig-Bampton model of each nodal diameter.
     #[must_use]
     pub fn models(&self) -> &[CraigBampton] {
