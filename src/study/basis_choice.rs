@@ -5,10 +5,12 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::PipelineError;
-use super::contact_displacement::{ContactDisplacementErrors, ContactMotion};
+use super::contact_displacement::ContactMotion;
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
-use crate::model::reduction::{Basis, BasisChoice, Reduction, ReductionOptions};
+use crate::model::reduction::{
+    Basis, BasisChoice, ContactDisplacementErrors, Reduction, ReductionOptions,
+};
 use crate::population::monte_carlo::{RowSettings, RowSolver};
 use crate::response::forced_response::{ContactCondition, Peak};
 
@@ -34,6 +36,19 @@ pub struct BasisError {
     pub contact_displacement: Option<ContactDisplacementErrors>,
 }
 
+impl BasisError {
+    /// The larger of the two errors, each over what is accepted of it for `wanted_error`.
+    fn excess(&self, wanted_error: f64) -> f64 {
+        let contact = self.contact_displacement.map_or(0.0, |errors| {
+            errors.any_nodal_diameter.error / ContactDisplacementErrors::accepted(wanted_error)
+        });
+        let peak = self
+            .error
+            .map_or(f64::INFINITY, |error| error / wanted_error);
+        peak.max(contact)
+    }
+}
+
 /// The chosen basis and the evidence for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BasisEvidence {
@@ -47,7 +62,8 @@ pub struct BasisEvidence {
 }
 
 /// Chooses the basis for `options` by the tuned nonlinear peak on one sector, against the whole
-/// Craig-Bampton sector with every contact dof, under the given engine orders and conditions.
+/// Craig-Bampton sector with every contact dof, under the given engine orders and conditions, and
+/// by the contact displacement that it can follow in every nodal diameter.
 ///
 /// # Errors
 /// If a mass or stiffness is not positive definite.
@@ -79,14 +95,14 @@ pub fn choose_basis(
             error: peaks.error(&reference),
             contact_displacement: largest_displacement_error(&motions, &model),
         };
-        let enough = own.error.is_some_and(|error| error <= options.error);
+        let enough = own.excess(options.error) <= 1.0;
         tried.push((choice, own));
         if enough {
             break;
         }
     }
     // The last one where it meets the wanted error, else the best of all.
-    let size = |own: &BasisError| own.error.unwrap_or(f64::INFINITY);
+    let size = |own: &BasisError| own.excess(options.error);
     let best = (0..tried.len())
         .rev()
         .min_by(|&a, &b| size(&tried[a].1).total_cmp(&size(&tried[b].1)));

@@ -24,11 +24,10 @@
 
 use std::f64::consts::TAU;
 
-use serde::{Deserialize, Serialize};
-
 use crate::linalg::{Complex64, LuWorkspace};
 use crate::model::ReducedModel;
 use crate::model::cyclic::{NodalDiameter, nodal_diameter_of};
+use crate::model::reduction::{ContactDisplacementError, ContactDisplacementErrors};
 use crate::population::monte_carlo::RowSettings;
 use crate::response::forced_response::{ContactCondition, Peak};
 use crate::response::friction::PairParameters;
@@ -36,44 +35,6 @@ use crate::response::harmonic_balance::{
     HarmonicTransform, PairHarmonics, Structure, TransformError, linear_response,
 };
 use crate::response::mistuning::StructuralModes;
-
-/// Error of the relative displacement at the contact that a basis allows, and where it is largest.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ContactDisplacementError {
-    /// Relative to the relative displacement of the tuned peak.
-    pub error: f64,
-    /// Engine order.
-    pub engine_order: u32,
-    /// Normal load per sector, N.
-    pub normal_load_n: f64,
-    /// Temporal harmonic k.
-    pub harmonic: u32,
-    /// Nodal diameter of the wave, 0 to N/2.
-    pub nodal_diameter: usize,
-}
-
-/// Errors in the waves that the tuned wheel moves in, and in all waves.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ContactDisplacementErrors {
-    /// Largest over the harmonics, each in its nodal diameter `k EO mod N`.
-    pub tuned: ContactDisplacementError,
-    /// Largest over the harmonics and all waves: of a mistuned wheel.
-    pub mistuned: ContactDisplacementError,
-}
-
-impl ContactDisplacementErrors {
-    /// The larger of either kind.
-    #[must_use]
-    pub fn larger(self, other: Self) -> Self {
-        let larger = |a: ContactDisplacementError, b: ContactDisplacementError| {
-            if b.error > a.error { b } else { a }
-        };
-        Self {
-            tuned: larger(self.tuned, other.tuned),
-            mistuned: larger(self.mistuned, other.mistuned),
-        }
-    }
-}
 
 /// Relative displacement and contact force of a tuned nonlinear peak in one harmonic.
 #[derive(Debug, Clone)]
@@ -182,7 +143,7 @@ impl<'a> ContactMotion<'a> {
                     } else {
                         0.0
                     }),
-                    mistuned: error(difference / largest),
+                    any_nodal_diameter: error(difference / largest),
                 };
                 worst = Some(worst.map_or(here, |worst| worst.larger(here)));
             }
@@ -307,4 +268,93 @@ fn corrections(
         }
     }
     forces
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::model::reduction::{BasisChoice, ContactStiffness, Reduction};
+    use crate::model::sector::{ParametricOptions, parametric};
+    use crate::population::monte_carlo::RowSolver;
+    use crate::response::forced_response::SolverOptions;
+    use crate::response::friction::ContactLaw;
+    use crate::response::harmonic_balance::Damping;
+    use crate::response::mistuning::Projection;
+
+    const HARMONICS: [u32; 2] = [1, 3];
+
+    fn settings() -> RowSettings {
+        let sector = PairParameters {
+            normal_load_n: 0.0,
+            normal_stiffness_n_per_m: 2e8,
+            tangential_stiffness_n_per_m: 2e8,
+            friction_coefficient: 0.3,
+        };
+        RowSettings {
+            harmonics: HARMONICS.to_vec(),
+            contact: Some((ContactLaw::Simplified3d, sector)),
+            damping: Damping::StructuralLossFactor(0.002),
+            amplitude_n: 1.0,
+            projection: Projection::Exact,
+            solver: SolverOptions::default(),
+        }
+    }
+
+    #[test]
+    fn the_same_forces_give_the_solution_in_the_whole_space_and_less_and_less_error_in_larger_bases()
+     {
+        let options = ParametricOptions {
+            sectors: 7,
+            ..ParametricOptions::default()
+        };
+        let sector = parametric::build(&options).unwrap();
+        let stiffness = ContactStiffness {
+            normal_n_per_m: 2e8,
+            tangential_1_n_per_m: 2e8,
+            tangential_2_n_per_m: 2e8,
+        };
+        let reduction = Reduction::new(&sector, stiffness, 25, 0).unwrap();
+        let whole = reduction.tuned(BasisChoice::CraigBampton).unwrap();
+        let settings = settings();
+        // Engine order 5 of 7 sectors: conjugate waves of nodal diameters 2 and 1.
+        let condition = ContactCondition::Full {
+            normal_load_n: 200.0,
+        };
+        let solver = RowSolver::new(Arc::new(whole.clone()), settings.clone()).unwrap();
+        let peak = solver.tuned_peak(5, condition);
+        let motion = ContactMotion::of_peak(&whole, &settings, &HARMONICS, 5, condition, &peak)
+            .unwrap()
+            .unwrap();
+        assert!(peak.point.as_ref().unwrap().shares.slipping > 0.5);
+        for (own, share) in motion.harmonics.iter().zip([0.5, 1e-4]) {
+            let wave = nodal_diameter_of(own.harmonic, 5, 7);
+            let answer = motion.answer(&whole, own, wave).unwrap();
+            let difference: Vec<Complex64> = answer
+                .iter()
+                .zip(&own.displacement)
+                .map(|(a, b)| a - b)
+                .collect();
+            assert!(motion.squared_norm(&own.displacement).sqrt() > share * motion.norm);
+            assert!(motion.squared_norm(&difference).sqrt() < 1e-6 * motion.norm);
+        }
+        let errors: Vec<ContactDisplacementErrors> = [
+            BasisChoice::StickSlide { stick: 2, slide: 2 },
+            BasisChoice::StickSlide { stick: 8, slide: 8 },
+            BasisChoice::StickAttachment { stick: 14 },
+            BasisChoice::StickAttachment { stick: 1000 },
+        ]
+        .into_iter()
+        .map(|choice| motion.errors_of(&reduction.tuned(choice).unwrap()).unwrap())
+        .collect();
+        for pair in errors.windows(2) {
+            assert!(pair[1].tuned.error < pair[0].tuned.error, "{errors:?}");
+            assert!(pair[1].any_nodal_diameter.error < pair[0].any_nodal_diameter.error);
+        }
+        for error in &errors {
+            assert!(error.any_nodal_diameter.error >= 0.9 * error.tuned.error);
+        }
+        assert!(errors[0].tuned.error > 1e-2 && errors[3].any_nodal_diameter.error < 1e-6);
+    }
 }
