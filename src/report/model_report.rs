@@ -48,8 +48,8 @@ pub struct ModelReport {
     pub error: Option<f64>,
     /// Error of the relative displacement at the contact, under friction.
     pub contact_displacement: Option<ContactDisplacementErrors>,
-    /// Highest fixed-interface frequency over that of the highest harmonic; none where no mode is
-    /// left out.
+    /// Highest fixed-interface frequency over what it should be, 1 is enough; none where no mode
+    /// is left out.
     pub craig_bampton_reach: Option<f64>,
     /// What is not accurate enough.
     pub warnings: Vec<Warning>,
@@ -94,7 +94,7 @@ impl fmt::Display for ModelReport {
         if let Some(reach) = self.craig_bampton_reach {
             writeln!(
                 f,
-                "fixed-interface modes reach {reach:.1} times the highest harmonic"
+                "fixed-interface modes reach {reach:.1} times the frequency needed"
             )?;
         }
         for warning in &self.warnings {

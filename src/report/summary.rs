@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Warning;
-use crate::model::reduction::{CRAIG_BAMPTON_REACH, ContactDisplacementErrors};
+use crate::model::reduction::ContactDisplacementErrors;
 use crate::population::statistics::{
     Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics,
 };
@@ -39,7 +39,7 @@ pub struct BasisSummary {
     pub tuned_peak_error: Option<f64>,
     /// Largest relative error of the contact displacement in any nodal diameter.
     pub contact_displacement_error: Option<f64>,
-    /// Highest fixed-interface frequency over that of the highest harmonic.
+    /// Highest fixed-interface frequency over what it should be; 1 is enough.
     pub craig_bampton_reach: Option<f64>,
     /// Error that the study asks for.
     pub wanted_error: f64,
@@ -68,7 +68,7 @@ impl BasisSummary {
             });
         let modes = self
             .craig_bampton_reach
-            .filter(|&reach| reach < CRAIG_BAMPTON_REACH)
+            .filter(|&reach| reach < 1.0)
             .map(|reach| Warning::CraigBamptonModes { reach });
         peak.into_iter().chain(contact).chain(modes).collect()
     }

@@ -4,8 +4,6 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::model::reduction::CRAIG_BAMPTON_REACH;
-
 /// A warning about the results of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "warning", rename_all = "snake_case")]
@@ -42,7 +40,7 @@ pub enum Warning {
     },
     /// The Craig-Bampton model itself has too few modes.
     CraigBamptonModes {
-        /// Highest fixed-interface frequency over that of the highest harmonic.
+        /// Highest fixed-interface frequency over what it should be.
         reach: f64,
     },
     /// Rows without result.
@@ -116,8 +114,9 @@ impl fmt::Display for Warning {
             ),
             Self::CraigBamptonModes { reach } => write!(
                 f,
-                "the fixed-interface modes reach only {reach:.1} times the frequency of the highest \
-                 harmonic, less than {CRAIG_BAMPTON_REACH}; raise reduction.craig_bampton_modes"
+                "the fixed-interface modes reach only {reach:.2} times the frequency that they should \
+                 (6 times that of the tuned peak, 1.5 times that of its harmonics); raise \
+                 reduction.craig_bampton_modes"
             ),
             Self::Failures { failed, planned } => write!(
                 f,

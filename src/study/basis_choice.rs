@@ -9,7 +9,7 @@ use super::contact_displacement::ContactMotion;
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::model::reduction::{
-    Basis, BasisChoice, ContactDisplacementErrors, Reduction, ReductionOptions,
+    Basis, BasisChoice, ContactDisplacementErrors, Reduction, ReductionOptions, wanted_reach_hz,
 };
 use crate::population::monte_carlo::{RowSettings, RowSolver};
 use crate::response::forced_response::{ContactCondition, Peak};
@@ -54,8 +54,8 @@ impl BasisError {
 pub struct BasisEvidence {
     /// Whether the basis is the whole space of every nodal diameter.
     pub whole_space: bool,
-    /// Smallest ratio of the highest fixed-interface frequency of a nodal diameter to the frequency
-    /// of the harmonic that the tuned peak has in it; none where no mode is left out.
+    /// Smallest ratio, over the harmonics of the tuned peaks, of the highest fixed-interface
+    /// frequency in the harmonic's nodal diameter to the [`wanted_reach_hz`]; none where no mode is left out.
     pub craig_bampton_reach: Option<f64>,
     /// Errors of the bases that were tried; the one that was taken stands last.
     pub tried: Vec<BasisError>,
@@ -227,7 +227,7 @@ impl Peaks {
                     .filter_map(move |k| {
                         let h = nodal_diameter_of(k, engine_order, sectors).index;
                         let highest = models[h].highest_fixed_interface_hz?;
-                        Some(highest / (f64::from(k) * frequency_hz))
+                        Some(highest / wanted_reach_hz(k, frequency_hz))
                     })
             })
             .min_by(f64::total_cmp)

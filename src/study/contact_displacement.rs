@@ -272,6 +272,7 @@ fn corrections(
 
 #[cfg(test)]
 mod tests {
+    use std::error::Error;
     use std::sync::Arc;
 
     use super::*;
@@ -303,34 +304,34 @@ mod tests {
     }
 
     #[test]
-    fn the_same_forces_give_the_solution_in_the_whole_space_and_less_and_less_error_in_larger_bases()
-     {
+    fn the_same_forces_give_the_solution_in_the_whole_space_and_less_error_in_larger_bases()
+    -> Result<(), Box<dyn Error>> {
         let options = ParametricOptions {
             sectors: 7,
             ..ParametricOptions::default()
         };
-        let sector = parametric::build(&options).unwrap();
+        let sector = parametric::build(&options)?;
         let stiffness = ContactStiffness {
             normal_n_per_m: 2e8,
             tangential_1_n_per_m: 2e8,
             tangential_2_n_per_m: 2e8,
         };
-        let reduction = Reduction::new(&sector, stiffness, 25, 0).unwrap();
-        let whole = reduction.tuned(BasisChoice::CraigBampton).unwrap();
+        let reduction = Reduction::new(&sector, stiffness, 25, 0)?;
+        let whole = reduction.tuned(BasisChoice::CraigBampton)?;
         let settings = settings();
         // Engine order 5 of 7 sectors: conjugate waves of nodal diameters 2 and 1.
         let condition = ContactCondition::Full {
             normal_load_n: 200.0,
         };
-        let solver = RowSolver::new(Arc::new(whole.clone()), settings.clone()).unwrap();
+        let solver = RowSolver::new(Arc::new(whole.clone()), settings.clone())?;
         let peak = solver.tuned_peak(5, condition);
-        let motion = ContactMotion::of_peak(&whole, &settings, &HARMONICS, 5, condition, &peak)
-            .unwrap()
-            .unwrap();
-        assert!(peak.point.as_ref().unwrap().shares.slipping > 0.5);
+        let motion = ContactMotion::of_peak(&whole, &settings, &HARMONICS, 5, condition, &peak)?
+            .ok_or("a nonlinear peak")?;
+        let point = peak.point.as_ref().ok_or("a point")?;
+        assert!(point.shares.slipping > 0.5);
         for (own, share) in motion.harmonics.iter().zip([0.5, 1e-4]) {
             let wave = nodal_diameter_of(own.harmonic, 5, 7);
-            let answer = motion.answer(&whole, own, wave).unwrap();
+            let answer = motion.answer(&whole, own, wave).ok_or("regular")?;
             let difference: Vec<Complex64> = answer
                 .iter()
                 .zip(&own.displacement)
@@ -339,15 +340,16 @@ mod tests {
             assert!(motion.squared_norm(&own.displacement).sqrt() > share * motion.norm);
             assert!(motion.squared_norm(&difference).sqrt() < 1e-6 * motion.norm);
         }
-        let errors: Vec<ContactDisplacementErrors> = [
+        let mut errors = Vec::new();
+        for choice in [
             BasisChoice::StickSlide { stick: 2, slide: 2 },
             BasisChoice::StickSlide { stick: 8, slide: 8 },
             BasisChoice::StickAttachment { stick: 14 },
             BasisChoice::StickAttachment { stick: 1000 },
-        ]
-        .into_iter()
-        .map(|choice| motion.errors_of(&reduction.tuned(choice).unwrap()).unwrap())
-        .collect();
+        ] {
+            let found = motion.errors_of(&reduction.tuned(choice)?);
+            errors.push(found.ok_or("regular")?);
+        }
         for pair in errors.windows(2) {
             assert!(pair[1].tuned.error < pair[0].tuned.error, "{errors:?}");
             assert!(pair[1].any_nodal_diameter.error < pair[0].any_nodal_diameter.error);
@@ -356,5 +358,6 @@ mod tests {
             assert!(error.any_nodal_diameter.error >= 0.9 * error.tuned.error);
         }
         assert!(errors[0].tuned.error > 1e-2 && errors[3].any_nodal_diameter.error < 1e-6);
+        Ok(())
     }
 }

@@ -219,7 +219,7 @@ fn a_basis_that_cannot_follow_the_contact_and_a_short_reach_of_modes_are_warning
         [Warning::ContactDisplacement { .. }]
     ));
     assert!(matches!(
-        warnings(0.09, 1.2, 0.001)[..],
+        warnings(0.09, 0.9, 0.001)[..],
         [Warning::CraigBamptonModes { .. }]
     ));
 }

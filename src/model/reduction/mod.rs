@@ -10,6 +10,6 @@ mod reduce;
 pub use super::reduced_model::{BasisChoice, CantileverModes, ContactSprings};
 pub use blade::blade_gram;
 pub use craig_bampton::CraigBampton;
-pub use error::{CRAIG_BAMPTON_REACH, ContactDisplacementError, ContactDisplacementErrors};
+pub use error::{ContactDisplacementError, ContactDisplacementErrors, wanted_reach_hz};
 pub use options::{Basis, ReductionOptions};
 pub use reduce::{ContactStiffness, Reduction};
