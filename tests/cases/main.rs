@@ -5,6 +5,7 @@
 
 mod lumped24;
 mod one_dof;
+mod reduction_error;
 mod support;
 mod validation;
 mod wheels;
