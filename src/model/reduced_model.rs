@@ -107,7 +107,8 @@ pub struct ReducedModel {
     pub contact: ContactGeometry,
     /// Linear contact springs of a sector's rows, stick and slide.
     pub springs: ContactSprings,
-    /// `W^T K_blade W` over `W = [Re B_0, Im B_0, Re B_1, ...]`, see [`super::reduction::blade_gram`].
+    /// `W^T K_blade W` over `W = [Re B_0, Im B_0, Re B_1, ...]`, see [`super::reduction::blade_gram`];
+    /// empty in a model made for the tuned wheel alone.
     pub blade_gram: Matrix<f64>,
     /// Cantilevered-blade modes, where the study projects through them.
     pub cantilever: Option<CantileverModes>,

@@ -5,6 +5,8 @@ use std::fmt;
 use serde::Serialize;
 
 use super::text_table::TextTable;
+use super::warning::Warning;
+use crate::model::reduction::{ContactDisplacementError, ContactDisplacementErrors};
 
 /// Facts about one nodal diameter of the reduced model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -44,6 +46,13 @@ pub struct ModelReport {
     pub reduced_coordinates: usize,
     /// Measured relative error of the tuned nonlinear peak, where the basis was chosen by it.
     pub error: Option<f64>,
+    /// Error of the relative displacement at the contact, under friction.
+    pub contact_displacement: Option<ContactDisplacementErrors>,
+    /// Highest fixed-interface frequency over what it should be, 1 is enough; none where no mode
+    /// is left out.
+    pub craig_bampton_reach: Option<f64>,
+    /// What is not accurate enough.
+    pub warnings: Vec<Warning>,
     /// Memory of the reduced model, bytes.
     pub memory_bytes: usize,
     /// Digest under which the reduced model is cached.
@@ -74,6 +83,23 @@ impl fmt::Display for ModelReport {
             Some(error) => writeln!(f, ", tuned peak within {:.2} %", 100.0 * error)?,
             None => writeln!(f)?,
         }
+        if let Some(errors) = &self.contact_displacement {
+            writeln!(
+                f,
+                "contact displacement within {}, in any nodal diameter within {}",
+                place(&errors.tuned),
+                place(&errors.any_nodal_diameter)
+            )?;
+        }
+        if let Some(reach) = self.craig_bampton_reach {
+            writeln!(
+                f,
+                "fixed-interface modes reach {reach:.1} times the frequency needed"
+            )?;
+        }
+        for warning in &self.warnings {
+            writeln!(f, "warning: {warning}")?;
+        }
         let mut table =
             TextTable::new(&["ND", "dofs", "rank", "condition", "stick Hz", "slide Hz"]);
         for facts in &self.nodal_diameters {
@@ -88,6 +114,17 @@ impl fmt::Display for ModelReport {
         }
         write!(f, "\n{table}")
     }
+}
+
+fn place(error: &ContactDisplacementError) -> String {
+    format!(
+        "{:.2} % (engine order {}, {} N, harmonic {}, ND {})",
+        100.0 * error.error,
+        error.engine_order,
+        error.normal_load_n,
+        error.harmonic,
+        error.nodal_diameter
+    )
 }
 
 fn frequencies(hz: &[f64]) -> String {

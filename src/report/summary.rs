@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::Warning;
+use crate::model::reduction::ContactDisplacementErrors;
 use crate::population::statistics::{
     Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics,
 };
@@ -36,8 +37,41 @@ pub struct BasisSummary {
     pub name: String,
     /// Measured relative error of the tuned peak; none where nothing is left out or no peak was found.
     pub tuned_peak_error: Option<f64>,
+    /// Largest relative error of the contact displacement in any nodal diameter.
+    pub contact_displacement_error: Option<f64>,
+    /// Highest fixed-interface frequency over what it should be; 1 is enough.
+    pub craig_bampton_reach: Option<f64>,
     /// Error that the study asks for.
     pub wanted_error: f64,
+}
+
+impl BasisSummary {
+    /// What of the reduction is less accurate than it should be.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<Warning> {
+        let peak = self
+            .tuned_peak_error
+            .filter(|&error| error > self.wanted_error)
+            .map(|error| Warning::BasisError {
+                basis: self.name.clone(),
+                error,
+                wanted: self.wanted_error,
+            });
+        let accepted = ContactDisplacementErrors::accepted(self.wanted_error);
+        let contact = self
+            .contact_displacement_error
+            .filter(|&error| error > accepted)
+            .map(|error| Warning::ContactDisplacement {
+                basis: self.name.clone(),
+                error,
+                accepted,
+            });
+        let modes = self
+            .craig_bampton_reach
+            .filter(|&reach| reach < 1.0)
+            .map(|reach| Warning::CraigBamptonModes { reach });
+        peak.into_iter().chain(contact).chain(modes).collect()
+    }
 }
 
 /// One scenario of a summary.
@@ -234,16 +268,7 @@ fn warnings(
             harmonics: "[1, 3]".to_owned(),
         });
     }
-    let basis = &context.basis;
-    if let Some(error) = basis.tuned_peak_error
-        && error > basis.wanted_error
-    {
-        warnings.push(Warning::BasisError {
-            basis: basis.name.clone(),
-            error,
-            wanted: basis.wanted_error,
-        });
-    }
+    warnings.extend(context.basis.warnings());
     if rows.failed() > 0 {
         warnings.push(Warning::Failures {
             failed: rows.failed(),

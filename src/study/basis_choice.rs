@@ -5,13 +5,17 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::PipelineError;
+use super::contact_displacement::ContactMotion;
 use crate::model::ReducedModel;
-use crate::model::reduction::{Basis, BasisChoice, Reduction, ReductionOptions};
+use crate::model::cyclic::nodal_diameter_of;
+use crate::model::reduction::{
+    Basis, BasisChoice, ContactDisplacementErrors, Reduction, ReductionOptions, wanted_reach_hz,
+};
 use crate::population::monte_carlo::{RowSettings, RowSolver};
-use crate::response::forced_response::ContactCondition;
+use crate::response::forced_response::{ContactCondition, Peak};
 
-/// Stick modes of `stick_attachment` where the study does not say.
-const ATTACHMENT_STICK_MODES: usize = 4;
+/// Numbers of stick modes of `stick_attachment` that are tried, ascending.
+const ATTACHMENT_LADDER: [usize; 5] = [4, 8, 14, 20, 28];
 /// Numbers of stick and of slide modes that are tried, ascending.
 const STICK_SLIDE_LADDER: [usize; 9] = [2, 3, 4, 6, 8, 10, 14, 20, 28];
 /// Relative tolerance of the peaks that are compared.
@@ -27,6 +31,22 @@ pub struct BasisError {
     /// Largest relative error of the tuned peak over the conditions compared; none if a peak was
     /// not found.
     pub error: Option<f64>,
+    /// Largest error of the relative displacement at the contact over the same conditions under
+    /// friction; none if there is none or a peak was not found.
+    pub contact_displacement: Option<ContactDisplacementErrors>,
+}
+
+impl BasisError {
+    /// The larger of the two errors, each over what is accepted of it for `wanted_error`.
+    fn excess(&self, wanted_error: f64) -> f64 {
+        let contact = self.contact_displacement.map_or(0.0, |errors| {
+            errors.any_nodal_diameter.error / ContactDisplacementErrors::accepted(wanted_error)
+        });
+        let peak = self
+            .error
+            .map_or(f64::INFINITY, |error| error / wanted_error);
+        peak.max(contact)
+    }
 }
 
 /// The chosen basis and the evidence for it.
@@ -34,12 +54,16 @@ pub struct BasisError {
 pub struct BasisEvidence {
     /// Whether the basis is the whole space of every nodal diameter.
     pub whole_space: bool,
-    /// Errors of the bases that were tried; the last one was taken.
+    /// Smallest ratio, over the harmonics of the tuned peaks, of the highest fixed-interface
+    /// frequency in the harmonic's nodal diameter to the [`wanted_reach_hz`]; none where no mode is left out.
+    pub craig_bampton_reach: Option<f64>,
+    /// Errors of the bases that were tried; the one that was taken stands last.
     pub tried: Vec<BasisError>,
 }
 
 /// Chooses the basis for `options` by the tuned nonlinear peak on one sector, against the whole
-/// Craig-Bampton sector with every contact dof, under the given engine orders and conditions.
+/// Craig-Bampton sector with every contact dof, under the given engine orders and conditions, and
+/// by the contact displacement that it can follow in every nodal diameter.
 ///
 /// # Errors
 /// If a mass or stiffness is not positive definite.
@@ -53,74 +77,74 @@ pub fn choose_basis(
     if reduction.is_whole_space() {
         let evidence = BasisEvidence {
             whole_space: true,
+            craig_bampton_reach: None,
             tried: Vec::new(),
         };
         return Ok((BasisChoice::CraigBampton, evidence));
     }
-    let reference = Peaks::of(
-        reduction.reduce(BasisChoice::CraigBampton, None)?,
-        settings,
-        engine_orders,
-        conditions,
-    )?;
-    let mut tried = Vec::new();
-    let mut chosen = None;
+    let whole = Arc::new(reduction.tuned(BasisChoice::CraigBampton)?);
+    let reference = Peaks::of(Arc::clone(&whole), settings, engine_orders, conditions)?;
+    let motions = reference.contact_motions(&whole, settings, engine_orders, conditions)?;
+    let mut tried: Vec<(BasisChoice, BasisError)> = Vec::new();
     for choice in candidates(reduction, options) {
-        let peaks = Peaks::of(
-            reduction.reduce(choice, None)?,
-            settings,
-            engine_orders,
-            conditions,
-        )?;
-        let error = peaks.error(&reference);
-        tried.push(BasisError {
+        let model = Arc::new(reduction.tuned(choice)?);
+        let peaks = Peaks::of(Arc::clone(&model), settings, engine_orders, conditions)?;
+        let own = BasisError {
             basis: choice.to_string(),
             vectors: vectors(reduction, choice),
-            error,
-        });
-        chosen = Some(choice);
-        if error.is_some_and(|error| error <= options.error) {
+            error: peaks.error(&reference),
+            contact_displacement: largest_displacement_error(&motions, &model),
+        };
+        let enough = own.excess(options.error) <= 1.0;
+        tried.push((choice, own));
+        if enough {
             break;
         }
     }
-    let choice = chosen.unwrap_or(BasisChoice::StickAttachment {
-        stick: ATTACHMENT_STICK_MODES,
-    });
+    // The last one where it meets the wanted error, else the best of all.
+    let size = |own: &BasisError| own.excess(options.error);
+    let best = (0..tried.len())
+        .rev()
+        .min_by(|&a, &b| size(&tried[a].1).total_cmp(&size(&tried[b].1)));
+    if let Some(best) = best {
+        let taken = tried.remove(best);
+        tried.push(taken);
+    }
+    let choice = tried
+        .last()
+        .map_or(BasisChoice::CraigBampton, |(choice, _)| *choice);
     Ok((
         choice,
         BasisEvidence {
             whole_space: false,
-            tried,
+            craig_bampton_reach: reference.reach(reduction, settings, engine_orders, conditions),
+            tried: tried.into_iter().map(|(_, own)| own).collect(),
         },
     ))
 }
 
 /// Bases to try, the cheapest first; one that the user fixed stands alone.
 fn candidates(reduction: &Reduction<'_>, options: &ReductionOptions) -> Vec<BasisChoice> {
-    let attachment = BasisChoice::StickAttachment {
-        stick: options.stick_modes.unwrap_or(ATTACHMENT_STICK_MODES),
-    };
-    let ladder = STICK_SLIDE_LADDER
-        .iter()
-        .map(|&modes| BasisChoice::StickSlide {
-            stick: modes,
-            slide: modes,
-        });
+    let attachments = ATTACHMENT_LADDER.map(|stick| BasisChoice::StickAttachment { stick });
+    let ladder = STICK_SLIDE_LADDER.map(|modes| BasisChoice::StickSlide {
+        stick: modes,
+        slide: modes,
+    });
     match (options.basis, options.stick_modes, options.slide_modes) {
-        (Basis::StickAttachment, ..) => vec![attachment],
+        (Basis::StickAttachment, Some(stick), _) => vec![BasisChoice::StickAttachment { stick }],
+        (Basis::StickAttachment, None, _) => attachments.to_vec(),
         (_, Some(stick), Some(slide)) => vec![BasisChoice::StickSlide { stick, slide }],
         (_, Some(modes), None) | (_, None, Some(modes)) => vec![BasisChoice::StickSlide {
             stick: modes,
             slide: modes,
         }],
-        (Basis::StickSlide, None, None) => ladder.collect(),
-        (Basis::Auto, None, None) if reduction.contact_rows() == 0 => ladder.collect(),
+        (Basis::StickSlide, None, None) => ladder.to_vec(),
+        (Basis::Auto, None, None) if reduction.contact_rows() == 0 => ladder.to_vec(),
         (Basis::Auto, None, None) => {
-            let size = vectors(reduction, attachment);
-            ladder
-                .filter(|&choice| vectors(reduction, choice) < size)
-                .chain([attachment])
-                .collect()
+            // Of two of one size the attachment vectors, which also hold where contacts separate.
+            let mut all = [attachments.as_slice(), &ladder].concat();
+            all.sort_by_key(|&choice| vectors(reduction, choice));
+            all
         }
     }
 }
@@ -138,30 +162,33 @@ fn vectors(reduction: &Reduction<'_>, choice: BasisChoice) -> usize {
     }
 }
 
-/// Tuned peak amplitudes, one per engine order and condition; none where no peak was found.
-struct Peaks(Vec<Option<f64>>);
+/// Largest error of the contact displacement over the tuned peaks; none without any.
+fn largest_displacement_error(
+    motions: &[ContactMotion<'_>],
+    model: &ReducedModel,
+) -> Option<ContactDisplacementErrors> {
+    motions
+        .iter()
+        .map(|motion| motion.errors_of(model))
+        .reduce(|a, b| Some(a?.larger(b?)))?
+}
+
+/// Tuned peaks, one per engine order and condition.
+struct Peaks(Vec<Peak>);
 
 impl Peaks {
     fn of(
-        model: ReducedModel,
+        model: Arc<ReducedModel>,
         settings: &RowSettings,
         engine_orders: &[u32],
         conditions: &[ContactCondition],
     ) -> Result<Self, PipelineError> {
         let mut settings = settings.clone();
         settings.solver.peak_tolerance = PEAK_TOLERANCE;
-        let solver = RowSolver::new(Arc::new(model), settings)?;
+        let solver = RowSolver::new(model, settings)?;
         Ok(Self(
-            engine_orders
-                .iter()
-                .flat_map(|&engine_order| {
-                    conditions
-                        .iter()
-                        .map(move |&condition| (engine_order, condition))
-                })
-                .map(|(engine_order, condition)| {
-                    solver.tuned_peak(engine_order, condition).amplitude_m()
-                })
+            each(engine_orders, conditions)
+                .map(|(engine_order, condition)| solver.tuned_peak(engine_order, condition))
                 .collect(),
         ))
     }
@@ -171,9 +198,75 @@ impl Peaks {
         self.0
             .iter()
             .zip(&reference.0)
-            .map(|(own, reference)| Some(((*own)? / (*reference)? - 1.0).abs()))
+            .map(|(own, reference)| {
+                Some((own.amplitude_m()? / reference.amplitude_m()? - 1.0).abs())
+            })
             .try_fold(0.0, |largest: f64, error| Some(largest.max(error?)))
     }
+
+    /// How far the fixed-interface modes reach beyond the harmonics of the peaks.
+    fn reach(
+        &self,
+        reduction: &Reduction<'_>,
+        settings: &RowSettings,
+        engine_orders: &[u32],
+        conditions: &[ContactCondition],
+    ) -> Option<f64> {
+        let models = reduction.models();
+        let sectors = reduction.sectors();
+        each(engine_orders, conditions)
+            .zip(&self.0)
+            .filter_map(|((engine_order, condition), peak)| {
+                let linear = condition.normal_load_n().is_none();
+                Some((engine_order, linear, peak.point.as_ref()?.frequency_hz))
+            })
+            .flat_map(|(engine_order, linear, frequency_hz)| {
+                let harmonics = settings.harmonics.iter().copied();
+                harmonics
+                    .filter(move |&k| k == 1 || (k > 1 && !linear))
+                    .filter_map(move |k| {
+                        let h = nodal_diameter_of(k, engine_order, sectors).index;
+                        let highest = models[h].highest_fixed_interface_hz?;
+                        Some(highest / wanted_reach_hz(k, frequency_hz))
+                    })
+            })
+            .min_by(f64::total_cmp)
+    }
+
+    /// What happens at the contact at those that are nonlinear.
+    fn contact_motions<'a>(
+        &self,
+        model: &'a ReducedModel,
+        settings: &'a RowSettings,
+        engine_orders: &[u32],
+        conditions: &[ContactCondition],
+    ) -> Result<Vec<ContactMotion<'a>>, PipelineError> {
+        let mut motions = Vec::new();
+        for ((engine_order, condition), peak) in each(engine_orders, conditions).zip(&self.0) {
+            let harmonics = &settings.harmonics;
+            motions.extend(ContactMotion::of_peak(
+                model,
+                settings,
+                harmonics,
+                engine_order,
+                condition,
+                peak,
+            )?);
+        }
+        Ok(motions)
+    }
+}
+
+/// Every engine order with every condition.
+fn each<'a>(
+    engine_orders: &'a [u32],
+    conditions: &'a [ContactCondition],
+) -> impl Iterator<Item = (u32, ContactCondition)> + 'a {
+    engine_orders.iter().flat_map(|&engine_order| {
+        conditions
+            .iter()
+            .map(move |&condition| (engine_order, condition))
+    })
 }
 
 /// The conditions by which a basis is judged: lowest, middle and highest load of the study, and

@@ -1,6 +1,7 @@
 //! The study file: as written, checked, resolved; and the pipeline that turns it into tables.
 
 mod basis_choice;
+mod contact_displacement;
 mod digest;
 mod engine;
 mod error;

@@ -443,15 +443,18 @@ fn context_of(manifest: &Manifest) -> SummaryContext {
 /// The basis and its measured error, from the facts that the engine gave.
 fn basis_of(manifest: &Manifest) -> BasisSummary {
     let tried = manifest.reduction["tuned_peak_errors"].as_array();
+    let taken = tried.and_then(|tried| tried.last());
     let wanted = manifest.study["reduction"]["error"].as_f64();
     BasisSummary {
         name: manifest.reduction["basis"]
             .as_str()
             .unwrap_or_default()
             .to_owned(),
-        tuned_peak_error: tried
-            .and_then(|tried| tried.last())
-            .and_then(|last| last["error"].as_f64()),
+        tuned_peak_error: taken.and_then(|taken| taken["error"].as_f64()),
+        contact_displacement_error: taken.and_then(|taken| {
+            taken["contact_displacement"]["any_nodal_diameter"]["error"].as_f64()
+        }),
+        craig_bampton_reach: manifest.reduction["craig_bampton_reach"].as_f64(),
         wanted_error: wanted.unwrap_or(f64::INFINITY),
     }
 }

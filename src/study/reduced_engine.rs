@@ -15,7 +15,7 @@ use crate::population::monte_carlo::{
     ResponseRow, RowSettings, RowSolver, Scenario, TunedReference,
 };
 use crate::population::table::CurvePoint;
-use crate::report::{ModelReport, NodalDiameterFacts};
+use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
 use crate::response::forced_response::{ContactCondition, Harmonics, SearchPlan};
 use crate::response::friction::{ContactLaw, ContactOptions, PairParameters};
 use crate::response::harmonic_balance::Status;
@@ -36,6 +36,7 @@ pub struct ReducedEngineSource;
 struct ReducedEngine {
     solver: RowSolver,
     evidence: BasisEvidence,
+    wanted_error: f64,
     digest: String,
     sector_dofs: usize,
     observed: Vec<String>,
@@ -95,6 +96,7 @@ impl EngineSource for ReducedEngineSource {
         Ok(Box::new(ReducedEngine {
             solver: RowSolver::new(Arc::new(stored.model), settings)?,
             evidence: stored.evidence,
+            wanted_error: study.reduction.error,
             digest,
             sector_dofs: model.dofs.len(),
             observed: model
@@ -114,6 +116,18 @@ impl Engine for ReducedEngine {
         } else {
             model.basis.to_string()
         };
+        let taken = self.evidence.tried.last();
+        let error = taken.and_then(|taken| taken.error);
+        let contact_displacement = taken.and_then(|taken| taken.contact_displacement);
+        let craig_bampton_reach = self.evidence.craig_bampton_reach;
+        let summary = BasisSummary {
+            name: basis.clone(),
+            tuned_peak_error: error,
+            contact_displacement_error: contact_displacement
+                .map(|errors| errors.any_nodal_diameter.error),
+            craig_bampton_reach,
+            wanted_error: self.wanted_error,
+        };
         ModelReport {
             name: model.name.clone(),
             sectors: model.sectors,
@@ -122,7 +136,10 @@ impl Engine for ReducedEngine {
             observed: self.observed.clone(),
             basis,
             reduced_coordinates: self.solver.basis().size(),
-            error: self.evidence.tried.last().and_then(|tried| tried.error),
+            error,
+            contact_displacement,
+            craig_bampton_reach,
+            warnings: summary.warnings(),
             memory_bytes: memory_bytes(model),
             digest: self.digest.clone(),
             nodal_diameters: model
@@ -149,6 +166,7 @@ impl Engine for ReducedEngine {
             "whole_space": self.evidence.whole_space,
             "reduced_coordinates": self.solver.basis().size(),
             "tuned_peak_errors": self.evidence.tried,
+            "craig_bampton_reach": self.evidence.craig_bampton_reach,
         })
     }
 

@@ -6,6 +6,7 @@
 mod full_model;
 mod lumped24;
 mod one_dof;
+mod reduction_error;
 mod support;
 mod validation;
 mod wheels;

@@ -95,6 +95,11 @@ impl Case {
         }
     }
 
+    /// Facts about the reduction, as in the manifest.
+    pub fn reduction(&self) -> serde_json::Value {
+        self.engine.reduction_facts()
+    }
+
     /// The basis that was taken.
     pub fn basis(&self) -> String {
         self.engine.model_report().basis

@@ -1,5 +1,7 @@
 //! Craig-Bampton model of one nodal diameter: contact dofs kept, the rest in fixed-interface modes.
 
+use std::f64::consts::TAU;
+
 use crate::linalg::{
     Complex64, HermitianSparse, Matrix, SparseFactor, hermitian_pencil, lowest_modes,
 };
@@ -21,6 +23,8 @@ pub struct CraigBampton {
     pub nodal_diameter: usize,
     /// Whether T spans all of the independent dofs.
     pub whole_space: bool,
+    /// Highest natural frequency of the fixed-interface modes, Hz; none where none is left out.
+    pub highest_fixed_interface_hz: Option<f64>,
     /// Enrichment vectors in the columns of T, `size x n_enrichment`: what every basis keeps besides its modes.
     pub enrichment: Matrix<Complex64>,
     /// T, `n_dofs x size`.
@@ -61,7 +65,7 @@ impl CraigBampton {
         }
         let interior: Vec<usize> = (0..n).filter(|&dof| !is_boundary[dof]).collect();
         let held = HeldInterior::new(&stiffness, &mass, &interior, h)?;
-        let fixed = held.modes(modes, h)?;
+        let (eigenvalues, fixed) = held.modes(modes, h)?;
         let constraint = held.constraint_modes(&stiffness, &mass, &interior, &boundary);
 
         let columns = boundary.len() + fixed.columns();
@@ -78,14 +82,12 @@ impl CraigBampton {
             }
         }
         let whole_space = columns == n;
-        Ok(Self::project(
-            sector,
-            h,
-            &stiffness,
-            &mass,
-            recovery,
-            whole_space,
-        ))
+        let mut model = Self::project(sector, h, &stiffness, &mass, recovery, whole_space);
+        model.highest_fixed_interface_hz = eigenvalues
+            .last()
+            .filter(|_| !whole_space)
+            .map(|highest| highest.max(0.0).sqrt() / TAU);
+        Ok(model)
     }
 
     /// The same model with T enlarged by the sensitivity to blade stiffness of `count` stick modes,
@@ -134,6 +136,7 @@ impl CraigBampton {
         // modes lacks the part inside as well. With M-orthonormal Phi, c = Phi Phi^H T^H M s.
         let (_, phi) = pencil(&model.stiffness, &model.mass, h)?;
         let loaded = model.recovery.adjoint_times(&mass.times(&sensitivity));
+        model.highest_fixed_interface_hz = self.highest_fixed_interface_hz;
         model.enrichment = phi.times(&phi.adjoint_times(&loaded));
         Ok(model)
     }
@@ -223,6 +226,7 @@ impl CraigBampton {
         Self {
             nodal_diameter,
             whole_space,
+            highest_fixed_interface_hz: None,
             enrichment: Matrix::zeros(recovery.columns(), 0),
             recovery,
             stiffness: reduced_stiffness,
@@ -288,20 +292,25 @@ impl HeldInterior {
         })
     }
 
-    fn modes(&self, count: usize, nodal_diameter: usize) -> Result<Matrix<Complex64>, ModelError> {
+    /// Eigenvalues (rad/s)^2, ascending, and modes, `n_interior x count`.
+    fn modes(
+        &self,
+        count: usize,
+        nodal_diameter: usize,
+    ) -> Result<(Vec<f64>, Matrix<Complex64>), ModelError> {
         let n = self.mass.dimension();
         if n <= DENSE_INTERIOR {
             let all: Vec<usize> = (0..n).collect();
-            let (_, vectors) = pencil(
+            let (mut values, vectors) = pencil(
                 &self.stiffness.block(&all, &all),
                 &self.mass.block(&all, &all),
                 nodal_diameter,
             )?;
-            return Ok(vectors.column_range(0, count.min(n)));
+            values.truncate(count);
+            return Ok((values, vectors.column_range(0, count.min(n))));
         }
-        let (_, vectors) = lowest_modes(&self.factor, &self.mass, self.shift, count)
-            .map_err(|_| ModelError::MassNotPositiveDefinite { nodal_diameter })?;
-        Ok(vectors)
+        lowest_modes(&self.factor, &self.mass, self.shift, count)
+            .map_err(|_| ModelError::MassNotPositiveDefinite { nodal_diameter })
     }
 
     /// Static (for a shift, quasi-static) interior response to unit motions of the boundary,

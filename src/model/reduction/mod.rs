@@ -3,11 +3,13 @@
 mod basis;
 mod blade;
 mod craig_bampton;
+mod error;
 mod options;
 mod reduce;
 
 pub use super::reduced_model::{BasisChoice, CantileverModes, ContactSprings};
 pub use blade::blade_gram;
 pub use craig_bampton::CraigBampton;
+pub use error::{ContactDisplacementError, ContactDisplacementErrors, wanted_reach_hz};
 pub use options::{Basis, ReductionOptions};
 pub use reduce::{ContactStiffness, Reduction};

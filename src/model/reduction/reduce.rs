@@ -79,6 +79,12 @@ impl<'a> Reduction<'a> {
         })
     }
 
+    /// Number of sectors N.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.sector.sectors()
+    }
+
     /// The Craig-Bampton model of each nodal diameter.
     #[must_use]
     pub fn models(&self) -> &[CraigBampton] {
@@ -119,6 +125,28 @@ impl<'a> Reduction<'a> {
         choice: BasisChoice,
         cantilever_mode_count: Option<usize>,
     ) -> Result<ReducedModel, ModelError> {
+        let (mut model, bases) = self.nodal_diameters(choice)?;
+        model.cantilever = cantilever_mode_count
+            .map(|count| cantilever_modes(&self.sector, &bases, count))
+            .transpose()?;
+        model.blade_gram = blade_gram(&self.sector, &bases);
+        Ok(model)
+    }
+
+    /// The reduced model of the wheel without the blade's stiffness in it: of the tuned wheel only,
+    /// and much cheaper.
+    ///
+    /// # Errors
+    /// If a mass is not positive definite.
+    pub fn tuned(&self, choice: BasisChoice) -> Result<ReducedModel, ModelError> {
+        Ok(self.nodal_diameters(choice)?.0)
+    }
+
+    /// The reduced model but for the blade, and the basis of each nodal diameter (`n_dofs x n_modes`).
+    fn nodal_diameters(
+        &self,
+        choice: BasisChoice,
+    ) -> Result<(ReducedModel, Vec<Matrix<Complex64>>), ModelError> {
         let projected = (0..self.models.len())
             .into_par_iter()
             .map(|h| self.project(h, choice))
@@ -131,10 +159,7 @@ impl<'a> Reduction<'a> {
             bases.push(basis);
             report.push(line);
         }
-        let cantilever = cantilever_mode_count
-            .map(|count| cantilever_modes(&self.sector, &bases, count))
-            .transpose()?;
-        Ok(ReducedModel {
+        let model = ReducedModel {
             name: self.name.to_owned(),
             sectors: self.sector.sectors(),
             basis: choice,
@@ -142,10 +167,11 @@ impl<'a> Reduction<'a> {
             nodal_diameters,
             contact: self.sector.contact().clone(),
             springs: self.springs.clone(),
-            blade_gram: blade_gram(&self.sector, &bases),
-            cantilever,
+            blade_gram: Matrix::zeros(0, 0),
+            cantilever: None,
             report,
-        })
+        };
+        Ok((model, bases))
     }
 
     /// Reduced matrices, the basis over the independent dofs (`n_dofs x n_modes`), and the report.
