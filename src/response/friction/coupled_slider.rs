@@ -159,7 +159,7 @@ impl CoupledSlider {
                 break;
             }
             start = match marched.take() {
-                Some(end) if !(now <= KEPT_STEP * distance) => end,
+                Some(end) if now.is_nan() || now > KEPT_STEP * distance => end,
                 _ if self.periods == 1 => period.end,
                 _ => {
                     distance = now;

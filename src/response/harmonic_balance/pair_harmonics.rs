@@ -274,11 +274,15 @@ impl PairHarmonics {
         let cross = jacobian
             .tangential_cross
             .get_or_insert_with(|| [vec![0.0; n * n], vec![0.0; n * n]]);
-        for tangent in 0..2 {
+        let by_normal = jacobian.tangential_normal.iter_mut();
+        let blocks = by_normal
+            .zip(&mut jacobian.tangential_tangential)
+            .zip(cross);
+        for (tangent, ((by_normal, by_own), by_other)) in blocks.enumerate() {
             let blocks = [
-                (0, &mut jacobian.tangential_normal[tangent]),
-                (1 + tangent, &mut jacobian.tangential_tangential[tangent]),
-                (2 - tangent, &mut cross[tangent]),
+                (0, by_normal),
+                (1 + tangent, by_own),
+                (2 - tangent, by_other),
             ];
             for (direction, block) in blocks {
                 self.coupled.fill(tangent, direction, block);
