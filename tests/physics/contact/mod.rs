@@ -7,5 +7,6 @@ mod jenkins_oracles;
 mod pair_derivatives;
 mod periodic_state;
 pub mod random;
+mod ring_friction;
 mod system_oracles;
 mod transition_criteria;

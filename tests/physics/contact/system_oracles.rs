@@ -158,8 +158,16 @@ fn friction_alone_bounds_the_resonance_if_the_force_is_below_4_mu_n_over_pi() {
                     let start = Complex64::new(force, 0.0) / Complex64::new(offset, loss);
                     let mut x = vec![start.re, start.im];
                     converge(&system, omega, &mut x);
-                    let error = relative(amplitude(&x), expected);
-                    assert!(error < 1e-4, "{law:?} {share} {expected}: {error:e}");
+                    // The curve has steep flanks, so the force that its equation gives for the
+                    // amplitude found is compared, not the amplitude.
+                    let found = amplitude(&x);
+                    assert!(found < highest * (1.0 + 1e-6), "{found} {highest}");
+                    let theta = (1.0 - 2.0 * limit / (kt * found)).acos();
+                    let stiffness = kt / PI * (theta - 0.5 * (2.0 * theta).sin());
+                    let loss = kt / PI * theta.sin().powi(2);
+                    let implied = found * (1.0 + stiffness - omega * omega).hypot(loss);
+                    let error = relative(implied, force);
+                    assert!(error < 1e-6, "{law:?} {share} {expected}: {error:e}");
                 }
             }
         }
@@ -184,10 +192,12 @@ fn friction_alone_does_not_bound_the_resonance_if_the_force_is_above_4_mu_n_over
                 (x[0], x[1]) = (growth / offset, -wave / offset);
                 converge(&system, omega, &mut x);
                 let error = relative(amplitude(&x) * offset, growth);
-                let expected = 10.0 * limit / kt / (growth / offset) * (wave / growth).powi(2);
+                // What is left of the spring: A k_eq -> (2/3) (kt/pi) (4 mu N / kt)^(3/2) A^(-1/2).
+                let large = growth / offset;
+                let spring = 2.0 / 3.0 * kt / PI * (4.0 * limit / kt).powf(1.5) / large.sqrt();
                 assert!(
-                    error < expected + 1e-6,
-                    "{share}, {offset}: {error:e} {expected:e}"
+                    error < 1.2 * spring / growth,
+                    "{share}, {offset}: {error:e}"
                 );
             }
         }
