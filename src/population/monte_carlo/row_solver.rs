@@ -8,7 +8,7 @@ use crate::response::forced_response::{
     ContactCondition, Excited, FrequencyBand, LimitsWanted, Peak, Point, PointSettings,
     PointSolver, SolverOptions, Wheel, Window, mistuned_window, peak, tuned_span, wheel_force,
 };
-use crate::response::friction::{ContactLaw, PairParameters};
+use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{Damping, Status, TransformError};
 use crate::response::mistuning::{Deviations, Pattern, Projection, StructuralModes, WheelBasis};
 
@@ -19,6 +19,8 @@ pub struct RowSettings {
     pub harmonics: Vec<u32>,
     /// Contact law and its parameters per sector; none for a model without contact.
     pub contact: Option<(ContactLaw, PairParameters)>,
+    /// What a free ring does under mean friction.
+    pub ring: Ring,
     /// Damping of the structure.
     pub damping: Damping,
     /// Factor on the model's force vector.
@@ -54,6 +56,7 @@ impl RowSolver {
                 settings.contact,
                 model.contact.clone(),
             )
+            .map(|points| points.with_ring(settings.ring))
         };
         Ok(Self {
             full: points(&settings.harmonics)?,

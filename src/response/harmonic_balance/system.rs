@@ -55,6 +55,8 @@ pub struct HarmonicSystem {
     pub(super) transform: Arc<HarmonicTransform>,
     /// Number of contact rows over all sectors.
     rows: usize,
+    /// Drift of the ring along its rigid motions, m per period.
+    ring_drift_m: [f64; 2],
 }
 
 /// Share of contact pairs in a state at any sample.
@@ -122,6 +124,7 @@ impl HarmonicSystem {
             interface,
             transform,
             rows,
+            ring_drift_m: [0.0; 2],
         }
     }
 
@@ -170,6 +173,23 @@ impl HarmonicSystem {
     #[must_use]
     pub fn pairs(&self) -> &[PairParameters] {
         &self.interface.pairs
+    }
+
+    /// Drift of the ring along its rigid motions (rotation, axial), m per period: zero at first.
+    #[must_use]
+    pub fn ring_drift_m(&self) -> [f64; 2] {
+        self.ring_drift_m
+    }
+
+    /// Sets the drift of the ring.
+    pub fn set_ring_drift(&mut self, drift_m: [f64; 2]) {
+        self.ring_drift_m = drift_m;
+    }
+
+    /// Rigid motions of the ring that nothing but friction holds.
+    #[must_use]
+    pub fn free_ring_motions(&self) -> [bool; 2] {
+        self.interface.geometry.ring_free
     }
 
     /// Buffers for this system.
@@ -317,11 +337,16 @@ impl HarmonicSystem {
         sum.map(|sum| sum / sectors)
     }
 
-    /// Coefficients of the displacement of one pair into `pair_input`.
+    /// Coefficients of the displacement of one pair into `pair_input`, and its drift.
     fn gather_pair(&self, pair: usize, workspace: &mut SystemWorkspace) {
         let coefficients = self.transform.n_coefficients();
         let per_sector = self.interface.pairs.len();
         let base = pair / per_sector * self.interface.geometry.row_count();
+        // The relative displacement is that of the blisk less that of the ring.
+        let [rotation, axial] = self.interface.geometry.ring_motion[pair % per_sector];
+        let [by_rotation, by_axial] = self.ring_drift_m;
+        let drift = [0, 1].map(|k| -(rotation[k] * by_rotation + axial[k] * by_axial));
+        workspace.pairs.set_drift(drift);
         workspace.pair_input.fill(0.0);
         let places = &self.interface.geometry.rows[pair % per_sector];
         for (direction, place) in places.iter().enumerate() {

@@ -1,15 +1,19 @@
 //! What the friction circle changes: peaks and cost of `coulomb_3d` beside `simplified_3d`.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use blisk::model::reduction::BasisChoice;
 use blisk::model::sector::bundle;
 use blisk::response::forced_response::SolverOptions;
 use blisk::response::friction::{ContactLaw, PairParameters};
-use blisk::response::harmonic_balance::{Damping, Status};
+use blisk::response::harmonic_balance::{
+    Damping, HarmonicTransform, PairHarmonics, PairJacobian, Status,
+};
 
 use super::super::wheels::{Wheel, full, pattern, solve_row};
+use super::random::Random;
 
 /// Deviations of pattern 1 of a reference wheel.
 fn pattern_1(folder: &Path) -> Vec<f64> {
@@ -19,6 +23,53 @@ fn pattern_1(folder: &Path) -> Vec<f64> {
         (cells[0].to_owned(), cells[2].parse::<f64>().unwrap())
     });
     rows.filter(|(id, _)| id == "1").map(|row| row.1).collect()
+}
+
+/// Prints the time of one evaluation of a slipping pair, law beside law:
+/// `cargo test --release --test physics what_an_evaluation_costs -- --ignored --nocapture`.
+#[test]
+#[ignore = "a timing; prints figures"]
+fn what_an_evaluation_costs_under_either_law() {
+    let parameters = PairParameters {
+        normal_load_n: 1.0,
+        normal_stiffness_n_per_m: 1.0,
+        tangential_stiffness_n_per_m: 1.0,
+        friction_coefficient: 0.3,
+    };
+    for harmonics in [&[1][..], &[1, 3], &[0, 1, 2, 3]] {
+        let transform = Arc::new(HarmonicTransform::new(harmonics, 128).unwrap());
+        let n = transform.n_coefficients();
+        let mut random = Random(61);
+        let motions: Vec<Vec<f64>> = (0..500).map(|_| random.vector(3 * n, 1.0)).collect();
+        let mut correction = vec![0.0; 3 * n];
+        let mut jacobian = PairJacobian::new(n);
+        for with_jacobian in [false, true] {
+            let mut microseconds = [f64::INFINITY; 2];
+            let laws = [ContactLaw::Simplified3d, ContactLaw::Coulomb3d];
+            let mut evaluators = laws.map(|law| PairHarmonics::new(law, Arc::clone(&transform)));
+            let mut periods = 0;
+            // Law after law, the smallest of many times: other work on the machine does not count.
+            for _ in 0..30 {
+                for (pairs, best) in evaluators.iter_mut().zip(&mut microseconds) {
+                    let start = Instant::now();
+                    periods = 0;
+                    for motion in &motions {
+                        let wanted = with_jacobian.then_some(&mut jacobian);
+                        pairs.evaluate(&parameters, motion, &mut correction, wanted);
+                        periods += pairs.history().coupled_slider().periods();
+                    }
+                    let time = 1e6 * start.elapsed().as_secs_f64() / motions.len() as f64;
+                    *best = best.min(time);
+                }
+            }
+            println!(
+                "harmonics {harmonics:?}, Jacobian {with_jacobian}: {:.2} us, {:.2} us; {:.1} periods",
+                microseconds[0],
+                microseconds[1],
+                periods as f64 / motions.len() as f64
+            );
+        }
+    }
 }
 
 /// Prints the table of docs/formulation.md, section 3:

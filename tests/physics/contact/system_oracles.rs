@@ -63,6 +63,7 @@ fn oscillator(
             weights: vec![1.0],
             rows: vec![[None, Some(0), None]],
             ring_motion: vec![[[1.0, 0.0], [0.0, 1.0]]],
+            ring_free: [false; 2],
         },
         pairs: vec![PairParameters {
             normal_load_n: limit,
@@ -82,7 +83,7 @@ fn oscillator(
 
 /// Solves from `x`, which must converge.
 fn converge(system: &HarmonicSystem, omega: f64, x: &mut Vec<f64>) {
-    let bounds = NewtonBounds::with_tolerance(1e-11);
+    let bounds = NewtonBounds::with_tolerance(1e-9);
     let mut workspace = NewtonWorkspace::new(system);
     let outcome = solve(system, omega, x, bounds, &mut workspace);
     assert_eq!(outcome.status, Status::Ok, "omega {omega}: {outcome:?}");
@@ -161,7 +162,7 @@ fn friction_alone_bounds_the_resonance_if_the_force_is_below_4_mu_n_over_pi() {
                     // The curve has steep flanks, so the force that its equation gives for the
                     // amplitude found is compared, not the amplitude.
                     let found = amplitude(&x);
-                    assert!(found < highest * (1.0 + 1e-6), "{found} {highest}");
+                    assert!(found < highest * (1.0 + 1e-5), "{found} {highest}");
                     let theta = (1.0 - 2.0 * limit / (kt * found)).acos();
                     let stiffness = kt / PI * (theta - 0.5 * (2.0 * theta).sin());
                     let loss = kt / PI * theta.sin().powi(2);
