@@ -63,6 +63,7 @@ impl Case {
         let settings = RowSettings {
             harmonics: harmonics.clone(),
             contact: Some(contact),
+            ring: study.contact.as_ref().expect("a study with contact").ring,
             damping: study.damping,
             amplitude_n: study.amplitude_n,
             projection: study.mistuning.projection,

@@ -9,7 +9,7 @@ use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::table::Compression;
 use crate::response::forced_response::AmplitudeMeasure;
-use crate::response::friction::ContactLaw;
+use crate::response::friction::{ContactLaw, Ring};
 use crate::response::mistuning::Projection;
 
 #[derive(Debug, Deserialize)]
@@ -69,6 +69,7 @@ pub(super) struct RawContact {
     pub friction_coefficient: Option<f64>,
     pub tangential_stiffness_n_per_m: Option<f64>,
     pub normal_stiffness_n_per_m: Option<f64>,
+    pub ring: Option<Ring>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -17,7 +17,7 @@ use crate::population::monte_carlo::{
 use crate::population::table::CurvePoint;
 use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
 use crate::response::forced_response::{ContactCondition, Harmonics, SearchPlan};
-use crate::response::friction::{ContactLaw, ContactOptions, PairParameters};
+use crate::response::friction::{ContactLaw, ContactOptions, PairParameters, Ring};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
 
@@ -246,6 +246,10 @@ pub(super) fn row_settings(study: &Study) -> RowSettings {
             .contact
             .as_ref()
             .map(|contact| (contact.law, PairParameters::of_sector(contact, 0.0))),
+        ring: study
+            .contact
+            .as_ref()
+            .map_or(Ring::Locked, |contact| contact.ring),
         damping: study.damping,
         amplitude_n: study.amplitude_n,
         projection: study.mistuning.projection,

@@ -1,8 +1,10 @@
 //! The sector model that a study names, and the checks that need both.
 
 use super::{Finding, MistuningSource, ModelSource, PipelineError, Problem, Study, StudyError};
+use crate::model::cyclic::ring_free;
 use crate::model::sector::{ModelError, SectorModel, bundle, lumped, parametric};
 use crate::response::forced_response::ContactCondition;
+use crate::response::friction::{ContactOptions, Ring};
 use crate::response::mistuning::PatternSource;
 
 /// Loads and validates the sector model of `study`.
@@ -100,6 +102,19 @@ fn check_contact(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
                 accepted: "a table with friction_coefficient, tangential_stiffness_n_per_m and \
                            normal_stiffness_n_per_m, because the model has contact"
                     .to_owned(),
+            },
+        );
+    }
+    let creeping = |contact: &ContactOptions| contact.ring == Ring::Creeping;
+    if study.contact.as_ref().is_some_and(creeping) && !ring_free(model).contains(&true) {
+        return finding(
+            "contact.ring",
+            Problem::NotAccepted {
+                value: study.map.value("contact.ring"),
+                accepted:
+                    "\"locked\", because springs or contact normals hold the ring of this model"
+                        .to_owned(),
+                suggestion: None,
             },
         );
     }

@@ -166,6 +166,7 @@ fn resolve(check: &mut Check, path: &Path, raw: RawStudy) -> Result<Option<Study
             "a finite number above 0, in N/m",
         ),
         normal_stiffness_n_per_m: raw.normal_stiffness_n_per_m,
+        ring: raw.ring.unwrap_or_default(),
     });
     if let Some(contact) = &contact {
         normal_stiffness(check, contact);

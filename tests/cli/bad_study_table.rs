@@ -179,6 +179,21 @@ pub const CASES: &[Case] = &[
         &["contact.tangential_stiffness_n_per_m = inf"],
     ),
     (
+        "8.0e5\n\n",
+        "8.0e5\nring = \"creeping\"\n\n",
+        &["contact.ring = \"creeping\"", "locked"],
+    ),
+    (
+        "8.0e5\n\n",
+        "8.0e5\nring = \"free\"\n\n",
+        &["contact.ring", "creeping"],
+    ),
+    (
+        "\"macro_slip_1d\"",
+        "\"coulomb_3d\"",
+        &["contact.normal_stiffness_n_per_m is missing"],
+    ),
+    (
         "\"macro_slip_1d\"",
         "\"simplified_3d\"",
         &["contact.normal_stiffness_n_per_m is missing"],

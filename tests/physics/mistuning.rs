@@ -8,7 +8,7 @@ use blisk::model::reduction::{BasisChoice, Reduction};
 use blisk::model::sector::{LumpedOptions, SectorModel, lumped};
 use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{ContactCondition, SolverOptions};
-use blisk::response::friction::ContactLaw;
+use blisk::response::friction::{ContactLaw, Ring};
 use blisk::response::harmonic_balance::{Damping, Status};
 use blisk::response::mistuning::{Deviations, Pattern, Projection, StructuralModes, WheelBasis};
 
@@ -185,6 +185,7 @@ fn solver(model: &Arc<ReducedModel>, projection: Projection) -> RowSolver {
     let settings = RowSettings {
         harmonics: vec![1],
         contact: Some((ContactLaw::Simplified3d, wheel8_contact())),
+        ring: Ring::Locked,
         damping: Damping::StructuralLossFactor(0.002),
         amplitude_n: 1.0,
         projection,

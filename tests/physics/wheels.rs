@@ -12,7 +12,7 @@ use blisk::population::monte_carlo::{
 use blisk::response::forced_response::{
     ContactCondition, Excited, LimitsWanted, SolverOptions, Wheel as WheelModes, wheel_force,
 };
-use blisk::response::friction::{ContactLaw, PairParameters};
+use blisk::response::friction::{ContactLaw, PairParameters, Ring};
 use blisk::response::harmonic_balance::Damping;
 use blisk::response::mistuning::{Deviations, Pattern, Projection, StructuralModes, WheelBasis};
 
@@ -29,6 +29,7 @@ pub struct Wheel {
     pub sector: PairParameters,
     pub damping: Damping,
     pub amplitude_n: f64,
+    pub ring: Ring,
 }
 
 /// Contact springs of a law along n, t1, t2.
@@ -124,6 +125,7 @@ impl Wheel {
             sector: contact,
             damping,
             amplitude_n: 1.0,
+            ring: Ring::Locked,
         }
     }
 
@@ -131,6 +133,7 @@ impl Wheel {
         RowSettings {
             harmonics: harmonics.to_vec(),
             contact: Some((self.law, self.sector)),
+            ring: self.ring,
             damping: self.damping,
             amplitude_n: self.amplitude_n,
             projection: Projection::Exact,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::sector::{Component, ContactPair, SectorModel};
+use crate::model::sector::{Body, Component, ContactPair, Dof, SectorModel};
 
 /// Direction of a relative motion at a pair, in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -39,6 +39,13 @@ pub struct ContactGeometry {
     /// For each pair, the row of its normal, first and second tangential motion; none where the
     /// nodes have no displacement that way.
     pub rows: Vec<[Option<usize>; 3]>,
+    /// For each pair the displacement along t1 and t2 that a rigid motion of the ring brings:
+    /// first its rotation, by unit displacement along theta at the mean contact radius (weighted
+    /// like the pairs), then its axial motion, by unit displacement along z.
+    pub ring_motion: Vec<[[f64; 2]; 2]>,
+    /// Whether nothing but friction holds the ring along these two motions: no spring of its own,
+    /// and no pair whose normal has a component along it.
+    pub ring_free: [bool; 2],
 }
 
 impl ContactGeometry {
@@ -84,6 +91,55 @@ fn frame(pair: &ContactPair) -> [[f64; 3]; 3] {
     [n, t1, t2]
 }
 
+/// Tangential components of the ring's rigid motions at each pair.
+fn ring_motion(model: &SectorModel) -> Vec<[[f64; 2]; 2]> {
+    let radius = |pair: &ContactPair| {
+        let dof = model.dofs.iter().find(|dof| dof.node == pair.ring_node);
+        dof.map_or(0.0, |dof| dof.position_m[0].hypot(dof.position_m[1]))
+    };
+    let pairs = &model.contact_pairs;
+    let mean: f64 = pairs.iter().map(|pair| pair.weight * radius(pair)).sum();
+    pairs
+        .iter()
+        .map(|pair| {
+            let [_, t1, t2] = frame(pair);
+            let lever = if mean > 0.0 { radius(pair) / mean } else { 1.0 };
+            [[lever * t1[1], lever * t2[1]], [t1[2], t2[2]]]
+        })
+        .collect()
+}
+
+/// Whether nothing but friction holds the ring against rotation, and against motion along z.
+#[must_use]
+pub fn ring_free(model: &SectorModel) -> [bool; 2] {
+    const NEGLIGIBLE: f64 = 1e-6;
+    [(Component::Tangential, 1), (Component::Axial, 2)].map(|(component, axis)| {
+        let velocity = |dof: &Dof| match component {
+            _ if dof.body != Body::Ring || dof.component != component => 0.0,
+            Component::Tangential => dof.position_m[0].hypot(dof.position_m[1]),
+            _ => 1.0,
+        };
+        let motion: Vec<f64> = model.dofs.iter().map(velocity).collect();
+        // K v against |K| |v|: nothing but rounding is left where the motion is free.
+        let mut force = vec![[0.0_f64; 2]; motion.len()];
+        for (row, column, value) in model.stiffness.lower_entries() {
+            let mut add = |to: usize, from: usize| {
+                force[to][0] += value * motion[from];
+                force[to][1] += (value * motion[from]).abs();
+            };
+            add(row, column);
+            if row != column {
+                add(column, row);
+            }
+        }
+        let moves = motion.iter().any(|&v| v > 0.0);
+        let largest = force.iter().map(|force| force[1]).fold(0.0, f64::max);
+        let held = |force: &[f64; 2]| force[0].abs() > NEGLIGIBLE * largest;
+        let pressed = |pair: &ContactPair| pair.normal[axis].abs() > NEGLIGIBLE;
+        moves && !force.iter().any(held) && !model.contact_pairs.iter().any(pressed)
+    })
+}
+
 /// Rows of relative motion of a sector, pair by pair in the order normal, t1, t2; directions
 /// that no dof of the pair moves in have no row.
 #[must_use]
@@ -93,6 +149,8 @@ pub fn contact_rows(model: &SectorModel) -> (Vec<ContactRow>, ContactGeometry) {
     let mut geometry = ContactGeometry {
         weights: model.contact_pairs.iter().map(|pair| pair.weight).collect(),
         rows: Vec::new(),
+        ring_motion: ring_motion(model),
+        ring_free: ring_free(model),
     };
     for (index, pair) in model.contact_pairs.iter().enumerate() {
         let mut places = [None; 3];

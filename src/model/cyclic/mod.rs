@@ -10,6 +10,6 @@ mod contact_rows;
 mod cyclic_sector;
 mod nodal_diameter;
 
-pub use contact_rows::{ContactGeometry, ContactRow, Direction};
+pub use contact_rows::{ContactGeometry, ContactRow, Direction, ring_free};
 pub use cyclic_sector::CyclicSector;
 pub use nodal_diameter::{NodalDiameter, nodal_diameter_of, phase};

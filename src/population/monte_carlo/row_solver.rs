@@ -9,7 +9,7 @@ use crate::response::forced_response::{
     PointSolver, SearchPlan, SolverOptions, Wheel, Window, mistuned_window, peak, search_plan,
     tuned_span, wheel_force,
 };
-use crate::response::friction::{ContactLaw, PairParameters};
+use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{Damping, Status, TransformError};
 use crate::response::mistuning::{Deviations, Pattern, Projection, StructuralModes, WheelBasis};
 
@@ -20,6 +20,8 @@ pub struct RowSettings {
     pub harmonics: Vec<u32>,
     /// Contact law and its parameters per sector; none for a model without contact.
     pub contact: Option<(ContactLaw, PairParameters)>,
+    /// What a free ring does under mean friction.
+    pub ring: Ring,
     /// Damping of the structure.
     pub damping: Damping,
     /// Factor on the model's force vector.
@@ -55,6 +57,7 @@ impl RowSolver {
                 settings.contact,
                 model.contact.clone(),
             )
+            .map(|points| points.with_ring(settings.ring))
         };
         Ok(Self {
             full: points(&settings.harmonics)?,
@@ -329,6 +332,7 @@ impl RowSolver {
             .and_then(|found| Some((found, found.point.as_ref()?)));
         let work = found.as_ref().map(|found| found.work).unwrap_or_default();
         let amplitude = good.map(|(found, point)| point.amplitudes_m[found.blade]);
+        let mean_friction = good.and_then(|(found, _)| found.mean_friction_n);
         ResponseRow {
             scenario: scenario.index,
             pattern: pattern.id,
@@ -345,6 +349,8 @@ impl RowSolver {
             residual: good.map(|(_, point)| point.residual),
             slipping_fraction: good.map(|(_, point)| point.shares.slipping),
             separated_fraction: good.map(|(_, point)| point.shares.separated),
+            mean_friction_circumferential_n: mean_friction.map(|force| force[0]),
+            mean_friction_axial_n: mean_friction.map(|force| force[1]),
             shortcut: shortcut(scenario.contact, good.map(|(_, point)| point)).to_owned(),
         }
     }

@@ -7,10 +7,10 @@ use super::excited::Excited;
 use super::options::{AmplitudeMeasure, ContactCondition, SolverOptions};
 use crate::linalg::{Complex64, LuWorkspace, add_times_vector};
 use crate::model::cyclic::ContactGeometry;
-use crate::response::friction::{ContactLaw, PairParameters};
+use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{
     ContactInterface, ContactShares, HarmonicSystem, HarmonicTransform, NewtonBounds,
-    NewtonWorkspace, Status, Structure, TransformError, linear_response, solve,
+    NewtonWorkspace, Status, Structure, TransformError, linear_response, solve, solve_creeping,
 };
 
 /// Everything of a study that the solution of a point needs besides the structure.
@@ -22,6 +22,7 @@ pub struct PointSettings {
     time_grid: Option<Arc<HarmonicTransform>>,
     bounds: NewtonBounds,
     contact: Option<(ContactLaw, PairParameters)>,
+    ring: Ring,
     geometry: ContactGeometry,
 }
 
@@ -52,8 +53,15 @@ impl PointSettings {
             time_grid,
             bounds: NewtonBounds::with_tolerance(options.residual_tolerance),
             contact,
+            ring: Ring::Locked,
             geometry,
         })
+    }
+
+    /// The same with what a free ring does under mean friction; locked at first.
+    #[must_use]
+    pub fn with_ring(self, ring: Ring) -> Self {
+        Self { ring, ..self }
     }
 
     /// Harmonic set of the nonlinear solution.
@@ -90,6 +98,8 @@ pub struct Point {
     pub residual: f64,
     /// Shares of slipping and separated pairs.
     pub shares: ContactShares,
+    /// Drift of the ring along its rigid motions, m per period: 0 unless it creeps.
+    pub ring_drift_m: [f64; 2],
 }
 
 /// Solver of the points of one row; keeps the converged points as starts for others.
@@ -117,7 +127,7 @@ impl<'a> PointSolver<'a> {
                 let interface = ContactInterface {
                     law,
                     geometry: settings.geometry.clone(),
-                    pairs: pairs_under(sector, normal_load_n, &settings.geometry),
+                    pairs: sector.pairs_under(normal_load_n, &settings.geometry.weights),
                 };
                 let system = HarmonicSystem::new(
                     excited.blocks.clone(),
@@ -160,6 +170,14 @@ impl<'a> PointSolver<'a> {
         self.work
     }
 
+    /// Mean friction force on the ring at a point of this solver, N per sector, see
+    /// [`HarmonicSystem::mean_friction_n`]; none for a linear limit.
+    pub fn mean_friction_n(&mut self, point: &Point) -> Option<[f64; 2]> {
+        let (system, workspace) = self.nonlinear.as_mut()?;
+        system.set_ring_drift(point.ring_drift_m);
+        Some(system.mean_friction_n(&point.solution, workspace.system_mut()))
+    }
+
     /// Solves at one frequency, Hz.
     ///
     /// # Errors
@@ -192,6 +210,7 @@ impl<'a> PointSolver<'a> {
             solution,
             residual: 0.0,
             shares: ContactShares::default(),
+            ring_drift_m: [0.0; 2],
         })
     }
 
@@ -294,8 +313,13 @@ impl<'a> PointSolver<'a> {
         let omega = TAU * frequency_hz;
         let bounds = self.settings.bounds;
         let outcome = if load_factor.total_cmp(&1.0).is_eq() {
-            solve(system, omega, &mut x, bounds, workspace)
+            match self.settings.ring {
+                Ring::Locked => solve(system, omega, &mut x, bounds, workspace),
+                Ring::Creeping => solve_creeping(system, omega, &mut x, bounds, workspace),
+            }
         } else {
+            // On the way the ring is locked.
+            system.set_ring_drift([0.0; 2]);
             let scaled = system
                 .pairs()
                 .iter()
@@ -306,6 +330,7 @@ impl<'a> PointSolver<'a> {
                 .collect();
             solve(&system.with_pairs(scaled), omega, &mut x, bounds, workspace)
         };
+        let ring_drift_m = system.ring_drift_m();
         self.work.newton_iterations += outcome.iterations;
         self.work.factorisations += outcome.factorisations;
         if outcome.status != Status::Ok {
@@ -323,6 +348,7 @@ impl<'a> PointSolver<'a> {
             solution: x,
             residual: outcome.residual,
             shares: outcome.shares,
+            ring_drift_m,
         })
     }
 
@@ -462,21 +488,5 @@ fn real_parts(x: &[Complex64]) -> Vec<f64> {
     x.iter()
         .map(|x| x.re)
         .chain(x.iter().map(|x| x.im))
-        .collect()
-}
-
-fn pairs_under(
-    sector: PairParameters,
-    normal_load_n: f64,
-    geometry: &ContactGeometry,
-) -> Vec<PairParameters> {
-    let sector = PairParameters {
-        normal_load_n,
-        ..sector
-    };
-    geometry
-        .weights
-        .iter()
-        .map(|&weight| sector.share(weight))
         .collect()
 }

@@ -54,6 +54,18 @@ impl PairParameters {
         }
     }
 
+    /// The pairs of a sector of these parameters under another normal load; `weights` are their
+    /// shares.
+    #[must_use]
+    pub fn pairs_under(self, normal_load_n: f64, weights: &[f64]) -> Vec<Self> {
+        let sector = Self {
+            normal_load_n,
+            ..self
+        };
+        let shares = weights.iter().map(|&weight| sector.share(weight));
+        shares.collect()
+    }
+
     /// Whether the pair certainly sticks throughout, in contact and with zero offset, if its
     /// displacement along n, t1, t2 never exceeds `excursions_m`: `kt |x| < mu (N0 - kn |g|)`.
     #[must_use]
@@ -114,6 +126,8 @@ pub struct ContactHistory {
     pub(super) sliders: [PeriodicSlider; 2],
     /// Slider of `coulomb_3d`.
     pub(super) coupled: CoupledSlider,
+    /// Growth of the tangential displacement per period, m.
+    pub(super) drift_m: [f64; 2],
     /// Law of the response last computed.
     law: ContactLaw,
     pub(super) state: PairState,
@@ -131,6 +145,7 @@ impl ContactHistory {
                 PeriodicSlider::new(n_samples),
             ],
             coupled: CoupledSlider::new(n_samples),
+            drift_m: [0.0; 2],
             law: ContactLaw::Simplified3d,
             state: PairState::default(),
         }
@@ -146,6 +161,22 @@ impl ContactHistory {
         parameters: &PairParameters,
         displacement: PairDisplacement<'_>,
     ) -> PairState {
+        self.respond_drifting(law, parameters, displacement, [0.0; 2])
+    }
+
+    /// Applies `law` to a displacement that besides grows steadily by `drift_m` per period along t1
+    /// and t2; the forces are periodic all the same.
+    ///
+    /// # Panics
+    /// As [`Self::respond`].
+    pub fn respond_drifting(
+        &mut self,
+        law: ContactLaw,
+        parameters: &PairParameters,
+        displacement: PairDisplacement<'_>,
+        drift_m: [f64; 2],
+    ) -> PairState {
+        self.drift_m = drift_m;
         assert_eq!(
             displacement.normal.len(),
             self.normal_load.len(),

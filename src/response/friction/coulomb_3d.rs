@@ -20,11 +20,12 @@ pub(super) fn respond(
     displacement: PairDisplacement<'_>,
 ) {
     let separated = history.press(parameters, displacement.normal);
-    let slipping = history.coupled.solve(
+    let slipping = history.coupled.solve_drifting(
         parameters.tangential_stiffness_n_per_m,
         parameters.friction_coefficient,
         displacement.tangential,
         &history.normal_load,
+        history.drift_m,
     );
     history.state = PairState {
         slipping,

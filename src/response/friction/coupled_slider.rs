@@ -46,6 +46,9 @@ const MAX_PERIODS: usize = 200;
 /// counts as closed and slip as none.
 const CLOSURE: f64 = 1e-13;
 
+/// Start of the march under a drift, in units of the largest forces.
+const FAR_AHEAD: f64 = 1e3;
+
 /// A Newton step is kept if it reduces the distance over a period at least to this share.
 const KEPT_STEP: f64 = 0.5;
 
@@ -122,6 +125,32 @@ impl CoupledSlider {
         displacement_m: [&[f64]; 2],
         normal_load_n: &[f64],
     ) -> bool {
+        self.solve_drifting(
+            tangential_stiffness_n_per_m,
+            friction_coefficient,
+            displacement_m,
+            normal_load_n,
+            [0.0; 2],
+        )
+    }
+
+    /// As [`Self::solve`], for a displacement that besides grows steadily by `drift_m` per period,
+    /// in either direction.
+    ///
+    /// Periodic is then the force: the offset grows by `kt drift / n` before every sample. The march
+    /// starts far ahead of the drift, whence it reaches at once the points of the disks that lie
+    /// furthest ahead, to which a small drift would drag the slider in many periods.
+    ///
+    /// # Panics
+    /// As [`Self::solve`].
+    pub fn solve_drifting(
+        &mut self,
+        tangential_stiffness_n_per_m: f64,
+        friction_coefficient: f64,
+        displacement_m: [&[f64]; 2],
+        normal_load_n: &[f64],
+        drift_m: [f64; 2],
+    ) -> bool {
         for history in [displacement_m[0], displacement_m[1], normal_load_n] {
             assert_eq!(history.len(), self.n_samples, "samples of a history");
         }
@@ -140,16 +169,25 @@ impl CoupledSlider {
             return false;
         }
         let negligible = CLOSURE * kt * largest;
-        let (mut start, mut distance) = ([0.0; 2], f64::INFINITY);
+        let growth = drift_m.map(|drift| kt * drift / self.n_samples as f64);
+        let drift = norm(drift_m);
+        let ahead = if drift > 0.0 {
+            let limit = mu * normal_load_n.iter().copied().fold(0.0, f64::max);
+            FAR_AHEAD * (kt * largest + limit) / drift
+        } else {
+            0.0
+        };
+        let (mut start, mut distance) = (drift_m.map(|drift| ahead * drift), f64::INFINITY);
         // Where to go on from if a Newton step does not serve: where the period before it ended.
         let mut marched: Option<[f64; 2]> = None;
         self.closed = false;
         while self.periods < MAX_PERIODS {
             self.periods += 1;
-            let period = self.march(kt, mu, displacement_m, normal_load_n, start);
+            let histories = (displacement_m, normal_load_n);
+            let period = self.march((kt, mu), histories, start, growth);
             let change = [period.end[0] - start[0], period.end[1] - start[1]];
             let now = norm(change);
-            if period.slipped <= negligible {
+            if period.slipped <= negligible && drift == 0.0 {
                 self.closed = true;
                 break;
             }
@@ -159,7 +197,7 @@ impl CoupledSlider {
                 break;
             }
             start = match marched.take() {
-                Some(end) if !(now <= KEPT_STEP * distance) => end,
+                Some(end) if now.is_nan() || now > KEPT_STEP * distance => end,
                 _ if self.periods == 1 => period.end,
                 _ => {
                     distance = now;
@@ -235,8 +273,14 @@ impl CoupledSlider {
         solve2(self.lost, v)
     }
 
-    /// One period from the offset `start`: fills offsets, slips and `I - P'`.
-    fn march(&mut self, kt: f64, mu: f64, x: [&[f64]; 2], load: &[f64], start: [f64; 2]) -> Period {
+    /// One period from the offset `start`, which grows by `growth` per sample: fills offsets, slips and `I - P'`.
+    fn march(
+        &mut self,
+        (kt, mu): (f64, f64),
+        (x, load): ([&[f64]; 2], &[f64]),
+        start: [f64; 2],
+        growth: [f64; 2],
+    ) -> Period {
         let [mut y1, mut y2] = start;
         let mut slipped = 0.0;
         let mut lost_before = [[0.0; 2]; 2];
@@ -246,6 +290,7 @@ impl CoupledSlider {
         let offsets = first.iter_mut().zip(second);
         for (sample, (((&x1, &x2), &load), (out1, out2))) in histories.zip(offsets).enumerate() {
             let (elastic1, elastic2, limit) = (kt * x1, kt * x2, mu * load);
+            (y1, y2) = (y1 + growth[0], y2 + growth[1]);
             let (d1, d2) = (y1 + elastic1, y2 + elastic2);
             let square = d1 * d1 + d2 * d2;
             if square > limit * limit {

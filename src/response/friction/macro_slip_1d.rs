@@ -14,11 +14,12 @@ pub(super) fn respond(
     history.normal_load.fill(parameters.normal_load_n);
     history.normal_correction.fill(0.0);
     let [first, second] = &mut history.sliders;
-    let slipping = first.solve(
+    let slipping = first.solve_drifting(
         parameters.tangential_stiffness_n_per_m,
         parameters.friction_coefficient,
         displacement.tangential[0],
         &history.normal_load,
+        history.drift_m[0],
     );
     second.rest();
     history.state = PairState {

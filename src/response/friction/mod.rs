@@ -10,5 +10,5 @@ mod simplified_3d;
 
 pub use contact_pair::{ContactHistory, PairDisplacement, PairParameters, PairState};
 pub use coupled_slider::{CoupledSlider, Slip};
-pub use options::{ContactLaw, ContactOptions};
+pub use options::{ContactLaw, ContactOptions, Ring};
 pub use periodic_slider::PeriodicSlider;

@@ -17,6 +17,17 @@ pub enum ContactLaw {
     Coulomb3d,
 }
 
+/// What a free ring does under mean friction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ring {
+    /// Something holds it: mean friction has no effect.
+    #[default]
+    Locked,
+    /// It drifts along its rigid motions so that friction has no mean along them.
+    Creeping,
+}
+
 /// Contact law and its parameters; stiffnesses are per sector and shared out by pair weight.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -30,6 +41,9 @@ pub struct ContactOptions {
     pub tangential_stiffness_n_per_m: f64,
     /// Normal contact stiffness per sector, N/m; optional for `macro_slip_1d` only.
     pub normal_stiffness_n_per_m: Option<f64>,
+    /// What a free ring does under mean friction. Default `locked`.
+    #[serde(default)]
+    pub ring: Ring,
 }
 
 fn default_law() -> ContactLaw {

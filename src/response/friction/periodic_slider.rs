@@ -101,6 +101,47 @@ impl PeriodicSlider {
         self.slipping
     }
 
+    /// As [`Self::solve`], for a displacement that besides grows steadily by `drift_m` per period.
+    ///
+    /// Periodic is then the force, not the position of the slider: `y_j = clip(y_{j-1} + kt drift/n,
+    /// a_j, b_j)` with the bounds of the periodic part of the displacement. One period maps y to
+    /// `clip(y + kt drift, L, H)`, so with a drift forwards every history ends at `y = H`, where the
+    /// chain started from infinity ends; backwards at L. The derivative at a given drift is that of
+    /// the clips.
+    ///
+    /// # Panics
+    /// As [`Self::solve`].
+    pub fn solve_drifting(
+        &mut self,
+        tangential_stiffness_n_per_m: f64,
+        friction_coefficient: f64,
+        displacement_m: &[f64],
+        normal_load_n: &[f64],
+        drift_m: f64,
+    ) -> bool {
+        let slipping = self.solve(
+            tangential_stiffness_n_per_m,
+            friction_coefficient,
+            displacement_m,
+            normal_load_n,
+        );
+        let growth = tangential_stiffness_n_per_m * drift_m / self.offset.len() as f64;
+        if growth == 0.0 {
+            return slipping;
+        }
+        let mut y = f64::INFINITY.copysign(growth);
+        // First to where the histories end, then through the period.
+        for _ in 0..2 {
+            let bounds = self.lower.iter().zip(&self.upper);
+            for (offset, (&a, &b)) in self.offset.iter_mut().zip(bounds) {
+                y = clip(y + growth, a, b);
+                *offset = y;
+            }
+        }
+        self.slipping = true;
+        true
+    }
+
     /// Sets the slider to rest: zero offset at every sample, no clips.
     pub fn rest(&mut self) {
         self.offset.fill(0.0);

@@ -17,12 +17,14 @@ pub(super) fn respond(
 ) {
     let separated = history.press(parameters, displacement.normal);
     let mut slipping = false;
-    for (slider, x) in history.sliders.iter_mut().zip(displacement.tangential) {
-        slipping |= slider.solve(
+    let directions = displacement.tangential.into_iter().zip(history.drift_m);
+    for (slider, (x, drift)) in history.sliders.iter_mut().zip(directions) {
+        slipping |= slider.solve_drifting(
             parameters.tangential_stiffness_n_per_m,
             parameters.friction_coefficient,
             x,
             &history.normal_load,
+            drift,
         );
     }
     history.state = PairState {

@@ -48,6 +48,11 @@ impl NewtonWorkspace {
             trial_step: vec![0.0; n],
         }
     }
+
+    /// Buffers of the system itself, whose residual was last taken anywhere.
+    pub fn system_mut(&mut self) -> &mut SystemWorkspace {
+        &mut self.system
+    }
 }
 
 /// Solves `R(x) = 0` at angular frequency `omega` from the given `x`, in place.

@@ -81,6 +81,8 @@ pub struct PairHarmonics {
     /// Histories along n, t1, t2 (`3 * n_samples`).
     displacement: Vec<f64>,
     history: ContactHistory,
+    /// Growth of the tangential displacement per period, m.
+    drift_m: [f64; 2],
     sums: ClipSums,
     coupled: CoupledDerivative,
 }
@@ -96,6 +98,7 @@ impl PairHarmonics {
             oscillation: vec![0.0; 3 * n_coefficients],
             displacement: vec![0.0; 3 * n_samples],
             history: ContactHistory::new(n_samples),
+            drift_m: [0.0; 2],
             sums: ClipSums::new(n_coefficients, n_samples),
             coupled: CoupledDerivative::new(n_coefficients),
             transform,
@@ -112,6 +115,12 @@ impl PairHarmonics {
     #[must_use]
     pub fn history(&self) -> &ContactHistory {
         &self.history
+    }
+
+    /// Sets by how much the tangential displacement of the pairs evaluated next grows per period
+    /// besides its harmonics, m; zero at first.
+    pub fn set_drift(&mut self, drift_m: [f64; 2]) {
+        self.drift_m = drift_m;
     }
 
     /// Corrections of one pair, and where wanted their derivative.
@@ -133,7 +142,8 @@ impl PairHarmonics {
             self.oscillation[2 * n_coefficients] = 0.0;
         }
         correction.fill(0.0);
-        let state = if parameters.surely_sticks(self.law, self.excursions()) {
+        let drifts = self.drift_m.iter().any(|drift| drift.abs() > 0.0);
+        let state = if !drifts && parameters.surely_sticks(self.law, self.excursions()) {
             self.history.rest(parameters)
         } else {
             self.respond(parameters)
@@ -175,7 +185,8 @@ impl PairHarmonics {
             normal,
             tangential: [first, second],
         };
-        self.history.respond(self.law, parameters, displacement)
+        self.history
+            .respond_drifting(self.law, parameters, displacement, self.drift_m)
     }
 
     /// Coefficients of the corrections that are not zero.
@@ -274,11 +285,15 @@ impl PairHarmonics {
         let cross = jacobian
             .tangential_cross
             .get_or_insert_with(|| [vec![0.0; n * n], vec![0.0; n * n]]);
-        for tangent in 0..2 {
+        let by_normal = jacobian.tangential_normal.iter_mut();
+        let blocks = by_normal
+            .zip(&mut jacobian.tangential_tangential)
+            .zip(cross);
+        for (tangent, ((by_normal, by_own), by_other)) in blocks.enumerate() {
             let blocks = [
-                (0, &mut jacobian.tangential_normal[tangent]),
-                (1 + tangent, &mut jacobian.tangential_tangential[tangent]),
-                (2 - tangent, &mut cross[tangent]),
+                (0, by_normal),
+                (1 + tangent, by_own),
+                (2 - tangent, by_other),
             ];
             for (direction, block) in blocks {
                 self.coupled.fill(tangent, direction, block);

@@ -55,6 +55,8 @@ pub struct HarmonicSystem {
     pub(super) transform: Arc<HarmonicTransform>,
     /// Number of contact rows over all sectors.
     rows: usize,
+    /// Drift of the ring along its rigid motions, m per period.
+    ring_drift_m: [f64; 2],
 }
 
 /// Share of contact pairs in a state at any sample.
@@ -122,6 +124,7 @@ impl HarmonicSystem {
             interface,
             transform,
             rows,
+            ring_drift_m: [0.0; 2],
         }
     }
 
@@ -170,6 +173,23 @@ impl HarmonicSystem {
     #[must_use]
     pub fn pairs(&self) -> &[PairParameters] {
         &self.interface.pairs
+    }
+
+    /// Drift of the ring along its rigid motions (rotation, axial), m per period: zero at first.
+    #[must_use]
+    pub fn ring_drift_m(&self) -> [f64; 2] {
+        self.ring_drift_m
+    }
+
+    /// Sets the drift of the ring.
+    pub fn set_ring_drift(&mut self, drift_m: [f64; 2]) {
+        self.ring_drift_m = drift_m;
+    }
+
+    /// Rigid motions of the ring that nothing but friction holds.
+    #[must_use]
+    pub fn free_ring_motions(&self) -> [bool; 2] {
+        self.interface.geometry.ring_free
     }
 
     /// Buffers for this system.
@@ -285,6 +305,60 @@ impl HarmonicSystem {
         }
     }
 
+    /// Mean friction force on the ring at `x` per sector, N, averaged over the sectors: along theta
+    /// (the torque over the mean contact radius) and along z, see [`ContactGeometry::ring_motion`].
+    ///
+    /// It is caused by the displacements without their tangential means; a ring that is locked
+    /// against rotation and axial motion hands it on to what locks it.
+    #[must_use]
+    pub fn mean_friction_n(&self, x: &[f64], workspace: &mut SystemWorkspace) -> [f64; 2] {
+        let per_sector = self.interface.pairs.len();
+        let count = workspace.active.len();
+        let mut sum = [0.0; 2];
+        if count == 0 {
+            return sum;
+        }
+        self.contact_displacement(x, &mut workspace.displacement);
+        for pair in 0..count {
+            self.gather_pair(pair, workspace);
+            workspace.pairs.evaluate(
+                &self.interface.pairs[pair % per_sector],
+                &workspace.pair_input,
+                &mut workspace.pair_output,
+                None,
+            );
+            let friction = workspace.pairs.history().mean_friction_n();
+            let motions = &self.interface.geometry.ring_motion[pair % per_sector];
+            for (sum, motion) in sum.iter_mut().zip(motions) {
+                *sum += motion[0] * friction[0] + motion[1] * friction[1];
+            }
+        }
+        let sectors = (count / per_sector) as f64;
+        sum.map(|sum| sum / sectors)
+    }
+
+    /// Coefficients of the displacement of one pair into `pair_input`, and its drift.
+    fn gather_pair(&self, pair: usize, workspace: &mut SystemWorkspace) {
+        let coefficients = self.transform.n_coefficients();
+        let per_sector = self.interface.pairs.len();
+        let base = pair / per_sector * self.interface.geometry.row_count();
+        // The relative displacement is that of the blisk less that of the ring.
+        let [rotation, axial] = self.interface.geometry.ring_motion[pair % per_sector];
+        let [by_rotation, by_axial] = self.ring_drift_m;
+        let drift = [0, 1].map(|k| -(rotation[k] * by_rotation + axial[k] * by_axial));
+        workspace.pairs.set_drift(drift);
+        workspace.pair_input.fill(0.0);
+        let places = &self.interface.geometry.rows[pair % per_sector];
+        for (direction, place) in places.iter().enumerate() {
+            if let Some(row) = *place {
+                for c in 0..coefficients {
+                    workspace.pair_input[direction * coefficients + c] =
+                        workspace.displacement[c * self.rows + base + row];
+                }
+            }
+        }
+    }
+
     /// The laws, pair by pair: displacement coefficients to correction coefficients.
     fn contact_correction(
         &self,
@@ -300,15 +374,7 @@ impl HarmonicSystem {
         for pair in 0..count {
             let base = pair / per_sector * sector_rows;
             let places = self.interface.geometry.rows[pair % per_sector];
-            workspace.pair_input.fill(0.0);
-            for (direction, place) in places.iter().enumerate() {
-                if let Some(row) = *place {
-                    for c in 0..coefficients {
-                        workspace.pair_input[direction * coefficients + c] =
-                            workspace.displacement[c * self.rows + base + row];
-                    }
-                }
-            }
+            self.gather_pair(pair, workspace);
             let state = workspace.pairs.evaluate(
                 &self.interface.pairs[pair % per_sector],
                 &workspace.pair_input,

@@ -76,7 +76,8 @@ fn marched(
     let mut change = 0.0;
     for _ in 0..=periods {
         let before = force;
-        for j in 0..n {
+        let [first, second] = &mut history;
+        for (j, (first, second)) in first.iter_mut().zip(second).enumerate() {
             for (k, force) in force.iter_mut().enumerate() {
                 *force += kt * (motion.x[k][j] - motion.x[k][(j + n - 1) % n]);
             }
@@ -84,7 +85,7 @@ fn marched(
             if size > limit {
                 force = force.map(|component| component * (limit / size));
             }
-            (history[0][j], history[1][j]) = (force[0], force[1]);
+            (*first, *second) = (force[0], force[1]);
         }
         change = (force[0] - before[0]).hypot(force[1] - before[1]);
     }
@@ -124,10 +125,9 @@ fn periodic_state_is_where_every_marched_history_ends() {
                 // A little slip fades slowly across its direction: not there yet.
                 continue;
             }
-            for k in 0..2 {
-                for j in 0..motion.n_samples() {
-                    let own = kt * motion.x[k][j] + slider.offset_n()[k][j];
-                    assert!((own - force[k][j]).abs() < 1e-9 * scale, "case {case}");
+            for ((x, y), force) in motion.x.iter().zip(slider.offset_n()).zip(&force) {
+                for ((x, y), force) in x.iter().zip(y).zip(force) {
+                    assert!((kt * x + y - force).abs() < 1e-9 * scale, "case {case}");
                 }
             }
         }
