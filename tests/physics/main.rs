@@ -2,6 +2,7 @@
 // Measured figures are printed for `--nocapture`.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod bounds;
 mod contact;
 mod extremes;
 mod finite_element;

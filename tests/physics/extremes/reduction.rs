@@ -18,7 +18,11 @@ use crate::wheels::{Wheel, full, relative, springs};
 /// Pairs of a sector of [`comb`].
 const PAIRS: usize = 60;
 
-/// A blade on an elastic disk that touches an elastic ring at sixty places: 123 dofs, one direction.
+/// Masses of its blade.
+const BLADE: usize = 40;
+
+/// A blade of forty masses on an elastic disk that touches an elastic ring at sixty places: 162 dofs, one
+/// direction. More lies between the contacts than a Craig-Bampton model of 25 modes keeps.
 fn comb(link: f64) -> SectorModel {
     let alpha = std::f64::consts::TAU / SECTORS as f64;
     let mut dofs = Vec::new();
@@ -32,7 +36,9 @@ fn comb(link: f64) -> SectorModel {
         dofs.len() - 1
     };
     let place = |i: usize| alpha * (i as f64 + 0.5) / PAIRS as f64;
-    let blade = add(1.5, 0.5 * alpha, Body::Blisk);
+    let blade: Vec<usize> = (0..BLADE)
+        .map(|i| add(1.5 - 0.01 * i as f64, 0.5 * alpha, Body::Blisk))
+        .collect();
     let disk: Vec<usize> = (0..PAIRS)
         .map(|i| add(1.0, place(i), Body::Blisk))
         .collect();
@@ -54,16 +60,19 @@ fn comb(link: f64) -> SectorModel {
         spring(disk[i], Some(*disk.get(i + 1).unwrap_or(&next)), link);
         spring(ring[i], Some(*ring.get(i + 1).unwrap_or(&next_ring)), link);
     }
-    let root = [(blade, disk[PAIRS / 2], 2.5e6)];
-    for (a, b, k) in root {
-        spring(a, Some(b), k);
+    // From tip to root, as stiff in all as the one spring of the chain.
+    let mut blade_stiffness = Vec::new();
+    for i in 0..BLADE {
+        let next = *blade.get(i + 1).unwrap_or(&disk[PAIRS / 2]);
+        let k = 2.5e6 * BLADE as f64;
+        spring(blade[i], Some(next), k);
+        blade_stiffness.extend([
+            (blade[i], blade[i], k),
+            (next, next, k),
+            (next, blade[i], -k),
+        ]);
     }
-    let blade_stiffness = [
-        (blade, blade, 2.5e6),
-        (disk[PAIRS / 2], disk[PAIRS / 2], 2.5e6),
-        (disk[PAIRS / 2], blade, -2.5e6),
-    ];
-    let mut mass = vec![(blade, blade, 0.25)];
+    let mut mass: Vec<_> = blade.iter().map(|&i| (i, i, 0.25 / BLADE as f64)).collect();
     mass.extend(disk.iter().map(|&i| (i, i, share)));
     mass.extend(ring.iter().map(|&i| (i, i, 0.03 * share)));
     let n = dofs.len();
@@ -83,10 +92,10 @@ fn comb(link: f64) -> SectorModel {
                 weight: share,
             })
             .collect(),
-        force: vec![(blade, Complex64::new(1.0, 0.0))],
+        force: vec![(blade[0], Complex64::new(1.0, 0.0))],
         observed: vec![ObservedNode {
             name: "blade".to_owned(),
-            node: blade,
+            node: blade[0],
         }],
     };
     validate(&model).unwrap();
@@ -219,21 +228,23 @@ fn sixty_pairs_in_sixty_places_are_solved() {
     }
 }
 
-/// Oracle of section 7: condition of the Gram matrix of 24 stuck and 24 free blade modes of the lumped
-/// wheel, each set mass-orthonormal, for rings of other mass and stiffness and contacts soft to rigid.
+/// Condition of the Gram matrix of 24 stuck and 24 free modes of the lumped wheel, those that move the
+/// blades most, each set mass-orthonormal, for rings of other mass and stiffness (all springs of the
+/// ring) and contacts soft to rigid. The numbers come from numpy's `eigh` and `cond` on the same matrices.
+/// A stiff contact with a lighter ring is worse; with a soft one the condition is bad throughout.
 #[test]
 fn the_condition_of_the_joint_basis_is_that_of_the_table() {
     let table = [
-        (1.0, [1.7e9, 2.6e5, 9.2e3]),
-        (1e-2, [3.3e7, 9.6e5, 8.7e5]),
-        (1e-4, [1.7e8, 8.7e7, 8.6e7]),
+        (1.0, [1.1216e8, 1.3667e4, 563.41]),
+        (1e-2, [3.4735e6, 5.5832e4, 5.5706e4]),
+        (1e-4, [5.5826e6, 5.5701e6, 5.57e6]),
     ];
     for (ring, expected) in table {
         for (kt, expected) in [3e3, 3e5, 3e9].into_iter().zip(expected) {
             let found = joint_condition(ring, kt);
             println!("ring x {ring:e}, {kt:e} N/m: {found:.2e}, table {expected:.1e}");
             assert!(
-                relative(found, expected) < 0.1,
+                relative(found, expected) < 1e-3,
                 "ring x {ring:e}, {kt:e}: {found:e}"
             );
         }
@@ -246,6 +257,7 @@ fn joint_condition(ring: f64, kt: f64) -> f64 {
     let options = LumpedOptions {
         ring_mass_kg: ring * own.ring_mass_kg,
         ring_coupling_stiffness_n_per_m: ring * own.ring_coupling_stiffness_n_per_m,
+        ring_disk_stiffness_n_per_m: ring * own.ring_disk_stiffness_n_per_m,
         ..own
     };
     let model = lumped::build(&options).unwrap();

@@ -175,9 +175,11 @@ pub fn spatial() -> Wheel {
     }
 }
 
-/// Settings under which two ways to the same peak agree to nine digits.
+/// Settings under which two ways to the same peak agree to nine digits. The samples are a multiple of
+/// the sectors, so that every sector of a travelling wave is sampled at the same phases.
 pub fn tight() -> SolverOptions {
     SolverOptions {
+        samples_per_period: 32 * SECTORS,
         peak_tolerance: 1e-9,
         residual_tolerance: 1e-11,
         ..SolverOptions::default()
