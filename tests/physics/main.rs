@@ -6,6 +6,7 @@ mod bounds;
 mod contact;
 mod extremes;
 mod finite_element;
+mod fuzz;
 mod harmonic_balance;
 mod limits;
 mod mistuning;

@@ -17,4 +17,4 @@ mod mistuning;
 mod reduction;
 mod sectors;
 mod stiffness;
-mod wheels;
+pub mod wheels;

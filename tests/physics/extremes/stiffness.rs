@@ -4,10 +4,11 @@ use blisk::model::reduction::BasisChoice;
 use blisk::model::sector::{LumpedOptions, lumped};
 use blisk::response::forced_response::{ContactCondition, SolverOptions};
 use blisk::response::friction::PairParameters;
+use blisk::response::harmonic_balance::Status;
 
 use super::wheels::{
     CHAIN_LOADS, ORDER, SECTORS, amplitude, chain, decades, one_dimensional, solved, spatial,
-    tight, uneven,
+    spatial_sector, tight, uneven,
 };
 use crate::wheels::{Wheel, full, relative};
 
@@ -72,31 +73,33 @@ fn a_stiff_contact_ties_the_ring_to_the_disk() {
 }
 
 /// Under friction the peak settles as the slider becomes rigid: the elastic travel mu N0 / kt vanishes.
+/// Sampled in time, a slider with a travel below 1e-7 of the motion is a jump, at which Newton's method may
+/// fail: beyond 1e10 N/m a row has the same peak or none.
 fn settles(stiffnesses: &[f64]) {
+    const A_JUMP: f64 = 2e10;
     for load in CHAIN_LOADS {
-        let peaks: Vec<(f64, f64)> = stiffnesses
-            .iter()
-            .map(|&kt| {
-                let wheel = with_stiffness(kt);
-                let solver = wheel.solver(&[1], stiff());
-                let row = solved(&solver, ORDER, &pattern(), full(load)).1;
-                println!(
-                    "{load} N, kt = {kt:.0e}: {} {:?} m, slipping {:?}, {} solves, {} iterations",
-                    row.status.name(),
-                    row.peak_amplitude_m,
-                    row.slipping_fraction,
-                    row.nonlinear_solves,
-                    row.newton_iterations
-                );
-                (kt, amplitude(&row))
-            })
-            .collect();
+        let mut peaks: Vec<(f64, f64)> = Vec::new();
+        for &kt in stiffnesses {
+            let solver = with_stiffness(kt).solver(&[1], stiff());
+            let row = solved(&solver, ORDER, &pattern(), full(load)).1;
+            println!(
+                "{load} N, kt = {kt:.0e}: {} {:?} m, slipping {:?}, {} solves, {} iterations",
+                row.status.name(),
+                row.peak_amplitude_m,
+                row.slipping_fraction,
+                row.nonlinear_solves,
+                row.newton_iterations
+            );
+            assert!(
+                row.status == Status::Ok || kt > A_JUMP,
+                "{load} N, {kt:e}: {row:?}"
+            );
+            peaks.extend(row.peak_amplitude_m.map(|peak| (kt, peak)));
+        }
         let rigid = peaks[peaks.len() - 1].1;
-        for (kt, found) in peaks {
-            if kt >= 1e9 {
-                let error = relative(found, rigid);
-                assert!(error < 1e6 / kt + 1e-4, "{load} N, {kt:e} N/m: {error:e}");
-            }
+        for (kt, found) in peaks.into_iter().filter(|(kt, _)| *kt >= 1e9) {
+            let error = relative(found, rigid);
+            assert!(error < 1e6 / kt + 1e-4, "{load} N, {kt:e} N/m: {error:e}");
         }
     }
 }
@@ -194,45 +197,40 @@ fn units_of_mass_and_stiffness_do_not_matter() {
     }
 }
 
-/// Normal stiffness alone from soft to hard: each row ends with a status, and the hard ones agree.
+/// Normal stiffness alone from soft to hard under so much load that nothing separates: the hard ones agree,
+/// up to 1e13 N/m, where forces round above the tolerance and a row may have a status instead.
 #[test]
 fn a_hard_normal_contact_settles_or_says_why_not() {
-    let found: Vec<_> = decades(5, 13, 1)
-        .into_iter()
-        .map(|kn| {
-            let wheel = spatial();
-            let sector = PairParameters {
-                normal_stiffness_n_per_m: kn,
-                ..wheel.sector
-            };
-            let wheel = Wheel {
-                amplitude_n: wheel.amplitude_n,
-                ..Wheel::of(
-                    &super::wheels::spatial_sector(SECTORS),
-                    wheel.law,
-                    sector,
-                    wheel.damping,
-                    BasisChoice::CraigBampton,
-                )
-            };
-            // So much load that nothing separates: the preload carries every normal force.
-            let solver = wheel.solver(&[1], stiff());
-            let row = solved(&solver, ORDER, &pattern(), full(500.0)).1;
-            println!(
-                "kn = {kn:.0e} N/m: {} {:?} m, slipping {:?}, separated {:?}",
-                row.status.name(),
-                row.peak_amplitude_m,
-                row.slipping_fraction,
-                row.separated_fraction
-            );
-            (kn, amplitude(&row))
-        })
-        .collect();
-    let hardest = found[found.len() - 1].1;
-    for (kn, found) in found {
-        assert!(
-            kn < 1e10 || relative(found, hardest) < 1e7 / kn + 1e-4,
-            "{kn:e}"
+    let mut peaks: Vec<(f64, f64)> = Vec::new();
+    for kn in decades(5, 13, 1) {
+        let wheel = spatial();
+        let sector = PairParameters {
+            normal_stiffness_n_per_m: kn,
+            ..wheel.sector
+        };
+        let wheel = Wheel {
+            amplitude_n: wheel.amplitude_n,
+            ..Wheel::of(
+                &spatial_sector(SECTORS),
+                wheel.law,
+                sector,
+                wheel.damping,
+                BasisChoice::CraigBampton,
+            )
+        };
+        let row = solved(&wheel.solver(&[1], stiff()), ORDER, &pattern(), full(500.0)).1;
+        println!(
+            "kn = {kn:.0e} N/m: {} {:?} m, slipping {:?}, separated {:?}",
+            row.status.name(),
+            row.peak_amplitude_m,
+            row.slipping_fraction,
+            row.separated_fraction
         );
+        assert!(row.status == Status::Ok || kn > 2e12, "{kn:e}: {row:?}");
+        peaks.extend(row.peak_amplitude_m.map(|peak| (kn, peak)));
+    }
+    let hardest = peaks[peaks.len() - 1].1;
+    for (kn, found) in peaks.into_iter().filter(|(kn, _)| *kn >= 1e10) {
+        assert!(relative(found, hardest) < 1e7 / kn + 1e-4, "{kn:e}");
     }
 }
