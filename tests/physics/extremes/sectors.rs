@@ -1,16 +1,21 @@
 //! Few, many, odd and even sectors; engine orders of nought, half the sectors and beyond; one contact
 //! pair and sixty.
 
+use std::f64::consts::TAU;
+
+use blisk::linalg::Complex64;
 use blisk::model::sector::{ContactPair, LumpedOptions, SectorModel, lumped};
 use blisk::population::monte_carlo::ResponseRow;
-use blisk::response::forced_response::{ContactCondition, SolverOptions};
+use blisk::response::forced_response::{
+    ContactCondition, PointSettings, PointSolver, SolverOptions,
+};
 use blisk::response::harmonic_balance::Status;
 
 use super::wheels::{
     CHAIN_LOADS, ORDER, SECTORS, amplitude, chain, one_dimensional, solved, spatial,
     spatial_sector, tight, under, uneven, with_sector,
 };
-use crate::wheels::{Wheel, full, relative};
+use crate::wheels::{ENGINE_ORDER, Wheel, full, relative};
 
 fn of_sectors(sectors: usize) -> Wheel {
     one_dimensional(&LumpedOptions { sectors, ..chain() })
@@ -107,6 +112,48 @@ fn sectors_out_of_step_with_the_samples_differ_by_the_error_of_sampling() {
             coarse < 1e-3 && fine < 1e-5,
             "{sectors}: {coarse:e}, {fine:e}"
         );
+    }
+}
+
+/// In the tuned wheel every blade moves like the last one, later by `2 pi k EO / N` in harmonic k.
+#[test]
+fn every_blade_of_a_tuned_wheel_follows_the_last_at_the_phase_of_its_harmonic() {
+    let harmonics = [1, 3];
+    for sectors in [3, 5, 24] {
+        let wheel = of_sectors(sectors);
+        let excited = wheel.mistuned(&vec![0.0; sectors], &harmonics);
+        let settings = PointSettings::new(
+            &quick(sectors),
+            &harmonics,
+            Some((wheel.law, wheel.sector)),
+            wheel.model.contact.clone(),
+        )
+        .unwrap();
+        let condition = full(20.0);
+        let at = wheel
+            .solver(&harmonics, quick(sectors))
+            .tuned_peak(ENGINE_ORDER, condition);
+        let frequency_hz = at.point.as_ref().unwrap().frequency_hz;
+        let mut solver = PointSolver::new(&excited, condition, &settings);
+        let point = solver.solve(frequency_hz).unwrap();
+        assert!(point.shares.slipping > 0.0);
+        let structure = &excited.linear.structure;
+        let n = structure.size();
+        for (block, harmonic) in harmonics.into_iter().enumerate() {
+            let (re, im) = point.solution[2 * n * block..2 * n * (block + 1)].split_at(n);
+            let along = |part: &[f64]| structure.observed().real.times_vector(part);
+            // The tangential displacement of each blade: the second of three rows.
+            let (re, im) = (along(re), along(im));
+            let blade = |i: usize| Complex64::new(re[3 * i + 1], im[3 * i + 1]);
+            let angle = TAU * f64::from(harmonic * ENGINE_ORDER) / sectors as f64;
+            for i in 0..sectors {
+                let error = (blade(i) - blade(0) * Complex64::cis(angle * i as f64)).norm();
+                assert!(
+                    error < 1e-8 * blade(0).norm(),
+                    "{sectors}, {harmonic}, {i}: {error:e}"
+                );
+            }
+        }
     }
 }
 

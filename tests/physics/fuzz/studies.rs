@@ -11,7 +11,7 @@ use blisk::study::{
 use super::mutator::Mutator;
 use super::{assert_clear, run};
 
-/// The study files of the package and the template.
+/// The study files of the package and the template, without the comments at their heads.
 fn originals() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
     let mut paths: Vec<_> = fs::read_dir(folder)
@@ -29,6 +29,10 @@ fn originals() -> Vec<String> {
         .collect();
     texts.push(STUDY_TEMPLATE.to_owned());
     assert!(texts.len() > 3);
+    for text in &mut texts {
+        let start = text.find("schema").unwrap();
+        text.drain(..start);
+    }
     texts
 }
 
@@ -87,7 +91,7 @@ fn assert_within_limits(study: &Study) {
     }
     // JSON has no NaN and no infinity: a number lost in the manifest would read `null`.
     let resolved = study.resolved();
-    for key in ["damping", "excitation", "sweep", "solver", "contact"] {
+    for key in ["damping", "excitation", "sweep", "solver"] {
         assert!(
             !resolved[key].to_string().contains("null") || resolved[key].is_null(),
             "{resolved}"
