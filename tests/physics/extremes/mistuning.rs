@@ -56,12 +56,14 @@ fn solve(mut a: Vec<Vec<[f64; 2]>>, mut b: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
             .unwrap();
         a.swap(column, pivot);
         b.swap(column, pivot);
-        for row in column + 1..n {
-            let factor = over(a[row][column], a[column][column]);
-            for k in column..n {
-                a[row][k] = minus(a[row][k], times(factor, a[column][k]));
+        let (above, below) = a.split_at_mut(column + 1);
+        let pivot = &above[column];
+        for (row, line) in below.iter_mut().enumerate() {
+            let factor = over(line[column], pivot[column]);
+            for (entry, other) in line.iter_mut().zip(pivot).skip(column) {
+                *entry = minus(*entry, times(factor, *other));
             }
-            b[row] = minus(b[row], times(factor, b[column]));
+            b[column + 1 + row] = minus(b[column + 1 + row], times(factor, b[column]));
         }
     }
     for row in (0..n).rev() {

@@ -303,7 +303,7 @@ fn joint_condition(ring: f64, kt: f64) -> f64 {
 /// under friction of a small basis is that of the whole space.
 #[test]
 fn a_light_ring_degrades_no_basis() {
-    for factor in [1e-4, 1.0, 10.0] {
+    for factor in [1e-4, 10.0] {
         let sector = comb(1e9);
         let scaled = |matrix: &SymmetricSparse| {
             let entries: Vec<_> = matrix
@@ -348,10 +348,8 @@ fn a_light_ring_degrades_no_basis() {
             ..wheel(&light, 8e5, BasisChoice::StickAttachment { stick: 4 })
         };
         let whole = wheel(&light, 8e5, BasisChoice::CraigBampton);
-        for load in [20.0, 60.0] {
-            let error = relative(peak(&small, full(load)), peak(&whole, full(load)));
-            println!("ring x {factor:e}, {load} N: {error:.1e}");
-            assert!(error < 5e-3, "ring x {factor:e}, {load} N: {error:e}");
-        }
+        let error = relative(peak(&small, full(60.0)), peak(&whole, full(60.0)));
+        println!("ring x {factor:e}: {error:.1e}");
+        assert!(error < 1e-3, "ring x {factor:e}: {error:e}");
     }
 }

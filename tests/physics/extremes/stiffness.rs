@@ -73,10 +73,10 @@ fn a_stiff_contact_ties_the_ring_to_the_disk() {
 }
 
 /// Under friction the peak settles as the slider becomes rigid: the elastic travel mu N0 / kt vanishes.
-/// Sampled in time, a slider with a travel below 1e-7 of the motion is a jump, at which Newton's method may
-/// fail: beyond 1e10 N/m a row has the same peak or none.
+/// Sampled in time, a slider with so little travel is a jump, at which Newton's method may fail: beyond
+/// 2e9 N/m, where it is 1e-5 of the motion, a row has the same peak or a status.
 fn settles(stiffnesses: &[f64]) {
-    const A_JUMP: f64 = 2e10;
+    const A_JUMP: f64 = 2e9;
     for load in CHAIN_LOADS {
         let mut peaks: Vec<(f64, f64)> = Vec::new();
         for &kt in stiffnesses {
@@ -97,9 +97,9 @@ fn settles(stiffnesses: &[f64]) {
             peaks.extend(row.peak_amplitude_m.map(|peak| (kt, peak)));
         }
         let rigid = peaks[peaks.len() - 1].1;
-        for (kt, found) in peaks.into_iter().filter(|(kt, _)| *kt >= 1e9) {
+        for (kt, found) in peaks.into_iter().filter(|(kt, _)| *kt >= 1e8) {
             let error = relative(found, rigid);
-            assert!(error < 1e6 / kt + 1e-4, "{load} N, {kt:e} N/m: {error:e}");
+            assert!(error < 1e7 / kt + 1e-3, "{load} N, {kt:e} N/m: {error:e}");
         }
     }
 }

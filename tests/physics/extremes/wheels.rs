@@ -115,12 +115,12 @@ pub fn spatial_sector(sectors: usize) -> SectorModel {
         [-0.8e6, 0.6e6, 4.0e6],
     ];
     let mut blade = Vec::new();
-    for i in 0..3 {
-        for j in 0..3 {
-            blade.push((3 * DISK + i, 3 * BLADE + j, -spring[i][j]));
+    for (i, row) in spring.into_iter().enumerate() {
+        for (j, entry) in row.into_iter().enumerate() {
+            blade.push((3 * DISK + i, 3 * BLADE + j, -entry));
             if i >= j {
-                blade.push((3 * BLADE + i, 3 * BLADE + j, spring[i][j]));
-                blade.push((3 * DISK + i, 3 * DISK + j, spring[i][j]));
+                blade.push((3 * BLADE + i, 3 * BLADE + j, entry));
+                blade.push((3 * DISK + i, 3 * DISK + j, entry));
             }
         }
     }

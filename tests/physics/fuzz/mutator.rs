@@ -76,7 +76,7 @@ impl Mutator {
             0 => self.in_bytes(bytes),
             1 | 2 => self.in_lines(&bytes),
             3 => self.piece(bytes),
-            4 => self.whole(bytes),
+            4 => self.whole(&bytes),
             _ => self.number(&bytes),
         }
     }
@@ -116,14 +116,14 @@ impl Mutator {
     }
 
     /// Line ends of another system, a byte order mark, or the file twice.
-    fn whole(&mut self, bytes: Vec<u8>) -> Vec<u8> {
+    fn whole(&mut self, bytes: &[u8]) -> Vec<u8> {
         match self.below(3) {
             0 => {
                 let lines: Vec<&[u8]> = bytes.split(|&byte| byte == b'\n').collect();
                 lines.join(&b"\r\n"[..])
             }
-            1 => ["\u{feff}".as_bytes(), &bytes].concat(),
-            _ => [&bytes[..], &bytes].concat(),
+            1 => ["\u{feff}".as_bytes(), bytes].concat(),
+            _ => [bytes, bytes].concat(),
         }
     }
 
