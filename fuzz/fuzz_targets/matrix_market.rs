@@ -13,7 +13,10 @@ fuzz_target!(|bytes: &[u8]| {
     match matrix_market::read(&path) {
         Ok(matrix) => {
             matrix_market::write(&matrix, "fuzzed", &path).expect("a writable folder");
-            assert_eq!(matrix_market::read(&path).expect("what was written"), matrix);
+            assert_eq!(
+                matrix_market::read(&path).expect("what was written"),
+                matrix
+            );
         }
         Err(error) => assert!(!error.to_string().is_empty()),
     }
