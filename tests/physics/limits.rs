@@ -212,7 +212,7 @@ fn contact_without_springs_is_no_contact() {
 
 /// The same model with every travelling mode of the basis turned by an angle of its own, which
 /// turns each degenerate pair of the wheel.
-fn turned(model: &ReducedModel, random: &mut Random) -> ReducedModel {
+pub fn turned(model: &ReducedModel, random: &mut Random) -> ReducedModel {
     let mut turned = model.clone();
     let size = model.blade_gram.rows();
     let mut rotation = Matrix::<f64>::zeros(size, size);

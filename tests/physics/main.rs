@@ -2,8 +2,11 @@
 // Measured figures are printed for `--nocapture`.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod bounds;
 mod contact;
+mod extremes;
 mod finite_element;
+mod fuzz;
 mod harmonic_balance;
 mod limits;
 mod mistuning;

@@ -130,6 +130,14 @@ pub enum ModelError {
     /// The number of sectors is nought.
     #[error("sectors is 0; accepted: at least 1")]
     NoSectors,
+    /// The wheel has more sectors than can be solved.
+    #[error("sectors is {sectors}; accepted: 1 to {most}")]
+    TooManySectors {
+        /// Number of sectors found.
+        sectors: usize,
+        /// Largest number accepted.
+        most: usize,
+    },
     /// The model has no degree of freedom.
     #[error("the model has no degree of freedom; accepted: at least 1")]
     NoDofs,

@@ -54,6 +54,14 @@ pub enum LineProblem {
         /// Columns.
         columns: usize,
     },
+    /// The matrix is larger than any sector that could be solved.
+    #[error("the dimension is {dimension}; accepted: at most {most}")]
+    TooLarge {
+        /// Dimension found.
+        dimension: usize,
+        /// Largest dimension accepted.
+        most: usize,
+    },
     /// A wrong number of values on the line.
     #[error("the line has {found} values; accepted: {expected} ({what})")]
     FieldCount {

@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::error::ModelError;
 use super::error_place::Accepted;
-use super::sector_model::{Body, Component, ContactPair, Dof, ObservedNode, SectorModel};
+use super::sector_model::{
+    Body, Component, ContactPair, Dof, MAX_SECTORS, ObservedNode, SectorModel,
+};
 use super::validate::validate;
 use crate::linalg::{Complex64, SymmetricSparse};
 
@@ -42,9 +44,6 @@ pub struct LumpedOptions {
     /// Spring that locates the ring on the disk, N/m; not the contact stiffness.
     pub ring_disk_stiffness_n_per_m: f64,
 }
-
-/// Largest number of sectors accepted.
-const MAX_SECTORS: usize = 10_000;
 
 /// Radii at which the masses are placed, m: only for pictures and the check of the faces.
 const RADIUS_M: [f64; 3] = [1.5, 1.0, 0.9];

@@ -48,6 +48,9 @@ pub fn write(matrix: &SymmetricSparse, comment: &str, path: &Path) -> Result<(),
     })
 }
 
+/// Largest dimension accepted: memory is reserved for what a file says of itself.
+const MAX_DIMENSION: usize = 10_000_000;
+
 /// An entry: value and the line it stands on.
 struct Entry {
     value: f64,
@@ -173,6 +176,12 @@ fn parse_size(line: &str) -> Result<(usize, usize), LineProblem> {
     let columns = integer("the number of columns", columns)?;
     if rows != columns {
         return Err(LineProblem::NotSquare { rows, columns });
+    }
+    if rows > MAX_DIMENSION {
+        return Err(LineProblem::TooLarge {
+            dimension: rows,
+            most: MAX_DIMENSION,
+        });
     }
     Ok((rows, integer("the number of entries", entries)?))
 }

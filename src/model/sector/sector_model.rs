@@ -2,6 +2,9 @@
 
 use crate::linalg::{Complex64, SymmetricSparse};
 
+/// Largest number of sectors accepted.
+pub(super) const MAX_SECTORS: usize = 10_000;
+
 /// Component of a displacement in the cylindrical frame at the node's own angle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Component {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use super::error::ModelError;
 use super::error_place::{Item, Matrix, Place};
-use super::sector_model::{Component, Dof, SectorModel};
+use super::sector_model::{Component, Dof, MAX_SECTORS, SectorModel};
 use crate::linalg::SymmetricSparse;
 
 /// Tolerance on positions, as a fraction of the largest distance from the origin.
@@ -65,6 +65,12 @@ pub fn validate(model: &SectorModel) -> Result<(), ModelError> {
     if model.sectors == 0 {
         return Err(ModelError::NoSectors);
     }
+    if model.sectors > MAX_SECTORS {
+        return Err(ModelError::TooManySectors {
+            sectors: model.sectors,
+            most: MAX_SECTORS,
+        });
+    }
     if model.dofs.is_empty() {
         return Err(ModelError::NoDofs);
     }
@@ -104,7 +110,8 @@ fn check_matrix(matrix: Matrix, values: &SymmetricSparse, dofs: usize) -> Result
         }
     }
     for (row, column, value) in values.lower_entries() {
-        let limit = (diagonal[row] * diagonal[column]).sqrt();
+        // The root of each: their product may overflow or vanish.
+        let limit = diagonal[row].sqrt() * diagonal[column].sqrt();
         if row != column && value.abs() > limit * (1.0 + ROUNDING) {
             return Err(ModelError::Indefinite {
                 matrix,

@@ -1,0 +1,45 @@
+//! Any bytes in place of one file of a sound bundle: a valid sector model or an error, never a panic.
+#![no_main]
+
+use std::fs;
+
+use blisk::model::sector::{LumpedOptions, bundle, lumped};
+use libfuzzer_sys::fuzz_target;
+
+const FILES: [&str; 9] = [
+    "model.toml",
+    "K.mtx",
+    "M.mtx",
+    "K_blade.mtx",
+    "dofs.csv",
+    "cyclic.csv",
+    "contact.csv",
+    "force.csv",
+    "observe.csv",
+];
+
+fuzz_target!(|input: (u8, &[u8])| {
+    let (choice, bytes) = input;
+    let model = lumped::build(&LumpedOptions {
+        sectors: 5,
+        blade_mass_kg: 0.25,
+        disk_mass_kg: 1.0,
+        ring_mass_kg: 0.03,
+        blade_stiffness_n_per_m: 2.5e6,
+        disk_ground_stiffness_n_per_m: 7.0e6,
+        disk_coupling_stiffness_n_per_m: 2.5e5,
+        ring_coupling_stiffness_n_per_m: 8.0e5,
+        ring_disk_stiffness_n_per_m: 1.0e4,
+        ..LumpedOptions::default()
+    })
+    .expect("sound options");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    bundle::write(&model, folder.path()).expect("a writable folder");
+    let file = FILES[usize::from(choice) % FILES.len()];
+    fs::write(folder.path().join(file), bytes).expect("a writable folder");
+    match bundle::read(folder.path()) {
+        // What was read is a model like any other: it can be written, unless a name forbids it.
+        Ok(model) => drop(bundle::write(&model, folder.path())),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+});

@@ -1,0 +1,192 @@
+//! Normal load, friction and excitation over twelve orders of magnitude.
+
+use blisk::response::forced_response::{ContactCondition, SolverOptions};
+use blisk::response::friction::PairParameters;
+use blisk::response::harmonic_balance::Status;
+
+use super::wheels::{
+    CHAIN_LOADS, ORDER, SECTORS, amplitude, chain, decades, one_dimensional, solved, spatial,
+    tight, uneven,
+};
+use crate::wheels::{Wheel, full, relative};
+
+fn pattern() -> Vec<f64> {
+    uneven(SECTORS, 0.04)
+}
+
+fn peak(wheel: &Wheel, harmonics: &[u32], contact: ContactCondition) -> f64 {
+    let solver = wheel.solver(harmonics, tight());
+    amplitude(&solved(&solver, ORDER, &pattern(), contact).1)
+}
+
+/// `x(F, N0) = F x(1, N0/F)` to 1e-9, from a millionth of a newton to a million.
+fn scales(forces: &[f64]) {
+    for (wheel, loads) in [
+        (one_dimensional(&chain()), CHAIN_LOADS),
+        (spatial(), [20.0, 60.0, 200.0]),
+    ] {
+        for load_over_force in loads.map(|load| load / wheel.amplitude_n) {
+            let per_newton = |force: f64| {
+                let wheel = Wheel {
+                    amplitude_n: force,
+                    ..wheel.clone()
+                };
+                peak(&wheel, &[1, 3], full(load_over_force * force)) / force
+            };
+            let expected = per_newton(1.0);
+            for &force in forces {
+                let error = relative(per_newton(force), expected);
+                assert!(error < 1e-9, "{}, {force:e} N: {error:e}", wheel.model.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn twelve_orders_of_force_and_load_together_scale_the_response() {
+    scales(&[1e-6, 1e-3, 1e3, 1e6]);
+}
+
+#[test]
+#[ignore = "long form: `cargo test --release --test physics extremes -- --ignored`"]
+fn twelve_orders_of_force_and_load_together_scale_the_response_long() {
+    scales(&decades(-6, 6, 4));
+}
+
+/// Twelve orders of N0 over F: from the free wheel, approached linearly in N0, to the stuck one.
+fn from_free_to_stuck(loads: &[f64]) {
+    let wheel = one_dimensional(&chain());
+    let free = peak(&wheel, &[1], ContactCondition::Free);
+    let stuck = peak(&wheel, &[1], ContactCondition::Stuck);
+    let solver = wheel.solver(&[1], tight());
+    for &load in loads {
+        let row = solved(&solver, ORDER, &pattern(), full(load)).1;
+        let found = amplitude(&row);
+        assert!(found < 1.001 * free.max(stuck), "{load:e} N: {found:e}");
+        if load <= 1e-3 {
+            // A slider of limit mu N0 takes off less than the force it can exert: 4/pi mu N0 of F.
+            let share = 20.0 * load / wheel.amplitude_n;
+            assert!(relative(found, free) < share + 1e-9, "{load:e} N");
+        }
+        if load >= 1e4 {
+            assert_eq!(row.slipping_fraction, Some(0.0));
+            assert!(relative(found, stuck) < 1e-9, "{load:e} N");
+        }
+    }
+}
+
+#[test]
+fn a_slider_goes_from_the_free_wheel_to_the_stuck_one() {
+    from_free_to_stuck(&decades(-6, 6, 1));
+}
+
+#[test]
+#[ignore = "long form: `cargo test --release --test physics extremes -- --ignored`"]
+fn a_slider_goes_from_the_free_wheel_to_the_stuck_one_long() {
+    from_free_to_stuck(&decades(-12, 12, 4));
+}
+
+#[test]
+fn only_the_product_of_friction_and_load_counts_where_the_load_is_constant() {
+    let wheel = one_dimensional(&chain());
+    for load in CHAIN_LOADS {
+        let expected = peak(&wheel, &[1, 3], full(load));
+        for factor in [1e-6, 1e-3, 1e3, 1e6] {
+            let sector = PairParameters {
+                friction_coefficient: 0.3 * factor,
+                ..wheel.sector
+            };
+            let other = Wheel {
+                sector,
+                ..wheel.clone()
+            };
+            let error = relative(peak(&other, &[1, 3], full(load / factor)), expected);
+            assert!(error < 1e-9, "{load} N, {factor:e}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn without_friction_the_contact_slides() {
+    for (wheel, load) in [(one_dimensional(&chain()), 20.0), (spatial(), 1e5)] {
+        let sector = PairParameters {
+            friction_coefficient: 0.0,
+            ..wheel.sector
+        };
+        let wheel = Wheel { sector, ..wheel };
+        let slide = peak(&wheel, &[1], ContactCondition::Slide);
+        let error = relative(peak(&wheel, &[1], full(load)), slide);
+        assert!(error < 1e-9, "{}: {error:e}", wheel.model.name);
+    }
+}
+
+#[test]
+fn a_slider_without_load_is_none() {
+    let wheel = one_dimensional(&chain());
+    let free = peak(&wheel, &[1, 3], ContactCondition::Free);
+    for load in [0.0, f64::MIN_POSITIVE, 1e-300] {
+        assert!(
+            relative(peak(&wheel, &[1, 3], full(load)), free) < 1e-9,
+            "{load:e} N"
+        );
+    }
+}
+
+/// Light loads of the law with variable normal load clap. Each row ends with a status; those that
+/// end well lie below the softest linear limit times the most that clapping may add, and none is free.
+fn claps(loads: &[f64], harmonics: &[u32]) -> usize {
+    let wheel = spatial();
+    let limits = [
+        ContactCondition::Free,
+        ContactCondition::Slide,
+        ContactCondition::Stuck,
+    ];
+    let highest = limits
+        .map(|limit| peak(&wheel, &[1], limit))
+        .into_iter()
+        .fold(0.0, f64::max);
+    let solver = wheel.solver(harmonics, SolverOptions::default());
+    let mut good = 0;
+    for &load in loads {
+        let row = solved(&solver, ORDER, &pattern(), full(load)).1;
+        println!(
+            "{harmonics:?} {load:e} N: {} {:?} m, separated {:?}, {} solves, {} iterations",
+            row.status.name(),
+            row.peak_amplitude_m,
+            row.separated_fraction,
+            row.nonlinear_solves,
+            row.newton_iterations
+        );
+        if row.status == Status::Ok {
+            good += 1;
+            assert!(amplitude(&row) < 2.0 * highest, "{load:e} N");
+        }
+    }
+    good
+}
+
+#[test]
+fn clapping_ends_in_a_number_or_a_status() {
+    let loads = [0.0, 1e-6, 1e-3, 1.0, 10.0, 100.0, 1e4, 1e6];
+    for harmonics in [&[1_u32][..], &[0, 1, 2, 3]] {
+        // Those that do not separate at least; lighter ones may fail, with a status that says so.
+        let good = claps(&loads, harmonics);
+        assert!(good >= 3, "{good} of {} rows", loads.len());
+    }
+}
+
+#[test]
+#[ignore = "long form: `cargo test --release --test physics extremes -- --ignored`"]
+fn clapping_ends_in_a_number_or_a_status_long() {
+    let loads = decades(-6, 6, 4);
+    for harmonics in [
+        &[1_u32][..],
+        &[1, 3],
+        &[0, 1, 2],
+        &[0, 1, 2, 3],
+        &[0, 1, 2, 3, 4, 5],
+    ] {
+        let good = claps(&loads, harmonics);
+        println!("{harmonics:?}: {good} of {}", loads.len());
+    }
+}
