@@ -4,3 +4,4 @@ pub mod forced_response;
 pub mod friction;
 pub mod harmonic_balance;
 pub mod mistuning;
+pub mod time_integration;

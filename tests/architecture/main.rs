@@ -25,6 +25,7 @@ const WINGS: &[(&str, &[&str])] = &[
             "friction",
             "harmonic_balance",
             "forced_response",
+            "time_integration",
         ],
     ),
     ("population", &["monte_carlo", "statistics", "table"]),

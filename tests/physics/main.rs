@@ -10,4 +10,5 @@ mod mistuning;
 mod peaks;
 mod reduction;
 mod sector_sources;
+mod time_integration;
 mod wheels;
