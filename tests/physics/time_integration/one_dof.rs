@@ -132,9 +132,9 @@ fn a_stuck_slider_is_a_spring_solved_to_second_order() {
         assert_eq!(settled.status, Status::Ok);
         (settled.fundamental_m[0] / exact - 1.0).abs()
     });
-    println!("stuck: {errors:.1e?}");
+    println!("stuck: {errors:?}");
     for pair in errors.windows(2) {
-        assert!((pair[0] / pair[1] - 4.0).abs() < 0.1, "{errors:e?}");
+        assert!((pair[0] / pair[1] - 4.0).abs() < 0.1, "{errors:?}");
     }
 }
 
@@ -151,10 +151,10 @@ fn a_slipping_slider_converges_with_the_square_of_the_step() {
         settled.fundamental_m[0]
     });
     let errors: Vec<f64> = found[..4].iter().map(|x| (x / found[4] - 1.0).abs()).collect();
-    println!("slipping: {errors:.1e?}");
+    println!("slipping: {errors:?}");
     assert!(errors[3] < 2e-6);
     // Whether a kink falls on an instant or between two makes single ratios uneven.
-    assert!(errors[0] / errors[3] > 30.0, "{errors:e?}");
+    assert!(errors[0] / errors[3] > 30.0, "{errors:?}");
 }
 
 #[test]
@@ -169,21 +169,20 @@ fn den_hartog_without_stops() {
         let g = (PI / b).sin() / (b * (1.0 + (PI / b).cos()));
         let exact = (v * v - r * r * g * g).sqrt();
         assert!((exact / tabulated - 1.0_f64).abs() < 1e-8);
-        // A rigid slider is the limit of a stiff one: the error falls as 1/kt.
-        let errors = [1e3, 4e3].map(|kt| {
+        // A rigid slider is the limit of a stiff one. At a reversal the force takes a time of the
+        // order 1/sqrt(kt) to change its sign: that error is extrapolated away.
+        let [soft, stiff] = [1e3, 4e3].map(|kt| {
             let one = OneDof::new(1.0, 0.0, (kt, r), 1.0, b);
             let settled = one.settle_from_rest(&TimeOptions {
                 steps_per_period: 8192,
-                maximum_periods: 3000,
                 ..TimeOptions::default()
             });
-            println!(
-                "Den Hartog {b} {r} kt {kt}: {:?} {} periods, {:e} against {exact:e}",
-                settled.status, settled.periods, settled.time_maximum_m[0]
-            );
-            (settled.time_maximum_m[0] / exact - 1.0).abs()
+            assert_eq!(settled.status, Status::Ok);
+            settled.time_maximum_m[0]
         });
-        assert!(errors[1] < 1e-3, "{errors:e?}");
+        let error = ((2.0 * stiff - soft) / exact - 1.0).abs();
+        println!("Den Hartog {b} {r}: {error:.1e}, {:.1e}", stiff / exact - 1.0);
+        assert!((stiff / exact - 1.0).abs() < 1e-2 && error < 2e-4, "{error:e}");
     }
 }
 

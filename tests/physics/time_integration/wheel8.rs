@@ -74,3 +74,47 @@ fn scratch() {
             found.settled.blade_change, found.settled.force_change, found.settled.drift, found.settled.creep_m, found.settled.shares, found.settled.contact_iterations),
     }
 }
+
+#[test]
+fn scratch_dump() {
+    use blisk::response::forced_response::*;
+    use blisk::response::harmonic_balance::ContactInterface;
+    use blisk::response::mistuning::StructuralModes;
+    use blisk::response::time_integration::*;
+    use std::io::Write;
+    let env = |n: &str| std::env::var(n).unwrap().parse::<f64>().unwrap();
+    let (load, f, top, first) = (env("LOAD"), env("FREQ"), env("TOP") as u32, env("FIRST") as u32);
+    let (steps, periods) = (env("STEPS") as usize, env("PERIODS") as usize);
+    let harmonics: Vec<u32> = (first..=top).collect();
+    let wheel = wheel();
+    let basis = WheelBasis::new(Arc::clone(&wheel.model));
+    let omega = std::f64::consts::TAU * f;
+    let modes = StructuralModes::of_wheel(&basis, &Matrix::zeros(basis.size(), basis.size())).unwrap();
+    let all: Vec<f64> = modes.eigenvalues.iter().map(|l| l.max(0.0).sqrt() / std::f64::consts::TAU).collect();
+    println!("{} modes {:?} .. {:?}", all.len(), &all[..40], &all[all.len()-8..]);
+    let force = wheel_force(&basis, &modes, 3, 1.0);
+    let w = blisk::response::forced_response::Wheel::mistuned(modes.clone(), basis.model(), wheel.damping, LimitsWanted::default());
+    let excited = Excited::wheel(&w, force, &harmonics).with_viscous_damping(omega);
+    let waves = Excited::tuned(&wheel.model, 3, 1.0, wheel.damping, &harmonics, LimitsWanted::default()).with_viscous_damping(omega);
+    let sector = PairParameters { normal_load_n: load, ..wheel.sector };
+    let settings = PointSettings::new(&SolverOptions { samples_per_period: 512, ..SolverOptions::default() }, &harmonics, Some((wheel.law, sector)), wheel.model.contact.clone()).unwrap();
+    let mut ps = PointSolver::new(&waves, ContactCondition::Full { normal_load_n: load }, &settings);
+    let point = ps.solve(f).unwrap().clone();
+    println!("HB {:?}", point.amplitudes_m);
+    let motion = Motion::of_waves(&basis, &modes, 3, &waves, &point);
+    let interface = ContactInterface { law: wheel.law, geometry: wheel.model.contact.clone(), pairs: wheel.model.contact.weights.iter().map(|&x| sector.share(x)).collect() };
+    let marched = MarchedWheel { structure: &excited.linear.structure, interface: &interface, force: &excited.force, omega };
+    let start = motion.start(&marched, steps);
+    println!("balance {:?}", &start.balance_n[..12]);
+    let mut st = TimeStepper::new(&marched, &start, steps).unwrap();
+    let mut out = std::io::BufWriter::new(std::fs::File::create(std::env::var("OUT").unwrap()).unwrap());
+    let every = std::env::var("EVERY").map_or(steps, |e| e.parse().unwrap());
+    for step in 0..steps * periods {
+        st.advance().unwrap();
+        if (step + 1) % every == 0 {
+            let obs = excited.linear.structure.observed().real.times_vector(st.position());
+            let line: Vec<String> = obs.iter().chain(st.contact_displacement_m()).chain(st.contact_force_n()).map(|x| format!("{x:e}")).collect();
+            writeln!(out, "{}", line.join(",")).unwrap();
+        }
+    }
+}
