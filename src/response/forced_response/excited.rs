@@ -225,8 +225,7 @@ impl Excited {
     #[must_use]
     pub fn with_viscous_damping(&self, omega: f64) -> Self {
         let mut excited = self.clone();
-        let viscous =
-            |structure: &Structure| Arc::new(structure.with_viscous_damping(omega));
+        let viscous = |structure: &Structure| Arc::new(structure.with_viscous_damping(omega));
         excited.linear.structure = viscous(&self.linear.structure);
         for block in &mut excited.blocks {
             // The harmonics of a wheel share one structure.

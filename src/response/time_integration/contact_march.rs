@@ -120,8 +120,8 @@ struct LoadedStep {
 
 impl LoadedStep {
     fn new(parameters: &PairParameters, before: &PairMemory, displacement_m: [f64; 3]) -> Self {
-        let load_after = parameters.normal_load_n
-            + parameters.normal_stiffness_n_per_m * displacement_m[0];
+        let load_after =
+            parameters.normal_load_n + parameters.normal_stiffness_n_per_m * displacement_m[0];
         let path = [1, 2].map(|axis| displacement_m[axis] - before.displacement_m[axis]);
         if before.separated() {
             // Share of the step after the load has crossed zero.

@@ -120,7 +120,10 @@ mod tests {
             let (found, slipped) = slide_on_circle(start, path, limits);
             let fine = stepped(start, path, limits, 20_000);
             let error = norm([found[0] - fine[0], found[1] - fine[1]]);
-            assert!(error < 2e-4 * limits[1].max(1.0), "{error:e}: {start:?} {path:?} {limits:?}");
+            assert!(
+                error < 2e-4 * limits[1].max(1.0),
+                "{error:e}: {start:?} {path:?} {limits:?}"
+            );
             slips += i32::from(slipped);
             sticks += i32::from(!slipped);
         }
@@ -140,7 +143,12 @@ mod tests {
 
     #[test]
     fn along_one_line_the_circle_is_a_jenkins_element() {
-        for (start, path, last) in [(0.5, 1.0, 0.8), (0.5, -2.0, 0.8), (0.5, 0.2, 0.8), (0.9, -0.1, 0.3)] {
+        for (start, path, last) in [
+            (0.5, 1.0, 0.8),
+            (0.5, -2.0, 0.8),
+            (0.5, 0.2, 0.8),
+            (0.9, -0.1, 0.3),
+        ] {
             let (found, slipped) = slide_on_circle([0.0, start], [0.0, path], [1.0, last]);
             let trial: f64 = start + path;
             assert!((found[1] - trial.clamp(-last, last)).abs() < 1e-15 && found[0].abs() < 1e-15);

@@ -137,9 +137,8 @@ fn amplitudes(excited: &Excited, point: &Point) -> Vec<(u32, Vec<Complex64>)> {
             };
             rest = after;
             let parts = re.iter().enumerate();
-            let amplitudes = parts.map(|(mode, &re)| {
-                Complex64::new(re, im.get(mode).copied().unwrap_or(0.0))
-            });
+            let amplitudes =
+                parts.map(|(mode, &re)| Complex64::new(re, im.get(mode).copied().unwrap_or(0.0)));
             (block.harmonic, amplitudes.collect())
         })
         .collect()

@@ -119,7 +119,11 @@ fn relative_change(now: &[f64], before: &[f64]) -> f64 {
         .iter()
         .zip(before)
         .fold(0.0_f64, |change, (a, b)| change.max((a - b).abs()));
-    if largest > 0.0 { change / largest } else { change }
+    if largest > 0.0 {
+        change / largest
+    } else {
+        change
+    }
 }
 
 /// Amplitude of every blade, m: Euclidean norm over its three complex components.

@@ -135,7 +135,8 @@ impl Propagator {
         let mut sum = Matrix::zeros(rows.rows(), rows.rows());
         for block in &self.blocks {
             let own = rows.column_range(block.start, block.start + block.count);
-            let weight = Matrix::from_fn(block.count, block.count, |i, j| block.force_after[(i, j)]);
+            let weight =
+                Matrix::from_fn(block.count, block.count, |i, j| block.force_after[(i, j)]);
             let part = own.times(&weight).times(&own.adjoint());
             for (sum, part) in sum.as_mut_slice().iter_mut().zip(part.as_slice()) {
                 *sum += part;

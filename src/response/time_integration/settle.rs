@@ -29,8 +29,11 @@ pub struct Settled {
     pub drift: f64,
     /// Largest shift of a tangential contact row over the last period, m: the ring creeping.
     pub creep_m: f64,
-    /// Amplitude of harmonic 1 of every blade, m.
+    /// Amplitude of harmonic 1 of every blade over the last period, m.
     pub fundamental_m: Vec<f64>,
+    /// The same of its mean over the last `drift_periods`, m: what a motion that does not repeat
+    /// itself has at the frequency of the excitation.
+    pub mean_fundamental_m: Vec<f64>,
     /// Largest displacement of every blade about its mean over the period, m.
     pub time_maximum_m: Vec<f64>,
     /// Shares of pairs slipping and open at any step of the last period.
@@ -56,6 +59,7 @@ pub fn settle(wheel: &MarchedWheel<'_>, start: &WheelState, options: &TimeOption
         drift: f64::INFINITY,
         creep_m: f64::INFINITY,
         fundamental_m: Vec::new(),
+        mean_fundamental_m: Vec::new(),
         time_maximum_m: Vec::new(),
         shares: ContactShares::default(),
         contact_iterations: 0,
@@ -96,6 +100,7 @@ pub fn settle(wheel: &MarchedWheel<'_>, start: &WheelState, options: &TimeOption
     }
     if let Some(period) = &before {
         settled.fundamental_m = blade_norms(&period.fundamental());
+        settled.mean_fundamental_m = blade_norms(&mean(&amplitudes));
         settled.time_maximum_m = period.time_maxima();
         let (slipping, separated) = period.shares();
         settled.shares = ContactShares {
@@ -130,5 +135,21 @@ fn drift(amplitudes: &VecDeque<Vec<Complex64>>, periods: usize) -> f64 {
         .zip(last)
         .map(|(a, b)| (a - b).norm())
         .fold(0.0, f64::max);
-    if largest > 0.0 { change / largest } else { change }
+    if largest > 0.0 {
+        change / largest
+    } else {
+        change
+    }
+}
+
+/// Mean over the window.
+fn mean(amplitudes: &VecDeque<Vec<Complex64>>) -> Vec<Complex64> {
+    let components = amplitudes.front().map_or(0, Vec::len);
+    let mut mean = vec![Complex64::default(); components];
+    for period in amplitudes {
+        for (mean, x) in mean.iter_mut().zip(period) {
+            *mean += x / amplitudes.len() as f64;
+        }
+    }
+    mean
 }

@@ -19,9 +19,7 @@ use super::contact_march::PairMemory;
 use super::contact_rows::ContactRows;
 use super::propagator::Propagator;
 use super::state::WheelState;
-use crate::linalg::{
-    Complex64, LuWorkspace, Matrix, add_times_vector, add_transpose_times_vector,
-};
+use crate::linalg::{Complex64, LuWorkspace, Matrix, add_times_vector, add_transpose_times_vector};
 use crate::response::harmonic_balance::{ContactInterface, Status, Structure};
 
 /// Change of the corrections, relative to the largest spring force, at which they count as found.

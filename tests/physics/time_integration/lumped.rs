@@ -49,7 +49,10 @@ fn eight_odd_harmonics_are_what_the_dynamics_do() {
         let found = compare(mistuned, 350.5, &TimeOptions::default());
         println!(
             "mistuned {mistuned}: largest {:.1e}, blade {:.1e}, {:?} {:?}",
-            found.largest_difference(), found.blade_difference(), found.status, found.steps
+            found.largest_difference(),
+            found.blade_difference(),
+            found.status,
+            found.steps
         );
         assert_eq!(found.status, Status::Ok);
         assert!(found.largest_difference().abs() <= 1e-4);

@@ -23,7 +23,10 @@ fn a_jenkins_loop_point_by_point() {
         let mut memory = PairMemory::at_rest(&parameters);
         for (u, force) in path.into_iter().zip(expected) {
             memory = march(law, &parameters, &memory, [0.0, u, 0.0]);
-            assert!((memory.force_n(law, &parameters)[1] - force).abs() < 1e-15, "{law:?} {u}");
+            assert!(
+                (memory.force_n(law, &parameters)[1] - force).abs() < 1e-15,
+                "{law:?} {u}"
+            );
         }
     }
 }
@@ -49,7 +52,8 @@ fn loop_of(amplitude: f64, load_slope: f64, steps: u32) -> [f64; 4] {
             sums[0] += share * after.friction_n[0];
             sums[1] += 2.0 * share * after.friction_n[0] * angle.cos();
             sums[2] += 2.0 * share * after.friction_n[0] * angle.sin();
-            sums[3] += 0.5 * (after.friction_n[0] + memory.friction_n[0])
+            sums[3] += 0.5
+                * (after.friction_n[0] + memory.friction_n[0])
                 * (after.displacement_m[1] - memory.displacement_m[1]);
         }
         memory = after;
@@ -71,7 +75,10 @@ fn loops_with_variable_load_and_separation_meet_their_closed_forms() {
     for (g, expected) in table {
         let found = loop_of(5.0, g, 20_000);
         for (found, expected) in found.into_iter().zip(expected) {
-            assert!((found - expected).abs() < 3e-6 * 42.0, "{g}: {found} {expected}");
+            assert!(
+                (found - expected).abs() < 3e-6 * 42.0,
+                "{g}: {found} {expected}"
+            );
         }
     }
 }
@@ -90,5 +97,8 @@ fn an_open_pair_carries_nothing_and_forgets_where_it_was() {
     let closed = march(law, &parameters, &moved, [1.0, 9.2, 5.0]);
     assert!((closed.friction_n[0] - 2.0 * 0.1).abs() < 1e-14 && !closed.slipping);
     let slipping = march(law, &parameters, &moved, [1.0, 10.5, 3.5]);
-    assert_eq!((slipping.friction_n, slipping.slipping), ([1.0, -1.0], true));
+    assert_eq!(
+        (slipping.friction_n, slipping.slipping),
+        ([1.0, -1.0], true)
+    );
 }

@@ -96,8 +96,7 @@ fn without_contact_every_step_is_exact_whatever_its_size() {
     let (a, b) = (-x.re, (w * x.im - 0.5 * c * x.re) / damped);
     for (periods, steps) in [(1, 8), (3, 8), (3, 20)] {
         let t = periods as f64 * TAU / w;
-        let homogeneous =
-            (-0.5 * c * t).exp() * (a * (damped * t).cos() + b * (damped * t).sin());
+        let homogeneous = (-0.5 * c * t).exp() * (a * (damped * t).cos() + b * (damped * t).sin());
         let found = one.position_after(periods, steps);
         assert!((found - x.re - homogeneous).abs() < 1e-13, "{found}");
     }
@@ -150,7 +149,10 @@ fn a_slipping_slider_converges_with_the_square_of_the_step() {
         assert_eq!(settled.status, Status::Ok);
         settled.fundamental_m[0]
     });
-    let errors: Vec<f64> = found[..4].iter().map(|x| (x / found[4] - 1.0).abs()).collect();
+    let errors: Vec<f64> = found[..4]
+        .iter()
+        .map(|x| (x / found[4] - 1.0).abs())
+        .collect();
     println!("slipping: {errors:?}");
     assert!(errors[3] < 2e-6);
     // Whether a kink falls on an instant or between two makes single ratios uneven.
@@ -181,8 +183,14 @@ fn den_hartog_without_stops() {
             settled.time_maximum_m[0]
         });
         let error = ((2.0 * stiff - soft) / exact - 1.0).abs();
-        println!("Den Hartog {b} {r}: {error:.1e}, {:.1e}", stiff / exact - 1.0);
-        assert!((stiff / exact - 1.0).abs() < 1e-2 && error < 2e-4, "{error:e}");
+        println!(
+            "Den Hartog {b} {r}: {error:.1e}, {:.1e}",
+            stiff / exact - 1.0
+        );
+        assert!(
+            (stiff / exact - 1.0).abs() < 1e-2 && error < 2e-4,
+            "{error:e}"
+        );
     }
 }
 
@@ -199,7 +207,10 @@ fn a_force_above_four_pi_of_friction_grows_without_bound_at_resonance() {
             ..TimeOptions::default()
         })
     });
-    println!("{:?}", grown.each_ref().map(|s| (s.status, s.fundamental_m[0])));
+    println!(
+        "{:?}",
+        grown.each_ref().map(|s| (s.status, s.fundamental_m[0]))
+    );
     assert_eq!(grown[0].status, Status::Ok);
     assert_eq!(grown[1].status, Status::WorkBudget);
     // Energy per period pi A (F0 - 4 Ff/pi) = d(A^2/2): A grows by pi (F0 - 4 Ff / pi) per period.
