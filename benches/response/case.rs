@@ -39,7 +39,7 @@ impl Case {
         let tangential = contact.tangential_stiffness_n_per_m;
         let second = match contact.law {
             ContactLaw::MacroSlip1d => 0.0,
-            ContactLaw::Simplified3d => tangential,
+            ContactLaw::Simplified3d | ContactLaw::Coulomb3d => tangential,
         };
         let stiffness = ContactStiffness {
             normal_n_per_m: contact.normal_stiffness_n_per_m.unwrap_or(0.0),

@@ -241,7 +241,7 @@ fn contact_stiffness(contact: Option<&ContactOptions>) -> ContactStiffness {
         tangential_1_n_per_m: tangential,
         tangential_2_n_per_m: match contact.law {
             ContactLaw::MacroSlip1d => 0.0,
-            ContactLaw::Simplified3d => tangential,
+            ContactLaw::Simplified3d | ContactLaw::Coulomb3d => tangential,
         },
     }
 }

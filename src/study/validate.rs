@@ -339,7 +339,9 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
 fn normal_stiffness(check: &mut Check, contact: &ContactOptions) {
     let key = "contact.normal_stiffness_n_per_m";
     match (contact.law, contact.normal_stiffness_n_per_m) {
-        (ContactLaw::Simplified3d, None) => check.missing(key, "a finite number above 0, in N/m"),
+        (ContactLaw::Simplified3d | ContactLaw::Coulomb3d, None) => {
+            check.missing(key, "a finite number above 0, in N/m");
+        }
         (_, Some(value)) if !(value.is_finite() && value > 0.0) => {
             check.refuse(key, "a finite number above 0, in N/m");
         }

@@ -14,7 +14,11 @@ use rustfft::FftPlanner;
 use super::contact::random::Random;
 use super::wheels::{Wheel, full, springs};
 
-const LAWS: [ContactLaw; 2] = [ContactLaw::MacroSlip1d, ContactLaw::Simplified3d];
+const LAWS: [ContactLaw; 3] = [
+    ContactLaw::MacroSlip1d,
+    ContactLaw::Simplified3d,
+    ContactLaw::Coulomb3d,
+];
 const DAMPINGS: [Damping; 3] = [
     Damping::StructuralLossFactor(0.002),
     Damping::ModalRatio(0.001),
@@ -250,7 +254,7 @@ mod derivative {
     fn share_at_work(law: ContactLaw, state: &Linearised) -> f64 {
         match law {
             ContactLaw::MacroSlip1d => state.slipping,
-            ContactLaw::Simplified3d => state.separated,
+            ContactLaw::Simplified3d | ContactLaw::Coulomb3d => state.separated,
         }
     }
 

@@ -39,7 +39,7 @@ pub fn springs(law: ContactLaw, sector: PairParameters) -> ContactStiffness {
         tangential_1_n_per_m: kt,
         tangential_2_n_per_m: match law {
             ContactLaw::MacroSlip1d => 0.0,
-            ContactLaw::Simplified3d => kt,
+            ContactLaw::Simplified3d | ContactLaw::Coulomb3d => kt,
         },
     }
 }

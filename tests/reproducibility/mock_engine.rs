@@ -97,6 +97,8 @@ impl Engine for MockEngine {
                     residual: None,
                     slipping_fraction: None,
                     separated_fraction: None,
+                    mean_friction_circumferential_n: None,
+                    mean_friction_axial_n: None,
                     shortcut: "none".to_owned(),
                 }
             })

@@ -53,6 +53,8 @@ fn row(pattern: u32, scenario: usize) -> ResponseRow {
         residual: good.then_some(1e-300),
         slipping_fraction: None,
         separated_fraction: good.then_some(0.0),
+        mean_friction_circumferential_n: good.then_some(-1.5),
+        mean_friction_axial_n: good.then_some(0.25),
         shortcut: "none".to_owned(),
     }
 }
@@ -108,7 +110,8 @@ fn columns_are_the_documented_ones_in_order() {
     let documented = "scenario, contact, engine_order, normal_load_n, standard_deviation, pattern, \
                       status, peak_amplitude_m, peak_frequency_hz, peak_blade, amplification_factor, \
                       peak_bracketed, harmonics, nonlinear_solves, newton_iterations, residual, \
-                      slipping_fraction, separated_fraction, shortcut, retries";
+                      slipping_fraction, separated_fraction, shortcut, retries, mean_friction_circumferential_n, \
+                      mean_friction_axial_n";
     assert_eq!(names.join(", "), documented);
 }
 

@@ -47,6 +47,8 @@ fn record(
             residual: good.then_some(1e-9),
             slipping_fraction: good.then_some(0.5),
             separated_fraction: good.then_some(separated),
+            mean_friction_circumferential_n: None,
+            mean_friction_axial_n: None,
             shortcut: "none".to_owned(),
         });
     }

@@ -39,6 +39,10 @@ pub struct ContactGeometry {
     /// For each pair, the row of its normal, first and second tangential motion; none where the
     /// nodes have no displacement that way.
     pub rows: Vec<[Option<usize>; 3]>,
+    /// For each pair the displacement along t1 and t2 that a rigid motion of the ring brings:
+    /// first its rotation, by unit displacement along theta at the mean contact radius (weighted
+    /// like the pairs), then its axial motion, by unit displacement along z.
+    pub ring_motion: Vec<[[f64; 2]; 2]>,
 }
 
 impl ContactGeometry {
@@ -84,6 +88,24 @@ fn frame(pair: &ContactPair) -> [[f64; 3]; 3] {
     [n, t1, t2]
 }
 
+/// Tangential components of the ring's rigid motions at each pair.
+fn ring_motion(model: &SectorModel) -> Vec<[[f64; 2]; 2]> {
+    let radius = |pair: &ContactPair| {
+        let dof = model.dofs.iter().find(|dof| dof.node == pair.ring_node);
+        dof.map_or(0.0, |dof| dof.position_m[0].hypot(dof.position_m[1]))
+    };
+    let pairs = &model.contact_pairs;
+    let mean: f64 = pairs.iter().map(|pair| pair.weight * radius(pair)).sum();
+    pairs
+        .iter()
+        .map(|pair| {
+            let [_, t1, t2] = frame(pair);
+            let lever = if mean > 0.0 { radius(pair) / mean } else { 1.0 };
+            [[lever * t1[1], lever * t2[1]], [t1[2], t2[2]]]
+        })
+        .collect()
+}
+
 /// Rows of relative motion of a sector, pair by pair in the order normal, t1, t2; directions
 /// that no dof of the pair moves in have no row.
 #[must_use]
@@ -93,6 +115,7 @@ pub fn contact_rows(model: &SectorModel) -> (Vec<ContactRow>, ContactGeometry) {
     let mut geometry = ContactGeometry {
         weights: model.contact_pairs.iter().map(|pair| pair.weight).collect(),
         rows: Vec::new(),
+        ring_motion: ring_motion(model),
     };
     for (index, pair) in model.contact_pairs.iter().enumerate() {
         let mut places = [None; 3];

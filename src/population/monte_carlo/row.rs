@@ -35,6 +35,10 @@ pub struct ResponseRow {
     pub slipping_fraction: Option<f64>,
     /// Share of pairs with no normal load at some sample, at the peak.
     pub separated_fraction: Option<f64>,
+    /// Mean friction force on the ring along theta at the peak, N per sector.
+    pub mean_friction_circumferential_n: Option<f64>,
+    /// Mean friction force on the ring along z at the peak, N per sector.
+    pub mean_friction_axial_n: Option<f64>,
     /// Shortcut used, or `"none"`.
     pub shortcut: String,
 }

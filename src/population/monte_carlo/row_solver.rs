@@ -286,6 +286,7 @@ impl RowSolver {
             .and_then(|found| Some((found, found.point.as_ref()?)));
         let work = found.as_ref().map(|found| found.work).unwrap_or_default();
         let amplitude = good.map(|(found, point)| point.amplitudes_m[found.blade]);
+        let mean_friction = good.and_then(|(found, _)| found.mean_friction_n);
         ResponseRow {
             scenario: scenario.index,
             pattern: pattern.id,
@@ -302,6 +303,8 @@ impl RowSolver {
             residual: good.map(|(_, point)| point.residual),
             slipping_fraction: good.map(|(_, point)| point.shares.slipping),
             separated_fraction: good.map(|(_, point)| point.shares.separated),
+            mean_friction_circumferential_n: mean_friction.map(|force| force[0]),
+            mean_friction_axial_n: mean_friction.map(|force| force[1]),
             shortcut: shortcut(scenario.contact, good.map(|(_, point)| point)).to_owned(),
         }
     }

@@ -108,6 +108,18 @@ pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
         "1",
         "Nonlinear solves that needed more than the first attempt of the retry ladder",
     ),
+    ColumnSpec::new(
+        "mean_friction_circumferential_n",
+        Float64,
+        "N",
+        "Mean friction force on the ring along theta per sector (torque over the mean contact radius) at the peak, mean over the sectors; null for the linear limits",
+    ),
+    ColumnSpec::new(
+        "mean_friction_axial_n",
+        Float64,
+        "N",
+        "Mean friction force on the ring along z per sector at the peak, mean over the sectors; null for the linear limits",
+    ),
 ];
 
 /// Rows per row group and per batch in memory.
@@ -226,6 +238,8 @@ fn columns_of(rows: &[ResponseRow], scenarios: &[Scenario]) -> Result<Vec<Values
         floats(&|row| row.separated_fraction),
         names(&|row| row.shortcut.clone()),
         counts(&|row| row.retries),
+        floats(&|row| row.mean_friction_circumferential_n),
+        floats(&|row| row.mean_friction_axial_n),
     ])
 }
 
@@ -325,6 +339,8 @@ impl ResponseReader {
         let residuals = slice.float64("residual")?;
         let slipping = slice.float64("slipping_fraction")?;
         let separated = slice.float64("separated_fraction")?;
+        let circumferential = slice.float64("mean_friction_circumferential_n")?;
+        let axial = slice.float64("mean_friction_axial_n")?;
         let mut shortcuts = slice.string("shortcut")?;
         (0..scenarios.len())
             .map(|i| {
@@ -347,6 +363,8 @@ impl ResponseReader {
                     residual: residuals[i],
                     slipping_fraction: slipping[i],
                     separated_fraction: separated[i],
+                    mean_friction_circumferential_n: circumferential[i],
+                    mean_friction_axial_n: axial[i],
                     shortcut: shortcuts[i].take().ok_or_else(|| gap(i, "shortcut"))?,
                 })
             })

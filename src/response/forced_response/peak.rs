@@ -27,6 +27,9 @@ pub struct Peak {
     pub blade: usize,
     /// Whether lower amplitudes were seen on both sides.
     pub bracketed: bool,
+    /// Mean friction force on the ring along theta and z at the point, N per sector; none for a
+    /// linear limit.
+    pub mean_friction_n: Option<[f64; 2]>,
     /// Work done.
     pub work: Work,
 }
@@ -108,6 +111,7 @@ pub fn peak(
         point: None,
         blade: 0,
         bracketed: false,
+        mean_friction_n: None,
         work: Work::default(),
     };
     let limits = within(&excited.linear_peaks(condition), window);
@@ -158,6 +162,9 @@ pub fn peak(
             .find(|point| point.frequency_hz.total_cmp(&best.frequency_hz).is_eq())
             .cloned()
     });
+    let mean_friction_n = point
+        .as_ref()
+        .and_then(|point| solver.mean_friction_n(point));
     let status = match result.end {
         SearchEnd::Found if result.bracketed => Status::Ok,
         SearchEnd::Found | SearchEnd::Open => Status::NotBracketed,
@@ -172,6 +179,7 @@ pub fn peak(
         point,
         blade: best.map_or(0, |best| best.blade),
         bracketed: result.bracketed,
+        mean_friction_n,
         work: solver.work(),
     }
 }

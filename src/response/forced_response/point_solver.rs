@@ -160,6 +160,13 @@ impl<'a> PointSolver<'a> {
         self.work
     }
 
+    /// Mean friction force on the ring at a point of this solver, N per sector, see
+    /// [`HarmonicSystem::mean_friction_n`]; none for a linear limit.
+    pub fn mean_friction_n(&mut self, point: &Point) -> Option<[f64; 2]> {
+        let (system, workspace) = self.nonlinear.as_mut()?;
+        Some(system.mean_friction_n(&point.solution, workspace.system_mut()))
+    }
+
     /// Solves at one frequency, Hz.
     ///
     /// # Errors

@@ -1,7 +1,10 @@
 //! One pair of contact nodes: its parameters, its displacement history and what the chosen law
 //! makes of it.
 
-use super::{ContactLaw, ContactOptions, PeriodicSlider, macro_slip_1d, simplified_3d};
+use super::{
+    ContactLaw, ContactOptions, CoupledSlider, PeriodicSlider, coulomb_3d, macro_slip_1d,
+    simplified_3d,
+};
 
 impl ContactLaw {
     /// Whether the normal load follows the normal displacement.
@@ -9,7 +12,7 @@ impl ContactLaw {
     pub fn has_variable_load(self) -> bool {
         match self {
             Self::MacroSlip1d => false,
-            Self::Simplified3d => true,
+            Self::Simplified3d | Self::Coulomb3d => true,
         }
     }
 }
@@ -56,12 +59,15 @@ impl PairParameters {
     #[must_use]
     pub fn surely_sticks(&self, law: ContactLaw, excursions_m: [f64; 3]) -> bool {
         let [normal, first, second] = excursions_m;
+        let load = if law.has_variable_load() {
+            self.normal_load_n - self.normal_stiffness_n_per_m * normal
+        } else {
+            self.normal_load_n
+        };
         let (lowest_load, tangential) = match law {
-            ContactLaw::MacroSlip1d => (self.normal_load_n, first),
-            ContactLaw::Simplified3d => (
-                self.normal_load_n - self.normal_stiffness_n_per_m * normal,
-                first.max(second),
-            ),
+            ContactLaw::MacroSlip1d => (load, first),
+            ContactLaw::Simplified3d => (load, first.max(second)),
+            ContactLaw::Coulomb3d => (load, first.hypot(second)),
         };
         lowest_load > 0.0
             && self.tangential_stiffness_n_per_m * tangential
@@ -87,6 +93,9 @@ pub struct PairState {
     pub slipping: bool,
     /// The normal load is zero at any sample.
     pub separated: bool,
+    /// The periodic state was not found: the forces are those of the last period marched, and no
+    /// solution may rest on them.
+    pub unclosed: bool,
 }
 
 /// Response of a pair: corrections to the *linear, stuck* contact force, and what their derivatives
@@ -101,7 +110,12 @@ pub struct ContactHistory {
     pub(super) normal_load: Vec<f64>,
     /// `(N_j - N0) - kn g_j`, N: zero unless separated.
     pub(super) normal_correction: Vec<f64>,
+    /// Sliders of the laws that leave the tangents uncoupled.
     pub(super) sliders: [PeriodicSlider; 2],
+    /// Slider of `coulomb_3d`.
+    pub(super) coupled: CoupledSlider,
+    /// Law of the response last computed.
+    law: ContactLaw,
     pub(super) state: PairState,
 }
 
@@ -116,6 +130,8 @@ impl ContactHistory {
                 PeriodicSlider::new(n_samples),
                 PeriodicSlider::new(n_samples),
             ],
+            coupled: CoupledSlider::new(n_samples),
+            law: ContactLaw::Simplified3d,
             state: PairState::default(),
         }
     }
@@ -135,9 +151,11 @@ impl ContactHistory {
             self.normal_load.len(),
             "samples of the closing"
         );
+        self.law = law;
         match law {
             ContactLaw::MacroSlip1d => macro_slip_1d::respond(self, parameters, displacement),
             ContactLaw::Simplified3d => simplified_3d::respond(self, parameters, displacement),
+            ContactLaw::Coulomb3d => coulomb_3d::respond(self, parameters, displacement),
         }
         self.state
     }
@@ -147,8 +165,33 @@ impl ContactHistory {
         self.normal_load.fill(parameters.normal_load_n);
         self.normal_correction.fill(0.0);
         self.sliders.iter_mut().for_each(PeriodicSlider::rest);
+        self.coupled.rest();
         self.state = PairState::default();
         self.state
+    }
+
+    /// Fills the normal load `max(0, N0 + kn g)` and the normal correction for the closing `g`;
+    /// returns whether the load is zero at any sample.
+    ///
+    /// The correction `(N - N0) - kn g = max(0, -(N0 + kn g))` is no difference of large numbers.
+    pub(super) fn press(&mut self, parameters: &PairParameters, closing: &[f64]) -> bool {
+        let (n0, kn) = (
+            parameters.normal_load_n,
+            parameters.normal_stiffness_n_per_m,
+        );
+        let mut separated = false;
+        let outputs = self.normal_load.iter_mut().zip(&mut self.normal_correction);
+        for ((load, correction), &g) in outputs.zip(closing) {
+            let bilateral = n0 + kn * g;
+            separated |= bilateral <= 0.0;
+            *load = if bilateral > 0.0 { bilateral } else { 0.0 };
+            *correction = if bilateral > 0.0 {
+                0.0
+            } else {
+                0.0 - bilateral
+            };
+        }
+        separated
     }
 
     /// Finds what the derivatives of the tangential corrections need.
@@ -177,7 +220,24 @@ impl ContactHistory {
         &self.normal_correction
     }
 
-    /// Sliders along t1 and t2: their offsets are the tangential corrections.
+    /// Tangential corrections along t1 and t2, N (`n_samples` each): the offsets of the sliders.
+    #[must_use]
+    pub fn tangential_correction_n(&self) -> [&[f64]; 2] {
+        match self.law {
+            ContactLaw::MacroSlip1d | ContactLaw::Simplified3d => {
+                self.sliders.each_ref().map(PeriodicSlider::offset_n)
+            }
+            ContactLaw::Coulomb3d => self.coupled.offset_n(),
+        }
+    }
+
+    /// Slider of `coulomb_3d`.
+    #[must_use]
+    pub fn coupled_slider(&self) -> &CoupledSlider {
+        &self.coupled
+    }
+
+    /// Sliders along t1 and t2 of the laws that leave the tangents uncoupled.
     #[must_use]
     pub fn sliders(&self) -> &[PeriodicSlider; 2] {
         &self.sliders
@@ -187,8 +247,6 @@ impl ContactHistory {
     #[must_use]
     pub fn mean_friction_n(&self) -> [f64; 2] {
         let mean = |offset: &[f64]| offset.iter().sum::<f64>() / offset.len() as f64;
-        self.sliders
-            .each_ref()
-            .map(|slider| mean(slider.offset_n()))
+        self.tangential_correction_n().map(mean)
     }
 }

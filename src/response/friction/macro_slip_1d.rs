@@ -24,6 +24,7 @@ pub(super) fn respond(
     history.state = PairState {
         slipping,
         separated: parameters.normal_load_n <= 0.0,
+        unclosed: false,
     };
 }
 

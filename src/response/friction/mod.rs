@@ -1,11 +1,14 @@
 //! Contact laws as pure functions of a displacement history: force, derivative, contact state.
 
 mod contact_pair;
+mod coulomb_3d;
+mod coupled_slider;
 mod macro_slip_1d;
 mod options;
 mod periodic_slider;
 mod simplified_3d;
 
 pub use contact_pair::{ContactHistory, PairDisplacement, PairParameters, PairState};
+pub use coupled_slider::{CoupledSlider, Slip};
 pub use options::{ContactLaw, ContactOptions};
 pub use periodic_slider::PeriodicSlider;

@@ -12,6 +12,9 @@ pub enum ContactLaw {
     /// Variable normal load `max(0, N0 + kn g)` and two independent tangential Jenkins elements.
     #[serde(rename = "simplified_3d")]
     Simplified3d,
+    /// Variable normal load `max(0, N0 + kn g)` and both tangents coupled by the friction circle.
+    #[serde(rename = "coulomb_3d")]
+    Coulomb3d,
 }
 
 /// Contact law and its parameters; stiffnesses are per sector and shared out by pair weight.

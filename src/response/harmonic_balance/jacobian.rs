@@ -104,6 +104,7 @@ impl HarmonicSystem {
                     target[at] = jacobian.normal_normal[entry] * normal;
                     at += 1;
                 }
+                let first = at;
                 for (tangent, place) in places[1..].iter().enumerate() {
                     if place.is_some() {
                         target[at] = jacobian.tangential_tangential[tangent][entry] * source[at]
@@ -112,6 +113,10 @@ impl HarmonicSystem {
                             });
                         at += 1;
                     }
+                }
+                if let (Some(cross), [_, Some(_), Some(_)]) = (&jacobian.tangential_cross, places) {
+                    target[first] += cross[0][entry] * source[first + 1];
+                    target[first + 1] += cross[1][entry] * source[first];
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
 mod convergence;
+mod coupled_derivative;
 mod damping;
 mod jacobian;
 mod linear;

@@ -48,6 +48,11 @@ impl NewtonWorkspace {
             trial_step: vec![0.0; n],
         }
     }
+
+    /// Buffers of the system itself, whose residual was last taken anywhere.
+    pub fn system_mut(&mut self) -> &mut SystemWorkspace {
+        &mut self.system
+    }
 }
 
 /// Solves `R(x) = 0` at angular frequency `omega` from the given `x`, in place.
@@ -92,7 +97,9 @@ pub fn solve(
     }
     loop {
         if let Some(status) = bounds.judge(first, state.residual, state.iterations as usize) {
-            return ended(state, status);
+            // Forces of a pair without a periodic state prove nothing, however small the residual.
+            let unproven = status == Status::Ok && state.shares.unclosed > 0.0;
+            return ended(state, if unproven { Status::Stagnated } else { status });
         }
         if !kept {
             system.residual(omega, x, residual, true, buffers);

@@ -13,11 +13,13 @@
 //! ```
 //!
 //! The mean of the tangential displacement is no input of the law and its correction is zero (its
-//! force is the linear `kt u_0`): coefficient 0 of a set with harmonic 0 gives zero rows and
-//! columns in the tangential directions.
+//! force is the linear `kt u_0`), so coefficient 0 of a set with harmonic 0 gives zero rows
+//! and columns in the tangential directions. Under `coulomb_3d` the sums over clips become those of
+//! `coupled_derivative`.
 
 use std::sync::Arc;
 
+use super::coupled_derivative::{CoupledDerivative, Slopes};
 use super::transform::dot;
 use super::{HarmonicTransform, TransformScratch};
 use crate::response::friction::{
@@ -28,7 +30,7 @@ use crate::response::friction::{
 /// n_coefficients`, row after row, a row per coefficient of the correction and a column per
 /// coefficient of the displacement.
 ///
-/// Blocks not listed are zero: normal by tangential, and t1 by t2.
+/// Blocks not listed are zero: normal by tangential.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairJacobian {
     /// Normal correction by normal displacement.
@@ -37,6 +39,9 @@ pub struct PairJacobian {
     pub tangential_tangential: [Vec<f64>; 2],
     /// Correction along t1, then t2, by the normal displacement.
     pub tangential_normal: [Vec<f64>; 2],
+    /// Correction along t1 by displacement along t2, then t2 by t1; none where the law leaves the
+    /// tangents uncoupled.
+    pub tangential_cross: Option<[Vec<f64>; 2]>,
 }
 
 impl PairJacobian {
@@ -48,6 +53,7 @@ impl PairJacobian {
             normal_normal: zero(),
             tangential_tangential: [zero(), zero()],
             tangential_normal: [zero(), zero()],
+            tangential_cross: None,
         }
     }
 
@@ -59,6 +65,7 @@ impl PairJacobian {
             .for_each(|block| block.fill(0.0));
         self.tangential_normal
             .iter_mut()
+            .chain(self.tangential_cross.iter_mut().flatten())
             .for_each(|block| block.fill(0.0));
     }
 }
@@ -75,6 +82,7 @@ pub struct PairHarmonics {
     displacement: Vec<f64>,
     history: ContactHistory,
     sums: ClipSums,
+    coupled: CoupledDerivative,
 }
 
 impl PairHarmonics {
@@ -89,6 +97,7 @@ impl PairHarmonics {
             displacement: vec![0.0; 3 * n_samples],
             history: ContactHistory::new(n_samples),
             sums: ClipSums::new(n_coefficients, n_samples),
+            coupled: CoupledDerivative::new(n_coefficients),
             transform,
         }
     }
@@ -180,6 +189,17 @@ impl PairHarmonics {
                 &mut self.scratch,
             );
         }
+        if self.law == ContactLaw::Coulomb3d {
+            let slider = self.history.coupled_slider();
+            if slider.is_slipping() {
+                self.transform
+                    .project(slider.offsets_n(), tangential, &mut self.scratch);
+                if self.transform.has_mean() {
+                    (tangential[0], tangential[n_coefficients]) = (0.0, 0.0);
+                }
+            }
+            return;
+        }
         let sliders = self.history.sliders().iter();
         for (slider, correction) in sliders.zip(tangential.chunks_exact_mut(n_coefficients)) {
             if slider.is_slipping() {
@@ -211,6 +231,14 @@ impl PairHarmonics {
                 .gather_separated(&self.transform, self.history.normal_load_n());
             self.sums.fill_normal(-kn, &mut jacobian.normal_normal);
         }
+        if self.law == ContactLaw::Coulomb3d {
+            let slopes = Slopes {
+                tangential_n_per_m: kt,
+                limit_n_per_m: limit_slope,
+            };
+            self.differentiate_coupled(slopes, jacobian);
+            return;
+        }
         self.history.locate_clips();
         let blocks = jacobian
             .tangential_tangential
@@ -226,15 +254,58 @@ impl PairHarmonics {
                 .fill_tangential(-kt, limit_slope, by_tangential, by_normal);
             if self.transform.has_mean() {
                 let n_coefficients = self.transform.n_coefficients();
-                by_tangential[..n_coefficients].fill(0.0);
-                by_normal[..n_coefficients].fill(0.0);
-                by_tangential
-                    .iter_mut()
-                    .step_by(n_coefficients)
-                    .for_each(|entry| *entry = 0.0);
+                clear_mean_row(by_tangential, n_coefficients);
+                clear_mean_row(by_normal, n_coefficients);
+                clear_mean_column(by_tangential, n_coefficients);
             }
         }
     }
+
+    /// Tangential blocks under `coulomb_3d`.
+    fn differentiate_coupled(&mut self, slopes: Slopes, jacobian: &mut PairJacobian) {
+        let slider = self.history.coupled_slider();
+        if !slider.is_slipping() {
+            return;
+        }
+        let load = self.history.normal_load_n();
+        self.coupled.gather(&self.transform, slider, slopes, load);
+        let n = self.transform.n_coefficients();
+        let has_mean = self.transform.has_mean();
+        let cross = jacobian
+            .tangential_cross
+            .get_or_insert_with(|| [vec![0.0; n * n], vec![0.0; n * n]]);
+        let by_normal = jacobian.tangential_normal.iter_mut();
+        let blocks = by_normal
+            .zip(&mut jacobian.tangential_tangential)
+            .zip(cross);
+        for (tangent, ((by_normal, by_own), by_other)) in blocks.enumerate() {
+            let blocks = [
+                (0, by_normal),
+                (1 + tangent, by_own),
+                (2 - tangent, by_other),
+            ];
+            for (direction, block) in blocks {
+                self.coupled.fill(tangent, direction, block);
+                if has_mean {
+                    clear_mean_row(block, n);
+                    if direction > 0 {
+                        clear_mean_column(block, n);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The tangential mean has no correction.
+fn clear_mean_row(block: &mut [f64], n_coefficients: usize) {
+    block[..n_coefficients].fill(0.0);
+}
+
+/// The tangential mean is no input of the law.
+fn clear_mean_column(block: &mut [f64], n_coefficients: usize) {
+    let column = block.iter_mut().step_by(n_coefficients);
+    column.for_each(|entry| *entry = 0.0);
 }
 
 /// Factors of the sums over events (clips, or separated samples), coefficient after coefficient

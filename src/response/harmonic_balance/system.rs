@@ -64,6 +64,8 @@ pub struct ContactShares {
     pub slipping: f64,
     /// Pairs with no normal load.
     pub separated: f64,
+    /// Pairs whose periodic state was not found; a solution with such pairs is none.
+    pub unclosed: f64,
 }
 
 /// Buffers of one thread for one [`HarmonicSystem`].
@@ -283,6 +285,55 @@ impl HarmonicSystem {
         }
     }
 
+    /// Mean friction force on the ring at `x` per sector, N, averaged over the sectors: along theta
+    /// (the torque over the mean contact radius) and along z, see [`ContactGeometry::ring_motion`].
+    ///
+    /// It is caused by the displacements without their tangential means; a ring that is locked
+    /// against rotation and axial motion hands it on to what locks it.
+    #[must_use]
+    pub fn mean_friction_n(&self, x: &[f64], workspace: &mut SystemWorkspace) -> [f64; 2] {
+        let per_sector = self.interface.pairs.len();
+        let count = workspace.active.len();
+        let mut sum = [0.0; 2];
+        if count == 0 {
+            return sum;
+        }
+        self.contact_displacement(x, &mut workspace.displacement);
+        for pair in 0..count {
+            self.gather_pair(pair, workspace);
+            workspace.pairs.evaluate(
+                &self.interface.pairs[pair % per_sector],
+                &workspace.pair_input,
+                &mut workspace.pair_output,
+                None,
+            );
+            let friction = workspace.pairs.history().mean_friction_n();
+            let motions = &self.interface.geometry.ring_motion[pair % per_sector];
+            for (sum, motion) in sum.iter_mut().zip(motions) {
+                *sum += motion[0] * friction[0] + motion[1] * friction[1];
+            }
+        }
+        let sectors = (count / per_sector) as f64;
+        sum.map(|sum| sum / sectors)
+    }
+
+    /// Coefficients of the displacement of one pair into `pair_input`.
+    fn gather_pair(&self, pair: usize, workspace: &mut SystemWorkspace) {
+        let coefficients = self.transform.n_coefficients();
+        let per_sector = self.interface.pairs.len();
+        let base = pair / per_sector * self.interface.geometry.row_count();
+        workspace.pair_input.fill(0.0);
+        let places = &self.interface.geometry.rows[pair % per_sector];
+        for (direction, place) in places.iter().enumerate() {
+            if let Some(row) = *place {
+                for c in 0..coefficients {
+                    workspace.pair_input[direction * coefficients + c] =
+                        workspace.displacement[c * self.rows + base + row];
+                }
+            }
+        }
+    }
+
     /// The laws, pair by pair: displacement coefficients to correction coefficients.
     fn contact_correction(
         &self,
@@ -292,21 +343,13 @@ impl HarmonicSystem {
         let coefficients = self.transform.n_coefficients();
         let per_sector = self.interface.pairs.len();
         let sector_rows = self.interface.geometry.row_count();
-        let (mut slipping, mut separated) = (0_usize, 0_usize);
+        let (mut slipping, mut separated, mut unclosed) = (0_usize, 0_usize, 0_usize);
         workspace.correction.fill(0.0);
         let count = workspace.active.len();
         for pair in 0..count {
             let base = pair / per_sector * sector_rows;
             let places = self.interface.geometry.rows[pair % per_sector];
-            workspace.pair_input.fill(0.0);
-            for (direction, place) in places.iter().enumerate() {
-                if let Some(row) = *place {
-                    for c in 0..coefficients {
-                        workspace.pair_input[direction * coefficients + c] =
-                            workspace.displacement[c * self.rows + base + row];
-                    }
-                }
-            }
+            self.gather_pair(pair, workspace);
             let state = workspace.pairs.evaluate(
                 &self.interface.pairs[pair % per_sector],
                 &workspace.pair_input,
@@ -315,6 +358,7 @@ impl HarmonicSystem {
             );
             slipping += usize::from(state.slipping);
             separated += usize::from(state.separated);
+            unclosed += usize::from(state.unclosed);
             workspace.active[pair] = state.slipping || state.separated;
             if workspace.active[pair] {
                 for (direction, place) in places.iter().enumerate() {
@@ -330,6 +374,7 @@ impl HarmonicSystem {
         ContactShares {
             slipping: slipping as f64 / count as f64,
             separated: separated as f64 / count as f64,
+            unclosed: unclosed as f64 / count as f64,
         }
     }
 
