@@ -8,11 +8,13 @@
 //! return   T' = clip(T*, -mu N', mu N'),    T' = 0 where N' = 0
 //! ```
 //!
+//! for either tangent, and for both together on the friction circle in `coulomb_3d`.
 //! On a path that is straight within the step this is exact: bounds and trial force are linear
 //! there, so that the slider is pushed last at the end. A pair that comes back into contact within
 //! the step starts with T = 0 where L crosses zero, and only the rest of the path counts (Yang, Chu
 //! & Menq 1998: slip at once if `kt |d_t'| > mu kn d_n'`, else stick).
 
+use super::friction_circle::slide_on_circle;
 use crate::response::friction::{ContactLaw, PairParameters};
 
 /// What a pair remembers of an instant.
@@ -50,8 +52,10 @@ impl PairMemory {
         let spring = parameters.normal_stiffness_n_per_m * self.displacement_m[0];
         let normal = match law {
             ContactLaw::MacroSlip1d => spring,
-            ContactLaw::Simplified3d if self.separated() => -parameters.normal_load_n,
-            ContactLaw::Simplified3d => spring,
+            ContactLaw::Simplified3d | ContactLaw::Coulomb3d if self.separated() => {
+                -parameters.normal_load_n
+            }
+            ContactLaw::Simplified3d | ContactLaw::Coulomb3d => spring,
         };
         [normal, self.friction_n[0], self.friction_n[1]]
     }
@@ -68,6 +72,7 @@ pub fn march(
     match law {
         ContactLaw::MacroSlip1d => macro_slip_1d(parameters, before, displacement_m),
         ContactLaw::Simplified3d => simplified_3d(parameters, before, displacement_m),
+        ContactLaw::Coulomb3d => coulomb_3d(parameters, before, displacement_m),
     }
 }
 
@@ -108,9 +113,32 @@ fn simplified_3d(
     after
 }
 
+/// Both directions on the friction circle of radius `mu N(t)`.
+fn coulomb_3d(
+    parameters: &PairParameters,
+    before: &PairMemory,
+    displacement_m: [f64; 3],
+) -> PairMemory {
+    let step = LoadedStep::new(parameters, before, displacement_m);
+    let mut after = step.open(displacement_m);
+    if step.load_after > 0.0 {
+        let (mu, kt) = (
+            parameters.friction_coefficient,
+            parameters.tangential_stiffness_n_per_m,
+        );
+        (after.friction_n, after.slipping) = slide_on_circle(
+            step.start,
+            step.path.map(|path| kt * path),
+            [mu * step.load_before, mu * step.load_after],
+        );
+    }
+    after
+}
+
 /// The part of a step that is spent in contact.
 struct LoadedStep {
-    /// Signed load at the end of the step, N.
+    /// Load where that part begins, and signed load at the end of the step, N.
+    load_before: f64,
     load_after: f64,
     /// Friction where that part begins, N.
     start: [f64; 2],
@@ -127,12 +155,14 @@ impl LoadedStep {
             // Share of the step after the load has crossed zero.
             let share = (load_after / (load_after - before.signed_load_n)).clamp(0.0, 1.0);
             Self {
+                load_before: 0.0,
                 load_after,
                 start: [0.0; 2],
                 path: path.map(|path| share * path),
             }
         } else {
             Self {
+                load_before: before.signed_load_n,
                 load_after,
                 start: before.friction_n,
                 path,

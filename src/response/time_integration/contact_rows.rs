@@ -30,7 +30,7 @@ impl ContactRows {
                 let kt = parameters.tangential_stiffness_n_per_m;
                 let second = match interface.law {
                     ContactLaw::MacroSlip1d => 0.0,
-                    ContactLaw::Simplified3d => kt,
+                    ContactLaw::Simplified3d | ContactLaw::Coulomb3d => kt,
                 };
                 let stiffness = [parameters.normal_stiffness_n_per_m, kt, second];
                 for (row, stiffness) in rows.iter().zip(stiffness) {

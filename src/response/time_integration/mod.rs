@@ -4,7 +4,6 @@
 mod compare;
 mod contact_march;
 mod contact_rows;
-#[cfg(test)]
 mod friction_circle;
 mod motion;
 mod options;

@@ -106,6 +106,7 @@ pub fn settle(wheel: &MarchedWheel<'_>, start: &WheelState, options: &TimeOption
         settled.shares = ContactShares {
             slipping,
             separated,
+            ..ContactShares::default()
         };
     }
     settled.contact_iterations = stepper.iterations();

@@ -19,7 +19,11 @@ fn a_jenkins_loop_point_by_point() {
     let parameters = pair(3.0, 0.0, 2.0, 1.0);
     let path = [5.0, 3.5, 2.0, -5.0, -3.5, -2.0, 0.0];
     let expected = [3.0, 0.0, -3.0, -3.0, 0.0, 3.0, 3.0];
-    for law in [ContactLaw::MacroSlip1d, ContactLaw::Simplified3d] {
+    for law in [
+        ContactLaw::MacroSlip1d,
+        ContactLaw::Simplified3d,
+        ContactLaw::Coulomb3d,
+    ] {
         let mut memory = PairMemory::at_rest(&parameters);
         for (u, force) in path.into_iter().zip(expected) {
             memory = march(law, &parameters, &memory, [0.0, u, 0.0]);
@@ -33,7 +37,7 @@ fn a_jenkins_loop_point_by_point() {
 
 /// Mean, cosine and sine coefficient of friction, and energy per cycle, on the loop
 /// `x = A cos`, normal closing `g/kn x`; marched for two cycles.
-fn loop_of(amplitude: f64, load_slope: f64, steps: u32) -> [f64; 4] {
+fn loop_of(law: ContactLaw, amplitude: f64, load_slope: f64, steps: u32) -> [f64; 4] {
     let kn = 7.0;
     let parameters = pair(6.0, kn, 2.0, 0.5);
     let mut memory = PairMemory::at_rest(&parameters);
@@ -41,12 +45,7 @@ fn loop_of(amplitude: f64, load_slope: f64, steps: u32) -> [f64; 4] {
     for step in 0..=2 * steps {
         let angle = TAU * f64::from(step) / f64::from(steps);
         let x = amplitude * angle.cos();
-        let after = march(
-            ContactLaw::Simplified3d,
-            &parameters,
-            &memory,
-            [load_slope / kn * x, x, 0.0],
-        );
+        let after = march(law, &parameters, &memory, [load_slope / kn * x, x, 0.0]);
         if step > steps {
             let share = 1.0 / f64::from(steps);
             sums[0] += share * after.friction_n[0];
@@ -73,12 +72,15 @@ fn loops_with_variable_load_and_separation_meet_their_closed_forms() {
         (3.0, [3.716_104, 5.481_612, -0.668_450_761, 10.5]),
     ];
     for (g, expected) in table {
-        let found = loop_of(5.0, g, 20_000);
-        for (found, expected) in found.into_iter().zip(expected) {
-            assert!(
-                (found - expected).abs() < 3e-6 * 42.0,
-                "{g}: {found} {expected}"
-            );
+        // Along one line the friction circle is a Jenkins element.
+        for law in [ContactLaw::Simplified3d, ContactLaw::Coulomb3d] {
+            let found = loop_of(law, 5.0, g, 20_000);
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert!(
+                    (found - expected).abs() < 3e-6 * 42.0,
+                    "{law:?} {g}: {found} {expected}"
+                );
+            }
         }
     }
 }

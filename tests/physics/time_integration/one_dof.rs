@@ -47,6 +47,7 @@ impl OneDof {
                 geometry: ContactGeometry {
                     weights: vec![1.0],
                     rows: vec![[None, Some(0), None]],
+                    ring_motion: vec![[[0.0; 2]; 2]],
                 },
                 pairs: vec![PairParameters {
                     normal_load_n: limit,

@@ -1,6 +1,7 @@
 //! Finite elements, eight blades: harmonic balance with converged harmonics against time integration
 //! on the same reduced model.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use blisk::linalg::Matrix;
@@ -24,208 +25,136 @@ fn wheel() -> Wheel {
     )
 }
 
-fn compare(
-    load: f64,
+/// A point of the wheel; pattern 1 of the reference where mistuned.
+struct Point {
+    normal_load_n: f64,
     mistuned: bool,
     frequency_hz: f64,
-    harmonics: &[u32],
-    options: &TimeOptions,
-) -> Result<PointComparison, Status> {
-    let wheel = wheel();
-    let basis = WheelBasis::new(Arc::clone(&wheel.model));
-    let change: Option<Matrix<f64>> = mistuned.then(|| {
-        basis.blade_stiffness_change(&deviations("wheel8/reference", "patterns.csv", 1, 8))
-    });
-    let solver = SolverOptions {
-        samples_per_period: 512,
-        ..SolverOptions::default()
-    };
-    let case = PointCase {
-        basis: &basis,
-        stiffness_change: change.as_ref(),
-        damping: wheel.damping,
-        engine_order: ENGINE_ORDER,
-        amplitude_n: 1.0,
-        law: wheel.law,
-        sector: PairParameters {
-            normal_load_n: load,
-            ..wheel.sector
-        },
-        harmonics,
-        solver: &solver,
-        frequency_hz,
-    };
-    compare_point(&case, options)
+    harmonics: RangeInclusive<u32>,
 }
 
-#[test]
-fn scratch() {
-    let load: f64 = std::env::var("LOAD").unwrap().parse().unwrap();
-    let f: f64 = std::env::var("FREQ").unwrap().parse().unwrap();
-    let top: u32 = std::env::var("TOP").unwrap().parse().unwrap();
-    let first: u32 = std::env::var("FIRST").unwrap().parse().unwrap();
-    let mistuned = std::env::var("MIST").is_ok();
-    let harmonics: Vec<u32> = (first..=top).collect();
-    let found = compare(
-        load,
-        mistuned,
-        f,
-        &harmonics,
-        &TimeOptions {
-            steps_per_period: std::env::var("STEPS").unwrap().parse().unwrap(),
-            maximum_periods: std::env::var("MAXP").unwrap().parse().unwrap(),
-            ..TimeOptions::default()
-        },
-    );
-    match found {
-        Err(status) => println!("HB: {status:?}"),
-        Ok(found) => println!(
-            "{load} {f} {first}..{top} {mistuned}: HB {:?}\n time {:?}\n mean {:?}\n {:.2e} {:.2e} {:?} {:?} blade {:.1e} force {:.1e} drift {:.1e} creep {:e} {:?} it {}",
-            found.harmonic_balance_m,
-            found.time_m,
-            found.settled.mean_fundamental_m,
-            found.largest_difference(),
-            found.blade_difference(),
-            found.status,
-            found.steps,
-            found.settled.blade_change,
-            found.settled.force_change,
-            found.settled.drift,
-            found.settled.creep_m,
-            found.settled.shares,
-            found.settled.contact_iterations
-        ),
-    }
-}
-
-#[test]
-fn scratch_dump() {
-    use blisk::response::forced_response::*;
-    use blisk::response::harmonic_balance::ContactInterface;
-    use blisk::response::mistuning::StructuralModes;
-    use blisk::response::time_integration::*;
-    use std::io::Write;
-    let env = |n: &str| std::env::var(n).unwrap().parse::<f64>().unwrap();
-    let (load, f, top, first) = (
-        env("LOAD"),
-        env("FREQ"),
-        env("TOP") as u32,
-        env("FIRST") as u32,
-    );
-    let (steps, periods) = (env("STEPS") as usize, env("PERIODS") as usize);
-    let harmonics: Vec<u32> = (first..=top).collect();
-    let mut wheel = wheel();
-    if let Ok(pin) = std::env::var("PIN") {
-        let pin: f64 = pin.parse().unwrap();
-        let mut model = (*wheel.model).clone();
-        for l in &mut model.nodal_diameters[0].eigenvalues {
-            if *l < 2000.0 {
-                *l = (std::f64::consts::TAU * pin).powi(2);
-            }
-        }
-        wheel.model = Arc::new(model);
-    }
-    if let Ok(eta) = std::env::var("ETA") {
-        wheel.damping = Damping::StructuralLossFactor(eta.parse().unwrap());
-    }
-    let basis = WheelBasis::new(Arc::clone(&wheel.model));
-    let omega = std::f64::consts::TAU * f;
-    let modes =
-        StructuralModes::of_wheel(&basis, &Matrix::zeros(basis.size(), basis.size())).unwrap();
-    let all: Vec<f64> = modes
-        .eigenvalues
-        .iter()
-        .map(|l| l.max(0.0).sqrt() / std::f64::consts::TAU)
-        .collect();
-    println!(
-        "{} modes {:?} .. {:?}",
-        all.len(),
-        &all[..40],
-        &all[all.len() - 8..]
-    );
-    let force = wheel_force(&basis, &modes, 3, 1.0);
-    let w = blisk::response::forced_response::Wheel::mistuned(
-        modes.clone(),
-        basis.model(),
-        wheel.damping,
-        LimitsWanted::default(),
-    );
-    let excited = Excited::wheel(&w, force, &harmonics).with_viscous_damping(omega);
-    let waves = Excited::tuned(
-        &wheel.model,
-        3,
-        1.0,
-        wheel.damping,
-        &harmonics,
-        LimitsWanted::default(),
-    )
-    .with_viscous_damping(omega);
-    let sector = PairParameters {
-        normal_load_n: load,
-        ..wheel.sector
-    };
-    let settings = PointSettings::new(
-        &SolverOptions {
+impl Point {
+    fn compare(&self, options: &TimeOptions) -> PointComparison {
+        let wheel = wheel();
+        let basis = WheelBasis::new(Arc::clone(&wheel.model));
+        let change: Option<Matrix<f64>> = self.mistuned.then(|| {
+            let pattern = deviations("wheel8/reference", "patterns.csv", 1, 8);
+            basis.blade_stiffness_change(&pattern)
+        });
+        let solver = SolverOptions {
             samples_per_period: 512,
             ..SolverOptions::default()
-        },
-        &harmonics,
-        Some((wheel.law, sector)),
-        wheel.model.contact.clone(),
-    )
-    .unwrap();
-    let mut ps = PointSolver::new(
-        &waves,
-        ContactCondition::Full {
-            normal_load_n: load,
-        },
-        &settings,
-    );
-    let point = ps.solve(f).unwrap().clone();
-    println!("HB {:?} slip {:?}", point.amplitudes_m, point.shares);
-    if std::env::var("HBONLY").is_ok() {
-        return;
+        };
+        let harmonics: Vec<u32> = self.harmonics.clone().collect();
+        let case = PointCase {
+            basis: &basis,
+            stiffness_change: change.as_ref(),
+            damping: wheel.damping,
+            engine_order: ENGINE_ORDER,
+            amplitude_n: 1.0,
+            law: wheel.law,
+            sector: PairParameters {
+                normal_load_n: self.normal_load_n,
+                ..wheel.sector
+            },
+            harmonics: &harmonics,
+            solver: &solver,
+            frequency_hz: self.frequency_hz,
+        };
+        let found = compare_point(&case, options).unwrap();
+        let settled = &found.settled;
+        println!(
+            "{} N, mistuned {}, {} Hz, harmonics {:?}: {:?}, largest {:+.2e}, any blade {:.2e}, \
+             change of blades {:.1e}, of forces {:.1e}, drift {:.1e}, {:?} {:?}",
+            self.normal_load_n,
+            self.mistuned,
+            self.frequency_hz,
+            self.harmonics,
+            found.status,
+            found.largest_difference(),
+            found.blade_difference(),
+            settled.blade_change,
+            settled.force_change,
+            settled.drift,
+            settled.shares,
+            found.steps
+        );
+        found
     }
-    let motion = Motion::of_waves(&basis, &modes, 3, &waves, &point);
-    let interface = ContactInterface {
-        law: wheel.law,
-        geometry: wheel.model.contact.clone(),
-        pairs: wheel
-            .model
-            .contact
-            .weights
-            .iter()
-            .map(|&x| sector.share(x))
-            .collect(),
+}
+
+#[test]
+fn in_micro_slip_the_dynamics_reach_the_harmonic_balance_solution() {
+    let point = Point {
+        normal_load_n: 1600.0,
+        mistuned: false,
+        frequency_hz: 617.28,
+        harmonics: 1..=31,
     };
-    let marched = MarchedWheel {
-        structure: &excited.linear.structure,
-        interface: &interface,
-        force: &excited.force,
-        omega,
+    let options = TimeOptions {
+        minimum_periods: 50,
+        drift_periods: 40,
+        ..TimeOptions::default()
     };
-    let start = motion.start(&marched, steps);
-    println!("balance {:?}", &start.balance_n[..12]);
-    let mut st = TimeStepper::new(&marched, &start, steps).unwrap();
-    let mut out =
-        std::io::BufWriter::new(std::fs::File::create(std::env::var("OUT").unwrap()).unwrap());
-    let every = std::env::var("EVERY").map_or(steps, |e| e.parse().unwrap());
-    for step in 0..steps * periods {
-        st.advance().unwrap();
-        if (step + 1) % every == 0 {
-            let obs = excited
-                .linear
-                .structure
-                .observed()
-                .real
-                .times_vector(st.position());
-            let line: Vec<String> = obs
-                .iter()
-                .chain(st.contact_displacement_m())
-                .chain(st.contact_force_n())
-                .map(|x| format!("{x:e}"))
-                .collect();
-            writeln!(out, "{}", line.join(",")).unwrap();
-        }
+    let found = point.compare(&options);
+    assert!(found.settled.shares.slipping > 0.0);
+    assert!(found.reached(5e-3));
+}
+
+#[test]
+#[ignore = "minutes: points whose periodic motion is stable"]
+fn where_the_motion_repeats_itself_harmonic_balance_has_found_it() {
+    for (normal_load_n, mistuned, frequency_hz, harmonics) in [
+        (1600.0, false, 617.28, 1..=31),
+        (1600.0, true, 616.04, 1..=7),
+        (800.0, false, 616.5, 1..=31),
+        (400.0, true, 614.25, 1..=15),
+    ] {
+        let point = Point {
+            normal_load_n,
+            mistuned,
+            frequency_hz,
+            harmonics,
+        };
+        let found = point.compare(&TimeOptions::default());
+        assert!(
+            found.reached(5e-3),
+            "{normal_load_n} N, mistuned {mistuned}"
+        );
+    }
+}
+
+/// Where every pair slips with a load that varies much, the periodic solution of the tuned wheel is
+/// unstable: waves of other nodal diameters at frequencies between the harmonics (5.32, 8.32, 9.32
+/// times that of the excitation at 400 N) grow from nothing within some ten periods and stay, with
+/// a ring that creeps as with one that is pinned. Harmonic balance cannot know; the march says so.
+#[test]
+#[ignore = "minutes: points whose periodic motion is unstable"]
+fn where_the_periodic_motion_is_unstable_the_march_reports_it() {
+    for (normal_load_n, mistuned, frequency_hz, harmonics) in [
+        (400.0, false, 615.08, 1..=15),
+        (200.0, false, 613.6, 0..=15),
+        (100.0, false, 612.88, 0..=15),
+        (100.0, true, 612.0, 0..=5),
+    ] {
+        let point = Point {
+            normal_load_n,
+            mistuned,
+            frequency_hz,
+            harmonics,
+        };
+        let options = TimeOptions {
+            maximum_periods: 500,
+            ..TimeOptions::default()
+        };
+        let found = point.compare(&options);
+        assert_eq!(found.status, Status::WorkBudget);
+        assert!(found.settled.force_change > 1e-3);
+        // What the excitation sees of it all the same, on average over the beat.
+        let mean = found.settled.mean_fundamental_m.iter().copied();
+        let harmonic_balance = found.harmonic_balance_m.iter().copied();
+        let ratio = mean.fold(0.0, f64::max) / harmonic_balance.fold(0.0, f64::max);
+        println!("mean fundamental over harmonic balance {ratio:.4}");
+        assert!((ratio - 1.0).abs() < 0.05);
     }
 }
