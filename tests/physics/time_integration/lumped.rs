@@ -61,7 +61,12 @@ fn hold_together(mistuned: bool, frequency_hz: f64, found: &PointComparison) {
 #[test]
 fn eight_odd_harmonics_are_what_the_dynamics_do() {
     for mistuned in [false, true] {
-        let found = compare(mistuned, 350.5, &TimeOptions::default());
+        let options = TimeOptions {
+            steps_per_period: 512,
+            minimum_periods: 60,
+            ..TimeOptions::default()
+        };
+        let found = compare(mistuned, 350.5, &options);
         hold_together(mistuned, 350.5, &found);
     }
 }
