@@ -5,3 +5,4 @@ pub mod friction;
 pub mod harmonic_balance;
 pub mod mistuning;
 pub mod reference;
+pub mod time_integration;

@@ -280,7 +280,7 @@ mod tests {
     use crate::model::sector::{ParametricOptions, parametric};
     use crate::population::monte_carlo::RowSolver;
     use crate::response::forced_response::SolverOptions;
-    use crate::response::friction::ContactLaw;
+    use crate::response::friction::{ContactLaw, Ring};
     use crate::response::harmonic_balance::Damping;
     use crate::response::mistuning::Projection;
 
@@ -296,6 +296,7 @@ mod tests {
         RowSettings {
             harmonics: HARMONICS.to_vec(),
             contact: Some((ContactLaw::Simplified3d, sector)),
+            ring: Ring::Locked,
             damping: Damping::StructuralLossFactor(0.002),
             amplitude_n: 1.0,
             projection: Projection::Exact,

@@ -26,6 +26,7 @@ const WINGS: &[(&str, &[&str])] = &[
             "harmonic_balance",
             "forced_response",
             "reference",
+            "time_integration",
         ],
     ),
     ("population", &["monte_carlo", "statistics", "table"]),

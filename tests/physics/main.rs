@@ -14,4 +14,5 @@ mod peaks;
 mod reduction;
 mod reference;
 mod sector_sources;
+mod time_integration;
 mod wheels;

@@ -6,7 +6,7 @@ use blisk::model::ReducedModel;
 use blisk::model::reduction::{BasisChoice, Reduction};
 use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{AmplitudeMeasure, ContactCondition, SolverOptions};
-use blisk::response::friction::ContactLaw;
+use blisk::response::friction::{ContactLaw, Ring};
 use blisk::response::harmonic_balance::{Damping, HarmonicTransform, Status};
 use blisk::response::mistuning::{Deviations, Pattern, Projection};
 use blisk::response::reference::{ReferenceSettings, ReferenceSolver, reference_peak};
@@ -48,6 +48,7 @@ impl Case {
             settings: RowSettings {
                 harmonics: harmonics.to_vec(),
                 contact: Some((law, wheel8_contact())),
+                ring: Ring::Locked,
                 damping,
                 amplitude_n: 1.0,
                 projection,

@@ -221,6 +221,23 @@ impl Excited {
         }
     }
 
+    /// The same with viscous damping, see [`Structure::with_viscous_damping`].
+    #[must_use]
+    pub fn with_viscous_damping(&self, omega: f64) -> Self {
+        let mut excited = self.clone();
+        let viscous = |structure: &Structure| Arc::new(structure.with_viscous_damping(omega));
+        excited.linear.structure = viscous(&self.linear.structure);
+        for block in &mut excited.blocks {
+            // The harmonics of a wheel share one structure.
+            block.structure = if Arc::ptr_eq(&block.structure, &self.linear.structure) {
+                Arc::clone(&excited.linear.structure)
+            } else {
+                viscous(&block.structure)
+            };
+        }
+        excited
+    }
+
     /// Resonances of the linear limits that bound `condition`.
     #[must_use]
     pub fn linear_peaks(&self, condition: ContactCondition) -> Vec<Vec<LinearPeak>> {

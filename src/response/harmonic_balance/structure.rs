@@ -92,6 +92,25 @@ impl Structure {
         }
     }
 
+    /// The same structure with viscous damping: `C = eta diag(lambda) / omega` in the place of a
+    /// structural loss factor, equal to it at `omega` alone. For comparison with time integration,
+    /// in which structural damping has no form; viscous damping stays as it is.
+    #[must_use]
+    pub fn with_viscous_damping(&self, omega: f64) -> Self {
+        let mut structure = self.clone();
+        if let ModalDamping::Structural(eta) = self.damping {
+            let viscous = self.eigenvalues.iter().map(|lambda| eta * lambda / omega);
+            structure.damping = ModalDamping::ViscousDiagonal(viscous.collect());
+        }
+        structure
+    }
+
+    /// Whether the damping is viscous, `D(omega) = omega C`.
+    #[must_use]
+    pub fn is_viscous(&self) -> bool {
+        !matches!(self.damping, ModalDamping::Structural(_))
+    }
+
     /// Number of modes.
     #[must_use]
     pub fn size(&self) -> usize {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::linalg::{Complex64, Matrix};
 use crate::model::ReducedModel;
-use crate::model::cyclic::{nodal_diameter_of, phase};
+use crate::model::cyclic::{NodalDiameter, nodal_diameter_of, phase};
 
 /// Real coordinates of the tuned wheel, in which `M = I` and `K = diag(eigenvalues)`.
 ///
@@ -134,6 +134,36 @@ impl WheelBasis {
             }
         }
         force
+    }
+
+    /// Coordinates of the wave `B_h x e^{i h n alpha}` of a nodal diameter in sector n (the conjugate
+    /// one: `conj(B_h) x e^{-i h n alpha}`), complex amplitudes, length `size`.
+    #[must_use]
+    pub fn travelling_wave(
+        &self,
+        nodal_diameter: NodalDiameter,
+        amplitudes: &[Complex64],
+    ) -> Vec<Complex64> {
+        // B e^{i t} = Re(B e^{i t}) + i Im(B e^{i t}), each a coordinate times sqrt(N/2).
+        let sectors = self.model.sectors as f64;
+        let (cosine, sine) = if self.model.is_standing(nodal_diameter.index) {
+            (sectors.sqrt(), Complex64::default())
+        } else {
+            let scale = (0.5 * sectors).sqrt();
+            let sign = if nodal_diameter.conjugate { -1.0 } else { 1.0 };
+            (scale, Complex64::new(0.0, sign * scale))
+        };
+        let mut coordinates = vec![Complex64::default(); self.size()];
+        let own = self
+            .waves
+            .iter()
+            .filter(|wave| wave.nodal_diameter == nodal_diameter.index);
+        for (wave, factor) in own.zip([Complex64::from(cosine), sine]) {
+            for (mode, amplitude) in amplitudes.iter().enumerate() {
+                coordinates[wave.start + mode] = factor * amplitude;
+            }
+        }
+        coordinates
     }
 
     /// `sum_n delta_n B_n^T K_blade B_n` in the wheel's coordinates, `size x size`: the exact

@@ -1,0 +1,22 @@
+//! Direct time integration to the periodic state: a path to a point that shares neither contact
+//! code nor harmonics with harmonic balance.
+
+mod compare;
+mod contact_march;
+mod contact_rows;
+mod friction_circle;
+mod motion;
+mod options;
+mod periods;
+mod propagator;
+mod settle;
+mod state;
+mod stepper;
+
+pub use compare::{PointCase, PointComparison, StepStudy, compare_point};
+pub use contact_march::{PairMemory, march};
+pub use motion::Motion;
+pub use options::TimeOptions;
+pub use settle::{Settled, settle};
+pub use state::WheelState;
+pub use stepper::{MarchedWheel, TimeStepper};
