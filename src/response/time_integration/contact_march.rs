@@ -50,12 +50,11 @@ impl PairMemory {
     #[must_use]
     pub fn force_n(&self, law: ContactLaw, parameters: &PairParameters) -> [f64; 3] {
         let spring = parameters.normal_stiffness_n_per_m * self.displacement_m[0];
-        let normal = match law {
-            ContactLaw::MacroSlip1d => spring,
-            ContactLaw::Simplified3d | ContactLaw::Coulomb3d if self.separated() => {
-                -parameters.normal_load_n
-            }
-            ContactLaw::Simplified3d | ContactLaw::Coulomb3d => spring,
+        let unilateral = !matches!(law, ContactLaw::MacroSlip1d);
+        let normal = if unilateral && self.separated() {
+            -parameters.normal_load_n
+        } else {
+            spring
         };
         [normal, self.friction_n[0], self.friction_n[1]]
     }

@@ -92,8 +92,8 @@ impl Motion {
         let mut force = vec![0.0; rows.rows()];
         let mut friction = vec![0.0; rows.rows()];
         // At first the sliders stand where the mean displacement leaves the springs relaxed.
-        for pair in 0..pairs.len() {
-            pairs[pair].displacement_m = contact.gather(pair, &mean);
+        for (index, pair) in pairs.iter_mut().enumerate() {
+            pair.displacement_m = contact.gather(index, &mean);
         }
         for period in 0..SLIDER_PERIODS {
             for sample in 1..=samples_per_period {
