@@ -11,7 +11,7 @@ use super::validate_solver::solver;
 use super::{Finding, ModelSource, OutputOptions, Problem, Study, StudyError};
 use crate::model::reduction::{Basis, ReductionOptions};
 use crate::response::forced_response::ContactCondition;
-use crate::response::friction::{ContactLaw, ContactOptions};
+use crate::response::friction::{ContactLaw, ContactOptions, Ring};
 use crate::response::harmonic_balance::Damping;
 
 /// Version of the study file.
@@ -170,6 +170,12 @@ fn resolve(check: &mut Check, path: &Path, raw: RawStudy) -> Result<Option<Study
     });
     if let Some(contact) = &contact {
         normal_stiffness(check, contact);
+        if contact.law == ContactLaw::Coulomb3d && contact.ring == Ring::Creeping {
+            check.conflict(
+                "contact.ring",
+                "coulomb_3d is solved with a locked ring only; accepted: \"locked\"",
+            );
+        }
     }
     let mistuning = mistuning(check, path, raw.mistuning, &sweep, head.patterns)?;
     let (Some(model), Some(damping), Some(mistuning)) = (model, damping, mistuning) else {

@@ -109,49 +109,48 @@ fn a_drift_as_good_as_none_holds_a_stuck_slider_at_the_end_of_its_play() {
 #[test]
 fn a_creeping_ring_feels_no_mean_friction_unless_pairs_that_stick_take_it() {
     let (mut creeping, mut held) = (0, 0);
-    for law in [ContactLaw::Simplified3d, ContactLaw::Coulomb3d] {
-        for load in [200.0, 400.0, 1600.0] {
-            let found = [Ring::Locked, Ring::Creeping].map(|ring| {
-                let wheel = Wheel {
-                    law,
-                    ring,
-                    ..Wheel::wheel8()
-                };
-                assert_eq!(wheel.model.contact.ring_free, [true, true]);
-                let solver = wheel.solver(&[1, 3], SolverOptions::default());
-                solver.tuned_peak(ENGINE_ORDER, full(load))
-            });
-            let [one, other] = found.each_ref().map(|peak| peak.amplitude_m().unwrap());
-            let points = found.each_ref().map(|peak| peak.point.as_ref().unwrap());
-            let friction = found.each_ref().map(|peak| peak.mean_friction_n.unwrap());
-            let drift = points[1].ring_drift_m;
-            println!(
-                "{law:?} {load} N: slipping {:.2}, mean friction {:.3?} N -> {:.1?} N, drift {:.1e} {:.1e} m, peak {:+.3} %, iterations {} -> {}",
-                points[0].shares.slipping,
-                friction[0],
-                friction[1],
-                drift[0],
-                drift[1],
-                100.0 * (other / one - 1.0),
-                found[0].work.newton_iterations,
-                found[1].work.newton_iterations,
-            );
-            for motion in 0..2 {
-                if drift[motion].abs() > 0.0 {
-                    // The ring gives way to the friction that it feels when locked.
-                    creeping += 1;
-                    assert!(drift[motion] * friction[0][motion] > 0.0);
-                    assert!(friction[1][motion].abs() < 1e-6 * load);
-                } else {
-                    held += 1;
-                }
-            }
-            let change = relative(other, one);
-            if drift.iter().all(|drift| drift.abs() <= 0.0) {
-                assert!(change < 1e-9, "{change:e}");
+    let law = ContactLaw::Simplified3d;
+    for load in [200.0, 400.0, 1600.0] {
+        let found = [Ring::Locked, Ring::Creeping].map(|ring| {
+            let wheel = Wheel {
+                law,
+                ring,
+                ..Wheel::wheel8()
+            };
+            assert_eq!(wheel.model.contact.ring_free, [true, true]);
+            let solver = wheel.solver(&[1, 3], SolverOptions::default());
+            solver.tuned_peak(ENGINE_ORDER, full(load))
+        });
+        let [one, other] = found.each_ref().map(|peak| peak.amplitude_m().unwrap());
+        let points = found.each_ref().map(|peak| peak.point.as_ref().unwrap());
+        let friction = found.each_ref().map(|peak| peak.mean_friction_n.unwrap());
+        let drift = points[1].ring_drift_m;
+        println!(
+            "{law:?} {load} N: slipping {:.2}, mean friction {:.3?} N -> {:.1?} N, drift {:.1e} {:.1e} m, peak {:+.3} %, iterations {} -> {}",
+            points[0].shares.slipping,
+            friction[0],
+            friction[1],
+            drift[0],
+            drift[1],
+            100.0 * (other / one - 1.0),
+            found[0].work.newton_iterations,
+            found[1].work.newton_iterations,
+        );
+        for motion in 0..2 {
+            if drift[motion].abs() > 0.0 {
+                // The ring gives way to the friction that it feels when locked.
+                creeping += 1;
+                assert!(drift[motion] * friction[0][motion] > 0.0);
+                assert!(friction[1][motion].abs() < 1e-6 * load);
             } else {
-                assert!(change < 5e-2, "{change:e}");
+                held += 1;
             }
+        }
+        let change = relative(other, one);
+        if drift.iter().all(|drift| drift.abs() <= 0.0) {
+            assert!(change < 1e-9, "{change:e}");
+        } else {
+            assert!(change < 5e-2, "{change:e}");
         }
     }
     assert!(creeping > 0 && held > 0, "{creeping} {held}");
