@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod contact;
+mod continuation;
 mod finite_element;
 mod harmonic_balance;
 mod limits;

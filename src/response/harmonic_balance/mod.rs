@@ -1,7 +1,10 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
+mod continuation;
 mod convergence;
+mod curve;
 mod damping;
+mod frequency_derivative;
 mod jacobian;
 mod linear;
 mod newton;
@@ -11,6 +14,7 @@ mod structure;
 mod system;
 mod transform;
 
+pub use continuation::{Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint};
 pub use convergence::NewtonBounds;
 pub use damping::Damping;
 pub use linear::linear_response;

@@ -156,6 +156,12 @@ impl HarmonicSystem {
         &self.force
     }
 
+    /// Norm of the modal force: the size that residuals are relative to.
+    #[must_use]
+    pub fn force_norm(&self) -> f64 {
+        self.force_norm
+    }
+
     /// The same system under another normal load per pair.
     #[must_use]
     pub fn with_pairs(&self, pairs: Vec<PairParameters>) -> Self {
