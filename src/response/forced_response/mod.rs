@@ -2,6 +2,7 @@
 
 mod branch;
 mod excited;
+mod homotopy;
 mod linear_peaks;
 mod options;
 mod peak;

@@ -50,7 +50,7 @@ pub struct PointSolver<'a> {
     pub(super) excited: &'a Excited,
     pub(super) condition: ContactCondition,
     pub(super) settings: &'a PointSettings,
-    linear: LuWorkspace<Complex64>,
+    pub(super) linear: LuWorkspace<Complex64>,
     pub(super) nonlinear: Option<(HarmonicSystem, NewtonWorkspace)>,
     points: Vec<Point>,
     failures: Vec<(f64, Status)>,
@@ -160,14 +160,19 @@ impl<'a> PointSolver<'a> {
         .ok_or(Status::SingularJacobian)
     }
 
-    fn stuck_start(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
+    pub(super) fn stuck_start(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
         let stuck = self.linear_at(frequency_hz)?;
+        self.start_from(&stuck)
+    }
+
+    /// Unknowns with the given fundamental and nothing else.
+    pub(super) fn start_from(&self, fundamental: &[Complex64]) -> Result<Vec<f64>, Status> {
         let Some((system, _)) = &self.nonlinear else {
             return Err(Status::SingularJacobian);
         };
         let mut start = vec![0.0; system.unknowns()];
         let at = system.block_start(system.fundamental());
-        start[at..at + 2 * stuck.len()].copy_from_slice(&real_parts(&stuck));
+        start[at..at + 2 * fundamental.len()].copy_from_slice(&real_parts(fundamental));
         Ok(start)
     }
 
@@ -194,13 +199,14 @@ impl<'a> PointSolver<'a> {
                     Some(start) => start,
                     None => self.stuck_start(frequency_hz)?,
                 };
-                self.newton(frequency_hz, start, 1.0)
+                self.newton(frequency_hz, start, None)
             }
             Attempt::Stuck => {
                 let start = self.stuck_start(frequency_hz)?;
-                self.newton(frequency_hz, start, 1.0)
+                self.newton(frequency_hz, start, None)
             }
             Attempt::Continuation => self.continue_to(frequency_hz),
+            Attempt::StiffnessHomotopy => self.stiffen_contact(frequency_hz),
             Attempt::LoadHomotopy => self.lower_normal_load(frequency_hz),
         }
     }
@@ -233,32 +239,20 @@ impl<'a> PointSolver<'a> {
         })
     }
 
-    /// Newton's method from `start`, the normal load multiplied by `load_factor`.
-    fn newton(
+    /// Newton's method from `start`; on another system than that of the row where one is given.
+    pub(super) fn newton(
         &mut self,
         frequency_hz: f64,
         start: Vec<f64>,
-        load_factor: f64,
+        other: Option<&HarmonicSystem>,
     ) -> Result<Point, Status> {
         let Some((system, workspace)) = &mut self.nonlinear else {
             return Err(Status::SingularJacobian);
         };
         let mut x = start;
         let omega = TAU * frequency_hz;
-        let bounds = self.settings.bounds;
-        let outcome = if load_factor.total_cmp(&1.0).is_eq() {
-            solve(system, omega, &mut x, bounds, workspace)
-        } else {
-            let scaled = system
-                .pairs()
-                .iter()
-                .map(|pair| PairParameters {
-                    normal_load_n: load_factor * pair.normal_load_n,
-                    ..*pair
-                })
-                .collect();
-            solve(&system.with_pairs(scaled), omega, &mut x, bounds, workspace)
-        };
+        let system = other.unwrap_or(system);
+        let outcome = solve(system, omega, &mut x, self.settings.bounds, workspace);
         self.work.newton_iterations += outcome.iterations;
         self.work.factorisations += outcome.factorisations;
         if outcome.status != Status::Ok {
@@ -283,27 +277,6 @@ impl<'a> PointSolver<'a> {
             .collect();
         self.settings.blade_amplitudes(&blocks, solution)
     }
-
-    /// Homotopy in normal load: from a load at which every pair sticks down to that of the
-    /// scenario, the step (in the logarithm of the load) halved on failure.
-    fn lower_normal_load(&mut self, frequency_hz: f64) -> Result<Point, Status> {
-        const FIRST_FACTOR: f64 = 64.0;
-        const SMALLEST_STEP: f64 = 1.0 / 64.0;
-        let mut current = self.stuck_start(frequency_hz)?;
-        let (mut exponent, mut step) = (1.0, 0.25);
-        loop {
-            let next = f64::max(exponent - step, 0.0);
-            match self.newton(frequency_hz, current.clone(), FIRST_FACTOR.powf(next)) {
-                Ok(point) if next <= 0.0 => return Ok(point),
-                Ok(point) => {
-                    current = point.solution;
-                    exponent = next;
-                }
-                Err(_) if step > SMALLEST_STEP => step *= 0.5,
-                Err(_) => return Err(Status::StepTooSmall),
-            }
-        }
-    }
 }
 
 /// Attempts at one point, in order.
@@ -315,15 +288,18 @@ enum Attempt {
     Stuck,
     /// Arc-length continuation in frequency from the nearest converged point.
     Continuation,
+    /// Homotopy in contact stiffness.
+    StiffnessHomotopy,
     /// Homotopy in normal load.
     LoadHomotopy,
 }
 
 impl Attempt {
-    const LADDER: [Self; 4] = [
+    const LADDER: [Self; 5] = [
         Self::Neighbours,
         Self::Stuck,
         Self::Continuation,
+        Self::StiffnessHomotopy,
         Self::LoadHomotopy,
     ];
 }
