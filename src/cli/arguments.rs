@@ -82,6 +82,9 @@ pub enum Command {
         /// Standard deviation, where the study lists several.
         #[arg(long, value_name = "S")]
         standard_deviation: Option<f64>,
+        /// Follow the curve through its folds, upwards and downwards.
+        #[arg(long)]
+        continuation: bool,
         /// Print what was written as JSON.
         #[arg(long)]
         json: bool,

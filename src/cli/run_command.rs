@@ -42,6 +42,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             out,
             engine_order,
             standard_deviation,
+            continuation,
             json,
         } => response::command(&response::ResponseArguments {
             study,
@@ -51,6 +52,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             out,
             engine_order,
             standard_deviation,
+            continuation,
             json,
         }),
         Command::Stats { results, json } => stats::command(&results, json),

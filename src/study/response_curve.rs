@@ -1,11 +1,13 @@
 //! The response of one pattern over frequency.
 
+use super::traced_curve::TracedCurve;
 use super::{
-    EngineSource, MistuningSource, PipelineError, Study, load_sector_model, pattern_source,
+    Engine, EngineSource, MistuningSource, PipelineError, Study, load_sector_model, pattern_source,
 };
 use crate::population::monte_carlo::Scenario;
 use crate::population::table::CurvePoint;
 use crate::response::forced_response::ContactCondition;
+use crate::response::mistuning::Pattern;
 
 /// Which curve is wanted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,6 +33,40 @@ pub fn response_curve(
     source: &dyn EngineSource,
     request: CurveRequest<'_>,
 ) -> Result<Vec<CurvePoint>, PipelineError> {
+    let asked = asked_for(study, source, request)?;
+    let pattern = asked.pattern.as_ref();
+    let engine = asked.engine;
+    Ok(engine.curve(&asked.scenario, pattern, request.frequencies_hz))
+}
+
+/// The curve followed by continuation upwards and downwards, and what the two make of each other.
+///
+/// # Errors
+/// The model is refused or cannot be reduced, or the study has no such pattern.
+pub fn traced_response(
+    study: &Study,
+    source: &dyn EngineSource,
+    request: CurveRequest<'_>,
+) -> Result<TracedCurve, PipelineError> {
+    let asked = asked_for(study, source, request)?;
+    let pattern = asked.pattern.as_ref();
+    let engine = asked.engine;
+    let traces = engine.traces(&asked.scenario, pattern, request.frequencies_hz);
+    Ok(TracedCurve::of(&traces, request.frequencies_hz))
+}
+
+/// A request with the model built and the pattern found.
+struct Asked {
+    engine: Box<dyn Engine>,
+    scenario: Scenario,
+    pattern: Option<Pattern>,
+}
+
+fn asked_for(
+    study: &Study,
+    source: &dyn EngineSource,
+    request: CurveRequest<'_>,
+) -> Result<Asked, PipelineError> {
     let model = load_sector_model(study)?;
     if request.contact != ContactCondition::Free {
         let reason = match (&study.contact, model.contact_pairs.is_empty()) {
@@ -61,7 +97,11 @@ pub fn response_curve(
         standard_deviation: request.standard_deviation,
         contact: request.contact,
     };
-    Ok(engine.curve(&scenario, pattern.as_ref(), request.frequencies_hz))
+    Ok(Asked {
+        engine,
+        scenario,
+        pattern,
+    })
 }
 
 fn ids_in_words(study: &Study, ids: &[u32]) -> String {

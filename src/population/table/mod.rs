@@ -11,6 +11,7 @@ mod patterns;
 mod reader;
 mod responses;
 mod scenarios;
+mod traced_curve;
 mod writer;
 
 pub use atomic::write_atomically;
@@ -23,4 +24,5 @@ pub use pattern_file::{PatternParquetError, read_pattern_parquet};
 pub use patterns::{PATTERN_COLUMNS, write_patterns};
 pub use responses::{RESPONSE_COLUMNS, ResponseReader, ResponseWriter};
 pub use scenarios::{SCENARIO_COLUMNS, ScenarioRecord, write_scenarios};
+pub use traced_curve::{Direction, TRACE_COLUMNS, TracePoint, write_traced_curve};
 pub use writer::{Compression, SCHEMA_VERSION, TableHeader};

@@ -14,7 +14,12 @@ const FREQUENCY_SCALE: f64 = 1e-3;
 /// Bounds of the frequency scale over the frequency.
 const FREQUENCY_SCALES: (f64, f64) = (1e-6, 2e-2);
 /// Largest number of correctors of a continuation to one frequency.
-const CORRECTORS_TO_ONE_FREQUENCY: u64 = 300;
+const CORRECTORS_TO_ONE_FREQUENCY: u64 = 60;
+/// Correctors of a trace: at least, and per frequency scale between its ends.
+const CORRECTORS: u64 = 4000;
+const CORRECTORS_PER_SCALE: f64 = 8.0;
+/// Largest number of correctors of any trace.
+const MOST_CORRECTORS: f64 = 1e5;
 
 /// A point of the curve.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,6 +127,11 @@ impl PointSolver<'_> {
             return trace;
         }
         let bounds = self.continuation_bounds(start_hz);
+        let scales = TAU * (stop_hz - start_hz).abs() / bounds.frequency_scale;
+        let bounds = ContinuationBounds {
+            correctors: CORRECTORS + (CORRECTORS_PER_SCALE * scales).min(MOST_CORRECTORS) as u64,
+            ..bounds
+        };
         let status = self.follow(&first, stop_hz, bounds, grid_hz, |point| {
             trace.points.push(point);
         });
@@ -149,6 +159,36 @@ impl PointSolver<'_> {
             (Some(point), _) => Ok(point),
             (None, Status::Ok) => Err(Status::BranchJump),
             (None, status) => Err(status),
+        }
+    }
+
+    /// The point of the largest amplitude between `from` and `stop_hz` along the curve, in steps small
+    /// enough to read it to `tolerance`; `from` itself if none is larger.
+    ///
+    /// # Errors
+    /// Why `stop_hz` was not reached.
+    pub(super) fn highest_towards(
+        &mut self,
+        from: &Point,
+        stop_hz: f64,
+        tolerance: f64,
+    ) -> Result<Point, Status> {
+        let bounds = self.continuation_bounds(from.frequency_hz);
+        let bounds = ContinuationBounds {
+            // At a maximum, half a step of relative length s beside it, 1 - s^2 / 8 is read.
+            largest_step: (2.0 * tolerance.sqrt()).min(bounds.largest_step),
+            ..bounds
+        };
+        let mut highest = from.clone();
+        let status = self.follow(from, stop_hz, bounds, &[], |point| {
+            if point.point.largest_amplitude_m() > highest.largest_amplitude_m() {
+                highest = point.point;
+            }
+        });
+        if status == Status::Ok {
+            Ok(highest)
+        } else {
+            Err(status)
         }
     }
 

@@ -45,6 +45,14 @@ pub struct Point {
     pub shares: ContactShares,
 }
 
+impl Point {
+    /// Largest amplitude over the blades, m.
+    #[must_use]
+    pub fn largest_amplitude_m(&self) -> f64 {
+        self.amplitudes_m.iter().copied().fold(0.0, f64::max)
+    }
+}
+
 /// Solver of the points of one row; keeps the converged points as starts for others.
 pub struct PointSolver<'a> {
     pub(super) excited: &'a Excited,

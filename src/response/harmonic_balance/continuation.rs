@@ -72,7 +72,7 @@ impl ContinuationBounds {
             frequency_scale,
             first_step: 0.05,
             smallest_step: 1e-6,
-            largest_step: 0.5,
+            largest_step: 1.0,
             correctors: 4000,
         }
     }
