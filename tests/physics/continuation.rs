@@ -1,10 +1,13 @@
-//! Continuation in frequency: its derivative, and folds known in closed form.
+//! Continuation in frequency: folds known in closed form, complete curves, contact that is stiff.
 
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use blisk::linalg::{Complex64, Matrix};
+use blisk::linalg::{Complex64, Matrix, SymmetricSparse};
 use blisk::model::cyclic::ContactGeometry;
+use blisk::model::reduction::BasisChoice;
+use blisk::model::sector::{Body, Component, ContactPair, Dof, ObservedNode, SectorModel, lumped};
+use blisk::response::forced_response::{PointSettings, PointSolver, ResponseTrace, SolverOptions};
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{
     ContactInterface, Continuation, ContinuationBounds, Damping, HarmonicBlock, HarmonicSystem,
@@ -12,7 +15,8 @@ use blisk::response::harmonic_balance::{
 };
 use blisk::response::mistuning::{ModalRows, StructuralModes};
 
-use super::contact::random::Random;
+use super::sector_sources::lumped::lumped24;
+use super::wheels::{ENGINE_ORDER, Wheel, full};
 
 mod oscillator {
     //! One mass on a spring, held by a preloaded contact that can open: it softens, and its
@@ -80,8 +84,8 @@ mod oscillator {
         let damping = LOSS_FACTOR * STIFFNESS;
         let rest = (FORCE_N / amplitude).powi(2) - damping * damping;
         let middle = STIFFNESS + contact_stiffness(amplitude, preload_n);
-        // At the top, rounding may leave less than nothing.
-        (rest >= -1e-6 * damping * damping)
+        // At the top, the sampled contact force may leave less than nothing.
+        (rest >= -1e-5 * damping * damping)
             .then(|| [-1.0, 1.0].map(|side| (middle + side * rest.max(0.0).sqrt()).sqrt()))
     }
 
@@ -183,4 +187,196 @@ fn both_folds_of_an_opening_contact_are_found_where_the_closed_form_has_them() {
             assert!(off[0].min(off[1]) < 1e-6, "{} {omega:?}", point.omega);
         }
     }
+}
+
+/// The same oscillator as the blades of a wheel: blade and a ring node that hardly moves, radial.
+fn oscillator_wheel() -> Wheel {
+    let diagonal = |blade: f64, ring: f64| {
+        SymmetricSparse::from_lower_triplets(2, &[(0, 0, blade), (1, 1, ring)])
+    };
+    let dof = |node, body| Dof {
+        node,
+        component: Component::Radial,
+        position_m: [1.0, 0.0, 0.0],
+        body,
+    };
+    let sector = SectorModel {
+        name: "opening contact".to_owned(),
+        sectors: 3,
+        stiffness: diagonal(oscillator::STIFFNESS, 1e12),
+        mass: diagonal(1.0, 1.0),
+        blade_stiffness: diagonal(oscillator::STIFFNESS, 0.0),
+        dofs: vec![dof(0, Body::Blisk), dof(1, Body::Ring)],
+        cyclic_pairs: Vec::new(),
+        contact_pairs: vec![ContactPair {
+            blisk_node: 0,
+            ring_node: 1,
+            normal: [1.0, 0.0, 0.0],
+            weight: 1.0,
+        }],
+        force: vec![(0, Complex64::new(oscillator::FORCE_N, 0.0))],
+        observed: vec![ObservedNode {
+            name: "blade".to_owned(),
+            node: 0,
+        }],
+    };
+    Wheel::of(
+        &sector,
+        ContactLaw::Simplified3d,
+        PairParameters {
+            normal_load_n: 0.0,
+            normal_stiffness_n_per_m: oscillator::CONTACT_STIFFNESS,
+            tangential_stiffness_n_per_m: 1.0,
+            friction_coefficient: 0.3,
+        },
+        Damping::StructuralLossFactor(oscillator::LOSS_FACTOR),
+        BasisChoice::CraigBampton,
+    )
+}
+
+fn point_settings(wheel: &Wheel, harmonics: &[u32], options: &SolverOptions) -> PointSettings {
+    let contact = Some((wheel.law, wheel.sector));
+    PointSettings::new(options, harmonics, contact, wheel.model.contact.clone()).unwrap()
+}
+
+fn traces(
+    wheel: &Wheel,
+    harmonics: &[u32],
+    options: &SolverOptions,
+    load: f64,
+    grid: &[f64],
+) -> [ResponseTrace; 2] {
+    let excited = wheel.tuned(harmonics);
+    let settings = point_settings(wheel, harmonics, options);
+    let (first, last) = (grid[0], grid[grid.len() - 1]);
+    [(first, last), (last, first)].map(|(start, stop)| {
+        PointSolver::new(&excited, full(load), &settings).trace(start, stop, grid)
+    })
+}
+
+fn hertz(omega: f64) -> f64 {
+    omega / TAU
+}
+
+#[test]
+fn both_directions_pass_every_branch_and_sweeps_differ_between_the_folds() {
+    let wheel = oscillator_wheel();
+    let options = SolverOptions {
+        samples_per_period: 4096,
+        ..SolverOptions::default()
+    };
+    let expected = oscillator::folds(0, oscillator::PRELOAD_N);
+    let (low, high) = (hertz(expected[1].0), hertz(expected[0].0));
+    let grid: Vec<f64> = (0..=60).map(|i| 160.0 + f64::from(i)).collect();
+    let [up, down] = traces(&wheel, &[1], &options, oscillator::PRELOAD_N, &grid);
+    let mut several = 0;
+    for trace in [&up, &down] {
+        assert_eq!(trace.status, Status::Ok);
+        let intervals = trace.multivalued_hz();
+        assert_eq!(intervals.len(), 1);
+        assert!((intervals[0].0 / low - 1.0).abs() < 2e-6, "{intervals:?}");
+        assert!((intervals[0].1 / high - 1.0).abs() < 2e-6, "{intervals:?}");
+    }
+    for &hz in &grid {
+        let (above, below) = (up.at(hz), down.at(hz));
+        let count = if hz > low && hz < high { 3 } else { 1 };
+        assert_eq!((above.len(), below.len()), (count, count), "{hz} Hz");
+        for (a, b) in above.iter().zip(below.iter().rev()) {
+            let (a, b) = (a.point.amplitudes_m[0], b.point.amplitudes_m[0]);
+            assert!((a / b - 1.0).abs() < 1e-6, "{hz} Hz: {a:e} {b:e}");
+            let omega = oscillator::frequencies(a, oscillator::PRELOAD_N).unwrap();
+            let off = omega.map(|omega| (hertz(omega) / hz - 1.0).abs());
+            assert!(off[0].min(off[1]) < 2e-6, "{hz} Hz: {a:e}");
+        }
+        if count == 3 {
+            several += 1;
+            // What a sweep follows before it jumps: branch 0 of either direction.
+            let first = |trace: &ResponseTrace| trace.at(hz)[0].point.amplitudes_m[0];
+            assert!(first(&down) > 1.5 * first(&up), "{hz} Hz");
+        }
+    }
+    assert!(several >= 5, "{several}");
+}
+
+#[test]
+fn the_peak_of_a_folded_curve_is_that_of_its_highest_branch() {
+    // The highest point lies on the branch that leans over, at the closed form's largest amplitude.
+    let wheel = oscillator_wheel();
+    for preload_n in [6.0, 12.0, 20.0] {
+        let options = SolverOptions {
+            samples_per_period: 1024,
+            ..SolverOptions::default()
+        };
+        let solver = wheel.solver(&[1], options);
+        let peak = solver.tuned_peak(ENGINE_ORDER, full(preload_n));
+        let ratio = peak
+            .point
+            .as_ref()
+            .map(|point| point.largest_amplitude_m() / oscillator::highest());
+        println!(
+            "{preload_n} N: {} {ratio:?}, {:?}",
+            peak.status.name(),
+            peak.work
+        );
+        assert_eq!(peak.status, Status::Ok, "{preload_n} N");
+        assert!(
+            (ratio.unwrap() - 1.0).abs() < 2e-3,
+            "{preload_n} N: {ratio:?}"
+        );
+    }
+}
+
+#[test]
+fn friction_alone_gives_one_complete_curve_in_both_directions() {
+    let grid: Vec<f64> = (0..=30).map(|i| 340.0 + f64::from(i)).collect();
+    let wheel = Wheel {
+        amplitude_n: 10.0,
+        ..Wheel::lumped24()
+    };
+    let [up, down] = traces(&wheel, &[1, 3], &SolverOptions::default(), 50.0, &grid);
+    let highest = up.largest().unwrap().0.point.largest_amplitude_m();
+    for trace in [&up, &down] {
+        assert_eq!(trace.status, Status::Ok);
+        assert_eq!(trace.folds().count(), 0);
+    }
+    for &hz in &grid {
+        let (up, down) = (up.at(hz), down.at(hz));
+        assert_eq!((up.len(), down.len()), (1, 1));
+        let off = up[0].point.amplitudes_m[0] - down[0].point.amplitudes_m[0];
+        assert!(off.abs() < 1e-6 * highest, "{hz} Hz: {off:e}");
+    }
+}
+
+#[test]
+fn contact_a_million_times_stiffer_than_the_disk_converges_from_nothing() {
+    let wheel = Wheel::lumped24();
+    let sector = PairParameters {
+        tangential_stiffness_n_per_m: 1e6 * wheel.sector.tangential_stiffness_n_per_m,
+        ..wheel.sector
+    };
+    let wheel = Wheel {
+        amplitude_n: 10.0,
+        ..Wheel::of(
+            &lumped::build(&lumped24()).unwrap(),
+            wheel.law,
+            sector,
+            wheel.damping,
+            BasisChoice::CraigBampton,
+        )
+    };
+    let excited = wheel.tuned(&[1, 3]);
+    let settings = point_settings(&wheel, &[1, 3], &SolverOptions::default());
+    let mut retries = 0;
+    for i in 0..=50 {
+        let mut solver = PointSolver::new(&excited, full(50.0), &settings);
+        let frequency = 330.0 + f64::from(i);
+        let status = solver.solve(frequency).err();
+        assert_eq!(status, None, "{frequency} Hz");
+        retries += solver.work().retries;
+    }
+    println!("{retries} of 51 points needed more than Newton's method");
+    assert!(
+        retries > 0,
+        "Newton's method alone does it: no test of the ladder"
+    );
 }

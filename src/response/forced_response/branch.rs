@@ -5,6 +5,7 @@
 //! reaches: a sweep in the direction of the trace follows branch 0 to its fold, then jumps.
 
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 
 use super::point_solver::{Point, PointSolver};
 use crate::response::harmonic_balance::{Continuation, ContinuationBounds, PathPoint, Status};
@@ -132,8 +133,9 @@ impl PointSolver<'_> {
             correctors: CORRECTORS + (CORRECTORS_PER_SCALE * scales).min(MOST_CORRECTORS) as u64,
             ..bounds
         };
-        let status = self.follow(&first, stop_hz, bounds, grid_hz, |point| {
+        let status = self.follow(&first, (stop_hz, start_hz), bounds, grid_hz, |point| {
             trace.points.push(point);
+            ControlFlow::Continue(())
         });
         trace.status = status;
         trace
@@ -149,11 +151,14 @@ impl PointSolver<'_> {
             ..self.continuation_bounds(from.frequency_hz)
         };
         let mut found = None;
+        let ends = (frequency_hz, 2.0 * from.frequency_hz - frequency_hz);
         let grid = [frequency_hz];
-        let status = self.follow(&from, frequency_hz, bounds, &grid, |point| {
-            if point.place == BranchPlace::Grid && found.is_none() {
+        let status = self.follow(&from, ends, bounds, &grid, |point| {
+            if point.place == BranchPlace::Grid {
                 found = Some(point.point);
+                return ControlFlow::Break(());
             }
+            ControlFlow::Continue(())
         });
         match (found, status) {
             (Some(point), _) => Ok(point),
@@ -162,15 +167,16 @@ impl PointSolver<'_> {
         }
     }
 
-    /// The point of the largest amplitude between `from` and `stop_hz` along the curve, in steps small
-    /// enough to read it to `tolerance`; `from` itself if none is larger.
+    /// The point of the largest amplitude along the curve from `from`, in steps small enough to read
+    /// it to `tolerance`, until the amplitude has fallen to half of it or the first of `ends_hz` is
+    /// reached, the second one lying behind; `from` itself if none is larger.
     ///
     /// # Errors
-    /// Why `stop_hz` was not reached.
-    pub(super) fn highest_towards(
+    /// Why the curve could not be followed so far.
+    pub(super) fn highest_along(
         &mut self,
         from: &Point,
-        stop_hz: f64,
+        ends_hz: (f64, f64),
         tolerance: f64,
     ) -> Result<Point, Status> {
         let bounds = self.continuation_bounds(from.frequency_hz);
@@ -180,9 +186,15 @@ impl PointSolver<'_> {
             ..bounds
         };
         let mut highest = from.clone();
-        let status = self.follow(from, stop_hz, bounds, &[], |point| {
-            if point.point.largest_amplitude_m() > highest.largest_amplitude_m() {
+        let status = self.follow(from, ends_hz, bounds, &[], |point| {
+            let amplitude = point.point.largest_amplitude_m();
+            if amplitude > highest.largest_amplitude_m() {
                 highest = point.point;
+            }
+            if amplitude < 0.5 * highest.largest_amplitude_m() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
             }
         });
         if status == Status::Ok {
@@ -192,32 +204,36 @@ impl PointSolver<'_> {
         }
     }
 
-    /// Walks from `from` until beyond `stop_hz`; hands over steps, folds and passages of the grid.
+    /// Walks from `from` until beyond the first of `ends_hz`, or until told to stop; hands over steps,
+    /// folds and passages of the grid. Beyond the second one, behind the start, it is `branch_jump`:
+    /// the wanted end belongs to another curve.
     fn follow(
         &mut self,
         from: &Point,
-        stop_hz: f64,
+        ends_hz: (f64, f64),
         bounds: ContinuationBounds,
         grid_hz: &[f64],
-        mut visit: impl FnMut(BranchPoint),
+        mut visit: impl FnMut(BranchPoint) -> ControlFlow<()>,
     ) -> Status {
         let Some((system, _)) = &self.nonlinear else {
             return Status::SingularJacobian;
         };
-        let start_hz = from.frequency_hz;
-        let rising = stop_hz > start_hz;
-        let omega = TAU * start_hz;
+        let (stop_hz, back_hz) = ends_hz;
+        let rising = stop_hz > from.frequency_hz;
+        let omega = TAU * from.frequency_hz;
         let mut walk = match Continuation::new(system, omega, &from.solution, rising, bounds) {
             Ok(walk) => walk,
             Err(status) => return status,
         };
         let mut branch = 0;
+        let mut stopped = false;
         let mut hand_over = |point: &PathPoint, frequency_hz, branch, place| {
-            visit(BranchPoint {
+            let flow = visit(BranchPoint {
                 point: self.point_of(frequency_hz, point),
                 branch,
                 place,
             });
+            flow.is_break()
         };
         let status = loop {
             let fold = match walk.advance() {
@@ -236,7 +252,9 @@ impl PointSolver<'_> {
             for (begin, end, is_fold) in stretches {
                 for frequency_hz in passed(&begin, &end, grid_hz) {
                     match walk.land(&begin, &end, TAU * frequency_hz) {
-                        Ok(point) => hand_over(&point, frequency_hz, branch, BranchPlace::Grid),
+                        Ok(point) => {
+                            stopped |= hand_over(&point, frequency_hz, branch, BranchPlace::Grid);
+                        }
                         Err(status) => failed = Some(status),
                     }
                 }
@@ -247,7 +265,7 @@ impl PointSolver<'_> {
                 };
                 let end_hz = end.omega / TAU;
                 if (end_hz < stop_hz) == rising {
-                    hand_over(&end, end_hz, branch, place);
+                    stopped |= hand_over(&end, end_hz, branch, place);
                 }
                 branch += u32::from(is_fold);
             }
@@ -255,11 +273,10 @@ impl PointSolver<'_> {
                 break status;
             }
             let at_hz = walk.point().omega / TAU;
-            if (at_hz >= stop_hz) == rising {
+            if stopped || (at_hz >= stop_hz) == rising {
                 break Status::Ok;
             }
-            if (at_hz < start_hz) == rising {
-                // Out at the end it came in by: the other end belongs to another curve.
+            if (at_hz < back_hz) == rising {
                 break Status::BranchJump;
             }
         };

@@ -212,14 +212,23 @@ fn over_cliffs(
     let samples = || result.samples.iter().filter(good);
     let below = samples().rfind(|sample| sample.frequency_hz < best.frequency_hz);
     let above = samples().find(|sample| sample.frequency_hz > best.frequency_hz);
+    let (Some(first), Some(last)) = (result.samples.first(), result.samples.last()) else {
+        return Ok(None);
+    };
+    let band = (first.frequency_hz, last.frequency_hz);
     let mut highest: Option<Point> = None;
     for beside in [below, above].into_iter().flatten() {
         let distance = (beside.frequency_hz - best.frequency_hz).abs();
         if beside.largest >= CLIFF * envelope.floor(height, distance) {
             continue;
         }
+        let ends = if beside.frequency_hz < best.frequency_hz {
+            band
+        } else {
+            (band.1, band.0)
+        };
         let found = solver
-            .highest_towards(best, beside.frequency_hz, tolerance)
+            .highest_along(best, ends, tolerance)
             .map_err(|_| Status::BranchJump)?;
         let before = highest.as_ref().map_or(height, Point::largest_amplitude_m);
         if found.largest_amplitude_m() > before {
