@@ -167,43 +167,6 @@ impl PointSolver<'_> {
         }
     }
 
-    /// The point of the largest amplitude along the curve from `from`, in steps small enough to read
-    /// it to `tolerance`, until the amplitude has fallen to half of it or the first of `ends_hz` is
-    /// reached, the second one lying behind; `from` itself if none is larger.
-    ///
-    /// # Errors
-    /// Why the curve could not be followed so far.
-    pub(super) fn highest_along(
-        &mut self,
-        from: &Point,
-        ends_hz: (f64, f64),
-        tolerance: f64,
-    ) -> Result<Point, Status> {
-        let bounds = self.continuation_bounds(from.frequency_hz);
-        let bounds = ContinuationBounds {
-            // At a maximum, half a step of relative length s beside it, 1 - s^2 / 8 is read.
-            largest_step: (2.0 * tolerance.sqrt()).min(bounds.largest_step),
-            ..bounds
-        };
-        let mut highest = from.clone();
-        let status = self.follow(from, ends_hz, bounds, &[], |point| {
-            let amplitude = point.point.largest_amplitude_m();
-            if amplitude > highest.largest_amplitude_m() {
-                highest = point.point;
-            }
-            if amplitude < 0.5 * highest.largest_amplitude_m() {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
-        });
-        if status == Status::Ok {
-            Ok(highest)
-        } else {
-            Err(status)
-        }
-    }
-
     /// Walks from `from` until beyond the first of `ends_hz`, or until told to stop; hands over steps,
     /// folds and passages of the grid. Beyond the second one, behind the start, it is `branch_jump`:
     /// the wanted end belongs to another curve.

@@ -3,7 +3,7 @@
 use super::excited::Excited;
 use super::linear_peaks::LinearPeak;
 use super::options::{ContactCondition, FrequencyBand};
-use super::peak_search::{Envelope, Sample, SearchEnd, SearchResult, SearchSettings, find_peak};
+use super::peak_search::{Envelope, SearchEnd, SearchSettings, find_peak};
 use super::point_settings::PointSettings;
 use super::point_solver::{Point, PointSolver, Work};
 use crate::response::harmonic_balance::Status;
@@ -16,10 +16,6 @@ const EVALUATIONS: usize = 1500;
 const STARTS_BETWEEN: usize = 5;
 /// Times the automatic band is widened while the largest value lies at its end.
 const BAND_EXTENSIONS: usize = 5;
-
-/// Share of the least that a resonance reads below which a neighbour of the peak is taken to lie on
-/// another branch.
-const CLIFF: f64 = 0.7;
 
 /// What was found of one row.
 #[derive(Debug, Clone, PartialEq)]
@@ -172,75 +168,13 @@ pub fn peak(
             .last()
             .map_or(Status::SweepIncomplete, |&(_, status)| status),
     };
-    let blade = best.map_or(0, |best| best.blade);
-    let found = match (status, point) {
-        (Status::Ok, Some(point)) => {
-            over_cliffs(&mut solver, &result, envelope, &point, search.tolerance)
-                .map(|higher| Some(higher.unwrap_or((point, blade))))
-        }
-        (_, point) => Ok(point.map(|point| (point, blade))),
-    };
-    let (status, point, blade) = match found {
-        Ok(Some((point, blade))) => (status, Some(point), blade),
-        Ok(None) => (status, None, blade),
-        Err(status) => (status, None, blade),
-    };
     Peak {
         status,
         point,
-        blade,
+        blade: best.map_or(0, |best| best.blade),
         bracketed: result.bracketed,
         work: solver.work(),
     }
-}
-
-/// A higher point, with its blade, of the curve that the best point lies on, where the amplitude
-/// falls off beside it faster than at any resonance: at a fold the curve goes on, and up to where it
-/// turns it may rise. Largest of all branches is what a peak is.
-///
-/// # Errors
-/// `branch_jump` where the curve cannot be followed, so that what lies on it is not known.
-fn over_cliffs(
-    solver: &mut PointSolver<'_>,
-    result: &SearchResult,
-    envelope: Envelope,
-    best: &Point,
-    tolerance: f64,
-) -> Result<Option<(Point, usize)>, Status> {
-    let height = best.largest_amplitude_m();
-    let good = |sample: &&Sample| !sample.amplitudes.is_empty();
-    let samples = || result.samples.iter().filter(good);
-    let below = samples().rfind(|sample| sample.frequency_hz < best.frequency_hz);
-    let above = samples().find(|sample| sample.frequency_hz > best.frequency_hz);
-    let (Some(first), Some(last)) = (result.samples.first(), result.samples.last()) else {
-        return Ok(None);
-    };
-    let band = (first.frequency_hz, last.frequency_hz);
-    let mut highest: Option<Point> = None;
-    for beside in [below, above].into_iter().flatten() {
-        let distance = (beside.frequency_hz - best.frequency_hz).abs();
-        if beside.largest >= CLIFF * envelope.floor(height, distance) {
-            continue;
-        }
-        let ends = if beside.frequency_hz < best.frequency_hz {
-            band
-        } else {
-            (band.1, band.0)
-        };
-        let found = solver
-            .highest_along(best, ends, tolerance)
-            .map_err(|_| Status::BranchJump)?;
-        let before = highest.as_ref().map_or(height, Point::largest_amplitude_m);
-        if found.largest_amplitude_m() > before {
-            highest = Some(found);
-        }
-    }
-    Ok(highest.map(|point| {
-        let blade = (0..point.amplitudes_m.len())
-            .max_by(|&a, &b| point.amplitudes_m[a].total_cmp(&point.amplitudes_m[b]))
-            .unwrap_or(0);
-        (point, blade)
-    }))
 }
 
 /// Resonances of each limit inside the window, or all of them where none of a limit is: a

@@ -29,11 +29,6 @@ impl Envelope {
     /// friction holds the best peak far below the linear ones, a competitor need not be as broad.
     const BROADEST: f64 = 5.0;
 
-    /// The least that a resonance of height `amplitude` reads `distance_hz` beside its top.
-    pub(super) fn floor(&self, amplitude: f64, distance_hz: f64) -> f64 {
-        amplitude / 1.0_f64.hypot(distance_hz / self.half_bandwidth(amplitude))
-    }
-
     /// Half-bandwidth, Hz, assumed of a hidden peak of height `amplitude`.
     fn half_bandwidth(&self, amplitude: f64) -> f64 {
         let linear = self.linear_half_bandwidth_hz;
