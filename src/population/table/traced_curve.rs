@@ -105,9 +105,6 @@ pub fn write_traced_curve(
     if format == CurveFormat::Csv {
         return write_atomically(path, csv(points).as_bytes());
     }
-    fn column<T>(points: &[TracePoint], value: impl Fn(&TracePoint) -> T) -> Vec<T> {
-        points.iter().map(value).collect()
-    }
     let mut writer = TableWriter::create(path, TRACE_COLUMNS, header)?;
     writer.write(vec![
         Values::Float64(column(points, |point| Some(point.frequency_hz))),
@@ -125,6 +122,11 @@ pub fn write_traced_curve(
         Values::Boolean(column(points, |point| Some(point.fold))),
     ])?;
     writer.finish()
+}
+
+/// One value of every point.
+fn column<T>(points: &[TracePoint], value: impl Fn(&TracePoint) -> T) -> Vec<T> {
+    points.iter().map(value).collect()
 }
 
 /// Numbers with as many digits as it takes to read them back exactly.

@@ -183,7 +183,9 @@ impl<'a> Continuation<'a> {
         let (mut tangent, sign) = walk.tangent_at(&u)?;
         let wanted = if rising { 1.0 } else { -1.0 };
         let turn = wanted * tangent[n].signum();
-        tangent.iter_mut().for_each(|t| *t *= turn);
+        for t in &mut tangent {
+            *t *= turn;
+        }
         walk.curve.orientation = sign * turn;
         walk.here.tangent = tangent;
         Ok(walk)
@@ -384,7 +386,9 @@ impl<'a> Continuation<'a> {
             turn = -turn;
             self.curve.orientation = -self.curve.orientation;
         }
-        tangent.iter_mut().for_each(|t| *t *= turn);
+        for t in &mut tangent {
+            *t *= turn;
+        }
         Ok(tangent)
     }
 

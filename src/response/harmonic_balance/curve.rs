@@ -68,14 +68,18 @@ impl<'a> Curve<'a> {
         for column in (0..n).rev() {
             matrix.copy_within(column * n..(column + 1) * n, column * (n + 1));
             let column_entries = &mut matrix[column * (n + 1)..][..=n];
-            column_entries.iter_mut().for_each(|entry| *entry *= state);
+            for entry in column_entries.iter_mut() {
+                *entry *= state;
+            }
             column_entries[n] = self.border[column];
         }
         let last = &mut matrix[n * (n + 1)..];
         self.system
             .frequency_derivative(omega, &self.x, &mut last[..n]);
         let frequency = self.frequency_scale / self.system.force_norm();
-        last.iter_mut().for_each(|entry| *entry *= frequency);
+        for entry in last.iter_mut() {
+            *entry *= frequency;
+        }
         last[n] = self.border[n];
     }
 }
@@ -91,9 +95,9 @@ impl Equation for Curve<'_> {
             false,
             &mut self.workspace,
         );
-        residual
-            .iter_mut()
-            .for_each(|r| *r /= self.system.force_norm());
+        for r in residual.iter_mut() {
+            *r /= self.system.force_norm();
+        }
         residual[n] = 0.0;
         (norm, shares)
     }
@@ -108,9 +112,9 @@ impl Equation for Curve<'_> {
             true,
             &mut self.workspace,
         );
-        residual
-            .iter_mut()
-            .for_each(|r| *r /= self.system.force_norm());
+        for r in residual.iter_mut() {
+            *r /= self.system.force_norm();
+        }
         residual[n] = 0.0;
         self.fill_bordered(omega);
         self.factored = self.factors.factor();
