@@ -86,6 +86,9 @@ pub enum Command {
         /// Which model is solved, and how finely.
         #[command(flatten)]
         fidelity: FidelityArguments,
+        /// Follow the curve through its folds, upwards and downwards.
+        #[arg(long)]
+        continuation: bool,
         /// Print what was written as JSON.
         #[arg(long)]
         json: bool,

@@ -8,11 +8,12 @@ use serde_json::json;
 use super::fidelity::FidelityArguments;
 use super::run_command::Failure;
 use super::{ExitStatus, output};
-use crate::population::table::{CurveFormat, TableHeader, write_curve};
+use crate::population::table::{CurveFormat, TableHeader, write_curve, write_traced_curve};
 use crate::response::forced_response::ContactCondition;
 use crate::response::harmonic_balance::Status;
 use crate::study::{
-    CurveRequest, ReducedEngineSource, Study, StudyDigest, full_response_curve, response_curve,
+    CurveRequest, ReducedEngineSource, Study, StudyDigest, TracedCurve, full_response_curve,
+    response_curve, traced_response,
 };
 
 /// Largest number of frequencies of a curve.
@@ -127,6 +128,7 @@ pub(super) struct ResponseArguments {
     pub(super) engine_order: Option<u32>,
     pub(super) standard_deviation: Option<f64>,
     pub(super) fidelity: FidelityArguments,
+    pub(super) continuation: bool,
     pub(super) json: bool,
 }
 
@@ -156,6 +158,9 @@ pub(super) fn command(arguments: &ResponseArguments) -> Result<ExitStatus, Failu
         study_digest: StudyDigest::of(&study)?.hex(),
         compression: study.output.compression,
     };
+    if arguments.continuation {
+        return followed(arguments, &study, request, format, &header);
+    }
     let points = match arguments.fidelity.full(&study)? {
         None => response_curve(&study, &ReducedEngineSource, request)?,
         Some(settings) => full_response_curve(&study, &settings, request)?,
@@ -194,6 +199,96 @@ pub(super) fn command(arguments: &ResponseArguments) -> Result<ExitStatus, Failu
     } else {
         ExitStatus::FailureGate
     })
+}
+
+/// `--continuation`: the curve followed upwards and downwards.
+fn followed(
+    arguments: &ResponseArguments,
+    study: &Study,
+    request: CurveRequest<'_>,
+    format: CurveFormat,
+    header: &TableHeader,
+) -> Result<ExitStatus, Failure> {
+    if request.contact.normal_load_n().is_none() {
+        return Err(Failure::usage(format!(
+            "--continuation with --load {}: a linear response has one branch; accepted: a normal load in N",
+            request.contact.name()
+        )));
+    }
+    if request.frequencies_hz.len() < 2 {
+        return Err(Failure::usage(
+            "--continuation needs at least two frequencies".to_owned(),
+        ));
+    }
+    let out = &arguments.out;
+    let curve = traced_response(study, &ReducedEngineSource, request)?;
+    write_traced_curve(out, format, &curve.points, header)?;
+    let complete = curve.status.map(|status| status == Status::Ok);
+    if arguments.json {
+        output::json_only(&json!({
+            "file": out,
+            "rows": curve.points.len(),
+            "complete": { "up": complete[0], "down": complete[1] },
+            "curve": curve,
+        }));
+    } else {
+        output::text(&format!(
+            "wrote {} rows to {}\n{}",
+            curve.points.len(),
+            out.display(),
+            in_words(&curve)
+        ));
+    }
+    Ok(if complete == [true, true] {
+        ExitStatus::Done
+    } else {
+        ExitStatus::FailureGate
+    })
+}
+
+/// Completeness, folds and agreement of a followed curve, a line each.
+fn in_words(curve: &TracedCurve) -> String {
+    let ended = |status: Status| match status {
+        Status::Ok => "complete".to_owned(),
+        status => format!("incomplete ({})", status.name()),
+    };
+    let mut lines = vec![format!(
+        "curve: upwards {}, downwards {}",
+        ended(curve.status[0]),
+        ended(curve.status[1])
+    )];
+    lines.extend(curve.folds.iter().map(|fold| {
+        format!(
+            "fold at {} Hz, {:.6e} m ({})",
+            fold.frequency_hz,
+            fold.amplitude_m,
+            fold.direction.name()
+        )
+    }));
+    lines.extend(
+        curve
+            .multivalued_hz
+            .iter()
+            .map(|(low, high)| format!("several solutions from {low} to {high} Hz")),
+    );
+    lines.push(match (curve.directions_agree, curve.largest_difference) {
+        (true, _) => "both directions pass the same solutions".to_owned(),
+        (false, Some(difference)) => format!(
+            "the directions differ by {difference:.1e} of the largest amplitude: see the column direction"
+        ),
+        (false, None) => {
+            "the directions pass different numbers of solutions: see the column direction".to_owned()
+        }
+    });
+    if let Some(largest) = &curve.largest {
+        lines.push(format!(
+            "largest {:.6e} m at {} Hz, blade {}",
+            largest.amplitude_m.unwrap_or_default(),
+            largest.frequency_hz,
+            largest.blade.unwrap_or_default()
+        ));
+    }
+    lines.join("\n")
 }
 
 fn engine_order(study: &Study, asked: Option<u32>) -> Result<u32, Failure> {

@@ -46,6 +46,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             engine_order,
             standard_deviation,
             fidelity,
+            continuation,
             json,
         } => response::command(&response::ResponseArguments {
             study,
@@ -56,6 +57,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             engine_order,
             standard_deviation,
             fidelity,
+            continuation,
             json,
         }),
         Command::Replay {

@@ -9,7 +9,7 @@ use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
 use crate::population::table::CurvePoint;
 use crate::report::ModelReport;
-use crate::response::forced_response::SearchPlan;
+use crate::response::forced_response::{ResponseTrace, SearchPlan};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
 
@@ -56,6 +56,18 @@ pub trait Engine: Sync {
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
     ) -> Vec<CurvePoint>;
+
+    /// The curve followed by continuation between the first and the last frequency, upwards and
+    /// downwards.
+    ///
+    /// # Errors
+    /// The status of a pattern that cannot be applied.
+    fn traces(
+        &self,
+        scenario: &Scenario,
+        pattern: Option<&Pattern>,
+        frequencies_hz: &[f64],
+    ) -> Result<[ResponseTrace; 2], Status>;
 }
 
 /// Maker of engines.

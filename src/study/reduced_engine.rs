@@ -16,7 +16,7 @@ use crate::population::monte_carlo::{
 };
 use crate::population::table::CurvePoint;
 use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
-use crate::response::forced_response::{ContactCondition, Harmonics, SearchPlan};
+use crate::response::forced_response::{ContactCondition, Harmonics, ResponseTrace, SearchPlan};
 use crate::response::friction::{ContactLaw, ContactOptions, PairParameters, Ring};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
@@ -226,6 +226,20 @@ impl Engine for ReducedEngine {
                 })
             })
             .collect()
+    }
+
+    fn traces(
+        &self,
+        scenario: &Scenario,
+        pattern: Option<&Pattern>,
+        frequencies_hz: &[f64],
+    ) -> Result<[ResponseTrace; 2], Status> {
+        self.solver.traces(
+            scenario.engine_order,
+            scenario.contact,
+            pattern,
+            frequencies_hz,
+        )
     }
 }
 

@@ -1,5 +1,6 @@
 //! The response of one pattern over frequency.
 
+use super::traced_curve::TracedCurve;
 use super::{
     EngineSource, FullModel, FullSettings, MistuningSource, PipelineError, Study,
     load_sector_model, pattern_source,
@@ -40,7 +41,23 @@ pub fn response_curve(
     Ok(engine.curve(&wanted.scenario, pattern, request.frequencies_hz))
 }
 
-/// The same on the full-contact model.
+/// The curve followed by continuation upwards and downwards, and what the two make of each other.
+///
+/// # Errors
+/// As [`response_curve`].
+pub fn traced_response(
+    study: &Study,
+    source: &dyn EngineSource,
+    request: CurveRequest<'_>,
+) -> Result<TracedCurve, PipelineError> {
+    let wanted = Wanted::of(study, request)?;
+    let engine = source.build(study, &wanted.sector, None)?;
+    let pattern = wanted.pattern.as_ref();
+    let traces = engine.traces(&wanted.scenario, pattern, request.frequencies_hz);
+    Ok(TracedCurve::of(&traces, request.frequencies_hz))
+}
+
+/// The same as [`response_curve`] on the full-contact model.
 ///
 /// # Errors
 /// As [`response_curve`].

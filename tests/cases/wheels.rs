@@ -247,6 +247,29 @@ fn an_automatic_basis_meets_the_reference_peaks() {
 }
 
 #[test]
+fn light_loads_that_separate_meet_the_reference_peaks() {
+    let bounds = Bounds {
+        amplitude: 1e-2,
+        frequency: 5e-4,
+    };
+    let mut report = String::new();
+    for (wheel, load, count) in [(WHEEL8, 100.0, 2), (WHEEL24, 80.0, 1)] {
+        let case = wheel.under(&load.to_string(), ATTACHMENT, &[0, 1, 2, 3]);
+        let table = wheel.table("peaks.csv");
+        let rows: Vec<Row<'_>> = table
+            .rows()
+            .filter(|row| row.text("harmonics") == "0-1-2-3")
+            .collect();
+        assert_eq!(rows.len(), count);
+        for row in rows {
+            assert!(row.number("min_N_over_N0") < 0.0, "a row with separation");
+            report += &miss(wheel, &case, row, bounds).unwrap_or_default();
+        }
+    }
+    assert!(report.is_empty(), "{report}");
+}
+
+#[test]
 fn linear_limits_meet_the_reference() {
     let bounds = Bounds {
         amplitude: 1e-3,

@@ -297,3 +297,48 @@ fn a_model_is_exported_as_a_bundle_that_another_study_reads() {
     assert_eq!(refused.code, 4, "{}", refused.stderr);
     assert!(refused.stderr.contains("M.mtx:1"), "{}", refused.stderr);
 }
+
+#[test]
+fn response_by_continuation_says_whether_the_curve_is_complete_and_the_directions_agree() {
+    let place = Place::with(GOOD);
+    let response = |load: &'static str, frequencies: &'static str, more: &[&'static str]| {
+        let arguments = [
+            "response",
+            "study.toml",
+            "--continuation",
+            "--pattern",
+            "tuned",
+            "--load",
+            load,
+            "--frequencies",
+            frequencies,
+            "--out",
+            "curve.csv",
+        ];
+        place.run(&[&arguments[..], more].concat())
+    };
+    let followed = response("50", "340:370:7", &["--json"]);
+    assert_eq!(followed.code, 0, "{}", followed.stderr);
+    let value: serde_json::Value = serde_json::from_str(&followed.stdout).expect("JSON");
+    assert_eq!(value["complete"]["up"], true);
+    assert_eq!(value["complete"]["down"], true);
+    assert_eq!(value["curve"]["directions_agree"], true);
+    assert_eq!(value["curve"]["folds"].as_array().map(Vec::len), Some(0));
+    // Two directions, seven frequencies, six blades.
+    assert_eq!(value["rows"], 84);
+    let table = std::fs::read_to_string(place.path("curve.csv")).expect("the table");
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(
+        lines[0],
+        "frequency_hz,blade,amplitude_m,status,direction,branch,fold"
+    );
+    assert_eq!(lines.len(), 85);
+    assert!(lines[1].starts_with("340,0,") && lines[1].ends_with(",ok,up,0,false"));
+    assert!(lines[43].starts_with("370,0,") && lines[43].ends_with(",ok,down,0,false"));
+    let told = response("50", "340:370:7", &[]);
+    assert!(told.stdout.contains("both directions pass the same"));
+    let linear = response("stuck", "340:370:7", &[]);
+    assert_eq!(linear.code, 2);
+    assert!(linear.stderr.contains("one branch"), "{}", linear.stderr);
+    assert_eq!(response("50", "340:340:1", &[]).code, 2);
+}

@@ -203,6 +203,43 @@ mod derivative {
     }
 
     #[test]
+    fn the_derivative_by_frequency_is_the_difference_quotient() {
+        let mut random = Random(11);
+        let wheel8 = Wheel::wheel8();
+        for (damping, harmonics, tuned) in settings() {
+            let wheel = Wheel {
+                damping,
+                ..wheel8.clone()
+            };
+            let excited = excited(&wheel, tuned, harmonics, &mut random);
+            let stuck = system(&wheel, &excited, 64, 1e30);
+            let (x, _) = random_state(&stuck, &mut random);
+            let omega = TAU * 613.0;
+            let system = at_work(&wheel, &stuck, omega, &x);
+            let n = system.unknowns();
+            let mut workspace = system.workspace();
+            let mut exact = vec![0.0; n];
+            system.frequency_derivative(omega, &x, &mut exact);
+            // The residual is of second degree in frequency: central differences are exact.
+            let step = 1e-2 * omega;
+            let [above, below] = [omega + step, omega - step].map(|omega| {
+                let mut residual = vec![0.0; n];
+                system.residual(omega, &x, &mut residual, false, &mut workspace);
+                residual
+            });
+            let size = exact.iter().fold(0.0_f64, |size, d| size.max(d.abs()));
+            assert!(size > 0.0);
+            for ((above, below), exact) in above.iter().zip(&below).zip(&exact) {
+                let quotient = (above - below) / (2.0 * step);
+                assert!(
+                    (quotient - exact).abs() < 1e-8 * size,
+                    "{damping:?} {harmonics:?} {tuned}: {quotient:e} for {exact:e}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn the_jacobian_is_the_difference_quotient_away_from_kinks() {
         let mut random = Random(5);
         let wheel8 = Wheel::wheel8();

@@ -4,6 +4,7 @@
 
 mod bounds;
 mod contact;
+mod continuation;
 mod extremes;
 mod finite_element;
 mod fuzz;

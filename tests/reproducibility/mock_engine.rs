@@ -7,7 +7,7 @@ use blisk::model::sector::SectorModel;
 use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
 use blisk::population::table::CurvePoint;
 use blisk::report::ModelReport;
-use blisk::response::forced_response::SearchPlan;
+use blisk::response::forced_response::{ResponseTrace, SearchPlan};
 use blisk::response::harmonic_balance::Status;
 use blisk::response::mistuning::{Deviations, Pattern};
 use blisk::study::{Engine, EngineSource, PipelineError, Study};
@@ -122,6 +122,15 @@ impl Engine for MockEngine {
         _frequencies_hz: &[f64],
     ) -> Vec<CurvePoint> {
         Vec::new()
+    }
+
+    fn traces(
+        &self,
+        _scenario: &Scenario,
+        _pattern: Option<&Pattern>,
+        _frequencies_hz: &[f64],
+    ) -> Result<[ResponseTrace; 2], Status> {
+        Err(Status::InvalidPattern)
     }
 }
 

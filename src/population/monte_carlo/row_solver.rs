@@ -6,8 +6,8 @@ use super::{ResponseRow, Scenario, TunedReference};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
     ContactCondition, Excited, FrequencyBand, LimitsWanted, Peak, Point, PointSettings,
-    PointSolver, SearchPlan, SolverOptions, Wheel, Window, mistuned_window, peak, search_plan,
-    tuned_span, wheel_force,
+    PointSolver, ResponseTrace, SearchPlan, SolverOptions, Wheel, Window, mistuned_window, peak,
+    search_plan, tuned_span, wheel_force,
 };
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{Damping, Status, TransformError};
@@ -172,6 +172,41 @@ impl RowSolver {
                 (frequency, amplitudes)
             })
             .collect())
+    }
+
+    /// The curve between the first and the last frequency, followed upwards and downwards with the
+    /// frequencies, Hz, ascending, solved for exactly; no pattern means the tuned wheel.
+    ///
+    /// # Errors
+    /// The status of a pattern that cannot be applied.
+    pub fn traces(
+        &self,
+        engine_order: u32,
+        contact: ContactCondition,
+        pattern: Option<&Pattern>,
+        frequencies_hz: &[f64],
+    ) -> Result<[ResponseTrace; 2], Status> {
+        let excited = match pattern {
+            None => self.tuned_excited(engine_order, contact),
+            Some(pattern) => {
+                let (modes, wheel) = self.mistuned(pattern, LimitsWanted::of(&[contact]))?;
+                self.wheel_excited(&modes, &wheel, engine_order, contact)
+            }
+        };
+        let (Some(&first), Some(&last)) = (frequencies_hz.first(), frequencies_hz.last()) else {
+            return Err(Status::SweepIncomplete);
+        };
+        let sectors = self.basis.model().sectors;
+        Ok([(first, last), (last, first)].map(|(start, stop)| {
+            let mut solver = PointSolver::new(&excited, contact, self.points(contact));
+            let mut trace = solver.trace(start, stop, frequencies_hz);
+            for point in &mut trace.points {
+                if let [one] = point.point.amplitudes_m[..] {
+                    point.point.amplitudes_m = vec![one; sectors];
+                }
+            }
+            trace
+        }))
     }
 
     fn points(&self, contact: ContactCondition) -> &PointSettings {

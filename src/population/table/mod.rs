@@ -12,6 +12,7 @@ mod peak_audit;
 mod reader;
 mod responses;
 mod scenarios;
+mod traced_curve;
 mod verification;
 mod writer;
 
@@ -26,5 +27,6 @@ pub use patterns::{PATTERN_COLUMNS, write_patterns};
 pub use peak_audit::{PEAK_AUDIT_COLUMNS, PeakAuditRecord, write_peak_audit};
 pub use responses::{RESPONSE_COLUMNS, ResponseReader, ResponseWriter};
 pub use scenarios::{SCENARIO_COLUMNS, ScenarioRecord, write_scenarios};
+pub use traced_curve::{Direction, TRACE_COLUMNS, TracePoint, write_traced_curve};
 pub use verification::{VERIFICATION_COLUMNS, VerificationRecord, write_verification};
 pub use writer::{Compression, SCHEMA_VERSION, TableHeader};

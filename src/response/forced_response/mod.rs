@@ -1,17 +1,22 @@
 //! Linear limits, sweep, peak search, and the one definition of the amplification factor.
 
+mod branch;
 mod dense_sweep;
 mod excited;
+mod homotopy;
 mod linear_peaks;
 mod options;
 mod peak;
 mod peak_search;
+mod point_settings;
 mod point_solver;
 
+pub use branch::{BranchPlace, BranchPoint, ResponseTrace};
 pub use dense_sweep::{DensePeak, dense_peak};
 pub use excited::{Excited, LimitsWanted, LinearStructure, Wheel, wheel_force};
 pub use linear_peaks::LinearPeak;
 pub use options::{AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, SolverOptions};
 pub use peak::{Peak, SearchPlan, Window, mistuned_window, peak, search_plan, tuned_span};
 pub use peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
-pub use point_solver::{Point, PointSettings, PointSolver, Work};
+pub use point_settings::PointSettings;
+pub use point_solver::{Point, PointSolver, Work};

@@ -4,7 +4,8 @@ use super::excited::Excited;
 use super::linear_peaks::LinearPeak;
 use super::options::{ContactCondition, FrequencyBand};
 use super::peak_search::{Envelope, SearchEnd, SearchSettings, find_peak};
-use super::point_solver::{Point, PointSettings, PointSolver, Work};
+use super::point_settings::PointSettings;
+use super::point_solver::{Point, PointSolver, Work};
 use crate::response::harmonic_balance::Status;
 
 /// Tolerance of peaks of linear limits, which cost almost nothing.

@@ -4,72 +4,14 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::excited::Excited;
-use super::options::{AmplitudeMeasure, ContactCondition, SolverOptions};
-use crate::linalg::{Complex64, LuWorkspace, add_times_vector};
-use crate::model::cyclic::ContactGeometry;
-use crate::response::friction::{ContactLaw, PairParameters, Ring};
+use super::options::ContactCondition;
+use super::point_settings::PointSettings;
+use crate::linalg::{Complex64, LuWorkspace};
+use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{
-    ContactInterface, ContactShares, HarmonicSystem, HarmonicTransform, NewtonBounds,
-    NewtonWorkspace, Status, Structure, TransformError, linear_response, solve, solve_creeping,
+    ContactInterface, ContactShares, HarmonicSystem, NewtonWorkspace, Status, Structure,
+    linear_response, solve, solve_creeping,
 };
-
-/// Everything of a study that the solution of a point needs besides the structure.
-#[derive(Debug, Clone)]
-pub struct PointSettings {
-    harmonics: Vec<u32>,
-    transform: Arc<HarmonicTransform>,
-    /// Transform of the observed displacement for [`AmplitudeMeasure::TimeMaximum`].
-    time_grid: Option<Arc<HarmonicTransform>>,
-    bounds: NewtonBounds,
-    contact: Option<(ContactLaw, PairParameters)>,
-    ring: Ring,
-    geometry: ContactGeometry,
-}
-
-impl PointSettings {
-    /// `harmonics` ascending, with 1; `contact` is the law with its per-sector parameters (the
-    /// normal load is set per scenario).
-    ///
-    /// # Errors
-    /// If the harmonics cannot be told apart with the samples asked for.
-    pub fn new(
-        options: &SolverOptions,
-        harmonics: &[u32],
-        contact: Option<(ContactLaw, PairParameters)>,
-        geometry: ContactGeometry,
-    ) -> Result<Self, TransformError> {
-        let set: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
-        let transform = HarmonicTransform::new(&set, options.samples_per_period)?;
-        let time_grid = match options.amplitude {
-            AmplitudeMeasure::Fundamental => None,
-            AmplitudeMeasure::TimeMaximum => Some(Arc::new(HarmonicTransform::new(
-                &set,
-                options.time_samples,
-            )?)),
-        };
-        Ok(Self {
-            harmonics: harmonics.to_vec(),
-            transform: Arc::new(transform),
-            time_grid,
-            bounds: NewtonBounds::with_tolerance(options.residual_tolerance),
-            contact,
-            ring: Ring::Locked,
-            geometry,
-        })
-    }
-
-    /// The same with what a free ring does under mean friction; locked at first.
-    #[must_use]
-    pub fn with_ring(self, ring: Ring) -> Self {
-        Self { ring, ..self }
-    }
-
-    /// Harmonic set of the nonlinear solution.
-    #[must_use]
-    pub fn harmonics(&self) -> &[u32] {
-        &self.harmonics
-    }
-}
 
 /// Work done for a row.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -82,6 +24,8 @@ pub struct Work {
     pub factorisations: u64,
     /// Points that needed more than the first attempt.
     pub retries: u64,
+    /// Folds of the response curve passed by continuation.
+    pub folds: u64,
 }
 
 /// A converged point.
@@ -102,16 +46,24 @@ pub struct Point {
     pub ring_drift_m: [f64; 2],
 }
 
+impl Point {
+    /// Largest amplitude over the blades, m.
+    #[must_use]
+    pub fn largest_amplitude_m(&self) -> f64 {
+        self.amplitudes_m.iter().copied().fold(0.0, f64::max)
+    }
+}
+
 /// Solver of the points of one row; keeps the converged points as starts for others.
 pub struct PointSolver<'a> {
-    excited: &'a Excited,
-    condition: ContactCondition,
-    settings: &'a PointSettings,
-    linear: LuWorkspace<Complex64>,
-    nonlinear: Option<(HarmonicSystem, NewtonWorkspace)>,
+    pub(super) excited: &'a Excited,
+    pub(super) condition: ContactCondition,
+    pub(super) settings: &'a PointSettings,
+    pub(super) linear: LuWorkspace<Complex64>,
+    pub(super) nonlinear: Option<(HarmonicSystem, NewtonWorkspace)>,
     points: Vec<Point>,
     failures: Vec<(f64, Status)>,
-    work: Work,
+    pub(super) work: Work,
 }
 
 impl<'a> PointSolver<'a> {
@@ -206,7 +158,7 @@ impl<'a> PointSolver<'a> {
         let blocks = [(1, &*self.excited.linear.structure)];
         Ok(Point {
             frequency_hz,
-            amplitudes_m: self.blade_amplitudes(&blocks, &solution),
+            amplitudes_m: self.settings.blade_amplitudes(&blocks, &solution),
             solution,
             residual: 0.0,
             shares: ContactShares::default(),
@@ -226,14 +178,19 @@ impl<'a> PointSolver<'a> {
         .ok_or(Status::SingularJacobian)
     }
 
-    fn stuck_start(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
+    pub(super) fn stuck_start(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
         let stuck = self.linear_at(frequency_hz)?;
+        self.start_from(&stuck)
+    }
+
+    /// Unknowns with the given fundamental and nothing else.
+    pub(super) fn start_from(&self, fundamental: &[Complex64]) -> Result<Vec<f64>, Status> {
         let Some((system, _)) = &self.nonlinear else {
             return Err(Status::SingularJacobian);
         };
         let mut start = vec![0.0; system.unknowns()];
         let at = system.block_start(system.fundamental());
-        start[at..at + 2 * stuck.len()].copy_from_slice(&real_parts(&stuck));
+        start[at..at + 2 * fundamental.len()].copy_from_slice(&real_parts(fundamental));
         Ok(start)
     }
 
@@ -260,13 +217,18 @@ impl<'a> PointSolver<'a> {
                     Some(start) => start,
                     None => self.stuck_start(frequency_hz)?,
                 };
-                self.newton(frequency_hz, start, 1.0)
+                self.newton(frequency_hz, start, None)
             }
             Attempt::Stuck => {
                 let start = self.stuck_start(frequency_hz)?;
-                self.newton(frequency_hz, start, 1.0)
+                self.newton(frequency_hz, start, None)
             }
-            Attempt::FrequencySteps => self.step_in_frequency(frequency_hz),
+            // At fixed drift the curve is not that of a ring that creeps.
+            Attempt::Continuation if self.settings.ring == Ring::Creeping => {
+                Err(Status::StepTooSmall)
+            }
+            Attempt::Continuation => self.continue_to(frequency_hz),
+            Attempt::StiffnessHomotopy => self.stiffen_contact(frequency_hz),
             Attempt::LoadHomotopy => self.lower_normal_load(frequency_hz),
         }
     }
@@ -292,19 +254,19 @@ impl<'a> PointSolver<'a> {
         Some(pairs.map(|(a, b)| a + share * (b - a)).collect())
     }
 
-    fn nearest(&self, frequency_hz: f64) -> Option<&Point> {
+    pub(super) fn nearest(&self, frequency_hz: f64) -> Option<&Point> {
         self.points.iter().min_by(|a, b| {
             let distance = |point: &Point| (point.frequency_hz - frequency_hz).abs();
             distance(a).total_cmp(&distance(b))
         })
     }
 
-    /// Newton's method from `start`, the normal load multiplied by `load_factor`.
-    fn newton(
+    /// Newton's method from `start`; on another system than that of the row where one is given.
+    pub(super) fn newton(
         &mut self,
         frequency_hz: f64,
         start: Vec<f64>,
-        load_factor: f64,
+        other: Option<&HarmonicSystem>,
     ) -> Result<Point, Status> {
         let Some((system, workspace)) = &mut self.nonlinear else {
             return Err(Status::SingularJacobian);
@@ -312,39 +274,25 @@ impl<'a> PointSolver<'a> {
         let mut x = start;
         let omega = TAU * frequency_hz;
         let bounds = self.settings.bounds;
-        let outcome = if load_factor.total_cmp(&1.0).is_eq() {
-            match self.settings.ring {
-                Ring::Locked => solve(system, omega, &mut x, bounds, workspace),
-                Ring::Creeping => solve_creeping(system, omega, &mut x, bounds, workspace),
-            }
-        } else {
+        let (outcome, ring_drift_m) = match other {
             // On the way the ring is locked.
-            system.set_ring_drift([0.0; 2]);
-            let scaled = system
-                .pairs()
-                .iter()
-                .map(|pair| PairParameters {
-                    normal_load_n: load_factor * pair.normal_load_n,
-                    ..*pair
-                })
-                .collect();
-            solve(&system.with_pairs(scaled), omega, &mut x, bounds, workspace)
+            Some(other) => (solve(other, omega, &mut x, bounds, workspace), [0.0; 2]),
+            None => {
+                let outcome = match self.settings.ring {
+                    Ring::Locked => solve(system, omega, &mut x, bounds, workspace),
+                    Ring::Creeping => solve_creeping(system, omega, &mut x, bounds, workspace),
+                };
+                (outcome, system.ring_drift_m())
+            }
         };
-        let ring_drift_m = system.ring_drift_m();
         self.work.newton_iterations += outcome.iterations;
         self.work.factorisations += outcome.factorisations;
         if outcome.status != Status::Ok {
             return Err(outcome.status);
         }
-        let blocks: Vec<(u32, &Structure)> = self
-            .excited
-            .blocks
-            .iter()
-            .map(|block| (block.harmonic, &*block.structure))
-            .collect();
         Ok(Point {
             frequency_hz,
-            amplitudes_m: self.blade_amplitudes(&blocks, &x),
+            amplitudes_m: self.amplitudes_of(&x),
             solution: x,
             residual: outcome.residual,
             shares: outcome.shares,
@@ -352,114 +300,16 @@ impl<'a> PointSolver<'a> {
         })
     }
 
-    /// Continuation in frequency from the nearest converged point, the step halved on failure.
-    fn step_in_frequency(&mut self, frequency_hz: f64) -> Result<Point, Status> {
-        const SMALLEST_SHARE: f64 = 1.0 / 64.0;
-        let Some(from) = self.nearest(frequency_hz).cloned() else {
-            return Err(Status::StepTooSmall);
-        };
-        let span = frequency_hz - from.frequency_hz;
-        let (mut done, mut share, mut current) = (0.0, 0.25, from.solution);
-        loop {
-            let next: f64 = f64::min(done + share, 1.0);
-            let at = if next >= 1.0 {
-                frequency_hz
-            } else {
-                from.frequency_hz + next * span
-            };
-            match self.newton(at, current.clone(), 1.0) {
-                Ok(point) if next >= 1.0 => return Ok(point),
-                Ok(point) => {
-                    current = point.solution;
-                    done = next;
-                }
-                Err(_) if share > SMALLEST_SHARE => share *= 0.5,
-                Err(_) => return Err(Status::StepTooSmall),
-            }
-        }
+    /// Amplitude of every blade, m, of a nonlinear solution.
+    pub(super) fn amplitudes_of(&self, solution: &[f64]) -> Vec<f64> {
+        let blocks: Vec<(u32, &Structure)> = self
+            .excited
+            .blocks
+            .iter()
+            .map(|block| (block.harmonic, &*block.structure))
+            .collect();
+        self.settings.blade_amplitudes(&blocks, solution)
     }
-
-    /// Homotopy in normal load: from a load at which every pair sticks down to that of the
-    /// scenario, the step (in the logarithm of the load) halved on failure.
-    fn lower_normal_load(&mut self, frequency_hz: f64) -> Result<Point, Status> {
-        const FIRST_FACTOR: f64 = 64.0;
-        const SMALLEST_STEP: f64 = 1.0 / 64.0;
-        let mut current = self.stuck_start(frequency_hz)?;
-        let (mut exponent, mut step) = (1.0, 0.25);
-        loop {
-            let next = f64::max(exponent - step, 0.0);
-            match self.newton(frequency_hz, current.clone(), FIRST_FACTOR.powf(next)) {
-                Ok(point) if next <= 0.0 => return Ok(point),
-                Ok(point) => {
-                    current = point.solution;
-                    exponent = next;
-                }
-                Err(_) if step > SMALLEST_STEP => step *= 0.5,
-                Err(_) => return Err(Status::StepTooSmall),
-            }
-        }
-    }
-
-    /// Amplitude of each blade: of the fundamental harmonic, or the largest over a period.
-    fn blade_amplitudes(&self, blocks: &[(u32, &Structure)], solution: &[f64]) -> Vec<f64> {
-        let rows = blocks[0].1.observed().real.rows();
-        let mut start = 0;
-        let mut coefficients: Vec<(u32, Vec<f64>, Vec<f64>)> = Vec::new();
-        for &(harmonic, structure) in blocks {
-            let observed = structure.observed();
-            let real = &observed.real;
-            let n = structure.size();
-            let mut re = vec![0.0; rows];
-            let mut im = vec![0.0; rows];
-            if harmonic > 0 {
-                let (x_re, x_im) = solution[start..start + 2 * n].split_at(n);
-                add_times_vector(&mut re, 1.0, real.as_slice(), x_re);
-                add_times_vector(&mut im, 1.0, real.as_slice(), x_im);
-                if let Some(imaginary) = &observed.imaginary {
-                    add_times_vector(&mut re, -1.0, imaginary.as_slice(), x_im);
-                    add_times_vector(&mut im, 1.0, imaginary.as_slice(), x_re);
-                }
-            }
-            start += n * if harmonic == 0 { 1 } else { 2 };
-            coefficients.push((harmonic, re, im));
-        }
-        (0..rows / 3)
-            .map(|blade| match &self.settings.time_grid {
-                None => coefficients
-                    .iter()
-                    .filter(|(harmonic, ..)| *harmonic == 1)
-                    .flat_map(|(_, re, im)| {
-                        (3 * blade..3 * blade + 3).map(|i| re[i].powi(2) + im[i].powi(2))
-                    })
-                    .sum::<f64>()
-                    .sqrt(),
-                Some(grid) => time_maximum(grid, &coefficients, blade),
-            })
-            .collect()
-    }
-}
-
-/// Largest norm over one period of a blade's displacement, harmonic 0 left out.
-fn time_maximum(
-    grid: &HarmonicTransform,
-    coefficients: &[(u32, Vec<f64>, Vec<f64>)],
-    blade: usize,
-) -> f64 {
-    let mut channels = Vec::with_capacity(3 * grid.n_coefficients());
-    for component in 0..3 {
-        let row = 3 * blade + component;
-        for &harmonic in grid.harmonics() {
-            let found = coefficients
-                .iter()
-                .find(|(own, ..)| *own as usize == harmonic);
-            let (re, im) = found.map_or((0.0, 0.0), |(_, re, im)| (re[row], im[row]));
-            channels.push(re);
-            if harmonic > 0 {
-                channels.push(im);
-            }
-        }
-    }
-    grid.largest_norm(&channels)
 }
 
 /// Attempts at one point, in order.
@@ -469,17 +319,20 @@ enum Attempt {
     Neighbours,
     /// From the stuck solution.
     Stuck,
-    /// Continuation in frequency.
-    FrequencySteps,
+    /// Arc-length continuation in frequency from the nearest converged point.
+    Continuation,
+    /// Homotopy in contact stiffness.
+    StiffnessHomotopy,
     /// Homotopy in normal load.
     LoadHomotopy,
 }
 
 impl Attempt {
-    const LADDER: [Self; 4] = [
+    const LADDER: [Self; 5] = [
         Self::Neighbours,
         Self::Stuck,
-        Self::FrequencySteps,
+        Self::Continuation,
+        Self::StiffnessHomotopy,
         Self::LoadHomotopy,
     ];
 }

@@ -1,8 +1,11 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
+mod continuation;
 mod convergence;
 mod coupled_derivative;
+mod curve;
 mod damping;
+mod frequency_derivative;
 mod jacobian;
 mod linear;
 mod newton;
@@ -13,6 +16,7 @@ mod structure;
 mod system;
 mod transform;
 
+pub use continuation::{Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint};
 pub use convergence::NewtonBounds;
 pub use damping::Damping;
 pub use linear::linear_response;

@@ -1,4 +1,5 @@
-//! Newton's method on the harmonic balance equation, damped, with a Jacobian kept while it serves.
+//! Newton's method, damped, with a Jacobian kept while it serves: at one frequency, or for any
+//! equation that can be linearised.
 
 use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
 use crate::linalg::LuWorkspace;
@@ -21,16 +22,49 @@ pub struct NewtonOutcome {
     pub shares: ContactShares,
 }
 
+/// An equation `R(u) = 0` as the iteration sees it.
+pub(super) trait Equation {
+    /// Residual at `u` into `residual`; returns its norm relative to the excitation and the shares
+    /// of slipping and separated pairs.
+    fn residual(&mut self, u: &[f64], residual: &mut [f64]) -> (f64, ContactShares);
+
+    /// Factors the derivative at `u` and fills `residual`; false if the derivative is singular.
+    fn linearise(&mut self, u: &[f64], residual: &mut [f64]) -> bool;
+
+    /// Whether factors are at hand, of this or of an earlier solve.
+    fn is_linearised(&self) -> bool;
+
+    /// Turns a residual into the step `J^-1 R` with the factors at hand, in place.
+    fn step(&mut self, residual: &mut [f64]);
+}
+
+/// Vectors of the iteration.
+pub(super) struct NewtonBuffers {
+    residual: Vec<f64>,
+    step: Vec<f64>,
+    trial: Vec<f64>,
+    trial_step: Vec<f64>,
+}
+
+impl NewtonBuffers {
+    /// Vectors for `n` unknowns.
+    pub(super) fn new(n: usize) -> Self {
+        Self {
+            residual: vec![0.0; n],
+            step: vec![0.0; n],
+            trial: vec![0.0; n],
+            trial_step: vec![0.0; n],
+        }
+    }
+}
+
 /// Buffers of Newton's method for one system.
 pub struct NewtonWorkspace {
     system: SystemWorkspace,
     jacobian: LuWorkspace<f64>,
     /// Whether `jacobian` holds the factors of an earlier point.
     factored: bool,
-    residual: Vec<f64>,
-    step: Vec<f64>,
-    trial: Vec<f64>,
-    trial_step: Vec<f64>,
+    buffers: NewtonBuffers,
 }
 
 impl NewtonWorkspace {
@@ -42,10 +76,7 @@ impl NewtonWorkspace {
             system: system.workspace(),
             jacobian: LuWorkspace::new(n),
             factored: false,
-            residual: vec![0.0; n],
-            step: vec![0.0; n],
-            trial: vec![0.0; n],
-            trial_step: vec![0.0; n],
+            buffers: NewtonBuffers::new(n),
         }
     }
 
@@ -55,14 +86,41 @@ impl NewtonWorkspace {
     }
 }
 
-/// Solves `R(x) = 0` at angular frequency `omega` from the given `x`, in place.
-///
-/// A step is `s = -J^-1 R(x)`, damped by the natural monotonicity test of Deuflhard (2004, Newton
-/// Methods for Nonlinear Problems, section 3.3): a damped step is taken where the next simplified
-/// step `-J^-1 R(x + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual
-/// itself this does not depend on how the equations are scaled, and contact forces are far from
-/// well scaled. While the simplified step is much shorter, it is taken as the next step and the
-/// Jacobian is kept, also from one frequency to the next.
+/// The harmonic balance equation at one frequency.
+struct FixedFrequency<'a> {
+    system: &'a HarmonicSystem,
+    omega: f64,
+    workspace: &'a mut SystemWorkspace,
+    jacobian: &'a mut LuWorkspace<f64>,
+    factored: &'a mut bool,
+}
+
+impl Equation for FixedFrequency<'_> {
+    fn residual(&mut self, x: &[f64], residual: &mut [f64]) -> (f64, ContactShares) {
+        self.system
+            .residual(self.omega, x, residual, false, self.workspace)
+    }
+
+    fn linearise(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
+        self.system
+            .residual(self.omega, x, residual, true, self.workspace);
+        self.system
+            .jacobian(self.omega, self.workspace, self.jacobian.matrix_mut());
+        *self.factored = self.jacobian.factor();
+        *self.factored
+    }
+
+    fn is_linearised(&self) -> bool {
+        *self.factored
+    }
+
+    fn step(&mut self, residual: &mut [f64]) {
+        self.jacobian.solve(residual);
+    }
+}
+
+/// Solves `R(x) = 0` at angular frequency `omega` from the given `x`, in place; the factors of the
+/// last Jacobian serve again at the next, neighbouring frequency.
 pub fn solve(
     system: &HarmonicSystem,
     omega: f64,
@@ -70,16 +128,37 @@ pub fn solve(
     bounds: NewtonBounds,
     workspace: &mut NewtonWorkspace,
 ) -> NewtonOutcome {
-    let NewtonWorkspace {
-        system: buffers,
-        jacobian,
-        factored,
+    let mut equation = FixedFrequency {
+        system,
+        omega,
+        workspace: &mut workspace.system,
+        jacobian: &mut workspace.jacobian,
+        factored: &mut workspace.factored,
+    };
+    iterate(&mut equation, x, bounds, &mut workspace.buffers)
+}
+
+/// Solves `R(u) = 0` from the given `u`, in place.
+///
+/// A step is `s = -J^-1 R(u)`, damped by the natural monotonicity test of Deuflhard (2004, Newton
+/// Methods for Nonlinear Problems, section 3.3): a damped step is taken where the next simplified
+/// step `-J^-1 R(u + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual
+/// itself this does not depend on how the equations are scaled, and contact forces are far from
+/// well scaled. While the simplified step is much shorter, it is taken as the next step and the
+/// Jacobian is kept.
+pub(super) fn iterate(
+    equation: &mut impl Equation,
+    u: &mut Vec<f64>,
+    bounds: NewtonBounds,
+    buffers: &mut NewtonBuffers,
+) -> NewtonOutcome {
+    let NewtonBuffers {
         residual,
         step,
         trial,
         trial_step,
-    } = workspace;
-    let (first, shares) = system.residual(omega, x, residual, false, buffers);
+    } = buffers;
+    let (first, shares) = equation.residual(u, residual);
     let mut state = NewtonOutcome {
         status: Status::IterationLimit,
         iterations: 0,
@@ -88,12 +167,12 @@ pub fn solve(
         shares,
     };
     let ended = |state: NewtonOutcome, status| NewtonOutcome { status, ..state };
-    // Whether `step` holds a simplified step with the kept Jacobian: at first that of an earlier
-    // solve of the same workspace, which a neighbouring frequency often allows to go on with.
-    let mut kept = *factored && first.is_finite();
+    // Whether `step` holds a simplified step with a kept Jacobian: at first that of an earlier
+    // solve, which a neighbouring point often allows to go on with.
+    let mut kept = equation.is_linearised() && first.is_finite();
     if kept {
         step.copy_from_slice(residual);
-        jacobian.solve(step);
+        equation.step(step);
     }
     loop {
         if let Some(status) = bounds.judge(first, state.residual, state.iterations as usize) {
@@ -102,34 +181,31 @@ pub fn solve(
             return ended(state, if unproven { Status::Stagnated } else { status });
         }
         if !kept {
-            system.residual(omega, x, residual, true, buffers);
-            system.jacobian(omega, buffers, jacobian.matrix_mut());
-            *factored = jacobian.factor();
-            if !*factored {
+            if !equation.linearise(u, residual) {
                 return ended(state, Status::SingularJacobian);
             }
             state.factorisations += 1;
             step.copy_from_slice(residual);
-            jacobian.solve(step);
+            equation.step(step);
         }
         state.iterations += 1;
         let length = norm_of(step);
         let halvings = if kept { 0 } else { bounds.halvings };
         let accepted = (0..=halvings).find_map(|halving| {
             let factor = 0.5_f64.powi(halving as i32);
-            for ((t, x), s) in trial.iter_mut().zip(x.iter()).zip(step.iter()) {
-                *t = x - factor * s;
+            for ((t, u), s) in trial.iter_mut().zip(u.iter()).zip(step.iter()) {
+                *t = u - factor * s;
             }
-            let (norm, shares) = system.residual(omega, trial, residual, false, buffers);
+            let (norm, shares) = equation.residual(trial, residual);
             trial_step.copy_from_slice(residual);
-            jacobian.solve(trial_step);
+            equation.step(trial_step);
             let contraction = norm_of(trial_step) / length;
             let monotone = contraction <= 1.0 - 0.25 * factor;
             (monotone || norm <= bounds.residual_tolerance).then_some((norm, shares, contraction))
         });
         match accepted {
             Some((norm, shares, contraction)) => {
-                std::mem::swap(x, trial);
+                std::mem::swap(u, trial);
                 (state.residual, state.shares) = (norm, shares);
                 kept = contraction <= KEPT_JACOBIAN_CONTRACTION;
                 if kept {
@@ -143,6 +219,7 @@ pub fn solve(
     }
 }
 
-fn norm_of(x: &[f64]) -> f64 {
+/// Euclidean norm.
+pub(super) fn norm_of(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

@@ -188,6 +188,25 @@ impl Structure {
         }
     }
 
+    /// Adds `dD/domega`, 1/s, through `add(i, j, value)`; structural damping has none.
+    pub fn for_each_damping_rate(&self, mut add: impl FnMut(usize, usize, f64)) {
+        match &self.damping {
+            ModalDamping::Structural(_) => {}
+            ModalDamping::ViscousDiagonal(viscous) => {
+                for (mode, &rate) in viscous.iter().enumerate() {
+                    add(mode, mode, rate);
+                }
+            }
+            ModalDamping::ViscousFull(viscous) => {
+                for j in 0..self.size() {
+                    for i in 0..self.size() {
+                        add(i, j, viscous[(i, j)]);
+                    }
+                }
+            }
+        }
+    }
+
     /// `C^H diag(springs) C`; `springs` are those of one sector, N/m, repeated over the sectors.
     #[must_use]
     pub fn contact_stiffness(&self, springs: &[f64]) -> ContactStiffnessMatrix {

@@ -41,6 +41,28 @@ pub struct ContactInterface {
     pub pairs: Vec<PairParameters>,
 }
 
+impl ContactInterface {
+    /// Springs of the contact rows of a sector where every pair sticks, N/m, the tangential ones
+    /// multiplied by `factor`.
+    fn stuck_springs(&self, factor: f64) -> Vec<f64> {
+        let mut springs = vec![0.0; self.geometry.row_count()];
+        for (pair, rows) in self.pairs.iter().zip(&self.geometry.rows) {
+            let tangential = factor * pair.tangential_stiffness_n_per_m;
+            let second = match self.law {
+                ContactLaw::MacroSlip1d => 0.0,
+                ContactLaw::Simplified3d | ContactLaw::Coulomb3d => tangential,
+            };
+            let own = [pair.normal_stiffness_n_per_m, tangential, second];
+            for (row, spring) in rows.iter().zip(own) {
+                if let Some(row) = *row {
+                    springs[row] = spring;
+                }
+            }
+        }
+        springs
+    }
+}
+
 /// The nonlinear equation at any frequency.
 #[derive(Debug, Clone)]
 pub struct HarmonicSystem {
@@ -161,11 +183,41 @@ impl HarmonicSystem {
         &self.force
     }
 
+    /// Norm of the modal force: the size that residuals are relative to.
+    #[must_use]
+    pub fn force_norm(&self) -> f64 {
+        self.force_norm
+    }
+
     /// The same system under another normal load per pair.
     #[must_use]
     pub fn with_pairs(&self, pairs: Vec<PairParameters>) -> Self {
         let mut system = self.clone();
         system.interface.pairs = pairs;
+        system
+    }
+
+    /// The same system with all tangential contact springs multiplied by `factor`, in the law and in
+    /// the stuck base.
+    #[must_use]
+    pub fn with_tangential_stiffness(&self, factor: f64) -> Self {
+        let mut system = self.clone();
+        for pair in &mut system.interface.pairs {
+            pair.tangential_stiffness_n_per_m *= factor;
+        }
+        let springs = self.interface.stuck_springs(factor);
+        let mut renewed: Vec<(Arc<Structure>, Arc<ContactStiffnessMatrix>)> = Vec::new();
+        for block in &mut system.blocks {
+            let known = renewed
+                .iter()
+                .find(|(structure, _)| Arc::ptr_eq(structure, &block.structure));
+            let stuck = known.map_or_else(
+                || Arc::new(block.structure.contact_stiffness(&springs)),
+                |(_, stuck)| Arc::clone(stuck),
+            );
+            renewed.push((Arc::clone(&block.structure), Arc::clone(&stuck)));
+            block.stuck = stuck;
+        }
         system
     }
 
