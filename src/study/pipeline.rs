@@ -313,6 +313,8 @@ impl<'a> Work<'a> {
                     slipping_fraction: None,
                     separated_fraction: None,
                     shortcut: "none".to_owned(),
+                    sampling_error: None,
+                    harmonic_error: None,
                 })
                 .collect()
         })

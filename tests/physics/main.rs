@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod contact;
+mod error_columns;
 mod finite_element;
 mod harmonic_balance;
 mod limits;

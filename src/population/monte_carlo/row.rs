@@ -1,5 +1,6 @@
 //! One row of `responses.parquet`: what became of one (scenario, pattern).
 
+use crate::response::forced_response::ErrorEstimate;
 use crate::response::harmonic_balance::Status;
 
 /// Result of one pattern under one scenario. Values of a failed row are `None`.
@@ -37,6 +38,10 @@ pub struct ResponseRow {
     pub separated_fraction: Option<f64>,
     /// Shortcut used, or `"none"`.
     pub shortcut: String,
+    /// Relative change of the amplitude by one Newton correction at 4 times the samples.
+    pub sampling_error: Option<f64>,
+    /// Relative change of the amplitude by the harmonics up to 15 outside of the set.
+    pub harmonic_error: Option<f64>,
 }
 
 /// Peak of the tuned wheel of a scenario, the denominator of its amplification factors.
@@ -54,4 +59,6 @@ pub struct TunedReference {
     pub separated_fraction: Option<f64>,
     /// Share of slipping pairs at the peak.
     pub slipping_fraction: Option<f64>,
+    /// Errors of the solution at the peak.
+    pub errors: Option<ErrorEstimate>,
 }

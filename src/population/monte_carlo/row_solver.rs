@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::{ResponseRow, Scenario, TunedReference};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
-    ContactCondition, Excited, FrequencyBand, LimitsWanted, Peak, Point, PointSettings,
-    PointSolver, SolverOptions, Wheel, Window, mistuned_window, peak, tuned_span, wheel_force,
+    ContactCondition, ErrorEstimate, Excited, FrequencyBand, LimitsWanted, Peak, Point, PointSettings,
+    PointSolver, SolverOptions, Wheel, Window, estimate_errors, mistuned_window, peak, tuned_span, wheel_force,
 };
 use crate::response::friction::{ContactLaw, PairParameters};
 use crate::response::harmonic_balance::{Damping, Status, TransformError};
@@ -104,7 +104,24 @@ impl RowSolver {
             frequency_hz: point.map(|point| point.frequency_hz),
             separated_fraction: point.map(|point| point.shares.separated),
             slipping_fraction: point.map(|point| point.shares.slipping),
+            errors: point.and_then(|point| {
+                self.tuned_errors(scenario.engine_order, scenario.contact, point)
+            }),
         }
+    }
+
+    /// Errors of a solution of the tuned wheel.
+    fn tuned_errors(
+        &self,
+        engine_order: u32,
+        contact: ContactCondition,
+        point: &Point,
+    ) -> Option<ErrorEstimate> {
+        let points = self.points(contact);
+        let excited = |harmonics: &[u32]| self.tuned_waves(engine_order, contact, harmonics);
+        let enlarged = excited(points.errors().harmonics());
+        let excited = excited(points.harmonics());
+        estimate_errors(&excited, contact, points, point, &enlarged.blocks)
     }
 
     /// Rows of one pattern under several scenarios of one standard deviation, in their order. The
@@ -150,7 +167,7 @@ impl RowSolver {
             None => self.tuned_excited(engine_order, contact),
             Some(pattern) => {
                 let (modes, wheel) = self.mistuned(pattern, LimitsWanted::default())?;
-                self.wheel_excited(&modes, &wheel, engine_order, contact)
+                self.wheel_excited(&modes, &wheel, engine_order, self.points(contact).harmonics())
             }
         };
         let mut solver = PointSolver::new(&excited, contact, self.points(contact));
@@ -178,12 +195,21 @@ impl RowSolver {
     }
 
     fn tuned_excited(&self, engine_order: u32, contact: ContactCondition) -> Excited {
+        self.tuned_waves(engine_order, contact, self.points(contact).harmonics())
+    }
+
+    fn tuned_waves(
+        &self,
+        engine_order: u32,
+        contact: ContactCondition,
+        harmonics: &[u32],
+    ) -> Excited {
         Excited::tuned(
             self.basis.model(),
             engine_order,
             self.settings.amplitude_n,
             self.settings.damping,
-            self.points(contact).harmonics(),
+            harmonics,
             LimitsWanted::of(&[contact]),
         )
     }
@@ -193,10 +219,10 @@ impl RowSolver {
         modes: &StructuralModes,
         wheel: &Wheel,
         engine_order: u32,
-        contact: ContactCondition,
+        harmonics: &[u32],
     ) -> Excited {
         let force = wheel_force(&self.basis, modes, engine_order, self.settings.amplitude_n);
-        Excited::wheel(wheel, force, self.points(contact).harmonics())
+        Excited::wheel(wheel, force, harmonics)
     }
 
     /// The wheel with the pattern applied.
@@ -245,7 +271,7 @@ impl RowSolver {
         pattern: &Pattern,
         scenario: &Scenario,
         tuned: &TunedReference,
-    ) -> Result<Peak, Status> {
+    ) -> Result<(Peak, Option<ErrorEstimate>), Status> {
         let band = self.settings.solver.frequency_band;
         let window = match band {
             FrequencyBand::Auto => {
@@ -259,14 +285,22 @@ impl RowSolver {
                 band,
             },
         };
-        let excited = self.wheel_excited(modes, wheel, scenario.engine_order, scenario.contact);
-        Ok(peak(
+        let points = self.points(scenario.contact);
+        let engine_order = scenario.engine_order;
+        let excited = self.wheel_excited(modes, wheel, engine_order, points.harmonics());
+        let found = peak(
             &excited,
             scenario.contact,
-            self.points(scenario.contact),
+            points,
             window,
             self.settings.solver.peak_tolerance,
-        ))
+        );
+        let errors = found.point.as_ref().and_then(|point| {
+            let enlarged =
+                self.wheel_excited(modes, wheel, engine_order, points.errors().harmonics());
+            estimate_errors(&excited, scenario.contact, points, point, &enlarged.blocks)
+        });
+        Ok((found, errors))
     }
 
     fn row(
@@ -274,11 +308,11 @@ impl RowSolver {
         pattern: &Pattern,
         scenario: &Scenario,
         tuned: &TunedReference,
-        found: Result<Peak, Status>,
+        found: Result<(Peak, Option<ErrorEstimate>), Status>,
     ) -> ResponseRow {
-        let (status, found) = match found {
-            Ok(found) => (found.status, Some(found)),
-            Err(status) => (status, None),
+        let (status, found, errors) = match found {
+            Ok((found, errors)) => (found.status, Some(found), errors),
+            Err(status) => (status, None, None),
         };
         let good: Option<(&Peak, &Point)> = found
             .as_ref()
@@ -302,6 +336,8 @@ impl RowSolver {
             residual: good.map(|(_, point)| point.residual),
             slipping_fraction: good.map(|(_, point)| point.shares.slipping),
             separated_fraction: good.map(|(_, point)| point.shares.separated),
+            sampling_error: good.and(errors).map(|errors| errors.sampling),
+            harmonic_error: good.and(errors).and_then(|errors| errors.harmonics),
             shortcut: shortcut(scenario.contact, good.map(|(_, point)| point)).to_owned(),
         }
     }

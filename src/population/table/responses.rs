@@ -108,6 +108,18 @@ pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
         "1",
         "Nonlinear solves that needed more than the first attempt of the retry ladder",
     ),
+    ColumnSpec::new(
+        "sampling_error",
+        Float64,
+        "1",
+        "Relative change of the peak amplitude by one Newton correction at 4 times the samples per period",
+    ),
+    ColumnSpec::new(
+        "harmonic_error",
+        Float64,
+        "1",
+        "Relative change of the peak amplitude by the harmonics up to 15 outside of the set; null where the estimate did not settle",
+    ),
 ];
 
 /// Rows per row group and per batch in memory.
@@ -226,6 +238,8 @@ fn columns_of(rows: &[ResponseRow], scenarios: &[Scenario]) -> Result<Vec<Values
         floats(&|row| row.separated_fraction),
         names(&|row| row.shortcut.clone()),
         counts(&|row| row.retries),
+        floats(&|row| row.sampling_error),
+        floats(&|row| row.harmonic_error),
     ])
 }
 
@@ -326,6 +340,8 @@ impl ResponseReader {
         let slipping = slice.float64("slipping_fraction")?;
         let separated = slice.float64("separated_fraction")?;
         let mut shortcuts = slice.string("shortcut")?;
+        let sampling_errors = slice.float64("sampling_error")?;
+        let harmonic_errors = slice.float64("harmonic_error")?;
         (0..scenarios.len())
             .map(|i| {
                 let status = statuses[i]
@@ -348,6 +364,8 @@ impl ResponseReader {
                     slipping_fraction: slipping[i],
                     separated_fraction: separated[i],
                     shortcut: shortcuts[i].take().ok_or_else(|| gap(i, "shortcut"))?,
+                    sampling_error: sampling_errors[i],
+                    harmonic_error: harmonic_errors[i],
                 })
             })
             .collect()

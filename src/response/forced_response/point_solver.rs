@@ -3,9 +3,11 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use super::a_posteriori::ErrorSettings;
 use super::excited::Excited;
-use super::options::{AmplitudeMeasure, ContactCondition, SolverOptions};
-use crate::linalg::{Complex64, LuWorkspace, add_times_vector};
+use super::observed_amplitude::ObservedAmplitude;
+use super::options::{ContactCondition, SolverOptions};
+use crate::linalg::{Complex64, LuWorkspace};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::friction::{ContactLaw, PairParameters};
 use crate::response::harmonic_balance::{
@@ -18,8 +20,8 @@ use crate::response::harmonic_balance::{
 pub struct PointSettings {
     harmonics: Vec<u32>,
     transform: Arc<HarmonicTransform>,
-    /// Transform of the observed displacement for [`AmplitudeMeasure::TimeMaximum`].
-    time_grid: Option<Arc<HarmonicTransform>>,
+    amplitude: ObservedAmplitude,
+    errors: Arc<ErrorSettings>,
     bounds: NewtonBounds,
     contact: Option<(ContactLaw, PairParameters)>,
     geometry: ContactGeometry,
@@ -39,17 +41,13 @@ impl PointSettings {
     ) -> Result<Self, TransformError> {
         let set: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
         let transform = HarmonicTransform::new(&set, options.samples_per_period)?;
-        let time_grid = match options.amplitude {
-            AmplitudeMeasure::Fundamental => None,
-            AmplitudeMeasure::TimeMaximum => Some(Arc::new(HarmonicTransform::new(
-                &set,
-                options.time_samples,
-            )?)),
-        };
+        let amplitude =
+            ObservedAmplitude::new(options.amplitude, harmonics, options.time_samples)?;
         Ok(Self {
             harmonics: harmonics.to_vec(),
             transform: Arc::new(transform),
-            time_grid,
+            amplitude,
+            errors: Arc::new(ErrorSettings::new(options, harmonics)?),
             bounds: NewtonBounds::with_tolerance(options.residual_tolerance),
             contact,
             geometry,
@@ -60,6 +58,12 @@ impl PointSettings {
     #[must_use]
     pub fn harmonics(&self) -> &[u32] {
         &self.harmonics
+    }
+
+    /// How the errors of a solution are estimated.
+    #[must_use]
+    pub fn errors(&self) -> &ErrorSettings {
+        &self.errors
     }
 }
 
@@ -160,6 +164,12 @@ impl<'a> PointSolver<'a> {
         self.work
     }
 
+    /// The nonlinear equation with its buffers; none for a linear limit.
+    pub(super) fn nonlinear(&mut self) -> Option<(&HarmonicSystem, &mut NewtonWorkspace)> {
+        let (system, workspace) = self.nonlinear.as_mut()?;
+        Some((&*system, workspace))
+    }
+
     /// Solves at one frequency, Hz.
     ///
     /// # Errors
@@ -188,7 +198,7 @@ impl<'a> PointSolver<'a> {
         let blocks = [(1, &*self.excited.linear.structure)];
         Ok(Point {
             frequency_hz,
-            amplitudes_m: self.blade_amplitudes(&blocks, &solution),
+            amplitudes_m: self.settings.amplitude.of(&blocks, &solution),
             solution,
             residual: 0.0,
             shares: ContactShares::default(),
@@ -319,7 +329,7 @@ impl<'a> PointSolver<'a> {
             .collect();
         Ok(Point {
             frequency_hz,
-            amplitudes_m: self.blade_amplitudes(&blocks, &x),
+            amplitudes_m: self.settings.amplitude.of(&blocks, &x),
             solution: x,
             residual: outcome.residual,
             shares: outcome.shares,
@@ -373,67 +383,6 @@ impl<'a> PointSolver<'a> {
             }
         }
     }
-
-    /// Amplitude of each blade: of the fundamental harmonic, or the largest over a period.
-    fn blade_amplitudes(&self, blocks: &[(u32, &Structure)], solution: &[f64]) -> Vec<f64> {
-        let rows = blocks[0].1.observed().real.rows();
-        let mut start = 0;
-        let mut coefficients: Vec<(u32, Vec<f64>, Vec<f64>)> = Vec::new();
-        for &(harmonic, structure) in blocks {
-            let observed = structure.observed();
-            let real = &observed.real;
-            let n = structure.size();
-            let mut re = vec![0.0; rows];
-            let mut im = vec![0.0; rows];
-            if harmonic > 0 {
-                let (x_re, x_im) = solution[start..start + 2 * n].split_at(n);
-                add_times_vector(&mut re, 1.0, real.as_slice(), x_re);
-                add_times_vector(&mut im, 1.0, real.as_slice(), x_im);
-                if let Some(imaginary) = &observed.imaginary {
-                    add_times_vector(&mut re, -1.0, imaginary.as_slice(), x_im);
-                    add_times_vector(&mut im, 1.0, imaginary.as_slice(), x_re);
-                }
-            }
-            start += n * if harmonic == 0 { 1 } else { 2 };
-            coefficients.push((harmonic, re, im));
-        }
-        (0..rows / 3)
-            .map(|blade| match &self.settings.time_grid {
-                None => coefficients
-                    .iter()
-                    .filter(|(harmonic, ..)| *harmonic == 1)
-                    .flat_map(|(_, re, im)| {
-                        (3 * blade..3 * blade + 3).map(|i| re[i].powi(2) + im[i].powi(2))
-                    })
-                    .sum::<f64>()
-                    .sqrt(),
-                Some(grid) => time_maximum(grid, &coefficients, blade),
-            })
-            .collect()
-    }
-}
-
-/// Largest norm over one period of a blade's displacement, harmonic 0 left out.
-fn time_maximum(
-    grid: &HarmonicTransform,
-    coefficients: &[(u32, Vec<f64>, Vec<f64>)],
-    blade: usize,
-) -> f64 {
-    let mut channels = Vec::with_capacity(3 * grid.n_coefficients());
-    for component in 0..3 {
-        let row = 3 * blade + component;
-        for &harmonic in grid.harmonics() {
-            let found = coefficients
-                .iter()
-                .find(|(own, ..)| *own as usize == harmonic);
-            let (re, im) = found.map_or((0.0, 0.0), |(_, re, im)| (re[row], im[row]));
-            channels.push(re);
-            if harmonic > 0 {
-                channels.push(im);
-            }
-        }
-    }
-    grid.largest_norm(&channels)
 }
 
 /// Attempts at one point, in order.

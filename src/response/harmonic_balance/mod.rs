@@ -2,6 +2,7 @@
 
 mod convergence;
 mod damping;
+mod enlarged;
 mod jacobian;
 mod linear;
 mod newton;
@@ -13,6 +14,7 @@ mod transform;
 
 pub use convergence::NewtonBounds;
 pub use damping::Damping;
+pub use enlarged::{Enlarged, EnlargedSet, enlarge};
 pub use linear::linear_response;
 pub use newton::{NewtonOutcome, NewtonWorkspace, solve};
 pub use pair_harmonics::{PairHarmonics, PairJacobian};

@@ -48,6 +48,19 @@ impl NewtonWorkspace {
             trial_step: vec![0.0; n],
         }
     }
+
+    /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
+    pub fn factor_at(&mut self, system: &HarmonicSystem, omega: f64, x: &[f64]) -> bool {
+        system.residual(omega, x, &mut self.residual, true, &mut self.system);
+        system.jacobian(omega, &mut self.system, self.jacobian.matrix_mut());
+        self.factored = self.jacobian.factor();
+        self.factored
+    }
+
+    /// `J^-1 residual` with the factors at hand, in place.
+    pub fn solve_linear(&mut self, residual: &mut [f64]) {
+        self.jacobian.solve(residual);
+    }
 }
 
 /// Solves `R(x) = 0` at angular frequency `omega` from the given `x`, in place.
