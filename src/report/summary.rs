@@ -226,12 +226,18 @@ fn warnings(
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
     warnings.extend(separation(&context.harmonics, records));
-    let friction = records
+    let beyond: u64 = records
         .iter()
-        .any(|record| matches!(record.scenario.contact, ContactCondition::Full { .. }));
-    if friction && context.harmonics == Harmonics::Auto {
-        warnings.push(Warning::HarmonicsUnscreened {
-            harmonics: "[1, 3]".to_owned(),
+        .map(|record| record.statistics.beyond_tolerance)
+        .sum();
+    if beyond > 0 {
+        let stated = records
+            .iter()
+            .filter_map(|record| record.statistics.largest_stated_error);
+        warnings.push(Warning::BeyondTolerance {
+            rows: beyond,
+            planned: rows.planned(),
+            largest_stated_error: stated.fold(0.0, f64::max),
         });
     }
     let basis = &context.basis;
@@ -264,10 +270,11 @@ fn warnings(
     warnings
 }
 
-/// Separation needs harmonic 0 and even harmonics.
+/// Separation needs harmonic 0 and even harmonics, which an automatic set has where the tuned wheel
+/// separates.
 fn separation(harmonics: &Harmonics, records: &[ScenarioRecord]) -> Option<Warning> {
     let even = match harmonics {
-        Harmonics::Auto => false,
+        Harmonics::Auto => true,
         Harmonics::Set(set) => set.contains(&0) && set.iter().any(|k| *k > 0 && k % 2 == 0),
     };
     let separated = |record: &ScenarioRecord| -> f64 {

@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 use super::PipelineError;
 use crate::model::ReducedModel;
 use crate::model::reduction::{Basis, BasisChoice, Reduction, ReductionOptions};
-use crate::population::monte_carlo::{RowSettings, RowSolver};
+use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
 use crate::response::forced_response::ContactCondition;
 
 /// Stick modes of `stick_attachment` where the study does not say.
-const ATTACHMENT_STICK_MODES: usize = 4;
+pub(super) const ATTACHMENT_STICK_MODES: usize = 4;
 /// Numbers of stick and of slide modes that are tried, ascending.
 const STICK_SLIDE_LADDER: [usize; 9] = [2, 3, 4, 6, 8, 10, 14, 20, 28];
 /// Relative tolerance of the peaks that are compared.
@@ -39,7 +39,8 @@ pub struct BasisEvidence {
 }
 
 /// Chooses the basis for `options` by the tuned nonlinear peak on one sector, against the whole
-/// Craig-Bampton sector with every contact dof, under the given engine orders and conditions.
+/// Craig-Bampton sector with every contact dof, under the given engine orders and conditions, each
+/// with its harmonic set.
 ///
 /// # Errors
 /// If a mass or stiffness is not positive definite.
@@ -49,6 +50,7 @@ pub fn choose_basis(
     settings: &RowSettings,
     engine_orders: &[u32],
     conditions: &[ContactCondition],
+    sets: &[HarmonicChoice],
 ) -> Result<(BasisChoice, BasisEvidence), PipelineError> {
     if reduction.is_whole_space() {
         let evidence = BasisEvidence {
@@ -62,6 +64,7 @@ pub fn choose_basis(
         settings,
         engine_orders,
         conditions,
+        sets,
     )?;
     let mut tried = Vec::new();
     let mut chosen = None;
@@ -71,6 +74,7 @@ pub fn choose_basis(
             settings,
             engine_orders,
             conditions,
+            sets,
         )?;
         let error = peaks.error(&reference);
         tried.push(BasisError {
@@ -147,10 +151,11 @@ impl Peaks {
         settings: &RowSettings,
         engine_orders: &[u32],
         conditions: &[ContactCondition],
+        sets: &[HarmonicChoice],
     ) -> Result<Self, PipelineError> {
         let mut settings = settings.clone();
         settings.solver.peak_tolerance = PEAK_TOLERANCE;
-        let solver = RowSolver::new(Arc::new(model), settings)?;
+        let solver = RowSolver::new(Arc::new(model), settings)?.with_choices(sets.to_vec(), 0.0)?;
         Ok(Self(
             engine_orders
                 .iter()

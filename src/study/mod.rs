@@ -4,6 +4,7 @@ mod basis_choice;
 mod digest;
 mod engine;
 mod error;
+mod harmonic_choice;
 mod mistuning;
 mod pipeline;
 mod pipeline_error;

@@ -315,6 +315,9 @@ impl<'a> Work<'a> {
                     shortcut: "none".to_owned(),
                     sampling_error: None,
                     harmonic_error: None,
+                    stated_error: None,
+                    error_within_tolerance: None,
+                    basis: String::new(),
                 })
                 .collect()
         })

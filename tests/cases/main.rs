@@ -5,5 +5,6 @@
 
 mod lumped24;
 mod one_dof;
+mod stated_errors;
 mod support;
 mod wheels;

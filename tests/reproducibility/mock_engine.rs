@@ -61,6 +61,8 @@ impl Engine for MockEngine {
             frequency_hz: Some(500.0),
             separated_fraction: None,
             slipping_fraction: None,
+            harmonics: "1".to_owned(),
+            errors: None,
         }
     }
 
@@ -98,6 +100,11 @@ impl Engine for MockEngine {
                     slipping_fraction: None,
                     separated_fraction: None,
                     shortcut: "none".to_owned(),
+                    sampling_error: None,
+                    harmonic_error: None,
+                    stated_error: None,
+                    error_within_tolerance: None,
+                    basis: "whole space".to_owned(),
                 }
             })
             .collect()

@@ -54,6 +54,11 @@ fn row(pattern: u32, scenario: usize) -> ResponseRow {
         slipping_fraction: None,
         separated_fraction: good.then_some(0.0),
         shortcut: "none".to_owned(),
+        sampling_error: good.then_some(-2e-4),
+        harmonic_error: None,
+        stated_error: good.then_some(0.013),
+        error_within_tolerance: good.then_some(pattern % 2 == 0),
+        basis: "stick_slide 4+4".to_owned(),
     }
 }
 

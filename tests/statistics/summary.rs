@@ -48,6 +48,11 @@ fn record(
             slipping_fraction: good.then_some(0.5),
             separated_fraction: good.then_some(separated),
             shortcut: "none".to_owned(),
+            sampling_error: good.then_some(1e-4),
+            harmonic_error: good.then_some(-2e-2),
+            stated_error: good.then_some(0.021 + 1e-5 * f64::from(i)),
+            error_within_tolerance: good.then_some(i % 4 > 0),
+            basis: "whole space".to_owned(),
         });
     }
     ScenarioRecord {
@@ -64,6 +69,8 @@ fn record(
             frequency_hz: Some(500.0),
             separated_fraction: Some(0.0),
             slipping_fraction: Some(1.0),
+            harmonics: "1-3".to_owned(),
+            errors: None,
         },
         statistics: rows.finish(),
     }

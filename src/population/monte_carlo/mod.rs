@@ -1,6 +1,7 @@
 //! One (scenario, pattern) -> one row, and the parallel driver over all of them.
 
 mod blocks;
+mod harmonic_choice;
 mod parallel;
 mod row;
 mod row_solver;
@@ -8,6 +9,7 @@ mod scenario;
 mod sink;
 
 pub use blocks::{PatternBlock, block_size, plan_blocks};
+pub use harmonic_choice::{ErrorTolerance, HarmonicChoice, ScenarioError, stated_error};
 pub use parallel::solve_blocks;
 pub use row::{ResponseRow, TunedReference};
 pub use row_solver::{CurveResult, RowSettings, RowSolver, amplification_factor, harmonics_name};

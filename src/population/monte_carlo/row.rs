@@ -42,6 +42,12 @@ pub struct ResponseRow {
     pub sampling_error: Option<f64>,
     /// Relative change of the amplitude by the harmonics up to 15 outside of the set.
     pub harmonic_error: Option<f64>,
+    /// Bound on the relative error of the amplitude, see [`super::stated_error`].
+    pub stated_error: Option<f64>,
+    /// Whether sampling and harmonic error are within their tolerances.
+    pub error_within_tolerance: Option<bool>,
+    /// Basis of the reduced model that the row was solved on.
+    pub basis: String,
 }
 
 /// Peak of the tuned wheel of a scenario, the denominator of its amplification factors.
@@ -59,6 +65,8 @@ pub struct TunedReference {
     pub separated_fraction: Option<f64>,
     /// Share of slipping pairs at the peak.
     pub slipping_fraction: Option<f64>,
+    /// Harmonic set, like `"1-3"`.
+    pub harmonics: String,
     /// Errors of the solution at the peak.
     pub errors: Option<ErrorEstimate>,
 }

@@ -1,16 +1,23 @@
 //! One (scenario, pattern) -> one row, and the tuned reference of a scenario.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use super::{ResponseRow, Scenario, TunedReference};
+use super::{
+    ErrorTolerance, HarmonicChoice, ResponseRow, Scenario, ScenarioError, TunedReference,
+    stated_error,
+};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
-    ContactCondition, ErrorEstimate, Excited, FrequencyBand, LimitsWanted, Peak, Point, PointSettings,
-    PointSolver, SolverOptions, Wheel, Window, estimate_errors, mistuned_window, peak, tuned_span, wheel_force,
+    ContactCondition, ErrorEstimate, Excited, FrequencyBand, LimitsWanted, Peak, Point,
+    PointSettings, PointSolver, Screening, SolverOptions, Wheel, Window, estimate_errors,
+    mistuned_window, peak, screen, tuned_span, wheel_force,
 };
 use crate::response::friction::{ContactLaw, PairParameters};
 use crate::response::harmonic_balance::{Damping, Status, TransformError};
 use crate::response::mistuning::{Deviations, Pattern, Projection, StructuralModes, WheelBasis};
+
+/// Tolerance of the sampling error, unless that of the peak is larger.
+const SAMPLING_TOLERANCE: f64 = 1e-3;
 
 /// What a study says about the physics of a row.
 #[derive(Debug, Clone)]
@@ -36,6 +43,20 @@ pub struct RowSolver {
     settings: RowSettings,
     full: PointSettings,
     linear: PointSettings,
+    /// Sets that differ from scenario to scenario; the others have that of the settings.
+    chosen: Vec<(HarmonicChoice, PointSettings)>,
+    basis_error: f64,
+    beyond: Option<Beyond>,
+}
+
+/// What solves the rows that this solver is not good enough for.
+#[derive(Debug)]
+struct Beyond {
+    solver: Box<RowSolver>,
+    /// Whether rows beyond the harmonic tolerance go there, or only those that separate.
+    inexact_rows: bool,
+    /// Tuned peaks on that solver, for each of its chosen sets, found when first asked for.
+    tuned: Vec<OnceLock<TunedReference>>,
 }
 
 /// Amplitudes of every blade at one frequency.
@@ -60,7 +81,49 @@ impl RowSolver {
             linear: points(&[1])?,
             basis: WheelBasis::new(model),
             settings,
+            chosen: Vec::new(),
+            basis_error: 0.0,
+            beyond: None,
         })
+    }
+
+    /// The same solver with the given sets, and the measured error of its basis.
+    ///
+    /// # Errors
+    /// If the samples per period cannot tell the harmonics apart.
+    pub fn with_choices(
+        mut self,
+        choices: Vec<HarmonicChoice>,
+        basis_error: f64,
+    ) -> Result<Self, TransformError> {
+        let settings = &self.settings;
+        self.chosen = choices
+            .into_iter()
+            .map(|choice| {
+                let points = PointSettings::new(
+                    &settings.solver,
+                    &choice.harmonics,
+                    settings.contact,
+                    self.basis.model().contact.clone(),
+                )?;
+                Ok((choice, points))
+            })
+            .collect::<Result<_, TransformError>>()?;
+        self.basis_error = basis_error;
+        Ok(self)
+    }
+
+    /// The same solver, whose rows are solved again by `solver` where contacts separate and, with
+    /// `inexact_rows`, where the harmonic error exceeds its tolerance, each with the tuned
+    /// reference of `solver`. Only scenarios for which `solver` has a chosen set are solved again.
+    #[must_use]
+    pub fn with_beyond(mut self, solver: Self, inexact_rows: bool) -> Self {
+        self.beyond = Some(Beyond {
+            tuned: solver.chosen.iter().map(|_| OnceLock::new()).collect(),
+            solver: Box::new(solver),
+            inexact_rows,
+        });
+        self
     }
 
     /// The wheel's coordinates.
@@ -69,10 +132,15 @@ impl RowSolver {
         &self.basis
     }
 
-    /// Harmonic set under the contact law.
+    /// Harmonic sets chosen for single scenarios.
+    pub fn choices(&self) -> impl Iterator<Item = &HarmonicChoice> {
+        self.chosen.iter().map(|(choice, _)| choice)
+    }
+
+    /// The solver of the rows that this one is not good enough for.
     #[must_use]
-    pub fn harmonics(&self) -> &[u32] {
-        &self.settings.harmonics
+    pub fn beyond(&self) -> Option<&Self> {
+        self.beyond.as_ref().map(|beyond| &*beyond.solver)
     }
 
     /// Peak of the tuned wheel, on one sector.
@@ -86,16 +154,42 @@ impl RowSolver {
         peak(
             &excited,
             contact,
-            self.points(contact),
+            self.points(engine_order, contact),
             window,
             self.settings.solver.peak_tolerance,
         )
     }
 
+    /// Peak of the tuned wheel with its errors and the effects of the harmonics left out; none
+    /// where there is no peak, or it cannot be corrected.
+    #[must_use]
+    pub fn tuned_screening(
+        &self,
+        engine_order: u32,
+        contact: ContactCondition,
+    ) -> (Peak, Option<Screening>) {
+        let found = self.tuned_peak(engine_order, contact);
+        let point = found.point.as_ref().filter(|_| found.status == Status::Ok);
+        let screening = point.and_then(|point| {
+            let points = self.points(engine_order, contact);
+            let of = |harmonics: &[u32]| self.tuned_waves(engine_order, contact, harmonics);
+            let enlarged = of(points.errors().harmonics());
+            screen(
+                &of(points.harmonics()),
+                contact,
+                points,
+                point,
+                &enlarged.blocks,
+            )
+        });
+        (found, screening)
+    }
+
     /// Tuned reference of a scenario.
     #[must_use]
     pub fn tuned(&self, scenario: &Scenario) -> TunedReference {
-        let found = self.tuned_peak(scenario.engine_order, scenario.contact);
+        let (found, screening) = self.tuned_screening(scenario.engine_order, scenario.contact);
+        let points = self.points(scenario.engine_order, scenario.contact);
         let point = found.point.as_ref().filter(|_| found.status == Status::Ok);
         TunedReference {
             scenario: scenario.index,
@@ -104,24 +198,9 @@ impl RowSolver {
             frequency_hz: point.map(|point| point.frequency_hz),
             separated_fraction: point.map(|point| point.shares.separated),
             slipping_fraction: point.map(|point| point.shares.slipping),
-            errors: point.and_then(|point| {
-                self.tuned_errors(scenario.engine_order, scenario.contact, point)
-            }),
+            harmonics: harmonics_name(points.harmonics()),
+            errors: screening.map(|screening| screening.errors),
         }
-    }
-
-    /// Errors of a solution of the tuned wheel.
-    fn tuned_errors(
-        &self,
-        engine_order: u32,
-        contact: ContactCondition,
-        point: &Point,
-    ) -> Option<ErrorEstimate> {
-        let points = self.points(contact);
-        let excited = |harmonics: &[u32]| self.tuned_waves(engine_order, contact, harmonics);
-        let enlarged = excited(points.errors().harmonics());
-        let excited = excited(points.harmonics());
-        estimate_errors(&excited, contact, points, point, &enlarged.blocks)
     }
 
     /// Rows of one pattern under several scenarios of one standard deviation, in their order. The
@@ -146,9 +225,41 @@ impl RowSolver {
                     }
                     Err(status) => Err(*status),
                 };
-                self.row(pattern, scenario, tuned, found)
+                let row = self.row(pattern, scenario, tuned, found);
+                self.solved_again(pattern, scenario, &row).unwrap_or(row)
             })
             .collect()
+    }
+
+    /// The row by the solver for what is beyond this one, if it has to be and can be.
+    fn solved_again(
+        &self,
+        pattern: &Pattern,
+        scenario: &Scenario,
+        row: &ResponseRow,
+    ) -> Option<ResponseRow> {
+        let beyond = self.beyond.as_ref()?;
+        let separates = row.separated_fraction.is_some_and(|share| share > 0.0);
+        let inexact = row.error_within_tolerance == Some(false);
+        if !separates && !(inexact && beyond.inexact_rows) {
+            return None;
+        }
+        let place = beyond.solver.chosen.iter().position(|(choice, _)| {
+            choice.engine_order == scenario.engine_order && choice.contact == scenario.contact
+        })?;
+        let tuned = beyond.tuned[place].get_or_init(|| beyond.solver.tuned(scenario));
+        let tuned = TunedReference {
+            scenario: scenario.index,
+            ..tuned.clone()
+        };
+        let again = beyond.solver.rows(pattern, &[(scenario, &tuned)]).pop()?;
+        let solved = again.status == Status::Ok && again.amplification_factor.is_some();
+        solved.then(|| ResponseRow {
+            nonlinear_solves: row.nonlinear_solves + again.nonlinear_solves,
+            newton_iterations: row.newton_iterations + again.newton_iterations,
+            retries: row.retries + again.retries,
+            ..again
+        })
     }
 
     /// Amplitude of every blade at each frequency, Hz; no pattern means the tuned wheel, of which
@@ -167,10 +278,11 @@ impl RowSolver {
             None => self.tuned_excited(engine_order, contact),
             Some(pattern) => {
                 let (modes, wheel) = self.mistuned(pattern, LimitsWanted::default())?;
-                self.wheel_excited(&modes, &wheel, engine_order, self.points(contact).harmonics())
+                let harmonics = self.points(engine_order, contact).harmonics();
+                self.wheel_excited(&modes, &wheel, engine_order, harmonics)
             }
         };
-        let mut solver = PointSolver::new(&excited, contact, self.points(contact));
+        let mut solver = PointSolver::new(&excited, contact, self.points(engine_order, contact));
         let sectors = self.basis.model().sectors;
         Ok(frequencies_hz
             .iter()
@@ -187,15 +299,45 @@ impl RowSolver {
             .collect())
     }
 
-    fn points(&self, contact: ContactCondition) -> &PointSettings {
-        match contact {
-            ContactCondition::Full { .. } => &self.full,
+    fn chosen(
+        &self,
+        engine_order: u32,
+        contact: ContactCondition,
+    ) -> Option<&(HarmonicChoice, PointSettings)> {
+        self.chosen
+            .iter()
+            .find(|(choice, _)| choice.engine_order == engine_order && choice.contact == contact)
+    }
+
+    fn points(&self, engine_order: u32, contact: ContactCondition) -> &PointSettings {
+        match (contact, self.chosen(engine_order, contact)) {
+            (ContactCondition::Full { .. }, Some((_, points))) => points,
+            (ContactCondition::Full { .. }, None) => &self.full,
             _ => &self.linear,
         }
     }
 
+    /// Errors that the rows of a scenario take over from it; a linear limit has no harmonics.
+    fn scenario_error(&self, scenario: &Scenario) -> ScenarioError {
+        let choice = self.chosen(scenario.engine_order, scenario.contact);
+        ScenarioError {
+            basis: self.basis_error,
+            harmonics: choice
+                .and_then(|(choice, _)| choice.remainder)
+                .unwrap_or(0.0),
+        }
+    }
+
+    fn tolerance(&self) -> ErrorTolerance {
+        ErrorTolerance {
+            sampling: self.settings.solver.peak_tolerance.max(SAMPLING_TOLERANCE),
+            harmonics: self.settings.solver.harmonic_tolerance,
+        }
+    }
+
     fn tuned_excited(&self, engine_order: u32, contact: ContactCondition) -> Excited {
-        self.tuned_waves(engine_order, contact, self.points(contact).harmonics())
+        let harmonics = self.points(engine_order, contact).harmonics();
+        self.tuned_waves(engine_order, contact, harmonics)
     }
 
     fn tuned_waves(
@@ -285,8 +427,8 @@ impl RowSolver {
                 band,
             },
         };
-        let points = self.points(scenario.contact);
         let engine_order = scenario.engine_order;
+        let points = self.points(engine_order, scenario.contact);
         let excited = self.wheel_excited(modes, wheel, engine_order, points.harmonics());
         let found = peak(
             &excited,
@@ -318,6 +460,7 @@ impl RowSolver {
             .as_ref()
             .filter(|found| found.status == Status::Ok)
             .and_then(|found| Some((found, found.point.as_ref()?)));
+        let errors = good.and(errors);
         let work = found.as_ref().map(|found| found.work).unwrap_or_default();
         let amplitude = good.map(|(found, point)| point.amplitudes_m[found.blade]);
         ResponseRow {
@@ -329,15 +472,26 @@ impl RowSolver {
             peak_blade: good.map(|(found, _)| found.blade as u32),
             amplification_factor: amplification_factor(amplitude, tuned.amplitude_m),
             peak_bracketed: good.map(|(found, _)| found.bracketed),
-            harmonics: harmonics_name(self.points(scenario.contact).harmonics()),
+            harmonics: harmonics_name(
+                self.points(scenario.engine_order, scenario.contact)
+                    .harmonics(),
+            ),
             nonlinear_solves: work.nonlinear_solves,
             newton_iterations: work.newton_iterations,
             retries: work.retries,
             residual: good.map(|(_, point)| point.residual),
             slipping_fraction: good.map(|(_, point)| point.shares.slipping),
             separated_fraction: good.map(|(_, point)| point.shares.separated),
-            sampling_error: good.and(errors).map(|errors| errors.sampling),
-            harmonic_error: good.and(errors).and_then(|errors| errors.harmonics),
+            sampling_error: errors.map(|errors| errors.sampling),
+            harmonic_error: errors.map(|errors| errors.harmonics),
+            stated_error: errors.map(|errors| {
+                let of_scenario = self.scenario_error(scenario);
+                stated_error(&errors, &of_scenario, self.settings.solver.peak_tolerance)
+            }),
+            // An error that cannot be estimated is within no tolerance.
+            error_within_tolerance: good
+                .map(|_| errors.is_some_and(|errors| self.tolerance().holds(&errors))),
+            basis: self.basis.model().basis_name(),
             shortcut: shortcut(scenario.contact, good.map(|(_, point)| point)).to_owned(),
         }
     }

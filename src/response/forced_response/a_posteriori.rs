@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::excited::Excited;
 use super::observed_amplitude::ObservedAmplitude;
 use super::options::{ContactCondition, SolverOptions};
-use super::point_solver::{Point, PointSettings, PointSolver};
+use super::point_solver::{Point, PointSettings, PointSolver, samples_per_period};
+use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{
-    EnlargedSet, HarmonicBlock, Structure, TransformError, enlarge,
+    ContactShares, Effects, EnlargedSet, HarmonicBlock, Structure, TransformError, enlarge,
 };
 
 /// Samples per period of the check, over those of the solution.
@@ -29,9 +30,18 @@ pub struct ErrorSettings {
 pub struct ErrorEstimate {
     /// By one Newton correction of the same equations with 4 times the samples per period.
     pub sampling: f64,
-    /// By the harmonics up to 15 that are not in the set, with that sampling; none if their
-    /// estimate did not settle.
-    pub harmonics: Option<f64>,
+    /// By the harmonics up to 15 that are not in the set, with that sampling.
+    pub harmonics: f64,
+    /// What the estimate of the harmonics may still be off by.
+    pub unsettled: f64,
+}
+
+impl ErrorEstimate {
+    /// Bound on the relative error of the amplitude by samples and harmonics together.
+    #[must_use]
+    pub fn bound(&self) -> f64 {
+        self.sampling.abs() + self.harmonics.abs() + self.unsettled
+    }
 }
 
 impl ErrorSettings {
@@ -39,9 +49,14 @@ impl ErrorSettings {
     ///
     /// # Errors
     /// If the harmonics cannot be told apart with the samples asked for.
-    pub fn new(options: &SolverOptions, harmonics: &[u32]) -> Result<Self, TransformError> {
-        let samples = FINEST.max(FINER * options.samples_per_period);
-        let set = EnlargedSet::new(harmonics, samples)?;
+    pub fn new(
+        options: &SolverOptions,
+        harmonics: &[u32],
+        law: Option<ContactLaw>,
+    ) -> Result<Self, TransformError> {
+        let variable_load = law.is_some_and(ContactLaw::has_variable_load);
+        let samples = FINEST.max(FINER * samples_per_period(options, harmonics));
+        let set = EnlargedSet::new(harmonics, variable_load, samples)?;
         let instants = options.time_samples.max(samples);
         Ok(Self {
             amplitude: ObservedAmplitude::new(options.amplitude, set.harmonics(), instants)?,
@@ -56,8 +71,17 @@ impl ErrorSettings {
     }
 }
 
+/// Errors of a solution, and what each harmonic outside of its set has to do with them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Screening {
+    /// The errors.
+    pub errors: ErrorEstimate,
+    /// Relative change of the amplitude that the harmonic alone makes.
+    pub effects: Vec<(u32, f64)>,
+}
+
 /// Errors of `point`, a solution of `excited` under `settings`; `blocks` are those of the enlarged
-/// set. None if the solution has no neighbourhood to correct it in (a singular Jacobian).
+/// set. None if the solution cannot be corrected (a singular Jacobian).
 #[must_use]
 pub fn estimate_errors(
     excited: &Excited,
@@ -66,29 +90,77 @@ pub fn estimate_errors(
     point: &Point,
     blocks: &[HarmonicBlock],
 ) -> Option<ErrorEstimate> {
+    let assessed = assess(
+        excited,
+        condition,
+        settings,
+        point,
+        blocks,
+        Effects::Together,
+    )?;
+    Some(assessed.errors)
+}
+
+/// [`estimate_errors`] with the effect of each harmonic outside.
+#[must_use]
+pub fn screen(
+    excited: &Excited,
+    condition: ContactCondition,
+    settings: &PointSettings,
+    point: &Point,
+    blocks: &[HarmonicBlock],
+) -> Option<Screening> {
+    assess(excited, condition, settings, point, blocks, Effects::Each)
+}
+
+fn assess(
+    excited: &Excited,
+    condition: ContactCondition,
+    settings: &PointSettings,
+    point: &Point,
+    blocks: &[HarmonicBlock],
+    wanted: Effects,
+) -> Option<Screening> {
     let mut solver = PointSolver::new(excited, condition, settings);
-    let Some((system, workspace)) = solver.nonlinear() else {
-        return Some(ErrorEstimate {
-            sampling: 0.0,
-            harmonics: Some(0.0),
+    let linear = point.shares == ContactShares::default();
+    let nonlinear = solver.nonlinear().filter(|_| !linear);
+    let Some((system, workspace)) = nonlinear else {
+        return Some(Screening {
+            errors: ErrorEstimate::default(),
+            effects: Vec::new(),
         });
     };
     let ErrorSettings { set, amplitude } = settings.errors();
     let omega = TAU * point.frequency_hz;
-    let enlarged = enlarge(system, workspace, set, blocks, omega, &point.solution)?;
+    let enlarged = enlarge(
+        system,
+        workspace,
+        set,
+        blocks,
+        omega,
+        &point.solution,
+        wanted,
+    )?;
     let structures: Vec<(u32, &Structure)> = blocks
         .iter()
         .map(|block| (block.harmonic, &*block.structure))
         .collect();
     let largest = |amplitudes: Vec<f64>| amplitudes.into_iter().fold(0.0, f64::max);
     let before = largest(amplitude.of(&structures, &enlarged.before));
-    let after = |solution: &[f64]| {
+    let change = |solution: &[f64]| {
         largest(amplitude.changed(&structures, &enlarged.before, solution)) / before - 1.0
     };
-    let sampling = after(&enlarged.resampled);
-    let harmonics = after(&enlarged.after) - sampling;
-    Some(ErrorEstimate {
-        sampling,
-        harmonics: enlarged.settled.then_some(harmonics),
+    let sampling = change(&enlarged.resampled);
+    let total = change(&enlarged.after);
+    let effects = enlarged.without.iter();
+    Some(Screening {
+        errors: ErrorEstimate {
+            sampling,
+            harmonics: total - sampling,
+            unsettled: enlarged.unsettled,
+        },
+        effects: effects
+            .map(|(harmonic, without)| (*harmonic, total - change(without)))
+            .collect(),
     })
 }

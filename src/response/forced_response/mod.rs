@@ -9,10 +9,13 @@ mod peak;
 mod peak_search;
 mod point_solver;
 
-pub use a_posteriori::{ErrorEstimate, ErrorSettings, estimate_errors};
+pub use a_posteriori::{ErrorEstimate, ErrorSettings, Screening, estimate_errors, screen};
 pub use excited::{Excited, LimitsWanted, LinearStructure, Wheel, wheel_force};
 pub use linear_peaks::LinearPeak;
 pub use observed_amplitude::ObservedAmplitude;
-pub use options::{AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, SolverOptions};
+pub use options::{
+    AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, RowsBeyondTolerance,
+    SolverOptions,
+};
 pub use peak::{Peak, Window, mistuned_window, peak, tuned_span};
 pub use point_solver::{Point, PointSettings, PointSolver, Work};

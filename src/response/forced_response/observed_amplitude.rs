@@ -101,7 +101,10 @@ fn observed(blocks: &[(u32, &Structure)], solution: &[f64]) -> Vec<ObservedHarmo
             }
         }
         start += n * if harmonic == 0 { 1 } else { 2 };
-        let displacement = re.into_iter().zip(im).map(|(re, im)| Complex64::new(re, im));
+        let displacement = re
+            .into_iter()
+            .zip(im)
+            .map(|(re, im)| Complex64::new(re, im));
         harmonics.push(ObservedHarmonic {
             harmonic,
             displacement: displacement.collect(),
@@ -124,7 +127,9 @@ fn time_maximum(grid: &HarmonicTransform, harmonics: &[ObservedHarmonic], blade:
     for component in 0..3 {
         let row = 3 * blade + component;
         for &harmonic in grid.harmonics() {
-            let found = harmonics.iter().find(|own| own.harmonic as usize == harmonic);
+            let found = harmonics
+                .iter()
+                .find(|own| own.harmonic as usize == harmonic);
             let value = found.map_or(Complex64::default(), |own| own.displacement[row]);
             channels.push(value.re);
             if harmonic > 0 {

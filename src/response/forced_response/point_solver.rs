@@ -15,6 +15,9 @@ use crate::response::harmonic_balance::{
     NewtonWorkspace, Status, Structure, TransformError, linear_response, solve,
 };
 
+/// Samples per period of the highest harmonic at least.
+const SAMPLES_OF_HIGHEST: usize = 16;
+
 /// Everything of a study that the solution of a point needs besides the structure.
 #[derive(Debug, Clone)]
 pub struct PointSettings {
@@ -40,14 +43,18 @@ impl PointSettings {
         geometry: ContactGeometry,
     ) -> Result<Self, TransformError> {
         let set: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
-        let transform = HarmonicTransform::new(&set, options.samples_per_period)?;
-        let amplitude =
-            ObservedAmplitude::new(options.amplitude, harmonics, options.time_samples)?;
+        let samples = samples_per_period(options, harmonics);
+        let transform = HarmonicTransform::new(&set, samples)?;
+        let amplitude = ObservedAmplitude::new(options.amplitude, harmonics, options.time_samples)?;
         Ok(Self {
             harmonics: harmonics.to_vec(),
             transform: Arc::new(transform),
             amplitude,
-            errors: Arc::new(ErrorSettings::new(options, harmonics)?),
+            errors: Arc::new(ErrorSettings::new(
+                options,
+                harmonics,
+                contact.map(|(law, _)| law),
+            )?),
             bounds: NewtonBounds::with_tolerance(options.residual_tolerance),
             contact,
             geometry,
@@ -383,6 +390,12 @@ impl<'a> PointSolver<'a> {
             }
         }
     }
+}
+
+/// Those asked for, and at least [`SAMPLES_OF_HIGHEST`] per period of the highest harmonic.
+pub(super) fn samples_per_period(options: &SolverOptions, harmonics: &[u32]) -> usize {
+    let highest = harmonics.last().map_or(1, |&k| k as usize);
+    options.samples_per_period.max(SAMPLES_OF_HIGHEST * highest)
 }
 
 /// Attempts at one point, in order.

@@ -4,36 +4,39 @@
 //!
 //! ```text
 //! R_s(x_s, x_o) = 0,    R_o(x_s, x_o) = 0,    from (x_s, 0)
-//! P = [J_ss, 0; 0, diag_k J_kk]
+//! P = J    or    P = [J_ss, 0; 0, diag_k J_kk]
 //! ```
 //!
 //! is solved by the fixed-point iteration `x <- x - P^-1 R(x)` with Anderson's acceleration (Anderson
-//! 1965; Walker & Ni 2011, SIAM J. Numer. Anal. 49(4)). P holds the derivative of the contact
-//! forces, so a resonance of slipping contact in harmonic k is in it; what it leaves out, the
-//! coupling between harmonics, comes in through the residual. The enlarged Jacobian is never formed:
-//! its cost would be that of a solution with the enlarged set.
+//! 1965; Walker & Ni 2011, SIAM J. Numer. Anal. 49(4)). P is the whole enlarged Jacobian where that is
+//! small (one sector of a tuned wheel): the first step is then Newton's. On a wheel it would cost more
+//! than the solution itself, and P leaves out the coupling between harmonics, which comes in through
+//! the residual alone. Either holds the derivative of the contact forces, so that a resonance of
+//! slipping contact in harmonic k is in it.
 
 use std::sync::Arc;
 
+use super::transform::dot;
 use super::{
     HarmonicBlock, HarmonicSystem, HarmonicTransform, NewtonWorkspace, PairJacobian,
     SystemWorkspace, TransformError,
 };
-use super::transform::dot;
 use crate::linalg::LuWorkspace;
 
 /// Highest harmonic that is looked at.
-pub const HIGHEST_HARMONIC: u32 = 15;
+const HIGHEST_HARMONIC: u32 = 15;
+/// Unknowns of a wheel up to which the whole Jacobian is factored.
+const SMALL_WHEEL: usize = 1200;
 /// Samples per period of the derivatives in P.
 const LINEARISED_SAMPLES: usize = 128;
-/// Evaluations of the enlarged residual.
-const EVALUATIONS: usize = 12;
+/// Steps of the iteration at most.
+const EVALUATIONS: usize = 14;
 /// Earlier iterates that the acceleration combines.
-const DEPTH: usize = 6;
-/// Share of the change of the set's unknowns by which the last step may still change them.
+const DEPTH: usize = 12;
+/// The iteration ends when the next step would change the set by this share of the change so far,
 const SETTLED: f64 = 0.03;
-/// Change of the set's unknowns, relative to themselves, that is not worth an iteration.
-const NEGLIGIBLE: f64 = 2e-5;
+/// or by this share of the set itself.
+const NEGLIGIBLE: f64 = 5e-5;
 
 /// Transforms of an enlarged set; made once per study.
 #[derive(Debug, Clone)]
@@ -44,12 +47,16 @@ pub struct EnlargedSet {
 }
 
 impl EnlargedSet {
-    /// The harmonics 0 to 15 and those of `set`, with `samples` per period.
+    /// The harmonics 0 to 15 (odd ones where the normal load is constant, since no law then
+    /// excites the others) and those of `set`, with `samples` per period.
     ///
     /// # Errors
     /// If the harmonics cannot be told apart with the samples asked for.
-    pub fn new(set: &[u32], samples: usize) -> Result<Self, TransformError> {
-        let mut harmonics: Vec<u32> = (0..=HIGHEST_HARMONIC).chain(set.iter().copied()).collect();
+    pub fn new(set: &[u32], variable_load: bool, samples: usize) -> Result<Self, TransformError> {
+        let mut harmonics: Vec<u32> = (0..=HIGHEST_HARMONIC)
+            .filter(|k| variable_load || k % 2 == 1)
+            .chain(set.iter().copied())
+            .collect();
         harmonics.sort_unstable();
         harmonics.dedup();
         let numbers: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
@@ -71,23 +78,52 @@ impl EnlargedSet {
     }
 }
 
-/// A solution corrected.
+/// A solution corrected, in the unknowns of the enlarged system.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Enlarged {
-    /// Blocks of the enlarged system, in the order of its unknowns.
-    pub harmonics: Vec<u32>,
-    /// The solution in the enlarged unknowns, zero outside of the set.
+    /// The solution, zero outside of the set.
     pub before: Vec<f64>,
     /// After one Newton correction at the finer sampling, in the set alone.
     pub resampled: Vec<f64>,
-    /// With the harmonics outside.
+    /// With the harmonics outside: the iterate that the next step would change least.
     pub after: Vec<f64>,
-    /// Whether the iteration settled.
-    pub settled: bool,
+    /// What that step would still change of the set, relative to the set.
+    pub unsettled: f64,
+    /// For each harmonic outside, where wanted, what `after` would be in the set without it.
+    pub without: Vec<(u32, Vec<f64>)>,
+}
+
+/// Which effects of the harmonics outside are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effects {
+    /// That of all together.
+    Together,
+    /// That of each one too.
+    Each,
+}
+
+/// A solution under correction.
+struct Enlargement<'a> {
+    system: &'a HarmonicSystem,
+    workspace: &'a mut NewtonWorkspace,
+    fine: HarmonicSystem,
+    buffers: SystemWorkspace,
+    /// Place in the set of each enlarged block.
+    places: Vec<Option<usize>>,
+    omega: f64,
+    outside: Outside,
+}
+
+/// Factors of P but for those of `J_ss`.
+enum Outside {
+    Whole(LuWorkspace<f64>),
+    Blocks(Vec<Option<LuWorkspace<f64>>>),
 }
 
 /// Corrects the solution `x` of `system` at `omega` towards that of the enlarged set; `blocks` are
 /// those of its harmonics. None if a Jacobian is singular or a value not finite.
+///
+/// The effect of each harmonic outside takes an evaluation each, where it is `wanted`.
 pub fn enlarge(
     system: &HarmonicSystem,
     workspace: &mut NewtonWorkspace,
@@ -95,6 +131,7 @@ pub fn enlarge(
     blocks: &[HarmonicBlock],
     omega: f64,
     x: &[f64],
+    wanted: Effects,
 ) -> Option<Enlarged> {
     if !workspace.factor_at(system, omega, x) {
         return None;
@@ -108,79 +145,149 @@ pub fn enlarge(
         )
     };
     let fine = with(&set.fine);
-    let mut buffers = fine.workspace();
-    let places: Vec<Option<usize>> = blocks
-        .iter()
-        .map(|block| {
-            let same = |own: &HarmonicBlock| own.harmonic == block.harmonic;
-            system.blocks().iter().position(same)
-        })
-        .collect();
+    let same = |block: &HarmonicBlock| {
+        let own = |own: &HarmonicBlock| own.harmonic == block.harmonic;
+        system.blocks().iter().position(own)
+    };
+    let places: Vec<Option<usize>> = blocks.iter().map(same).collect();
     let before = embed(system, &fine, &places, x);
-    let mut residual = vec![0.0; fine.unknowns()];
-    fine.residual(omega, &before, &mut residual, false, &mut buffers);
-    let linearised = with(&set.linearised);
-    let mut outside = OutsideBlocks::new(&linearised, &places, omega, &before)?;
-    let mut precondition = |residual: &[f64]| -> Vec<f64> {
-        let mut step = vec![0.0; residual.len()];
-        let mut own = vec![0.0; x.len()];
-        for (index, place) in places.iter().enumerate() {
-            if let Some(place) = *place {
-                own[range(system, place)].copy_from_slice(&residual[range(&fine, index)]);
+    let outside = Outside::factor(&with(&set.linearised), &places, omega, &before)?;
+    Enlargement {
+        buffers: fine.workspace(),
+        system,
+        workspace,
+        fine,
+        places,
+        omega,
+        outside,
+    }
+    .correct(before, wanted)
+}
+
+impl Enlargement<'_> {
+    fn correct(mut self, before: Vec<f64>, wanted: Effects) -> Option<Enlarged> {
+        let mut step = self.step(&before);
+        let resampled = self.resampled(&before);
+        let scale = self.in_set(&before);
+        let mut acceleration = Anderson::new(DEPTH);
+        let mut iterate = before.clone();
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for evaluation in 1..=EVALUATIONS {
+            let last = self.in_set(&step);
+            iterate = acceleration.next(&iterate, &step);
+            step = self.step(&iterate);
+            if !step.iter().all(|s| s.is_finite()) {
+                return None;
+            }
+            // The set feels a step of the harmonics outside one evaluation later.
+            let left = last.max(self.in_set(&step)) / scale;
+            if best.as_ref().is_none_or(|(least, _)| left < *least) && evaluation > 1 {
+                best = Some((left, iterate.clone()));
+            }
+            let change: Vec<f64> = iterate.iter().zip(&before).map(|(a, b)| a - b).collect();
+            if evaluation > 1
+                && left <= f64::max(NEGLIGIBLE, SETTLED * self.in_set(&change) / scale)
+            {
+                break;
             }
         }
-        workspace.solve_linear(&mut own);
-        for (index, place) in places.iter().enumerate() {
-            if let Some(place) = *place {
-                step[range(&fine, index)].copy_from_slice(&own[range(system, place)]);
+        let (unsettled, after) = best?;
+        let without = match wanted {
+            Effects::Together => Vec::new(),
+            Effects::Each => self.without_each(&after),
+        };
+        Some(Enlarged {
+            before,
+            resampled,
+            after,
+            unsettled,
+            without,
+        })
+    }
+
+    fn residual(&mut self, x: &[f64]) -> Vec<f64> {
+        let mut residual = vec![0.0; x.len()];
+        self.fine
+            .residual(self.omega, x, &mut residual, false, &mut self.buffers);
+        residual
+    }
+
+    /// `-P^-1 R(x)`.
+    fn step(&mut self, x: &[f64]) -> Vec<f64> {
+        let mut step = self.residual(x);
+        if let Outside::Whole(factors) = &mut self.outside {
+            factors.solve(&mut step);
+        } else {
+            let own = self.set_step(&step);
+            let Outside::Blocks(blocks) = &mut self.outside else {
+                return own;
+            };
+            for (index, factors) in blocks.iter_mut().enumerate() {
+                let place = range(&self.fine, index);
+                match factors {
+                    Some(factors) => factors.solve(&mut step[place]),
+                    None => step[place.clone()].copy_from_slice(&own[place]),
+                }
             }
         }
-        outside.solve(&fine, residual, &mut step);
         step.iter_mut().for_each(|step| *step = -*step);
         step
-    };
-    let in_set = |step: &[f64]| -> f64 {
+    }
+
+    /// `J_ss^-1 residual_s`, zero outside of the set.
+    fn set_step(&mut self, residual: &[f64]) -> Vec<f64> {
+        let mut own = vec![0.0; self.system.unknowns()];
+        for (index, place) in self.places.iter().enumerate() {
+            if let Some(place) = *place {
+                own[range(self.system, place)].copy_from_slice(&residual[range(&self.fine, index)]);
+            }
+        }
+        self.workspace.solve_linear(&mut own);
+        embed(self.system, &self.fine, &self.places, &own)
+    }
+
+    /// One Newton correction in the set at the finer sampling.
+    fn resampled(&mut self, before: &[f64]) -> Vec<f64> {
+        let residual = self.residual(before);
+        let step = self.set_step(&residual);
+        before.iter().zip(step).map(|(x, s)| x - s).collect()
+    }
+
+    /// One Newton correction in the set of `after` less each harmonic outside.
+    fn without_each(&mut self, after: &[f64]) -> Vec<(u32, Vec<f64>)> {
+        let with_all = self.residual(after);
+        let mut changed = Vec::new();
+        for index in 0..self.places.len() {
+            if self.places[index].is_some() {
+                continue;
+            }
+            let mut less = after.to_vec();
+            less[range(&self.fine, index)].fill(0.0);
+            let mut residual = self.residual(&less);
+            residual
+                .iter_mut()
+                .zip(&with_all)
+                .for_each(|(r, all)| *r -= all);
+            let step = self.set_step(&residual);
+            let corrected = after.iter().zip(step).map(|(x, s)| x - s).collect();
+            changed.push((self.fine.blocks[index].harmonic, corrected));
+        }
+        changed
+    }
+
+    /// Norm of the part in the set.
+    fn in_set(&self, x: &[f64]) -> f64 {
         let square = |(index, place): (usize, &Option<usize>)| match place {
-            Some(_) => step[range(&fine, index)].iter().map(|s| s * s).sum(),
+            Some(_) => x[range(&self.fine, index)].iter().map(|x| x * x).sum(),
             None => 0.0,
         };
-        places.iter().enumerate().map(square).sum::<f64>().sqrt()
-    };
-    let mut step = precondition(&residual);
-    let mut resampled = before.clone();
-    for (index, _) in places.iter().enumerate().filter(|(_, p)| p.is_some()) {
-        let own = range(&fine, index);
-        for (x, s) in resampled[own.clone()].iter_mut().zip(&step[own]) {
-            *x += s;
-        }
+        self.places
+            .iter()
+            .enumerate()
+            .map(square)
+            .sum::<f64>()
+            .sqrt()
     }
-    let scale = in_set(&before);
-    let mut acceleration = Anderson::new(DEPTH);
-    let mut after = before.clone();
-    let mut settled = false;
-    for evaluation in 1..=EVALUATIONS {
-        let next = acceleration.next(&after, &step);
-        let moved: Vec<f64> = next.iter().zip(&after).map(|(a, b)| a - b).collect();
-        let change: Vec<f64> = next.iter().zip(&resampled).map(|(a, b)| a - b).collect();
-        after = next;
-        fine.residual(omega, &after, &mut residual, false, &mut buffers);
-        step = precondition(&residual);
-        if !step.iter().all(|s| s.is_finite()) {
-            return None;
-        }
-        let last = in_set(&moved).max(in_set(&step));
-        settled = evaluation > 1 && last <= f64::max(SETTLED * in_set(&change), NEGLIGIBLE * scale);
-        if settled {
-            break;
-        }
-    }
-    Some(Enlarged {
-        harmonics: set.harmonics.clone(),
-        before,
-        resampled,
-        after,
-        settled,
-    })
 }
 
 fn range(system: &HarmonicSystem, block: usize) -> std::ops::Range<usize> {
@@ -203,13 +310,8 @@ fn embed(
     all
 }
 
-/// Factored `J_kk` of every harmonic outside of the set.
-struct OutsideBlocks {
-    factors: Vec<Option<LuWorkspace<f64>>>,
-}
-
-impl OutsideBlocks {
-    fn new(
+impl Outside {
+    fn factor(
         system: &HarmonicSystem,
         places: &[Option<usize>],
         omega: f64,
@@ -218,24 +320,20 @@ impl OutsideBlocks {
         let mut buffers = system.workspace();
         let mut residual = vec![0.0; system.unknowns()];
         system.residual(omega, x, &mut residual, true, &mut buffers);
-        let mut factors = Vec::with_capacity(places.len());
+        let one_sector = system.blocks[0].structure.sectors() == 1;
+        if one_sector || system.unknowns() <= SMALL_WHEEL {
+            let mut factors = LuWorkspace::new(system.unknowns());
+            system.jacobian(omega, &mut buffers, factors.matrix_mut());
+            return factors.factor().then_some(Self::Whole(factors));
+        }
+        let mut blocks = Vec::with_capacity(places.len());
         for (index, place) in places.iter().enumerate() {
-            factors.push(match place {
+            blocks.push(match place {
                 Some(_) => None,
                 None => Some(factored_block(system, index, omega, &buffers)?),
             });
         }
-        Some(Self { factors })
-    }
-
-    fn solve(&mut self, system: &HarmonicSystem, residual: &[f64], step: &mut [f64]) {
-        for (index, factors) in self.factors.iter_mut().enumerate() {
-            if let Some(factors) = factors {
-                let own = range(system, index);
-                step[own.clone()].copy_from_slice(&residual[own.clone()]);
-                factors.solve(&mut step[own]);
-            }
-        }
+        Some(Self::Blocks(blocks))
     }
 }
 
@@ -271,7 +369,13 @@ fn factored_block(
 }
 
 /// The blocks of `own` coefficients from `first` on, out of `all`.
-fn restrict(source: &PairJacobian, all: usize, first: usize, own: usize, target: &mut PairJacobian) {
+fn restrict(
+    source: &PairJacobian,
+    all: usize,
+    first: usize,
+    own: usize,
+    target: &mut PairJacobian,
+) {
     let copy = |from: &[f64], to: &mut [f64]| {
         for (row, to) in to.chunks_exact_mut(own).enumerate() {
             to.copy_from_slice(&from[(first + row) * all + first..][..own]);

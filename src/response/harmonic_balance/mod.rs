@@ -14,7 +14,7 @@ mod transform;
 
 pub use convergence::NewtonBounds;
 pub use damping::Damping;
-pub use enlarged::{Enlarged, EnlargedSet, enlarge};
+pub use enlarged::{Effects, Enlarged, EnlargedSet, enlarge};
 pub use linear::linear_response;
 pub use newton::{NewtonOutcome, NewtonWorkspace, solve};
 pub use pair_harmonics::{PairHarmonics, PairJacobian};
