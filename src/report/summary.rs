@@ -7,7 +7,7 @@ use crate::population::statistics::{
     Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics,
 };
 use crate::population::table::ScenarioRecord;
-use crate::response::forced_response::{ContactCondition, Harmonics};
+use crate::response::forced_response::Harmonics;
 use crate::response::harmonic_balance::Status;
 
 /// What a summary says about the study itself.
@@ -270,12 +270,21 @@ fn warnings(
     warnings
 }
 
-/// Separation needs harmonic 0 and even harmonics, which an automatic set has where the tuned wheel
+/// Separation needs harmonic 0 and even harmonics; an automatic set has them where the tuned wheel
 /// separates.
 fn separation(harmonics: &Harmonics, records: &[ScenarioRecord]) -> Option<Warning> {
+    let has_even = |set: &[u32]| set.contains(&0) && set.iter().any(|k| *k > 0 && k % 2 == 0);
     let even = match harmonics {
-        Harmonics::Auto => true,
-        Harmonics::Set(set) => set.contains(&0) && set.iter().any(|k| *k > 0 && k % 2 == 0),
+        Harmonics::Auto => records.iter().all(|record| {
+            let set: Vec<u32> = record
+                .tuned
+                .harmonics
+                .split('-')
+                .filter_map(|k| k.parse().ok())
+                .collect();
+            record.scenario.contact.normal_load_n().is_none() || has_even(&set)
+        }),
+        Harmonics::Set(set) => has_even(set),
     };
     let separated = |record: &ScenarioRecord| -> f64 {
         let tuned = record.tuned.separated_fraction.unwrap_or(0.0);

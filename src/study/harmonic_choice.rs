@@ -11,12 +11,12 @@ use crate::response::forced_response::{ContactCondition, Screening};
 const PEAK_TOLERANCE: f64 = 1e-4;
 /// Harmonics added at most, one at a time.
 const LARGEST_GROWTH: usize = 15;
-/// Harmonics that intermittent contact excites first of all.
-const OF_SEPARATION: [u32; 2] = [0, 2];
 
 /// Harmonic set of every engine order and nonlinear condition: `first`, enlarged until the tuned
 /// peak of `model` (the full contact model) leaves out at most `tolerance`, by one harmonic at a
-/// time, that of the largest effect. Without a tolerance the set stays, and its remainder is measured.
+/// time, that of the largest effect. No harmonic left out may have a larger effect by itself either:
+/// on the tuned wheel effects can cancel that do not cancel on a mistuned one. Without a tolerance the
+/// set stays, and its remainder is measured.
 ///
 /// # Errors
 /// If the samples per period cannot tell the harmonics apart.
@@ -75,29 +75,24 @@ fn judge(
     let Some(tolerance) = tolerance else {
         return Ok(true);
     };
-    let missing: Vec<u32> = OF_SEPARATION
-        .into_iter()
-        .filter(|k| separated && !choice.harmonics.contains(k))
-        .collect();
-    if !missing.is_empty() {
-        choice.harmonics.extend(missing);
-        choice.harmonics.sort_unstable();
+    if separated && !choice.admits_separation() {
+        choice.admit_separation();
         return Ok(false);
     }
     let Some(screening) = screening else {
         return Ok(true);
     };
-    if remainder(&screening) <= tolerance {
-        return Ok(true);
-    }
     let largest = screening
         .effects
         .iter()
         .filter(|(_, effect)| effect.is_finite())
         .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-    let Some(&(harmonic, _)) = largest else {
+    let Some(&(harmonic, effect)) = largest else {
         return Ok(true);
     };
+    if remainder(&screening) <= tolerance && effect.abs() <= tolerance {
+        return Ok(true);
+    }
     choice.harmonics.push(harmonic);
     choice.harmonics.sort_unstable();
     Ok(false)

@@ -98,8 +98,8 @@ impl EngineSource for ReducedEngineSource {
             stored
         };
         Ok(Box::new(ReducedEngine {
-            solver: solver_of(study, &stored, settings)?,
-            evidence: stored.evidence,
+            evidence: stored.evidence.clone(),
+            solver: solver_of(study, stored, settings)?,
             digest,
             sector_dofs: model.dofs.len(),
             observed: model
@@ -247,14 +247,23 @@ fn reduced(
     let follows = study.reduction.basis == Basis::Auto && study.reduction.stick_modes.is_none();
     let by_modes = matches!(choice, BasisChoice::StickSlide { .. }) && follows;
     let resolves = automatic && study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
-    let friction = study.has_friction();
-    let beyond = if friction && (by_modes || resolves) {
-        let harmonics = if resolves {
+    let separates = study
+        .contact
+        .as_ref()
+        .is_some_and(|contact| contact.law.has_variable_load());
+    let on_separation = separates && (by_modes || automatic);
+    let beyond = if study.has_friction() && (on_separation || resolves) {
+        let mut harmonics = if resolves {
             let larger = tolerance.map(|tolerance| BEYOND_TOLERANCE * tolerance);
             sets(&settings.harmonics, larger)?
         } else {
             harmonics.clone()
         };
+        if automatic && separates {
+            harmonics
+                .iter_mut()
+                .for_each(HarmonicChoice::admit_separation);
+        }
         let options = ReductionOptions {
             basis: if by_modes {
                 Basis::StickAttachment
@@ -290,22 +299,17 @@ fn basis_error(evidence: &BasisEvidence) -> f64 {
 
 fn solver_of(
     study: &Study,
-    stored: &Stored,
+    stored: Stored,
     settings: RowSettings,
 ) -> Result<RowSolver, TransformError> {
-    let with = |model: &ReducedModel, harmonics: &[HarmonicChoice], error| {
-        RowSolver::new(Arc::new(model.clone()), settings.clone())?
-            .with_choices(harmonics.to_vec(), error)
-    };
-    let solver = with(
-        &stored.model,
-        &stored.harmonics,
-        basis_error(&stored.evidence),
-    )?;
-    let Some(beyond) = &stored.beyond else {
+    let error = basis_error(&stored.evidence);
+    let solver = RowSolver::new(Arc::new(stored.model), settings.clone())?
+        .with_choices(stored.harmonics, error)?;
+    let Some(beyond) = stored.beyond else {
         return Ok(solver);
     };
-    let finer = with(&beyond.model, &beyond.harmonics, beyond.basis_error)?;
+    let finer = RowSolver::new(Arc::new(beyond.model), settings)?
+        .with_choices(beyond.harmonics, beyond.basis_error)?;
     let inexact = study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
     Ok(solver.with_beyond(finer, inexact))
 }

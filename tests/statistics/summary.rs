@@ -132,15 +132,19 @@ fn separation_is_a_warning_unless_harmonic_zero_and_even_ones_are_in() {
 }
 
 #[test]
-fn harmonics_auto_says_that_its_remainder_is_unscreened() {
+fn rows_beyond_their_tolerance_are_counted_with_the_largest_stated_error() {
     let auto = StudySummary::new(
         &context(Harmonics::Auto),
         &[record(0, load(9.0), 1.0, 0, 0.0)],
     );
-    assert!(auto.to_string().contains("has not been estimated"));
-    let linear = record(0, ContactCondition::Free, 1.0, 0, 0.0);
-    let linear = StudySummary::new(&context(Harmonics::Auto), &[linear]);
-    assert!(linear.warnings.is_empty());
+    assert_eq!(
+        auto.warnings,
+        [Warning::BeyondTolerance {
+            rows: 100,
+            planned: 400,
+            largest_stated_error: 0.021 + 1e-5 * 399.0,
+        }]
+    );
 }
 
 #[test]

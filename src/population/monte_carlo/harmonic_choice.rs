@@ -18,6 +18,24 @@ pub struct HarmonicChoice {
     pub remainder: Option<f64>,
 }
 
+/// Harmonics that intermittent contact excites first of all.
+const OF_SEPARATION: [u32; 2] = [0, 2];
+
+impl HarmonicChoice {
+    /// Whether the set has what contacts that separate need.
+    #[must_use]
+    pub fn admits_separation(&self) -> bool {
+        OF_SEPARATION.iter().all(|k| self.harmonics.contains(k))
+    }
+
+    /// Adds what contacts that separate need.
+    pub fn admit_separation(&mut self) {
+        self.harmonics.extend(OF_SEPARATION);
+        self.harmonics.sort_unstable();
+        self.harmonics.dedup();
+    }
+}
+
 /// Errors that a row takes over from its scenario, relative.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ScenarioError {

@@ -1,5 +1,6 @@
 //! One (scenario, pattern) -> one row, and the parallel driver over all of them.
 
+mod beyond;
 mod blocks;
 mod harmonic_choice;
 mod parallel;

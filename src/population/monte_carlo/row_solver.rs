@@ -1,7 +1,8 @@
 //! One (scenario, pattern) -> one row, and the tuned reference of a scenario.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
+use super::beyond::Beyond;
 use super::{
     ErrorTolerance, HarmonicChoice, ResponseRow, Scenario, ScenarioError, TunedReference,
     stated_error,
@@ -44,19 +45,9 @@ pub struct RowSolver {
     full: PointSettings,
     linear: PointSettings,
     /// Sets that differ from scenario to scenario; the others have that of the settings.
-    chosen: Vec<(HarmonicChoice, PointSettings)>,
+    pub(super) chosen: Vec<(HarmonicChoice, PointSettings)>,
     basis_error: f64,
-    beyond: Option<Beyond>,
-}
-
-/// What solves the rows that this solver is not good enough for.
-#[derive(Debug)]
-struct Beyond {
-    solver: Box<RowSolver>,
-    /// Whether rows beyond the harmonic tolerance go there, or only those that separate.
-    inexact_rows: bool,
-    /// Tuned peaks on that solver, for each of its chosen sets, found when first asked for.
-    tuned: Vec<OnceLock<TunedReference>>,
+    pub(super) beyond: Option<Beyond>,
 }
 
 /// Amplitudes of every blade at one frequency.
@@ -113,19 +104,6 @@ impl RowSolver {
         Ok(self)
     }
 
-    /// The same solver, whose rows are solved again by `solver` where contacts separate and, with
-    /// `inexact_rows`, where the harmonic error exceeds its tolerance, each with the tuned
-    /// reference of `solver`. Only scenarios for which `solver` has a chosen set are solved again.
-    #[must_use]
-    pub fn with_beyond(mut self, solver: Self, inexact_rows: bool) -> Self {
-        self.beyond = Some(Beyond {
-            tuned: solver.chosen.iter().map(|_| OnceLock::new()).collect(),
-            solver: Box::new(solver),
-            inexact_rows,
-        });
-        self
-    }
-
     /// The wheel's coordinates.
     #[must_use]
     pub fn basis(&self) -> &WheelBasis {
@@ -135,12 +113,6 @@ impl RowSolver {
     /// Harmonic sets chosen for single scenarios.
     pub fn choices(&self) -> impl Iterator<Item = &HarmonicChoice> {
         self.chosen.iter().map(|(choice, _)| choice)
-    }
-
-    /// The solver of the rows that this one is not good enough for.
-    #[must_use]
-    pub fn beyond(&self) -> Option<&Self> {
-        self.beyond.as_ref().map(|beyond| &*beyond.solver)
     }
 
     /// Peak of the tuned wheel, on one sector.
@@ -229,37 +201,6 @@ impl RowSolver {
                 self.solved_again(pattern, scenario, &row).unwrap_or(row)
             })
             .collect()
-    }
-
-    /// The row by the solver for what is beyond this one, if it has to be and can be.
-    fn solved_again(
-        &self,
-        pattern: &Pattern,
-        scenario: &Scenario,
-        row: &ResponseRow,
-    ) -> Option<ResponseRow> {
-        let beyond = self.beyond.as_ref()?;
-        let separates = row.separated_fraction.is_some_and(|share| share > 0.0);
-        let inexact = row.error_within_tolerance == Some(false);
-        if !separates && !(inexact && beyond.inexact_rows) {
-            return None;
-        }
-        let place = beyond.solver.chosen.iter().position(|(choice, _)| {
-            choice.engine_order == scenario.engine_order && choice.contact == scenario.contact
-        })?;
-        let tuned = beyond.tuned[place].get_or_init(|| beyond.solver.tuned(scenario));
-        let tuned = TunedReference {
-            scenario: scenario.index,
-            ..tuned.clone()
-        };
-        let again = beyond.solver.rows(pattern, &[(scenario, &tuned)]).pop()?;
-        let solved = again.status == Status::Ok && again.amplification_factor.is_some();
-        solved.then(|| ResponseRow {
-            nonlinear_solves: row.nonlinear_solves + again.nonlinear_solves,
-            newton_iterations: row.newton_iterations + again.newton_iterations,
-            retries: row.retries + again.retries,
-            ..again
-        })
     }
 
     /// Amplitude of every blade at each frequency, Hz; no pattern means the tuned wheel, of which

@@ -50,7 +50,7 @@ pub enum FrequencyBand {
 pub struct SolverOptions {
     /// Harmonic set. Default auto.
     pub harmonics: Harmonics,
-    /// Wanted relative error of the amplitude by the harmonics left out. Default 0.01.
+    /// Wanted relative error of the amplitude by the harmonics left out. Default 0.02.
     pub harmonic_tolerance: f64,
     /// What becomes of a row beyond it. Default flag.
     pub rows_beyond_tolerance: RowsBeyondTolerance,
@@ -73,7 +73,7 @@ impl Default for SolverOptions {
     fn default() -> Self {
         Self {
             harmonics: Harmonics::Auto,
-            harmonic_tolerance: 0.01,
+            harmonic_tolerance: 0.02,
             rows_beyond_tolerance: RowsBeyondTolerance::Flag,
             samples_per_period: 128,
             residual_tolerance: 1e-8,

@@ -1,5 +1,6 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
+mod anderson;
 mod convergence;
 mod damping;
 mod enlarged;
