@@ -135,8 +135,7 @@ fn mistuned(
     compared
 }
 
-/// At least 95 % of the actual errors are within the stated ones, and the settled estimates name
-/// the error to a third.
+/// At least 95 % of the actual errors are within the stated ones.
 fn judge(compared: &[Compared]) {
     let within = compared
         .iter()
@@ -149,7 +148,17 @@ fn judge(compared: &[Compared]) {
         .map(|one| one.line.as_str())
         .collect();
     assert!(20 * within >= 19 * compared.len(), "{beyond:#?}");
-    for one in compared.iter().filter(|one| one.errors.unsettled <= 1e-3) {
+}
+
+/// A settled estimate names the error of a tuned peak to a third. On a mistuned wheel another peak
+/// may become the highest one, which an estimate at one peak cannot know.
+fn judge_settled(compared: &[Compared]) {
+    let settled: Vec<&Compared> = compared
+        .iter()
+        .filter(|one| one.errors.unsettled <= 1e-3)
+        .collect();
+    assert!(settled.len() >= compared.len() / 2);
+    for one in settled {
         let estimate = one.errors.sampling + one.errors.harmonics;
         let miss = (estimate - one.actual).abs();
         assert!(miss <= 0.35 * one.actual.abs() + 1e-3, "{}", one.line);
@@ -197,6 +206,7 @@ fn stated_errors_of_tuned_peaks_hold_against_sixteen_harmonics() {
         &odd(),
     ));
     judge(&compared);
+    judge_settled(&compared);
 }
 
 #[test]
