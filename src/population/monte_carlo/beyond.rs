@@ -46,7 +46,7 @@ impl RowSolver {
         let beyond = self.beyond.as_ref()?;
         let separates = row.separated_fraction.is_some_and(|share| share > 0.0);
         let inexact = row.error_within_tolerance == Some(false);
-        if !separates && !(inexact && beyond.inexact_rows) {
+        if !(separates || inexact && beyond.inexact_rows) {
             return None;
         }
         let place = beyond.solver.chosen.iter().position(|(choice, _)| {

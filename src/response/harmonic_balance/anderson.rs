@@ -64,7 +64,9 @@ fn least_squares(columns: &[&[f64]], target: &[f64]) -> Vec<f64> {
         }
         let left = dot(&q, &q).sqrt();
         if left > DEPENDENT * length {
-            q.iter_mut().for_each(|q| *q /= left);
+            for q in &mut q {
+                *q /= left;
+            }
             triangle[j][j] = left;
             orthonormal[j] = Some(q);
         }

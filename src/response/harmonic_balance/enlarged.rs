@@ -230,7 +230,9 @@ impl Enlargement<'_> {
                 }
             }
         }
-        step.iter_mut().for_each(|step| *step = -*step);
+        for step in &mut step {
+            *step = -*step;
+        }
         step
     }
 
