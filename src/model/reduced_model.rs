@@ -127,6 +127,16 @@ impl ReducedModel {
             .sum()
     }
 
+    /// The basis in words; the whole space is no choice.
+    #[must_use]
+    pub fn basis_name(&self) -> String {
+        if self.whole_space {
+            "whole space".to_owned()
+        } else {
+            self.basis.to_string()
+        }
+    }
+
     /// Whether nodal diameter h is a standing wave (0 or N/2), with a real basis.
     #[must_use]
     pub fn is_standing(&self, h: usize) -> bool {

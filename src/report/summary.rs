@@ -8,7 +8,7 @@ use crate::population::statistics::{
     Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics,
 };
 use crate::population::table::ScenarioRecord;
-use crate::response::forced_response::{ContactCondition, Harmonics};
+use crate::response::forced_response::Harmonics;
 use crate::response::harmonic_balance::Status;
 
 /// What a summary says about the study itself.
@@ -260,12 +260,18 @@ fn warnings(
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
     warnings.extend(separation(&context.harmonics, records));
-    let friction = records
+    let beyond: u64 = records
         .iter()
-        .any(|record| matches!(record.scenario.contact, ContactCondition::Full { .. }));
-    if friction && context.harmonics == Harmonics::Auto {
-        warnings.push(Warning::HarmonicsUnscreened {
-            harmonics: "[1, 3]".to_owned(),
+        .map(|record| record.statistics.beyond_tolerance)
+        .sum();
+    if beyond > 0 {
+        let stated = records
+            .iter()
+            .filter_map(|record| record.statistics.largest_stated_error);
+        warnings.push(Warning::BeyondTolerance {
+            rows: beyond,
+            planned: rows.planned(),
+            largest_stated_error: stated.fold(0.0, f64::max),
         });
     }
     warnings.extend(context.basis.warnings());
@@ -289,11 +295,21 @@ fn warnings(
     warnings
 }
 
-/// Separation needs harmonic 0 and even harmonics.
+/// Separation needs harmonic 0 and even harmonics; an automatic set has them where the tuned wheel
+/// separates.
 fn separation(harmonics: &Harmonics, records: &[ScenarioRecord]) -> Option<Warning> {
+    let has_even = |set: &[u32]| set.contains(&0) && set.iter().any(|k| *k > 0 && k % 2 == 0);
     let even = match harmonics {
-        Harmonics::Auto => false,
-        Harmonics::Set(set) => set.contains(&0) && set.iter().any(|k| *k > 0 && k % 2 == 0),
+        Harmonics::Auto => records.iter().all(|record| {
+            let set: Vec<u32> = record
+                .tuned
+                .harmonics
+                .split('-')
+                .filter_map(|k| k.parse().ok())
+                .collect();
+            record.scenario.contact.normal_load_n().is_none() || has_even(&set)
+        }),
+        Harmonics::Set(set) => has_even(set),
     };
     let separated = |record: &ScenarioRecord| -> f64 {
         let tuned = record.tuned.separated_fraction.unwrap_or(0.0);

@@ -15,10 +15,14 @@ pub enum Warning {
         /// Largest share of separated pairs of a row, the tuned wheel included.
         largest_fraction: f64,
     },
-    /// The harmonics were chosen without looking at the ones left out.
-    HarmonicsUnscreened {
-        /// Set in use.
-        harmonics: String,
+    /// Rows whose sampling or harmonic error exceeds its tolerance.
+    BeyondTolerance {
+        /// Rows concerned.
+        rows: u64,
+        /// All rows.
+        planned: u64,
+        /// Largest stated error of a row.
+        largest_stated_error: f64,
     },
     /// The basis is less accurate than the study asks for.
     BasisError {
@@ -85,10 +89,17 @@ impl fmt::Display for Warning {
                 list(scenarios),
                 100.0 * largest_fraction
             ),
-            Self::HarmonicsUnscreened { harmonics } => write!(
+            Self::BeyondTolerance {
+                rows,
+                planned,
+                largest_stated_error,
+            } => write!(
                 f,
-                "harmonics \"auto\" means {harmonics} and what is left out has not been estimated; \
-                 compare with a larger set in solver.harmonics"
+                "{rows} of {planned} rows have a sampling or harmonic error beyond its tolerance \
+                 (stated errors up to {:.1} %); take solver.harmonics = \"auto\" with \
+                 solver.rows_beyond_tolerance = \"resolve\", a larger set, or accept it by a larger \
+                 solver.harmonic_tolerance",
+                100.0 * largest_stated_error
             ),
             Self::BasisError {
                 basis,

@@ -11,13 +11,15 @@ use crate::model::cyclic::nodal_diameter_of;
 use crate::model::reduction::{
     Basis, BasisChoice, ContactDisplacementErrors, Reduction, ReductionOptions, wanted_reach_hz,
 };
-use crate::population::monte_carlo::{RowSettings, RowSolver};
+use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
 use crate::response::forced_response::{ContactCondition, Peak};
 
 /// Numbers of stick modes of `stick_attachment` that are tried, ascending.
 const ATTACHMENT_LADDER: [usize; 5] = [4, 8, 14, 20, 28];
 /// Numbers of stick and of slide modes that are tried, ascending.
 const STICK_SLIDE_LADDER: [usize; 9] = [2, 3, 4, 6, 8, 10, 14, 20, 28];
+/// Loads of a study by which a basis is judged at most.
+const LOADS_JUDGED: usize = 8;
 /// Relative tolerance of the peaks that are compared.
 const PEAK_TOLERANCE: f64 = 1e-5;
 
@@ -61,18 +63,47 @@ pub struct BasisEvidence {
     pub tried: Vec<BasisError>,
 }
 
+/// The tuned peaks by which a basis is judged.
+#[derive(Debug, Clone, Copy)]
+pub struct Judged<'a> {
+    /// Settings of the rows.
+    pub settings: &'a RowSettings,
+    /// Engine orders.
+    pub engine_orders: &'a [u32],
+    /// Conditions, each under every engine order.
+    pub conditions: &'a [ContactCondition],
+    /// Harmonic sets that differ from that of the settings.
+    pub sets: &'a [HarmonicChoice],
+}
+
+impl<'a> Judged<'a> {
+    /// Every engine order with every condition.
+    fn each(self) -> impl Iterator<Item = (u32, ContactCondition)> + 'a {
+        self.engine_orders.iter().flat_map(move |&engine_order| {
+            let conditions = self.conditions.iter();
+            conditions.map(move |&condition| (engine_order, condition))
+        })
+    }
+
+    /// Harmonic set of one engine order and condition.
+    fn harmonics(self, engine_order: u32, condition: ContactCondition) -> &'a [u32] {
+        self.sets
+            .iter()
+            .find(|set| set.engine_order == engine_order && set.contact == condition)
+            .map_or(&self.settings.harmonics, |set| &set.harmonics)
+    }
+}
+
 /// Chooses the basis for `options` by the tuned nonlinear peak on one sector, against the whole
-/// Craig-Bampton sector with every contact dof, under the given engine orders and conditions, and
-/// by the contact displacement that it can follow in every nodal diameter.
+/// Craig-Bampton sector with every contact dof, under the given engine orders and conditions, each
+/// with its harmonic set, and by the contact displacement that it can follow in every nodal diameter.
 ///
 /// # Errors
 /// If a mass or stiffness is not positive definite.
 pub fn choose_basis(
     reduction: &Reduction<'_>,
     options: &ReductionOptions,
-    settings: &RowSettings,
-    engine_orders: &[u32],
-    conditions: &[ContactCondition],
+    judged: Judged<'_>,
 ) -> Result<(BasisChoice, BasisEvidence), PipelineError> {
     if reduction.is_whole_space() {
         let evidence = BasisEvidence {
@@ -83,12 +114,12 @@ pub fn choose_basis(
         return Ok((BasisChoice::CraigBampton, evidence));
     }
     let whole = Arc::new(reduction.tuned(BasisChoice::CraigBampton)?);
-    let reference = Peaks::of(Arc::clone(&whole), settings, engine_orders, conditions)?;
-    let motions = reference.contact_motions(&whole, settings, engine_orders, conditions)?;
+    let reference = Peaks::of(Arc::clone(&whole), judged)?;
+    let motions = reference.contact_motions(&whole, judged)?;
     let mut tried: Vec<(BasisChoice, BasisError)> = Vec::new();
     for choice in candidates(reduction, options) {
         let model = Arc::new(reduction.tuned(choice)?);
-        let peaks = Peaks::of(Arc::clone(&model), settings, engine_orders, conditions)?;
+        let peaks = Peaks::of(Arc::clone(&model), judged)?;
         let own = BasisError {
             basis: choice.to_string(),
             vectors: vectors(reduction, choice),
@@ -117,7 +148,7 @@ pub fn choose_basis(
         choice,
         BasisEvidence {
             whole_space: false,
-            craig_bampton_reach: reference.reach(reduction, settings, engine_orders, conditions),
+            craig_bampton_reach: reference.reach(reduction, judged),
             tried: tried.into_iter().map(|(_, own)| own).collect(),
         },
     ))
@@ -177,17 +208,13 @@ fn largest_displacement_error(
 struct Peaks(Vec<Peak>);
 
 impl Peaks {
-    fn of(
-        model: Arc<ReducedModel>,
-        settings: &RowSettings,
-        engine_orders: &[u32],
-        conditions: &[ContactCondition],
-    ) -> Result<Self, PipelineError> {
-        let mut settings = settings.clone();
+    fn of(model: Arc<ReducedModel>, judged: Judged<'_>) -> Result<Self, PipelineError> {
+        let mut settings = judged.settings.clone();
         settings.solver.peak_tolerance = PEAK_TOLERANCE;
-        let solver = RowSolver::new(model, settings)?;
+        let solver = RowSolver::new(model, settings)?.with_choices(judged.sets.to_vec(), 0.0)?;
         Ok(Self(
-            each(engine_orders, conditions)
+            judged
+                .each()
                 .map(|(engine_order, condition)| solver.tuned_peak(engine_order, condition))
                 .collect(),
         ))
@@ -205,24 +232,21 @@ impl Peaks {
     }
 
     /// How far the fixed-interface modes reach beyond the harmonics of the peaks.
-    fn reach(
-        &self,
-        reduction: &Reduction<'_>,
-        settings: &RowSettings,
-        engine_orders: &[u32],
-        conditions: &[ContactCondition],
-    ) -> Option<f64> {
+    fn reach(&self, reduction: &Reduction<'_>, judged: Judged<'_>) -> Option<f64> {
         let models = reduction.models();
         let sectors = reduction.sectors();
-        each(engine_orders, conditions)
+        judged
+            .each()
             .zip(&self.0)
             .filter_map(|((engine_order, condition), peak)| {
-                let linear = condition.normal_load_n().is_none();
-                Some((engine_order, linear, peak.point.as_ref()?.frequency_hz))
+                Some((engine_order, condition, peak.point.as_ref()?.frequency_hz))
             })
-            .flat_map(|(engine_order, linear, frequency_hz)| {
-                let harmonics = settings.harmonics.iter().copied();
+            .flat_map(|(engine_order, condition, frequency_hz)| {
+                let linear = condition.normal_load_n().is_none();
+                let harmonics = judged.harmonics(engine_order, condition);
                 harmonics
+                    .iter()
+                    .copied()
                     .filter(move |&k| k == 1 || (k > 1 && !linear))
                     .filter_map(move |k| {
                         let h = nodal_diameter_of(k, engine_order, sectors).index;
@@ -237,16 +261,14 @@ impl Peaks {
     fn contact_motions<'a>(
         &self,
         model: &'a ReducedModel,
-        settings: &'a RowSettings,
-        engine_orders: &[u32],
-        conditions: &[ContactCondition],
+        judged: Judged<'a>,
     ) -> Result<Vec<ContactMotion<'a>>, PipelineError> {
         let mut motions = Vec::new();
-        for ((engine_order, condition), peak) in each(engine_orders, conditions).zip(&self.0) {
-            let harmonics = &settings.harmonics;
+        for ((engine_order, condition), peak) in judged.each().zip(&self.0) {
+            let harmonics = judged.harmonics(engine_order, condition);
             motions.extend(ContactMotion::of_peak(
                 model,
-                settings,
+                judged.settings,
                 harmonics,
                 engine_order,
                 condition,
@@ -257,20 +279,8 @@ impl Peaks {
     }
 }
 
-/// Every engine order with every condition.
-fn each<'a>(
-    engine_orders: &'a [u32],
-    conditions: &'a [ContactCondition],
-) -> impl Iterator<Item = (u32, ContactCondition)> + 'a {
-    engine_orders.iter().flat_map(|&engine_order| {
-        conditions
-            .iter()
-            .map(move |&condition| (engine_order, condition))
-    })
-}
-
-/// The conditions by which a basis is judged: lowest, middle and highest load of the study, and
-/// every linear limit in it.
+/// The conditions by which a basis is judged: the loads of the study, or [`LOADS_JUDGED`] spread over
+/// them from the lowest to the highest, and every linear limit in it.
 #[must_use]
 pub fn judged_conditions(conditions: &[ContactCondition]) -> Vec<ContactCondition> {
     let mut loads: Vec<f64> = conditions
@@ -282,10 +292,9 @@ pub fn judged_conditions(conditions: &[ContactCondition]) -> Vec<ContactConditio
     let mut judged: Vec<ContactCondition> = match loads.as_slice() {
         [] => Vec::new(),
         loads => {
-            let mut places = vec![0, loads.len() / 2, loads.len() - 1];
-            places.dedup();
-            places
-                .into_iter()
+            let count = loads.len().min(LOADS_JUDGED);
+            (0..count)
+                .map(|i| i * (loads.len() - 1) / (count - 1).max(1))
                 .map(|place| ContactCondition::Full {
                     normal_load_n: loads[place],
                 })

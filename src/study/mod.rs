@@ -6,6 +6,7 @@ mod digest;
 mod engine;
 mod error;
 mod full_model;
+mod harmonic_choice;
 mod mistuning;
 mod peak_audit;
 mod pipeline;

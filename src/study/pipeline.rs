@@ -315,6 +315,11 @@ impl<'a> Work<'a> {
                     mean_friction_circumferential_n: None,
                     mean_friction_axial_n: None,
                     shortcut: "none".to_owned(),
+                    sampling_error: None,
+                    harmonic_error: None,
+                    stated_error: None,
+                    error_within_tolerance: None,
+                    basis: String::new(),
                 })
                 .collect()
         })

@@ -8,7 +8,7 @@ use serde::de::{self, Deserializer, SeqAccess, Visitor};
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::table::Compression;
-use crate::response::forced_response::AmplitudeMeasure;
+use crate::response::forced_response::{AmplitudeMeasure, RowsBeyondTolerance};
 use crate::response::friction::{ContactLaw, Ring};
 use crate::response::mistuning::Projection;
 
@@ -138,6 +138,8 @@ pub(super) struct RawSweep {
 #[serde(deny_unknown_fields)]
 pub(super) struct RawSolver {
     pub harmonics: Option<RawHarmonics>,
+    pub harmonic_tolerance: Option<f64>,
+    pub rows_beyond_tolerance: Option<RowsBeyondTolerance>,
     pub samples_per_period: Option<usize>,
     pub residual_tolerance: Option<f64>,
     pub peak_tolerance: Option<f64>,

@@ -6,23 +6,26 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::basis_choice::{BasisEvidence, choose_basis, judged_conditions};
+use super::basis_choice::{BasisEvidence, Judged, choose_basis, judged_conditions};
+use super::harmonic_choice::choose_harmonics;
 use super::{Engine, EngineSource, MistuningSource, PipelineError, Study};
-use crate::model::reduction::{ContactStiffness, Reduction};
+use crate::model::reduction::{Basis, BasisChoice, ContactStiffness, Reduction, ReductionOptions};
 use crate::model::sector::SectorModel;
 use crate::model::{ReducedModel, read_cached, reduction_digest, write_cached};
 use crate::population::monte_carlo::{
-    ResponseRow, RowSettings, RowSolver, Scenario, TunedReference,
+    HarmonicChoice, ResponseRow, RowSettings, RowSolver, Scenario, TunedReference,
 };
 use crate::population::table::CurvePoint;
 use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
-use crate::response::forced_response::{ContactCondition, Harmonics, ResponseTrace, SearchPlan};
+use crate::response::forced_response::{Harmonics, ResponseTrace, RowsBeyondTolerance, SearchPlan};
 use crate::response::friction::{ContactLaw, ContactOptions, PairParameters, Ring};
-use crate::response::harmonic_balance::Status;
+use crate::response::harmonic_balance::{Status, TransformError};
 use crate::response::mistuning::Pattern;
 
-/// Harmonics that `auto` stands for where there is friction; the remainder is not screened.
-const AUTOMATIC_HARMONICS: [u32; 2] = [1, 3];
+/// Harmonics that an automatic set begins with.
+const FIRST_HARMONICS: [u32; 1] = [1];
+/// Share of the harmonic tolerance by which the set for rows beyond it is chosen.
+const BEYOND_TOLERANCE: f64 = 0.25;
 /// Standard deviation from which on sensitivity vectors are added by default.
 const LARGE_MISTUNING: f64 = 0.05;
 /// Sensitivity vectors added by default to a large mistuning.
@@ -47,6 +50,16 @@ struct ReducedEngine {
 struct Stored {
     model: ReducedModel,
     evidence: BasisEvidence,
+    harmonics: Vec<HarmonicChoice>,
+    beyond: Option<StoredBeyond>,
+}
+
+/// The model and sets for rows that the others are not good enough for.
+#[derive(Serialize, Deserialize)]
+struct StoredBeyond {
+    model: ReducedModel,
+    basis_error: f64,
+    harmonics: Vec<HarmonicChoice>,
 }
 
 impl EngineSource for ReducedEngineSource {
@@ -59,12 +72,14 @@ impl EngineSource for ReducedEngineSource {
         let settings = row_settings(study);
         let stiffness = contact_stiffness(study.contact.as_ref());
         let sensitivity = sensitivity_vectors(study);
-        let conditions = judged_conditions(&study.contacts);
-        // Everything the reduced model depends on besides the sector: with an automatic basis
-        // also what its error is judged by.
+        // Everything the stored models and sets depend on besides the sector: also what their
+        // errors are judged by.
         let key = format!(
-            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {conditions:?}",
-            study.reduction, study.mistuning.cantilever_mode_count, study.engine_orders
+            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?}",
+            study.reduction,
+            study.mistuning.cantilever_mode_count,
+            study.engine_orders,
+            study.contacts
         );
         let digest = reduction_digest(model, &key);
         let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
@@ -77,25 +92,15 @@ impl EngineSource for ReducedEngineSource {
                 study.reduction.craig_bampton_modes,
                 sensitivity,
             )?;
-            let (choice, evidence) = choose_basis(
-                &reduction,
-                &study.reduction,
-                &settings,
-                &study.engine_orders,
-                &conditions,
-            )?;
-            let stored = Stored {
-                model: reduction.reduce(choice, study.mistuning.cantilever_mode_count)?,
-                evidence,
-            };
+            let stored = reduced(study, &reduction, &settings)?;
             if let Some(folder) = cache {
                 write_cached(folder, &digest, &stored)?;
             }
             stored
         };
         Ok(Box::new(ReducedEngine {
-            solver: RowSolver::new(Arc::new(stored.model), settings)?,
-            evidence: stored.evidence,
+            evidence: stored.evidence.clone(),
+            solver: solver_of(study, stored, settings)?,
             wanted_error: study.reduction.error,
             digest,
             sector_dofs: model.dofs.len(),
@@ -173,7 +178,11 @@ impl Engine for ReducedEngine {
     fn chosen_settings(&self) -> Value {
         json!({
             "basis": self.solver.basis().model().basis.to_string(),
-            "harmonics": self.solver.harmonics(),
+            "harmonics": self.solver.choices().collect::<Vec<_>>(),
+            "beyond": self.solver.beyond().map(|beyond| json!({
+                "basis": beyond.basis().model().basis_name(),
+                "harmonics": beyond.choices().collect::<Vec<_>>(),
+            })),
         })
     }
 
@@ -243,16 +252,114 @@ impl Engine for ReducedEngine {
     }
 }
 
+/// Harmonics, basis and reduced model of a study, and those for rows beyond them: harmonics by
+/// the full contact model, then the basis that carries these harmonics.
+fn reduced(
+    study: &Study,
+    reduction: &Reduction<'_>,
+    settings: &RowSettings,
+) -> Result<Stored, PipelineError> {
+    let automatic = study.solver.harmonics == Harmonics::Auto;
+    let tolerance = automatic.then_some(study.solver.harmonic_tolerance);
+    let full = Arc::new(reduction.reduce(BasisChoice::CraigBampton, None)?);
+    let sets = |first: &[u32], tolerance| {
+        choose_harmonics(
+            &full,
+            settings,
+            &study.engine_orders,
+            &study.contacts,
+            first,
+            tolerance,
+        )
+    };
+    let conditions = judged_conditions(&study.contacts);
+    let basis = |options: &ReductionOptions, sets: &[HarmonicChoice]| {
+        let judged = Judged {
+            settings,
+            engine_orders: &study.engine_orders,
+            conditions: &conditions,
+            sets,
+        };
+        choose_basis(reduction, options, judged)
+    };
+    let modes = study.mistuning.cantilever_mode_count;
+    let harmonics = sets(&settings.harmonics, tolerance)?;
+    let (choice, evidence) = basis(&study.reduction, &harmonics)?;
+    let follows = study.reduction.basis == Basis::Auto && study.reduction.stick_modes.is_none();
+    let by_modes = matches!(choice, BasisChoice::StickSlide { .. }) && follows;
+    let resolves = automatic && study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
+    let separates = study
+        .contact
+        .as_ref()
+        .is_some_and(|contact| contact.law.has_variable_load());
+    let on_separation = separates && (by_modes || automatic);
+    let beyond = if study.has_friction() && (on_separation || resolves) {
+        let mut harmonics = if resolves {
+            let larger = tolerance.map(|tolerance| BEYOND_TOLERANCE * tolerance);
+            sets(&settings.harmonics, larger)?
+        } else {
+            harmonics.clone()
+        };
+        if automatic && separates {
+            harmonics
+                .iter_mut()
+                .for_each(HarmonicChoice::admit_separation);
+        }
+        let options = ReductionOptions {
+            basis: if by_modes {
+                Basis::StickAttachment
+            } else {
+                study.reduction.basis
+            },
+            ..study.reduction.clone()
+        };
+        let (choice, evidence) = basis(&options, &harmonics)?;
+        Some(StoredBeyond {
+            model: reduction.reduce(choice, modes)?,
+            basis_error: basis_error(&evidence),
+            harmonics,
+        })
+    } else {
+        None
+    };
+    Ok(Stored {
+        model: reduction.reduce(choice, modes)?,
+        evidence,
+        harmonics,
+        beyond,
+    })
+}
+
+/// Measured error of the basis that was taken; 0 where nothing was left out.
+fn basis_error(evidence: &BasisEvidence) -> f64 {
+    evidence
+        .tried
+        .last()
+        .map_or(0.0, |tried| tried.error.unwrap_or(f64::INFINITY))
+}
+
+fn solver_of(
+    study: &Study,
+    stored: Stored,
+    settings: RowSettings,
+) -> Result<RowSolver, TransformError> {
+    let error = basis_error(&stored.evidence);
+    let solver = RowSolver::new(Arc::new(stored.model), settings.clone())?
+        .with_choices(stored.harmonics, error)?;
+    let Some(beyond) = stored.beyond else {
+        return Ok(solver);
+    };
+    let finer = RowSolver::new(Arc::new(beyond.model), settings)?
+        .with_choices(beyond.harmonics, beyond.basis_error)?;
+    let inexact = study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
+    Ok(solver.with_beyond(finer, inexact))
+}
+
 /// The physics of a row as the study states it.
 pub(super) fn row_settings(study: &Study) -> RowSettings {
-    let friction = study
-        .contacts
-        .iter()
-        .any(|contact| matches!(contact, ContactCondition::Full { .. }));
     let harmonics = match &study.solver.harmonics {
         Harmonics::Set(set) => set.clone(),
-        Harmonics::Auto if friction || study.contact.is_some() => AUTOMATIC_HARMONICS.to_vec(),
-        Harmonics::Auto => vec![1],
+        Harmonics::Auto => FIRST_HARMONICS.to_vec(),
     };
     RowSettings {
         harmonics,

@@ -135,6 +135,8 @@ impl Study {
                     Harmonics::Auto => json!("auto"),
                     Harmonics::Set(harmonics) => json!(harmonics),
                 },
+                "harmonic_tolerance": self.solver.harmonic_tolerance,
+                "rows_beyond_tolerance": self.solver.rows_beyond_tolerance,
                 "samples_per_period": self.solver.samples_per_period,
                 "residual_tolerance": self.solver.residual_tolerance,
                 "peak_tolerance": self.solver.peak_tolerance,

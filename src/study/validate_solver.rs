@@ -19,7 +19,17 @@ pub(super) fn solver(check: &mut Check, raw: RawSolver) -> SolverOptions {
     let residual = raw.residual_tolerance.unwrap_or(default.residual_tolerance);
     let peak = raw.peak_tolerance.unwrap_or(default.peak_tolerance);
     let instants = raw.time_samples.unwrap_or(default.time_samples);
+    let left_out = raw.harmonic_tolerance.unwrap_or(default.harmonic_tolerance);
     SolverOptions {
+        harmonic_tolerance: check.within(
+            "solver.harmonic_tolerance",
+            left_out,
+            (1e-6..=1.0).contains(&left_out),
+            "a number from 1e-6 to 1",
+        ),
+        rows_beyond_tolerance: raw
+            .rows_beyond_tolerance
+            .unwrap_or(default.rows_beyond_tolerance),
         samples_per_period: check.within(
             "solver.samples_per_period",
             samples,

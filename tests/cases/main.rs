@@ -7,6 +7,7 @@ mod full_model;
 mod lumped24;
 mod one_dof;
 mod reduction_error;
+mod stated_errors;
 mod support;
 mod validation;
 mod wheels;

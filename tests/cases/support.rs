@@ -105,6 +105,11 @@ impl Case {
         self.engine.model_report().basis
     }
 
+    /// Settings chosen where the study says `auto`.
+    pub fn chosen(&self) -> serde_json::Value {
+        self.engine.chosen_settings()
+    }
+
     pub fn pattern(&self, id: u32, standard_deviation: Option<f64>) -> Pattern {
         self.patterns.pattern(id, standard_deviation).unwrap()
     }

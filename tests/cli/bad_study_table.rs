@@ -311,6 +311,16 @@ pub const CASES: &[Case] = &[
     ),
     (
         "[1, 3]",
+        "[1]\nharmonic_tolerance = 2",
+        &["solver.harmonic_tolerance = 2", "1e-6"],
+    ),
+    (
+        "[1, 3]",
+        "[1]\nrows_beyond_tolerance = \"drop\"",
+        &["rows_beyond_tolerance", "resolve"],
+    ),
+    (
+        "[1, 3]",
         "[1]\nresidual_tolerance = 0",
         &["solver.residual_tolerance = 0", "1e-13"],
     ),

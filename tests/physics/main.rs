@@ -5,6 +5,7 @@
 mod bounds;
 mod contact;
 mod continuation;
+mod error_columns;
 mod extremes;
 mod finite_element;
 mod fuzz;

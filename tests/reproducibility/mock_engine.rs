@@ -62,6 +62,8 @@ impl Engine for MockEngine {
             frequency_hz: Some(500.0),
             separated_fraction: None,
             slipping_fraction: None,
+            harmonics: "1".to_owned(),
+            errors: None,
         }
     }
 
@@ -101,6 +103,11 @@ impl Engine for MockEngine {
                     mean_friction_circumferential_n: None,
                     mean_friction_axial_n: None,
                     shortcut: "none".to_owned(),
+                    sampling_error: None,
+                    harmonic_error: None,
+                    stated_error: None,
+                    error_within_tolerance: None,
+                    basis: "whole space".to_owned(),
                 }
             })
             .collect()

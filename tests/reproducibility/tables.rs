@@ -56,6 +56,11 @@ fn row(pattern: u32, scenario: usize) -> ResponseRow {
         mean_friction_circumferential_n: good.then_some(-1.5),
         mean_friction_axial_n: good.then_some(0.25),
         shortcut: "none".to_owned(),
+        sampling_error: good.then_some(-2e-4),
+        harmonic_error: None,
+        stated_error: good.then_some(0.013),
+        error_within_tolerance: good.then_some(pattern.is_multiple_of(2)),
+        basis: "stick_slide 4+4".to_owned(),
     }
 }
 
@@ -111,7 +116,8 @@ fn columns_are_the_documented_ones_in_order() {
                       status, peak_amplitude_m, peak_frequency_hz, peak_blade, amplification_factor, \
                       peak_bracketed, harmonics, nonlinear_solves, newton_iterations, residual, \
                       slipping_fraction, separated_fraction, shortcut, retries, mean_friction_circumferential_n, \
-                      mean_friction_axial_n";
+                      mean_friction_axial_n, \
+                       sampling_error, harmonic_error, stated_error, error_within_tolerance, basis";
     assert_eq!(names.join(", "), documented);
 }
 

@@ -50,6 +50,11 @@ fn record(
             mean_friction_circumferential_n: None,
             mean_friction_axial_n: None,
             shortcut: "none".to_owned(),
+            sampling_error: good.then_some(1e-4),
+            harmonic_error: good.then_some(-2e-2),
+            stated_error: good.then_some(0.021 + 1e-5 * f64::from(i)),
+            error_within_tolerance: good.then_some(true),
+            basis: "whole space".to_owned(),
         });
     }
     ScenarioRecord {
@@ -66,6 +71,8 @@ fn record(
             frequency_hz: Some(500.0),
             separated_fraction: Some(0.0),
             slipping_fraction: Some(1.0),
+            harmonics: "1-3".to_owned(),
+            errors: None,
         },
         statistics: rows.finish(),
     }
@@ -127,15 +134,19 @@ fn separation_is_a_warning_unless_harmonic_zero_and_even_ones_are_in() {
 }
 
 #[test]
-fn harmonics_auto_says_that_its_remainder_is_unscreened() {
-    let auto = StudySummary::new(
-        &context(Harmonics::Auto),
-        &[record(0, load(9.0), 1.0, 0, 0.0)],
+fn rows_beyond_their_tolerance_are_counted_with_the_largest_stated_error() {
+    let mut inexact = record(0, load(9.0), 1.0, 0, 0.0);
+    assert_eq!(inexact.statistics.beyond_tolerance, 0);
+    inexact.statistics.beyond_tolerance = 100;
+    let auto = StudySummary::new(&context(Harmonics::Auto), &[inexact]);
+    assert_eq!(
+        auto.warnings,
+        [Warning::BeyondTolerance {
+            rows: 100,
+            planned: 400,
+            largest_stated_error: 0.021 + 1e-5 * 399.0,
+        }]
     );
-    assert!(auto.to_string().contains("has not been estimated"));
-    let linear = record(0, ContactCondition::Free, 1.0, 0, 0.0);
-    let linear = StudySummary::new(&context(Harmonics::Auto), &[linear]);
-    assert!(linear.warnings.is_empty());
 }
 
 #[test]

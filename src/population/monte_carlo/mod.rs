@@ -1,6 +1,9 @@
 //! One (scenario, pattern) -> one row, and the parallel driver over all of them.
 
+mod beyond;
 mod blocks;
+mod curves;
+mod harmonic_choice;
 mod parallel;
 mod row;
 mod row_solver;
@@ -8,8 +11,10 @@ mod scenario;
 mod sink;
 
 pub use blocks::{PatternBlock, block_size, plan_blocks};
+pub use curves::CurveResult;
+pub use harmonic_choice::{ErrorTolerance, HarmonicChoice, ScenarioError, stated_error};
 pub use parallel::solve_blocks;
 pub use row::{ResponseRow, TunedReference};
-pub use row_solver::{CurveResult, RowSettings, RowSolver, amplification_factor, harmonics_name};
+pub use row_solver::{RowSettings, RowSolver, amplification_factor, harmonics_name};
 pub use scenario::Scenario;
 pub use sink::{MemorySink, RowSink};

@@ -1,5 +1,6 @@
 //! One row of `responses.parquet`: what became of one (scenario, pattern).
 
+use crate::response::forced_response::ErrorEstimate;
 use crate::response::harmonic_balance::Status;
 
 /// Result of one pattern under one scenario. Values of a failed row are `None`.
@@ -41,6 +42,16 @@ pub struct ResponseRow {
     pub mean_friction_axial_n: Option<f64>,
     /// Shortcut used, or `"none"`.
     pub shortcut: String,
+    /// Relative change of the amplitude by one Newton correction at 4 times the samples.
+    pub sampling_error: Option<f64>,
+    /// Relative change of the amplitude by the harmonics up to 15 outside of the set.
+    pub harmonic_error: Option<f64>,
+    /// Bound on the relative error of the amplitude, see [`super::stated_error`].
+    pub stated_error: Option<f64>,
+    /// Whether sampling and harmonic error are within their tolerances.
+    pub error_within_tolerance: Option<bool>,
+    /// Basis of the reduced model that the row was solved on.
+    pub basis: String,
 }
 
 /// Peak of the tuned wheel of a scenario, the denominator of its amplification factors.
@@ -58,4 +69,8 @@ pub struct TunedReference {
     pub separated_fraction: Option<f64>,
     /// Share of slipping pairs at the peak.
     pub slipping_fraction: Option<f64>,
+    /// Harmonic set, like `"1-3"`.
+    pub harmonics: String,
+    /// Errors of the solution at the peak.
+    pub errors: Option<ErrorEstimate>,
 }

@@ -2,16 +2,23 @@
 
 use std::sync::Arc;
 
-use super::{ResponseRow, Scenario, TunedReference};
+use super::beyond::Beyond;
+use super::{
+    ErrorTolerance, HarmonicChoice, ResponseRow, Scenario, ScenarioError, TunedReference,
+    stated_error,
+};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
-    ContactCondition, Excited, FrequencyBand, LimitsWanted, Peak, Point, PointSettings,
-    PointSolver, ResponseTrace, SearchPlan, SolverOptions, Wheel, Window, mistuned_window, peak,
-    search_plan, tuned_span, wheel_force,
+    ContactCondition, ErrorEstimate, Excited, FrequencyBand, LimitsWanted, Peak, Point,
+    PointSettings, Screening, SolverOptions, Wheel, Window, estimate_errors, mistuned_window, peak,
+    screen, tuned_span, wheel_force,
 };
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{Damping, Status, TransformError};
 use crate::response::mistuning::{Deviations, Pattern, Projection, StructuralModes, WheelBasis};
+
+/// Tolerance of the sampling error, unless that of the peak is larger.
+const SAMPLING_TOLERANCE: f64 = 1e-3;
 
 /// What a study says about the physics of a row.
 #[derive(Debug, Clone)]
@@ -36,13 +43,14 @@ pub struct RowSettings {
 #[derive(Debug)]
 pub struct RowSolver {
     basis: WheelBasis,
-    settings: RowSettings,
+    pub(super) settings: RowSettings,
     full: PointSettings,
     linear: PointSettings,
+    /// Sets that differ from scenario to scenario; the others have that of the settings.
+    pub(super) chosen: Vec<(HarmonicChoice, PointSettings)>,
+    basis_error: f64,
+    pub(super) beyond: Option<Beyond>,
 }
-
-/// Amplitudes of every blade at one frequency.
-pub type CurveResult = (f64, Result<Vec<f64>, Status>);
 
 impl RowSolver {
     /// A solver for `model`.
@@ -64,7 +72,36 @@ impl RowSolver {
             linear: points(&[1])?,
             basis: WheelBasis::new(model),
             settings,
+            chosen: Vec::new(),
+            basis_error: 0.0,
+            beyond: None,
         })
+    }
+
+    /// The same solver with the given sets, and the measured error of its basis.
+    ///
+    /// # Errors
+    /// If the samples per period cannot tell the harmonics apart.
+    pub fn with_choices(
+        mut self,
+        choices: Vec<HarmonicChoice>,
+        basis_error: f64,
+    ) -> Result<Self, TransformError> {
+        let settings = &self.settings;
+        self.chosen = choices
+            .into_iter()
+            .map(|choice| {
+                let points = PointSettings::new(
+                    &settings.solver,
+                    &choice.harmonics,
+                    settings.contact,
+                    self.basis.model().contact.clone(),
+                )?;
+                Ok((choice, points.with_ring(settings.ring)))
+            })
+            .collect::<Result<_, TransformError>>()?;
+        self.basis_error = basis_error;
+        Ok(self)
     }
 
     /// The wheel's coordinates.
@@ -73,10 +110,9 @@ impl RowSolver {
         &self.basis
     }
 
-    /// Harmonic set under the contact law.
-    #[must_use]
-    pub fn harmonics(&self) -> &[u32] {
-        &self.settings.harmonics
+    /// Harmonic sets chosen for single scenarios.
+    pub fn choices(&self) -> impl Iterator<Item = &HarmonicChoice> {
+        self.chosen.iter().map(|(choice, _)| choice)
     }
 
     /// Peak of the tuned wheel, on one sector.
@@ -90,16 +126,42 @@ impl RowSolver {
         peak(
             &excited,
             contact,
-            self.points(contact),
+            self.points(engine_order, contact),
             window,
             self.settings.solver.peak_tolerance,
         )
     }
 
+    /// Peak of the tuned wheel with its errors and the effects of the harmonics left out; none
+    /// where there is no peak, or it cannot be corrected.
+    #[must_use]
+    pub fn tuned_screening(
+        &self,
+        engine_order: u32,
+        contact: ContactCondition,
+    ) -> (Peak, Option<Screening>) {
+        let found = self.tuned_peak(engine_order, contact);
+        let point = found.point.as_ref().filter(|_| found.status == Status::Ok);
+        let screening = point.and_then(|point| {
+            let points = self.points(engine_order, contact);
+            let of = |harmonics: &[u32]| self.tuned_waves(engine_order, contact, harmonics);
+            let enlarged = of(points.errors().harmonics());
+            screen(
+                &of(points.harmonics()),
+                contact,
+                points,
+                point,
+                &enlarged.blocks,
+            )
+        });
+        (found, screening)
+    }
+
     /// Tuned reference of a scenario.
     #[must_use]
     pub fn tuned(&self, scenario: &Scenario) -> TunedReference {
-        let found = self.tuned_peak(scenario.engine_order, scenario.contact);
+        let (found, screening) = self.tuned_screening(scenario.engine_order, scenario.contact);
+        let points = self.points(scenario.engine_order, scenario.contact);
         let point = found.point.as_ref().filter(|_| found.status == Status::Ok);
         TunedReference {
             scenario: scenario.index,
@@ -108,6 +170,8 @@ impl RowSolver {
             frequency_hz: point.map(|point| point.frequency_hz),
             separated_fraction: point.map(|point| point.shares.separated),
             slipping_fraction: point.map(|point| point.shares.slipping),
+            harmonics: harmonics_name(points.harmonics()),
+            errors: screening.map(|screening| screening.errors),
         }
     }
 
@@ -133,113 +197,81 @@ impl RowSolver {
                     }
                     Err(status) => Err(*status),
                 };
-                self.row(pattern, scenario, tuned, found)
+                let row = self.row(pattern, scenario, tuned, found);
+                self.solved_again(pattern, scenario, &row).unwrap_or(row)
             })
             .collect()
     }
 
-    /// Amplitude of every blade at each frequency, Hz; no pattern means the tuned wheel, of which
-    /// one sector stands for all.
-    ///
-    /// # Errors
-    /// The status of a pattern that cannot be applied.
-    pub fn curve(
+    fn chosen(
         &self,
         engine_order: u32,
         contact: ContactCondition,
-        pattern: Option<&Pattern>,
-        frequencies_hz: &[f64],
-    ) -> Result<Vec<CurveResult>, Status> {
-        let excited = match pattern {
-            None => self.tuned_excited(engine_order, contact),
-            Some(pattern) => {
-                let (modes, wheel) = self.mistuned(pattern, LimitsWanted::default())?;
-                self.wheel_excited(&modes, &wheel, engine_order, contact)
-            }
-        };
-        let mut solver = PointSolver::new(&excited, contact, self.points(contact));
-        let sectors = self.basis.model().sectors;
-        Ok(frequencies_hz
+    ) -> Option<&(HarmonicChoice, PointSettings)> {
+        self.chosen
             .iter()
-            .map(|&frequency| {
-                let amplitudes =
-                    solver
-                        .solve(frequency)
-                        .map(|point| match point.amplitudes_m.as_slice() {
-                            [one] => vec![*one; sectors],
-                            all => all.to_vec(),
-                        });
-                (frequency, amplitudes)
-            })
-            .collect())
+            .find(|(choice, _)| choice.engine_order == engine_order && choice.contact == contact)
     }
 
-    /// The curve between the first and the last frequency, followed upwards and downwards with the
-    /// frequencies, Hz, ascending, solved for exactly; no pattern means the tuned wheel.
-    ///
-    /// # Errors
-    /// The status of a pattern that cannot be applied.
-    pub fn traces(
-        &self,
-        engine_order: u32,
-        contact: ContactCondition,
-        pattern: Option<&Pattern>,
-        frequencies_hz: &[f64],
-    ) -> Result<[ResponseTrace; 2], Status> {
-        let excited = match pattern {
-            None => self.tuned_excited(engine_order, contact),
-            Some(pattern) => {
-                let (modes, wheel) = self.mistuned(pattern, LimitsWanted::of(&[contact]))?;
-                self.wheel_excited(&modes, &wheel, engine_order, contact)
-            }
-        };
-        let (Some(&first), Some(&last)) = (frequencies_hz.first(), frequencies_hz.last()) else {
-            return Err(Status::SweepIncomplete);
-        };
-        let sectors = self.basis.model().sectors;
-        Ok([(first, last), (last, first)].map(|(start, stop)| {
-            let mut solver = PointSolver::new(&excited, contact, self.points(contact));
-            let mut trace = solver.trace(start, stop, frequencies_hz);
-            for point in &mut trace.points {
-                if let [one] = point.point.amplitudes_m[..] {
-                    point.point.amplitudes_m = vec![one; sectors];
-                }
-            }
-            trace
-        }))
-    }
-
-    fn points(&self, contact: ContactCondition) -> &PointSettings {
-        match contact {
-            ContactCondition::Full { .. } => &self.full,
+    pub(super) fn points(&self, engine_order: u32, contact: ContactCondition) -> &PointSettings {
+        match (contact, self.chosen(engine_order, contact)) {
+            (ContactCondition::Full { .. }, Some((_, points))) => points,
+            (ContactCondition::Full { .. }, None) => &self.full,
             _ => &self.linear,
         }
     }
 
-    fn tuned_excited(&self, engine_order: u32, contact: ContactCondition) -> Excited {
+    /// Errors that the rows of a scenario take over from it; a linear limit has no harmonics.
+    fn scenario_error(&self, scenario: &Scenario) -> ScenarioError {
+        let choice = self.chosen(scenario.engine_order, scenario.contact);
+        ScenarioError {
+            basis: self.basis_error,
+            // A remainder that could not be measured bounds nothing.
+            harmonics: choice.map_or(0.0, |(choice, _)| choice.remainder.unwrap_or(f64::INFINITY)),
+        }
+    }
+
+    fn tolerance(&self) -> ErrorTolerance {
+        ErrorTolerance {
+            sampling: self.settings.solver.peak_tolerance.max(SAMPLING_TOLERANCE),
+            harmonics: self.settings.solver.harmonic_tolerance,
+        }
+    }
+
+    pub(super) fn tuned_excited(&self, engine_order: u32, contact: ContactCondition) -> Excited {
+        let harmonics = self.points(engine_order, contact).harmonics();
+        self.tuned_waves(engine_order, contact, harmonics)
+    }
+
+    fn tuned_waves(
+        &self,
+        engine_order: u32,
+        contact: ContactCondition,
+        harmonics: &[u32],
+    ) -> Excited {
         Excited::tuned(
             self.basis.model(),
             engine_order,
             self.settings.amplitude_n,
             self.settings.damping,
-            self.points(contact).harmonics(),
+            harmonics,
             LimitsWanted::of(&[contact]),
         )
     }
 
-    fn wheel_excited(
+    pub(super) fn wheel_excited(
         &self,
         modes: &StructuralModes,
         wheel: &Wheel,
         engine_order: u32,
-        contact: ContactCondition,
+        harmonics: &[u32],
     ) -> Excited {
         let force = wheel_force(&self.basis, modes, engine_order, self.settings.amplitude_n);
-        Excited::wheel(wheel, force, self.points(contact).harmonics())
+        Excited::wheel(wheel, force, harmonics)
     }
 
     /// The wheel with the pattern applied.
-    fn mistuned(
+    pub(super) fn mistuned(
         &self,
         pattern: &Pattern,
         wanted: LimitsWanted,
@@ -277,40 +309,8 @@ impl RowSolver {
         Ok((modes, wheel))
     }
 
-    /// Where the linear limits of a row say that its peak can lie; no pattern means the tuned wheel.
-    /// `tuned_hz` is the frequency of the tuned peak.
-    ///
-    /// # Errors
-    /// The pattern cannot be applied, or nothing answers the excitation.
-    pub fn search_plan(
-        &self,
-        scenario: &Scenario,
-        pattern: Option<&Pattern>,
-        tuned_hz: Option<f64>,
-    ) -> Result<SearchPlan, Status> {
-        let (excited, window) = match pattern {
-            None => {
-                let window = Window {
-                    resonances_hz: None,
-                    band: self.settings.solver.frequency_band,
-                };
-                let excited = self.tuned_excited(scenario.engine_order, scenario.contact);
-                (excited, window)
-            }
-            Some(pattern) => {
-                let (modes, wheel) =
-                    self.mistuned(pattern, LimitsWanted::of(&[scenario.contact]))?;
-                let window = self.window(pattern, scenario, tuned_hz)?;
-                let excited =
-                    self.wheel_excited(&modes, &wheel, scenario.engine_order, scenario.contact);
-                (excited, window)
-            }
-        };
-        search_plan(&excited, scenario.contact, window)
-    }
-
     /// Where the peak of a mistuned wheel is sought.
-    fn window(
+    pub(super) fn window(
         &self,
         pattern: &Pattern,
         scenario: &Scenario,
@@ -338,16 +338,24 @@ impl RowSolver {
         pattern: &Pattern,
         scenario: &Scenario,
         tuned: &TunedReference,
-    ) -> Result<Peak, Status> {
+    ) -> Result<(Peak, Option<ErrorEstimate>), Status> {
         let window = self.window(pattern, scenario, tuned.frequency_hz)?;
-        let excited = self.wheel_excited(modes, wheel, scenario.engine_order, scenario.contact);
-        Ok(peak(
+        let engine_order = scenario.engine_order;
+        let points = self.points(engine_order, scenario.contact);
+        let excited = self.wheel_excited(modes, wheel, engine_order, points.harmonics());
+        let found = peak(
             &excited,
             scenario.contact,
-            self.points(scenario.contact),
+            points,
             window,
             self.settings.solver.peak_tolerance,
-        ))
+        );
+        let errors = found.point.as_ref().and_then(|point| {
+            let enlarged =
+                self.wheel_excited(modes, wheel, engine_order, points.errors().harmonics());
+            estimate_errors(&excited, scenario.contact, points, point, &enlarged.blocks)
+        });
+        Ok((found, errors))
     }
 
     fn row(
@@ -355,16 +363,17 @@ impl RowSolver {
         pattern: &Pattern,
         scenario: &Scenario,
         tuned: &TunedReference,
-        found: Result<Peak, Status>,
+        found: Result<(Peak, Option<ErrorEstimate>), Status>,
     ) -> ResponseRow {
-        let (status, found) = match found {
-            Ok(found) => (found.status, Some(found)),
-            Err(status) => (status, None),
+        let (status, found, errors) = match found {
+            Ok((found, errors)) => (found.status, Some(found), errors),
+            Err(status) => (status, None, None),
         };
         let good: Option<(&Peak, &Point)> = found
             .as_ref()
             .filter(|found| found.status == Status::Ok)
             .and_then(|found| Some((found, found.point.as_ref()?)));
+        let errors = good.and(errors);
         let work = found.as_ref().map(|found| found.work).unwrap_or_default();
         let amplitude = good.map(|(found, point)| point.amplitudes_m[found.blade]);
         let mean_friction = good.and_then(|(found, _)| found.mean_friction_n);
@@ -377,7 +386,10 @@ impl RowSolver {
             peak_blade: good.map(|(found, _)| found.blade as u32),
             amplification_factor: amplification_factor(amplitude, tuned.amplitude_m),
             peak_bracketed: good.map(|(found, _)| found.bracketed),
-            harmonics: harmonics_name(self.points(scenario.contact).harmonics()),
+            harmonics: harmonics_name(
+                self.points(scenario.engine_order, scenario.contact)
+                    .harmonics(),
+            ),
             nonlinear_solves: work.nonlinear_solves,
             newton_iterations: work.newton_iterations,
             retries: work.retries,
@@ -386,6 +398,18 @@ impl RowSolver {
             separated_fraction: good.map(|(_, point)| point.shares.separated),
             mean_friction_circumferential_n: mean_friction.map(|force| force[0]),
             mean_friction_axial_n: mean_friction.map(|force| force[1]),
+            sampling_error: errors.map(|errors| errors.sampling),
+            harmonic_error: errors.map(|errors| errors.harmonics),
+            stated_error: errors
+                .map(|errors| {
+                    let of_scenario = self.scenario_error(scenario);
+                    stated_error(&errors, &of_scenario, self.settings.solver.peak_tolerance)
+                })
+                .filter(|error| error.is_finite()),
+            // An error that cannot be estimated is within no tolerance.
+            error_within_tolerance: good
+                .map(|_| errors.is_some_and(|errors| self.tolerance().holds(&errors))),
+            basis: self.basis.model().basis_name(),
             shortcut: shortcut(scenario.contact, good.map(|(_, point)| point)).to_owned(),
         }
     }

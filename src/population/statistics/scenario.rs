@@ -21,6 +21,10 @@ pub struct ScenarioStatistics {
     pub separated_rows: Option<f64>,
     /// Mean share of slipping pairs over the `ok` rows.
     pub mean_slipping_fraction: Option<f64>,
+    /// Largest stated error of an `ok` row.
+    pub largest_stated_error: Option<f64>,
+    /// `ok` rows whose sampling or harmonic error exceeds its tolerance.
+    pub beyond_tolerance: u64,
 }
 
 /// Gathers the rows of one scenario; holds 16 bytes per row.
@@ -33,6 +37,8 @@ pub struct ScenarioAccumulator {
     separated_rows: u64,
     contact_rows: u64,
     slipping_sum: f64,
+    largest_stated_error: Option<f64>,
+    beyond_tolerance: u64,
 }
 
 impl ScenarioAccumulator {
@@ -44,6 +50,11 @@ impl ScenarioAccumulator {
         }
         self.amplification_factor.extend(row.amplification_factor);
         self.peak_amplitude_m.extend(row.peak_amplitude_m);
+        if let Some(stated) = row.stated_error {
+            let largest = self.largest_stated_error.unwrap_or(0.0);
+            self.largest_stated_error = Some(largest.max(stated));
+        }
+        self.beyond_tolerance += u64::from(row.error_within_tolerance == Some(false));
         if let Some(separated) = row.separated_fraction {
             let largest = self.largest_separated_fraction.unwrap_or(0.0);
             self.largest_separated_fraction = Some(largest.max(separated));
@@ -72,6 +83,8 @@ impl ScenarioAccumulator {
             separated_rows: self
                 .largest_separated_fraction
                 .map(|_| self.separated_rows as f64 / ok as f64),
+            largest_stated_error: self.largest_stated_error,
+            beyond_tolerance: self.beyond_tolerance,
             mean_slipping_fraction: (self.contact_rows > 0)
                 .then(|| self.slipping_sum / self.contact_rows as f64),
         }

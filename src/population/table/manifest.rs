@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::{TableError, write_atomically};
 use crate::population::monte_carlo::{Scenario, TunedReference};
 use crate::population::statistics::Accounting;
-use crate::response::forced_response::ContactCondition;
+use crate::response::forced_response::{ContactCondition, ErrorEstimate};
 use crate::response::harmonic_balance::Status;
 
 /// Whether a results folder is complete.
@@ -71,6 +71,10 @@ pub struct ScenarioEntry {
     pub tuned_slipping_fraction: Option<f64>,
     /// Share of pairs that separate at the tuned peak.
     pub tuned_separated_fraction: Option<f64>,
+    /// Harmonic set of the tuned solution and of the rows.
+    pub harmonics: String,
+    /// Errors of the tuned solution at its peak.
+    pub tuned_errors: Option<ErrorEstimate>,
     /// Rows by status.
     pub counts: StatusCounts,
 }
@@ -89,6 +93,8 @@ impl ScenarioEntry {
             tuned_frequency_hz: tuned.frequency_hz,
             tuned_slipping_fraction: tuned.slipping_fraction,
             tuned_separated_fraction: tuned.separated_fraction,
+            harmonics: tuned.harmonics.clone(),
+            tuned_errors: tuned.errors,
             counts: accounting.into(),
         }
     }
@@ -114,6 +120,8 @@ impl ScenarioEntry {
             frequency_hz: self.tuned_frequency_hz,
             separated_fraction: self.tuned_separated_fraction,
             slipping_fraction: self.tuned_slipping_fraction,
+            harmonics: self.harmonics.clone(),
+            errors: self.tuned_errors,
         }
     }
 }

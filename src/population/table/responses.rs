@@ -120,6 +120,36 @@ pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
         "N",
         "Mean friction force on the ring along z per sector at the peak, mean over the sectors; null for the linear limits",
     ),
+    ColumnSpec::new(
+        "sampling_error",
+        Float64,
+        "1",
+        "Relative change of the peak amplitude by one Newton correction at 4 times the samples per period",
+    ),
+    ColumnSpec::new(
+        "harmonic_error",
+        Float64,
+        "1",
+        "Relative change of the peak amplitude by the harmonics up to 15 outside of the set",
+    ),
+    ColumnSpec::new(
+        "stated_error",
+        Float64,
+        "1",
+        "Bound on the relative error of the peak amplitude: sampling, harmonics, basis and peak tolerance together",
+    ),
+    ColumnSpec::new(
+        "error_within_tolerance",
+        Boolean,
+        "",
+        "Sampling and harmonic error are within their tolerances",
+    ),
+    ColumnSpec::new(
+        "basis",
+        Text,
+        "",
+        "Basis of the reduced model that the row was solved on",
+    ),
 ];
 
 /// Rows per row group and per batch in memory.
@@ -240,6 +270,11 @@ fn columns_of(rows: &[ResponseRow], scenarios: &[Scenario]) -> Result<Vec<Values
         counts(&|row| row.retries),
         floats(&|row| row.mean_friction_circumferential_n),
         floats(&|row| row.mean_friction_axial_n),
+        floats(&|row| row.sampling_error),
+        floats(&|row| row.harmonic_error),
+        floats(&|row| row.stated_error),
+        Values::Boolean(rows.iter().map(|row| row.error_within_tolerance).collect()),
+        names(&|row| row.basis.clone()),
     ])
 }
 
@@ -342,6 +377,11 @@ impl ResponseReader {
         let circumferential = slice.float64("mean_friction_circumferential_n")?;
         let axial = slice.float64("mean_friction_axial_n")?;
         let mut shortcuts = slice.string("shortcut")?;
+        let sampling_errors = slice.float64("sampling_error")?;
+        let harmonic_errors = slice.float64("harmonic_error")?;
+        let stated_errors = slice.float64("stated_error")?;
+        let within = slice.boolean("error_within_tolerance")?;
+        let mut bases = slice.string("basis")?;
         (0..scenarios.len())
             .map(|i| {
                 let status = statuses[i]
@@ -366,6 +406,11 @@ impl ResponseReader {
                     mean_friction_circumferential_n: circumferential[i],
                     mean_friction_axial_n: axial[i],
                     shortcut: shortcuts[i].take().ok_or_else(|| gap(i, "shortcut"))?,
+                    sampling_error: sampling_errors[i],
+                    harmonic_error: harmonic_errors[i],
+                    stated_error: stated_errors[i],
+                    error_within_tolerance: within[i],
+                    basis: bases[i].take().ok_or_else(|| gap(i, "basis"))?,
                 })
             })
             .collect()

@@ -237,6 +237,36 @@ pub const SCENARIO_COLUMNS: &[ColumnSpec] = &[
         "m",
         "Upper 95 % bound, distribution-free, failures at plus infinity",
     ),
+    ColumnSpec::new(
+        "harmonics",
+        Text,
+        "",
+        "Temporal harmonics of the tuned wheel and the patterns, for instance 1-3",
+    ),
+    ColumnSpec::new(
+        "tuned_sampling_error",
+        Float64,
+        "1",
+        "Relative change of the tuned peak by one Newton correction at 4 times the samples per period",
+    ),
+    ColumnSpec::new(
+        "tuned_harmonic_error",
+        Float64,
+        "1",
+        "Relative change of the tuned peak by the harmonics up to 15 outside of the set",
+    ),
+    ColumnSpec::new(
+        "largest_stated_error",
+        Float64,
+        "1",
+        "Largest stated error of a pattern with a result",
+    ),
+    ColumnSpec::new(
+        "beyond_tolerance",
+        Int32,
+        "",
+        "Patterns whose sampling or harmonic error exceeds its tolerance",
+    ),
 ];
 
 /// Writes `scenarios.parquet`.
@@ -293,6 +323,20 @@ pub fn write_scenarios(
             values.push(floats(&|record| quantity(record).percentiles[place].upper));
         }
     }
+    values.push(Values::String(
+        records
+            .iter()
+            .map(|record| Some(record.tuned.harmonics.clone()))
+            .collect(),
+    ));
+    values.push(floats(&|record| {
+        record.tuned.errors.map(|errors| errors.sampling)
+    }));
+    values.push(floats(&|record| {
+        record.tuned.errors.map(|errors| errors.harmonics)
+    }));
+    values.push(floats(&|record| record.statistics.largest_stated_error));
+    values.push(ids(&|record| record.statistics.beyond_tolerance));
     let mut writer = TableWriter::create(path, SCENARIO_COLUMNS, header)?;
     writer.write(values)?;
     writer.finish()
@@ -314,7 +358,7 @@ mod tests {
                 }
             }
         }
-        let names: Vec<_> = SCENARIO_COLUMNS[11..]
+        let names: Vec<_> = SCENARIO_COLUMNS[11..11 + expected.len()]
             .iter()
             .map(|column| column.name)
             .collect();

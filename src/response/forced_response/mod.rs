@@ -1,21 +1,28 @@
 //! Linear limits, sweep, peak search, and the one definition of the amplification factor.
 
+mod a_posteriori;
 mod branch;
 mod dense_sweep;
 mod excited;
 mod homotopy;
 mod linear_peaks;
+mod observed_amplitude;
 mod options;
 mod peak;
 mod peak_search;
 mod point_settings;
 mod point_solver;
 
+pub use a_posteriori::{ErrorEstimate, ErrorSettings, Screening, estimate_errors, screen};
 pub use branch::{BranchPlace, BranchPoint, ResponseTrace};
 pub use dense_sweep::{DensePeak, dense_peak};
 pub use excited::{Excited, LimitsWanted, LinearStructure, Wheel, wheel_force};
 pub use linear_peaks::LinearPeak;
-pub use options::{AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, SolverOptions};
+pub use observed_amplitude::ObservedAmplitude;
+pub use options::{
+    AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, RowsBeyondTolerance,
+    SolverOptions,
+};
 pub use peak::{Peak, SearchPlan, Window, mistuned_window, peak, search_plan, tuned_span};
 pub use peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
 pub use point_settings::PointSettings;

@@ -5,10 +5,20 @@ use serde::{Deserialize, Serialize};
 /// Temporal harmonics of the solution.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Harmonics {
-    /// Chosen by the program; at present `[1, 3]` where there is friction, remainder unscreened.
+    /// Chosen by the program per engine order and normal load, by the tuned wheel.
     Auto,
     /// This set, ascending; contains 1.
     Set(Vec<u32>),
+}
+
+/// What becomes of a row whose error exceeds its tolerance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RowsBeyondTolerance {
+    /// It is marked.
+    Flag,
+    /// With an automatic harmonic set, it is solved again with more harmonics.
+    Resolve,
 }
 
 /// The displacement measure called amplitude, at the first observed node of a blade.
@@ -40,7 +50,12 @@ pub enum FrequencyBand {
 pub struct SolverOptions {
     /// Harmonic set. Default auto.
     pub harmonics: Harmonics,
-    /// Time samples per period of the alternating frequency/time method. Default 128.
+    /// Wanted relative error of the amplitude by the harmonics left out. Default 0.02.
+    pub harmonic_tolerance: f64,
+    /// What becomes of a row beyond it. Default flag.
+    pub rows_beyond_tolerance: RowsBeyondTolerance,
+    /// Time samples per period of the alternating frequency/time method; 16 per period of the
+    /// highest harmonic are taken in any case. Default 128.
     pub samples_per_period: usize,
     /// Bound on the residual force relative to the excitation. Default 1e-8.
     pub residual_tolerance: f64,
@@ -58,6 +73,8 @@ impl Default for SolverOptions {
     fn default() -> Self {
         Self {
             harmonics: Harmonics::Auto,
+            harmonic_tolerance: 0.02,
+            rows_beyond_tolerance: RowsBeyondTolerance::Flag,
             samples_per_period: 128,
             residual_tolerance: 1e-8,
             peak_tolerance: 1e-3,

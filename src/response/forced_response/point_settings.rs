@@ -1,22 +1,24 @@
-//! What the solution of a point needs besides the structure, and the amplitudes read off a solution.
+//! What the solution of a point needs besides the structure.
 
 use std::sync::Arc;
 
-use super::options::{AmplitudeMeasure, SolverOptions};
-use crate::linalg::add_times_vector;
+use super::a_posteriori::ErrorSettings;
+use super::observed_amplitude::ObservedAmplitude;
+use super::options::SolverOptions;
 use crate::model::cyclic::ContactGeometry;
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
-use crate::response::harmonic_balance::{
-    HarmonicTransform, NewtonBounds, Structure, TransformError,
-};
+use crate::response::harmonic_balance::{HarmonicTransform, NewtonBounds, TransformError};
+
+/// Samples per period of the highest harmonic at least.
+const SAMPLES_OF_HIGHEST: usize = 16;
 
 /// Everything of a study that the solution of a point needs besides the structure.
 #[derive(Debug, Clone)]
 pub struct PointSettings {
     pub(super) harmonics: Vec<u32>,
     pub(super) transform: Arc<HarmonicTransform>,
-    /// Transform of the observed displacement for [`AmplitudeMeasure::TimeMaximum`].
-    time_grid: Option<Arc<HarmonicTransform>>,
+    pub(super) amplitude: ObservedAmplitude,
+    errors: Arc<ErrorSettings>,
     pub(super) bounds: NewtonBounds,
     pub(super) contact: Option<(ContactLaw, PairParameters)>,
     pub(super) ring: Ring,
@@ -36,18 +38,13 @@ impl PointSettings {
         geometry: ContactGeometry,
     ) -> Result<Self, TransformError> {
         let set: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
-        let transform = HarmonicTransform::new(&set, options.samples_per_period)?;
-        let time_grid = match options.amplitude {
-            AmplitudeMeasure::Fundamental => None,
-            AmplitudeMeasure::TimeMaximum => Some(Arc::new(HarmonicTransform::new(
-                &set,
-                options.time_samples,
-            )?)),
-        };
+        let samples = samples_per_period(options, harmonics);
+        let law = contact.map(|(law, _)| law);
         Ok(Self {
             harmonics: harmonics.to_vec(),
-            transform: Arc::new(transform),
-            time_grid,
+            transform: Arc::new(HarmonicTransform::new(&set, samples)?),
+            amplitude: ObservedAmplitude::new(options.amplitude, harmonics, options.time_samples)?,
+            errors: Arc::new(ErrorSettings::new(options, harmonics, law)?),
             bounds: NewtonBounds::with_tolerance(options.residual_tolerance),
             contact,
             ring: Ring::Locked,
@@ -67,68 +64,15 @@ impl PointSettings {
         &self.harmonics
     }
 
-    /// Amplitude of each blade: of the fundamental harmonic, or the largest over a period.
-    pub(super) fn blade_amplitudes(
-        &self,
-        blocks: &[(u32, &Structure)],
-        solution: &[f64],
-    ) -> Vec<f64> {
-        let rows = blocks[0].1.observed().real.rows();
-        let mut start = 0;
-        let mut coefficients: Vec<(u32, Vec<f64>, Vec<f64>)> = Vec::new();
-        for &(harmonic, structure) in blocks {
-            let observed = structure.observed();
-            let real = &observed.real;
-            let n = structure.size();
-            let mut re = vec![0.0; rows];
-            let mut im = vec![0.0; rows];
-            if harmonic > 0 {
-                let (x_re, x_im) = solution[start..start + 2 * n].split_at(n);
-                add_times_vector(&mut re, 1.0, real.as_slice(), x_re);
-                add_times_vector(&mut im, 1.0, real.as_slice(), x_im);
-                if let Some(imaginary) = &observed.imaginary {
-                    add_times_vector(&mut re, -1.0, imaginary.as_slice(), x_im);
-                    add_times_vector(&mut im, 1.0, imaginary.as_slice(), x_re);
-                }
-            }
-            start += n * if harmonic == 0 { 1 } else { 2 };
-            coefficients.push((harmonic, re, im));
-        }
-        (0..rows / 3)
-            .map(|blade| match &self.time_grid {
-                None => coefficients
-                    .iter()
-                    .filter(|(harmonic, ..)| *harmonic == 1)
-                    .flat_map(|(_, re, im)| {
-                        (3 * blade..3 * blade + 3).map(|i| re[i].powi(2) + im[i].powi(2))
-                    })
-                    .sum::<f64>()
-                    .sqrt(),
-                Some(grid) => time_maximum(grid, &coefficients, blade),
-            })
-            .collect()
+    /// How the errors of a solution are estimated.
+    #[must_use]
+    pub fn errors(&self) -> &ErrorSettings {
+        &self.errors
     }
 }
 
-/// Largest norm over one period of a blade's displacement, harmonic 0 left out.
-fn time_maximum(
-    grid: &HarmonicTransform,
-    coefficients: &[(u32, Vec<f64>, Vec<f64>)],
-    blade: usize,
-) -> f64 {
-    let mut channels = Vec::with_capacity(3 * grid.n_coefficients());
-    for component in 0..3 {
-        let row = 3 * blade + component;
-        for &harmonic in grid.harmonics() {
-            let found = coefficients
-                .iter()
-                .find(|(own, ..)| *own as usize == harmonic);
-            let (re, im) = found.map_or((0.0, 0.0), |(_, re, im)| (re[row], im[row]));
-            channels.push(re);
-            if harmonic > 0 {
-                channels.push(im);
-            }
-        }
-    }
-    grid.largest_norm(&channels)
+/// Those asked for, and at least [`SAMPLES_OF_HIGHEST`] per period of the highest harmonic.
+pub(super) fn samples_per_period(options: &SolverOptions, harmonics: &[u32]) -> usize {
+    let highest = harmonics.last().map_or(1, |&k| k as usize);
+    options.samples_per_period.max(SAMPLES_OF_HIGHEST * highest)
 }

@@ -130,6 +130,16 @@ impl<'a> PointSolver<'a> {
         Some(system.mean_friction_n(&point.solution, workspace.system_mut()))
     }
 
+    /// The nonlinear equation that `point` solves, with its buffers; none for a linear limit.
+    pub(super) fn nonlinear_at(
+        &mut self,
+        point: &Point,
+    ) -> Option<(&HarmonicSystem, &mut NewtonWorkspace)> {
+        let (system, workspace) = self.nonlinear.as_mut()?;
+        system.set_ring_drift(point.ring_drift_m);
+        Some((&*system, workspace))
+    }
+
     /// Solves at one frequency, Hz.
     ///
     /// # Errors
@@ -158,7 +168,7 @@ impl<'a> PointSolver<'a> {
         let blocks = [(1, &*self.excited.linear.structure)];
         Ok(Point {
             frequency_hz,
-            amplitudes_m: self.settings.blade_amplitudes(&blocks, &solution),
+            amplitudes_m: self.settings.amplitude.of(&blocks, &solution),
             solution,
             residual: 0.0,
             shares: ContactShares::default(),
@@ -308,7 +318,7 @@ impl<'a> PointSolver<'a> {
             .iter()
             .map(|block| (block.harmonic, &*block.structure))
             .collect();
-        self.settings.blade_amplitudes(&blocks, solution)
+        self.settings.amplitude.of(&blocks, solution)
     }
 }
 

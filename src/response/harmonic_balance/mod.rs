@@ -1,10 +1,12 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
+mod anderson;
 mod continuation;
 mod convergence;
 mod coupled_derivative;
 mod curve;
 mod damping;
+mod enlarged;
 mod frequency_derivative;
 mod jacobian;
 mod linear;
@@ -19,6 +21,7 @@ mod transform;
 pub use continuation::{Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint};
 pub use convergence::NewtonBounds;
 pub use damping::Damping;
+pub use enlarged::{Effects, Enlarged, EnlargedSet, enlarge};
 pub use linear::linear_response;
 pub use newton::{NewtonOutcome, NewtonWorkspace, solve};
 pub use pair_harmonics::{PairHarmonics, PairJacobian};

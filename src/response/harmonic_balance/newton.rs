@@ -84,6 +84,19 @@ impl NewtonWorkspace {
     pub fn system_mut(&mut self) -> &mut SystemWorkspace {
         &mut self.system
     }
+
+    /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
+    pub fn factor_at(&mut self, system: &HarmonicSystem, omega: f64, x: &[f64]) -> bool {
+        system.residual(omega, x, &mut self.buffers.residual, true, &mut self.system);
+        system.jacobian(omega, &mut self.system, self.jacobian.matrix_mut());
+        self.factored = self.jacobian.factor();
+        self.factored
+    }
+
+    /// `J^-1 residual` with the factors at hand, in place.
+    pub fn solve_linear(&mut self, residual: &mut [f64]) {
+        self.jacobian.solve(residual);
+    }
 }
 
 /// The harmonic balance equation at one frequency.

@@ -70,7 +70,7 @@ pub struct HarmonicSystem {
     /// First unknown of each block, and the number of unknowns at the end.
     pub(super) start: Vec<usize>,
     /// First real coefficient of each block.
-    coefficient: Vec<usize>,
+    pub(super) coefficient: Vec<usize>,
     force: Vec<Complex64>,
     force_norm: f64,
     pub(super) interface: ContactInterface,

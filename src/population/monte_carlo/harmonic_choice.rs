@@ -1,0 +1,76 @@
+//! The harmonic set of a scenario, and the parts of the error that a row states.
+
+use serde::{Deserialize, Serialize};
+
+use crate::response::forced_response::{ContactCondition, ErrorEstimate};
+
+/// Harmonic set under one engine order and contact condition.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HarmonicChoice {
+    /// Engine order.
+    pub engine_order: u32,
+    /// Contact condition.
+    pub contact: ContactCondition,
+    /// The set, ascending, with 1.
+    pub harmonics: Vec<u32>,
+    /// What the set leaves out of the tuned peak of the full contact model, by
+    /// [`ErrorEstimate::harmonics`] and its doubt; none where there is no tuned peak.
+    pub remainder: Option<f64>,
+}
+
+/// Harmonics that intermittent contact excites first of all.
+const OF_SEPARATION: [u32; 2] = [0, 2];
+
+impl HarmonicChoice {
+    /// Whether the set has what contacts that separate need.
+    #[must_use]
+    pub fn admits_separation(&self) -> bool {
+        OF_SEPARATION.iter().all(|k| self.harmonics.contains(k))
+    }
+
+    /// Adds what contacts that separate need.
+    pub fn admit_separation(&mut self) {
+        self.harmonics.extend(OF_SEPARATION);
+        self.harmonics.sort_unstable();
+        self.harmonics.dedup();
+    }
+}
+
+/// Errors that a row takes over from its scenario, relative.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ScenarioError {
+    /// Measured error of the basis at the tuned peak, with the same harmonics.
+    pub basis: f64,
+    /// Remainder of the harmonic set at the tuned peak of the full contact model.
+    pub harmonics: f64,
+}
+
+/// Tolerances by which a row is flagged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorTolerance {
+    /// On the sampling error.
+    pub sampling: f64,
+    /// On the harmonic error.
+    pub harmonics: f64,
+}
+
+impl ErrorTolerance {
+    /// Whether both errors of a solution are within their tolerances.
+    #[must_use]
+    pub fn holds(&self, errors: &ErrorEstimate) -> bool {
+        errors.sampling.abs() <= self.sampling
+            && errors.harmonics.abs() + errors.unsettled <= self.harmonics
+    }
+}
+
+/// Bound on the relative error of a peak amplitude that is stated with it: sampling, harmonics
+/// outside of the set (by the solution itself or by the tuned full contact model, whichever is
+/// larger), basis, and the tolerance of the peak search.
+#[must_use]
+pub fn stated_error(errors: &ErrorEstimate, scenario: &ScenarioError, peak_tolerance: f64) -> f64 {
+    let harmonics = f64::max(
+        errors.harmonics.abs() + errors.unsettled,
+        scenario.harmonics,
+    );
+    errors.sampling.abs() + harmonics + scenario.basis + peak_tolerance
+}

@@ -1,0 +1,167 @@
+//! What a peak would change by with finer sampling and with the harmonics outside of its set.
+
+use std::f64::consts::TAU;
+
+use serde::{Deserialize, Serialize};
+
+use super::excited::Excited;
+use super::observed_amplitude::ObservedAmplitude;
+use super::options::{ContactCondition, SolverOptions};
+use super::point_settings::{PointSettings, samples_per_period};
+use super::point_solver::{Point, PointSolver};
+use crate::response::friction::ContactLaw;
+use crate::response::harmonic_balance::{
+    ContactShares, Effects, EnlargedSet, HarmonicBlock, Structure, TransformError, enlarge,
+};
+
+/// Samples per period of the check, over those of the solution.
+const FINER: usize = 4;
+/// Samples per period of the check at least: 16 per period of its highest harmonic.
+const FINEST: usize = 256;
+
+/// The enlarged set of a study with the amplitude in it.
+#[derive(Debug, Clone)]
+pub struct ErrorSettings {
+    set: EnlargedSet,
+    amplitude: ObservedAmplitude,
+}
+
+/// Relative changes of the largest amplitude; positive where it would grow.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct ErrorEstimate {
+    /// By one Newton correction of the same equations with 4 times the samples per period.
+    pub sampling: f64,
+    /// By the harmonics up to 15 that are not in the set, with that sampling.
+    pub harmonics: f64,
+    /// What the estimate of the harmonics may still be off by.
+    pub unsettled: f64,
+}
+
+impl ErrorEstimate {
+    /// Bound on the relative error of the amplitude by samples and harmonics together.
+    #[must_use]
+    pub fn bound(&self) -> f64 {
+        self.sampling.abs() + self.harmonics.abs() + self.unsettled
+    }
+}
+
+impl ErrorSettings {
+    /// For solutions with `harmonics` under `options`.
+    ///
+    /// # Errors
+    /// If the harmonics cannot be told apart with the samples asked for.
+    pub fn new(
+        options: &SolverOptions,
+        harmonics: &[u32],
+        law: Option<ContactLaw>,
+    ) -> Result<Self, TransformError> {
+        let variable_load = law.is_some_and(ContactLaw::has_variable_load);
+        let samples = FINEST.max(FINER * samples_per_period(options, harmonics));
+        let set = EnlargedSet::new(harmonics, variable_load, samples)?;
+        let instants = options.time_samples.max(samples);
+        Ok(Self {
+            amplitude: ObservedAmplitude::new(options.amplitude, set.harmonics(), instants)?,
+            set,
+        })
+    }
+
+    /// Harmonics of the enlarged set, ascending.
+    #[must_use]
+    pub fn harmonics(&self) -> &[u32] {
+        self.set.harmonics()
+    }
+}
+
+/// Errors of a solution, and what each harmonic outside of its set has to do with them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Screening {
+    /// The errors.
+    pub errors: ErrorEstimate,
+    /// Relative change of the amplitude that the harmonic alone makes.
+    pub effects: Vec<(u32, f64)>,
+}
+
+/// Errors of `point`, a solution of `excited` under `settings`; `blocks` are those of the enlarged
+/// set. None if the solution cannot be corrected (a singular Jacobian).
+#[must_use]
+pub fn estimate_errors(
+    excited: &Excited,
+    condition: ContactCondition,
+    settings: &PointSettings,
+    point: &Point,
+    blocks: &[HarmonicBlock],
+) -> Option<ErrorEstimate> {
+    let assessed = assess(
+        excited,
+        condition,
+        settings,
+        point,
+        blocks,
+        Effects::Together,
+    )?;
+    Some(assessed.errors)
+}
+
+/// [`estimate_errors`] with the effect of each harmonic outside.
+#[must_use]
+pub fn screen(
+    excited: &Excited,
+    condition: ContactCondition,
+    settings: &PointSettings,
+    point: &Point,
+    blocks: &[HarmonicBlock],
+) -> Option<Screening> {
+    assess(excited, condition, settings, point, blocks, Effects::Each)
+}
+
+fn assess(
+    excited: &Excited,
+    condition: ContactCondition,
+    settings: &PointSettings,
+    point: &Point,
+    blocks: &[HarmonicBlock],
+    wanted: Effects,
+) -> Option<Screening> {
+    let mut solver = PointSolver::new(excited, condition, settings);
+    let linear = point.shares == ContactShares::default();
+    let nonlinear = solver.nonlinear_at(point).filter(|_| !linear);
+    let Some((system, workspace)) = nonlinear else {
+        return Some(Screening {
+            errors: ErrorEstimate::default(),
+            effects: Vec::new(),
+        });
+    };
+    let ErrorSettings { set, amplitude } = settings.errors();
+    let omega = TAU * point.frequency_hz;
+    let enlarged = enlarge(
+        system,
+        workspace,
+        set,
+        blocks,
+        omega,
+        &point.solution,
+        wanted,
+    )?;
+    let structures: Vec<(u32, &Structure)> = blocks
+        .iter()
+        .map(|block| (block.harmonic, &*block.structure))
+        .collect();
+    let largest = |amplitudes: Vec<f64>| amplitudes.into_iter().fold(0.0, f64::max);
+    let before = largest(amplitude.of(&structures, &enlarged.before));
+    let change = |solution: &[f64]| {
+        largest(amplitude.changed(&structures, &enlarged.before, solution)) / before - 1.0
+    };
+    let sampling = change(&enlarged.resampled);
+    let total = change(&enlarged.after);
+    let effects = enlarged.without.iter();
+    Some(Screening {
+        errors: ErrorEstimate {
+            sampling,
+            harmonics: total - sampling,
+            unsettled: enlarged.unsettled,
+        },
+        effects: effects
+            .map(|(harmonic, without)| (*harmonic, total - change(without)))
+            .collect(),
+    })
+}

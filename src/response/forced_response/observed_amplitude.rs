@@ -1,0 +1,141 @@
+//! The amplitude of every blade from the unknowns of a solution.
+
+use super::options::AmplitudeMeasure;
+use crate::linalg::{Complex64, add_times_vector};
+use crate::response::harmonic_balance::{HarmonicTransform, Structure, TransformError};
+
+/// The measure called amplitude, ready for solutions with harmonics of one set.
+#[derive(Debug, Clone)]
+pub struct ObservedAmplitude {
+    /// Instants of a period for [`AmplitudeMeasure::TimeMaximum`].
+    time_grid: Option<HarmonicTransform>,
+}
+
+/// Complex displacement r, theta, z of the observed node, blade after blade, of one harmonic.
+pub(super) struct ObservedHarmonic {
+    pub(super) harmonic: u32,
+    pub(super) displacement: Vec<Complex64>,
+}
+
+impl ObservedAmplitude {
+    /// `measure` for solutions with `harmonics`, over `time_samples` instants.
+    ///
+    /// # Errors
+    /// If the instants cannot tell the harmonics apart.
+    pub fn new(
+        measure: AmplitudeMeasure,
+        harmonics: &[u32],
+        time_samples: usize,
+    ) -> Result<Self, TransformError> {
+        let set: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
+        let time_grid = match measure {
+            AmplitudeMeasure::Fundamental => None,
+            AmplitudeMeasure::TimeMaximum => Some(HarmonicTransform::new(&set, time_samples)?),
+        };
+        Ok(Self { time_grid })
+    }
+
+    /// Amplitude of each blade, m: of the fundamental harmonic, or the largest over a period.
+    /// `blocks` are harmonics and structures in the order of the unknowns `solution`.
+    #[must_use]
+    pub fn of(&self, blocks: &[(u32, &Structure)], solution: &[f64]) -> Vec<f64> {
+        let harmonics = observed(blocks, solution);
+        let rows = harmonics[0].displacement.len();
+        (0..rows / 3)
+            .map(|blade| match &self.time_grid {
+                None => fundamental(&harmonics, blade)
+                    .iter()
+                    .map(Complex64::norm_sqr)
+                    .sum::<f64>()
+                    .sqrt(),
+                Some(grid) => time_maximum(grid, &harmonics, blade),
+            })
+            .collect()
+    }
+
+    /// Amplitude of each blade after a solution has changed from `before` to `after`. A turn in
+    /// phase of the fundamental does not count: at a peak it stands for a shift in frequency,
+    /// which leaves the height of the peak as it is.
+    pub(super) fn changed(
+        &self,
+        blocks: &[(u32, &Structure)],
+        before: &[f64],
+        after: &[f64],
+    ) -> Vec<f64> {
+        let (old, new) = (observed(blocks, before), observed(blocks, after));
+        let plain = self.of(blocks, after);
+        plain
+            .iter()
+            .enumerate()
+            .map(|(blade, &amplitude)| {
+                let (old, new) = (fundamental(&old, blade), fundamental(&new, blade));
+                let square: f64 = old.iter().map(Complex64::norm_sqr).sum();
+                let along: f64 = old.iter().zip(new).map(|(a, b)| (a.conj() * b).re).sum();
+                let length: f64 = new.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+                if length > 0.0 && square > 0.0 {
+                    amplitude * along / (square.sqrt() * length)
+                } else {
+                    amplitude
+                }
+            })
+            .collect()
+    }
+}
+
+/// The observed displacement in every harmonic; zero in harmonic 0, which no measure counts.
+fn observed(blocks: &[(u32, &Structure)], solution: &[f64]) -> Vec<ObservedHarmonic> {
+    let mut start = 0;
+    let mut harmonics = Vec::with_capacity(blocks.len());
+    for &(harmonic, structure) in blocks {
+        let rows = structure.observed();
+        let n = structure.size();
+        let mut re = vec![0.0; rows.real.rows()];
+        let mut im = vec![0.0; rows.real.rows()];
+        if harmonic > 0 {
+            let (x_re, x_im) = solution[start..start + 2 * n].split_at(n);
+            add_times_vector(&mut re, 1.0, rows.real.as_slice(), x_re);
+            add_times_vector(&mut im, 1.0, rows.real.as_slice(), x_im);
+            if let Some(imaginary) = &rows.imaginary {
+                add_times_vector(&mut re, -1.0, imaginary.as_slice(), x_im);
+                add_times_vector(&mut im, 1.0, imaginary.as_slice(), x_re);
+            }
+        }
+        start += n * if harmonic == 0 { 1 } else { 2 };
+        let displacement = re
+            .into_iter()
+            .zip(im)
+            .map(|(re, im)| Complex64::new(re, im));
+        harmonics.push(ObservedHarmonic {
+            harmonic,
+            displacement: displacement.collect(),
+        });
+    }
+    harmonics
+}
+
+/// Displacement of a blade in harmonic 1.
+fn fundamental(harmonics: &[ObservedHarmonic], blade: usize) -> &[Complex64] {
+    harmonics
+        .iter()
+        .find(|own| own.harmonic == 1)
+        .map_or(&[], |own| &own.displacement[3 * blade..3 * blade + 3])
+}
+
+/// Largest norm over one period of a blade's displacement, harmonic 0 left out.
+fn time_maximum(grid: &HarmonicTransform, harmonics: &[ObservedHarmonic], blade: usize) -> f64 {
+    let mut channels = Vec::with_capacity(3 * grid.n_coefficients());
+    for component in 0..3 {
+        let row = 3 * blade + component;
+        for &harmonic in grid.harmonics() {
+            let found = harmonics
+                .iter()
+                .find(|own| own.harmonic as usize == harmonic);
+            let value = found.map_or(Complex64::default(), |own| own.displacement[row]);
+            channels.push(value.re);
+            if harmonic > 0 {
+                channels.push(value.im);
+            }
+        }
+    }
+    grid.largest_norm(&channels)
+}

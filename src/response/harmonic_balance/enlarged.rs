@@ -1,0 +1,406 @@
+//! What a solution would become with the harmonics outside of its set, sampled more finely.
+//!
+//! With s the harmonics of the set, o those outside and the residual `R` of the enlarged system,
+//!
+//! ```text
+//! R_s(x_s, x_o) = 0,    R_o(x_s, x_o) = 0,    from (x_s, 0)
+//! P = J    or    P = [J_ss, 0; 0, diag_k J_kk]
+//! ```
+//!
+//! is solved by the fixed-point iteration `x <- x - P^-1 R(x)` with Anderson's acceleration (Anderson
+//! 1965; Walker & Ni 2011, SIAM J. Numer. Anal. 49(4)). P is the whole enlarged Jacobian where that is
+//! small (one sector of a tuned wheel): the first step is then Newton's. On a wheel it would cost more
+//! than the solution itself, and P leaves out the coupling between harmonics, which comes in through
+//! the residual alone. Either holds the derivative of the contact forces, so that a resonance of
+//! slipping contact in harmonic k is in it.
+
+use std::sync::Arc;
+
+use super::anderson::Anderson;
+use super::{
+    HarmonicBlock, HarmonicSystem, HarmonicTransform, NewtonWorkspace, PairJacobian,
+    SystemWorkspace, TransformError,
+};
+use crate::linalg::LuWorkspace;
+
+/// Highest harmonic that is looked at.
+const HIGHEST_HARMONIC: u32 = 15;
+/// Unknowns of a wheel up to which the whole Jacobian is factored.
+const SMALL_WHEEL: usize = 1200;
+/// Samples per period of the derivatives in P.
+const LINEARISED_SAMPLES: usize = 128;
+/// Steps of the iteration at most.
+const EVALUATIONS: usize = 14;
+/// Earlier iterates that the acceleration combines.
+const DEPTH: usize = 12;
+/// The iteration ends when the next step would change the set by this share of the change so far,
+const SETTLED: f64 = 0.03;
+/// or by this share of the set itself.
+const NEGLIGIBLE: f64 = 5e-5;
+
+/// Transforms of an enlarged set; made once per study.
+#[derive(Debug, Clone)]
+pub struct EnlargedSet {
+    harmonics: Vec<u32>,
+    fine: Arc<HarmonicTransform>,
+    linearised: Arc<HarmonicTransform>,
+}
+
+impl EnlargedSet {
+    /// The harmonics 0 to 15 (odd ones where the normal load is constant, since no law then
+    /// excites the others) and those of `set`, with `samples` per period.
+    ///
+    /// # Errors
+    /// If the harmonics cannot be told apart with the samples asked for.
+    pub fn new(set: &[u32], variable_load: bool, samples: usize) -> Result<Self, TransformError> {
+        let mut harmonics: Vec<u32> = (0..=HIGHEST_HARMONIC)
+            .filter(|k| variable_load || k % 2 == 1)
+            .chain(set.iter().copied())
+            .collect();
+        harmonics.sort_unstable();
+        harmonics.dedup();
+        let numbers: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
+        let highest = numbers.last().copied().unwrap_or(1);
+        Ok(Self {
+            fine: Arc::new(HarmonicTransform::new(&numbers, samples)?),
+            linearised: Arc::new(HarmonicTransform::new(
+                &numbers,
+                LINEARISED_SAMPLES.max(4 * highest),
+            )?),
+            harmonics,
+        })
+    }
+
+    /// The harmonics, ascending.
+    #[must_use]
+    pub fn harmonics(&self) -> &[u32] {
+        &self.harmonics
+    }
+}
+
+/// A solution corrected, in the unknowns of the enlarged system.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Enlarged {
+    /// The solution, zero outside of the set.
+    pub before: Vec<f64>,
+    /// After one Newton correction at the finer sampling, in the set alone.
+    pub resampled: Vec<f64>,
+    /// With the harmonics outside: the iterate that the next step would change least.
+    pub after: Vec<f64>,
+    /// What that step would still change of the set, relative to the set.
+    pub unsettled: f64,
+    /// For each harmonic outside, where wanted, what `after` would be in the set without it.
+    pub without: Vec<(u32, Vec<f64>)>,
+}
+
+/// Which effects of the harmonics outside are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effects {
+    /// That of all together.
+    Together,
+    /// That of each one too.
+    Each,
+}
+
+/// A solution under correction.
+struct Enlargement<'a> {
+    system: &'a HarmonicSystem,
+    workspace: &'a mut NewtonWorkspace,
+    fine: HarmonicSystem,
+    buffers: SystemWorkspace,
+    /// Place in the set of each enlarged block.
+    places: Vec<Option<usize>>,
+    omega: f64,
+    outside: Outside,
+}
+
+/// Factors of P but for those of `J_ss`.
+enum Outside {
+    Whole(LuWorkspace<f64>),
+    Blocks(Vec<Option<LuWorkspace<f64>>>),
+}
+
+/// Corrects the solution `x` of `system` at `omega` towards that of the enlarged set; `blocks` are
+/// those of its harmonics. None if a Jacobian is singular or a value not finite.
+///
+/// The effect of each harmonic outside takes an evaluation each, where it is `wanted`.
+pub fn enlarge(
+    system: &HarmonicSystem,
+    workspace: &mut NewtonWorkspace,
+    set: &EnlargedSet,
+    blocks: &[HarmonicBlock],
+    omega: f64,
+    x: &[f64],
+    wanted: Effects,
+) -> Option<Enlarged> {
+    if !workspace.factor_at(system, omega, x) {
+        return None;
+    }
+    let with = |transform: &Arc<HarmonicTransform>| {
+        let mut enlarged = HarmonicSystem::new(
+            blocks.to_vec(),
+            system.force().to_vec(),
+            system.interface.clone(),
+            Arc::clone(transform),
+        );
+        enlarged.set_ring_drift(system.ring_drift_m());
+        enlarged
+    };
+    let fine = with(&set.fine);
+    let same = |block: &HarmonicBlock| {
+        let own = |own: &HarmonicBlock| own.harmonic == block.harmonic;
+        system.blocks().iter().position(own)
+    };
+    let places: Vec<Option<usize>> = blocks.iter().map(same).collect();
+    let before = embed(system, &fine, &places, x);
+    let outside = Outside::factor(&with(&set.linearised), &places, omega, &before)?;
+    Enlargement {
+        buffers: fine.workspace(),
+        system,
+        workspace,
+        fine,
+        places,
+        omega,
+        outside,
+    }
+    .correct(before, wanted)
+}
+
+impl Enlargement<'_> {
+    fn correct(mut self, before: Vec<f64>, wanted: Effects) -> Option<Enlarged> {
+        let mut step = self.step(&before);
+        let resampled = self.resampled(&before);
+        let scale = self.in_set(&before);
+        let mut acceleration = Anderson::new(DEPTH);
+        let mut iterate = before.clone();
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for evaluation in 1..=EVALUATIONS {
+            let last = self.in_set(&step);
+            iterate = acceleration.next(&iterate, &step);
+            step = self.step(&iterate);
+            if !step.iter().all(|s| s.is_finite()) {
+                return None;
+            }
+            // The set feels a step of the harmonics outside one evaluation later.
+            let left = last.max(self.in_set(&step)) / scale;
+            if best.as_ref().is_none_or(|(least, _)| left < *least) && evaluation > 1 {
+                best = Some((left, iterate.clone()));
+            }
+            let change: Vec<f64> = iterate.iter().zip(&before).map(|(a, b)| a - b).collect();
+            if evaluation > 1
+                && left <= f64::max(NEGLIGIBLE, SETTLED * self.in_set(&change) / scale)
+            {
+                break;
+            }
+        }
+        let (unsettled, after) = best?;
+        let without = match wanted {
+            Effects::Together => Vec::new(),
+            Effects::Each => self.without_each(&after),
+        };
+        Some(Enlarged {
+            before,
+            resampled,
+            after,
+            unsettled,
+            without,
+        })
+    }
+
+    fn residual(&mut self, x: &[f64]) -> Vec<f64> {
+        let mut residual = vec![0.0; x.len()];
+        self.fine
+            .residual(self.omega, x, &mut residual, false, &mut self.buffers);
+        residual
+    }
+
+    /// `-P^-1 R(x)`.
+    fn step(&mut self, x: &[f64]) -> Vec<f64> {
+        let mut step = self.residual(x);
+        if let Outside::Whole(factors) = &mut self.outside {
+            factors.solve(&mut step);
+        } else {
+            let own = self.set_step(&step);
+            let Outside::Blocks(blocks) = &mut self.outside else {
+                return own;
+            };
+            for (index, factors) in blocks.iter_mut().enumerate() {
+                let place = range(&self.fine, index);
+                match factors {
+                    Some(factors) => factors.solve(&mut step[place]),
+                    None => step[place.clone()].copy_from_slice(&own[place]),
+                }
+            }
+        }
+        for step in &mut step {
+            *step = -*step;
+        }
+        step
+    }
+
+    /// `J_ss^-1 residual_s`, zero outside of the set.
+    fn set_step(&mut self, residual: &[f64]) -> Vec<f64> {
+        let mut own = vec![0.0; self.system.unknowns()];
+        for (index, place) in self.places.iter().enumerate() {
+            if let Some(place) = *place {
+                own[range(self.system, place)].copy_from_slice(&residual[range(&self.fine, index)]);
+            }
+        }
+        self.workspace.solve_linear(&mut own);
+        embed(self.system, &self.fine, &self.places, &own)
+    }
+
+    /// One Newton correction in the set at the finer sampling.
+    fn resampled(&mut self, before: &[f64]) -> Vec<f64> {
+        let residual = self.residual(before);
+        let step = self.set_step(&residual);
+        before.iter().zip(step).map(|(x, s)| x - s).collect()
+    }
+
+    /// One Newton correction in the set of `after` less each harmonic outside.
+    fn without_each(&mut self, after: &[f64]) -> Vec<(u32, Vec<f64>)> {
+        let with_all = self.residual(after);
+        let mut changed = Vec::new();
+        for index in 0..self.places.len() {
+            if self.places[index].is_some() {
+                continue;
+            }
+            let mut less = after.to_vec();
+            less[range(&self.fine, index)].fill(0.0);
+            let mut residual = self.residual(&less);
+            residual
+                .iter_mut()
+                .zip(&with_all)
+                .for_each(|(r, all)| *r -= all);
+            let step = self.set_step(&residual);
+            let corrected = after.iter().zip(step).map(|(x, s)| x - s).collect();
+            changed.push((self.fine.blocks[index].harmonic, corrected));
+        }
+        changed
+    }
+
+    /// Norm of the part in the set.
+    fn in_set(&self, x: &[f64]) -> f64 {
+        let square = |(index, place): (usize, &Option<usize>)| match place {
+            Some(_) => x[range(&self.fine, index)].iter().map(|x| x * x).sum(),
+            None => 0.0,
+        };
+        self.places
+            .iter()
+            .enumerate()
+            .map(square)
+            .sum::<f64>()
+            .sqrt()
+    }
+}
+
+fn range(system: &HarmonicSystem, block: usize) -> std::ops::Range<usize> {
+    system.start[block]..system.start[block + 1]
+}
+
+/// `x` in the enlarged unknowns.
+fn embed(
+    system: &HarmonicSystem,
+    enlarged: &HarmonicSystem,
+    places: &[Option<usize>],
+    x: &[f64],
+) -> Vec<f64> {
+    let mut all = vec![0.0; enlarged.unknowns()];
+    for (index, place) in places.iter().enumerate() {
+        if let Some(place) = *place {
+            all[range(enlarged, index)].copy_from_slice(&x[range(system, place)]);
+        }
+    }
+    all
+}
+
+impl Outside {
+    fn factor(
+        system: &HarmonicSystem,
+        places: &[Option<usize>],
+        omega: f64,
+        x: &[f64],
+    ) -> Option<Self> {
+        let mut buffers = system.workspace();
+        let mut residual = vec![0.0; system.unknowns()];
+        system.residual(omega, x, &mut residual, true, &mut buffers);
+        let one_sector = system.blocks[0].structure.sectors() == 1;
+        if one_sector || system.unknowns() <= SMALL_WHEEL {
+            let mut factors = LuWorkspace::new(system.unknowns());
+            system.jacobian(omega, &mut buffers, factors.matrix_mut());
+            return factors.factor().then_some(Self::Whole(factors));
+        }
+        let mut blocks = Vec::with_capacity(places.len());
+        for (index, place) in places.iter().enumerate() {
+            blocks.push(match place {
+                Some(_) => None,
+                None => Some(factored_block(system, index, omega, &buffers)?),
+            });
+        }
+        Some(Self::Blocks(blocks))
+    }
+}
+
+/// The Jacobian of one harmonic by itself, factored; none if it is singular.
+fn factored_block(
+    system: &HarmonicSystem,
+    index: usize,
+    omega: f64,
+    evaluated: &SystemWorkspace,
+) -> Option<LuWorkspace<f64>> {
+    let block = system.blocks[index].clone();
+    let samples = system.transform.n_samples();
+    let transform = HarmonicTransform::new(&[block.harmonic as usize], samples).ok()?;
+    let alone = HarmonicSystem::new(
+        vec![block],
+        Vec::new(),
+        system.interface.clone(),
+        Arc::new(transform),
+    );
+    let mut buffers = alone.workspace();
+    let first = system.coefficient[index];
+    let (all, own) = (
+        system.transform.n_coefficients(),
+        alone.transform.n_coefficients(),
+    );
+    buffers.active.copy_from_slice(&evaluated.active);
+    for (target, source) in buffers.jacobians.iter_mut().zip(&evaluated.jacobians) {
+        restrict(source, all, first, own, target);
+    }
+    let mut factors = LuWorkspace::new(alone.unknowns());
+    alone.jacobian(omega, &mut buffers, factors.matrix_mut());
+    factors.factor().then_some(factors)
+}
+
+/// The blocks of `own` coefficients from `first` on, out of `all`.
+fn restrict(
+    source: &PairJacobian,
+    all: usize,
+    first: usize,
+    own: usize,
+    target: &mut PairJacobian,
+) {
+    let copy = |from: &[f64], to: &mut [f64]| {
+        for (row, to) in to.chunks_exact_mut(own).enumerate() {
+            to.copy_from_slice(&from[(first + row) * all + first..][..own]);
+        }
+    };
+    copy(&source.normal_normal, &mut target.normal_normal);
+    for tangent in 0..2 {
+        copy(
+            &source.tangential_tangential[tangent],
+            &mut target.tangential_tangential[tangent],
+        );
+        copy(
+            &source.tangential_normal[tangent],
+            &mut target.tangential_normal[tangent],
+        );
+    }
+    target.tangential_cross = source.tangential_cross.as_ref().map(|cross| {
+        cross.each_ref().map(|from| {
+            let mut to = vec![0.0; own * own];
+            copy(from, &mut to);
+            to
+        })
+    });
+}
