@@ -128,7 +128,7 @@ pub enum Command {
         seed: Option<u64>,
         /// Sweep the drawn rows densely instead, and count the peaks that the search missed.
         ///
-        /// Writes peak_audit.parquet into the results folder.
+        /// Writes `peak_audit.parquet` into the results folder.
         #[arg(long)]
         dense_sweep: bool,
         /// Where the inputs lie now: beside this study file [default: that of the last run].

@@ -54,7 +54,11 @@ impl PeakAuditReport {
         let sweeps: Vec<_> = records.iter().filter_map(|record| record.swept).collect();
         let missed: Vec<String> = records
             .iter()
-            .filter(|record| record.under_read().is_some_and(|share| !(share <= MISSED)))
+            .filter(|record| {
+                record
+                    .under_read()
+                    .is_some_and(|share| share.is_nan() || share > MISSED)
+            })
             .map(|record| format!("{}/{}", record.scenario.index, record.delivered.pattern))
             .collect();
         let under_read = records.iter().filter_map(PeakAuditRecord::under_read);

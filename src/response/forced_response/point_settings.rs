@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use super::a_posteriori::ErrorSettings;
 use super::observed_amplitude::ObservedAmplitude;
-use super::options::SolverOptions;
+use super::options::{Harmonics, SolverOptions};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{HarmonicTransform, NewtonBounds, TransformError};
 
-/// Samples per period of the highest harmonic at least.
+/// Samples per period of the highest harmonic of an automatic set at least.
 const SAMPLES_OF_HIGHEST: usize = 16;
 
 /// Everything of a study that the solution of a point needs besides the structure.
@@ -71,8 +71,12 @@ impl PointSettings {
     }
 }
 
-/// Those asked for, and at least [`SAMPLES_OF_HIGHEST`] per period of the highest harmonic.
+/// Those asked for; where the set is automatic, at least [`SAMPLES_OF_HIGHEST`] per period of the highest
+/// harmonic.
 pub(super) fn samples_per_period(options: &SolverOptions, harmonics: &[u32]) -> usize {
     let highest = harmonics.last().map_or(1, |&k| k as usize);
-    options.samples_per_period.max(SAMPLES_OF_HIGHEST * highest)
+    match options.harmonics {
+        Harmonics::Auto => options.samples_per_period.max(SAMPLES_OF_HIGHEST * highest),
+        Harmonics::Set(_) => options.samples_per_period,
+    }
 }

@@ -284,16 +284,15 @@ impl<'a> PointSolver<'a> {
         let mut x = start;
         let omega = TAU * frequency_hz;
         let bounds = self.settings.bounds;
-        let (outcome, ring_drift_m) = match other {
+        let (outcome, ring_drift_m) = if let Some(other) = other {
             // On the way the ring is locked.
-            Some(other) => (solve(other, omega, &mut x, bounds, workspace), [0.0; 2]),
-            None => {
-                let outcome = match self.settings.ring {
-                    Ring::Locked => solve(system, omega, &mut x, bounds, workspace),
-                    Ring::Creeping => solve_creeping(system, omega, &mut x, bounds, workspace),
-                };
-                (outcome, system.ring_drift_m())
-            }
+            (solve(other, omega, &mut x, bounds, workspace), [0.0; 2])
+        } else {
+            let outcome = match self.settings.ring {
+                Ring::Locked => solve(system, omega, &mut x, bounds, workspace),
+                Ring::Creeping => solve_creeping(system, omega, &mut x, bounds, workspace),
+            };
+            (outcome, system.ring_drift_m())
         };
         self.work.newton_iterations += outcome.iterations;
         self.work.factorisations += outcome.factorisations;

@@ -1,6 +1,6 @@
 //! Harmonic sets up to 31, and the fewest samples that tell them apart.
 
-use blisk::response::forced_response::{AmplitudeMeasure, SolverOptions};
+use blisk::response::forced_response::{AmplitudeMeasure, Harmonics, SolverOptions};
 use blisk::response::harmonic_balance::Status;
 
 use super::wheels::{
@@ -88,7 +88,11 @@ fn too_few_samples_for_the_set_are_refused() {
     for (highest, samples, accepted) in
         [(31, 62, false), (31, 63, true), (1, 2, false), (1, 3, true)]
     {
-        let settings = wheel.settings(&odd(highest), settings(samples));
+        let options = SolverOptions {
+            harmonics: Harmonics::Set(odd(highest)),
+            ..settings(samples)
+        };
+        let settings = wheel.settings(&odd(highest), options);
         let made = RowSolver::new(std::sync::Arc::clone(&wheel.model), settings);
         assert_eq!(made.is_ok(), accepted, "{highest} in {samples}");
         if let Ok(solver) = made {
