@@ -201,7 +201,7 @@ impl fmt::Display for TimeDomainReport {
                 number(Some(step.amplitude_m), " m"),
             ]);
         }
-        write!(f, "{table}\n")?;
+        writeln!(f, "{table}")?;
         writeln!(
             f,
             "difference of the largest amplitude {}, of any blade {}; accepted {}",

@@ -29,13 +29,8 @@ pub fn verify_in_time(
     request: TimeDomainRequest,
     progress: &dyn Progress,
 ) -> Result<TimeDomainReport, PipelineError> {
-    let free_ring = |ring| ring != Ring::Locked;
-    if stored
-        .study
-        .contact
-        .as_ref()
-        .is_some_and(|contact| free_ring(contact.ring))
-    {
+    let ring = stored.study.contact.as_ref().map(|contact| contact.ring);
+    if ring == Some(Ring::Creeping) {
         return Err(PipelineError::NoTimeDomain {
             reason: "a creeping ring is not integrated in time; accepted: a study with contact.ring = \"locked\"",
         });

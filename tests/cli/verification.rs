@@ -429,7 +429,7 @@ fn a_row_integrated_in_time_has_the_amplitude_of_harmonic_balance() {
     let difference = number(&found, "amplitude_difference");
     assert!(balance.to_bits() != marched.to_bits());
     assert!((marched / balance - 1.0 - difference).abs() < 1e-12);
-    assert!(difference.abs() <= number(&found, "largest_blade_difference"));
+    assert!(difference.abs() <= number(&found, "largest_blade_difference") + 1e-12);
     // Harmonic 1 hardly knows the form of the damping: nothing but harmonic 3 does.
     assert!((balance / number(&found, "delivered_amplitude_m") - 1.0).abs() < 1e-3);
     let accepted = 5e-3 + number(&found, "stated_error");
@@ -454,13 +454,9 @@ fn a_row_integrated_in_time_has_the_amplitude_of_harmonic_balance() {
 
 #[test]
 fn a_row_that_the_dynamics_do_not_confirm_exits_with_11() {
-    // A single harmonic of a response that has more: the march differs, whatever the row states.
-    let place = Place::with(&GOOD.replace("[1, 3]", "[1]").replace("50,", "25,"));
-    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
-    tamper(&place, |row| {
-        row.peak_frequency_hz = row.peak_frequency_hz.map(|hz| 1.002 * hz);
-        row.stated_error = row.stated_error.map(|_| -4.999e-3);
-    });
+    // Two harmonics leave 1.9 % out here, which the row states; without that it is too much.
+    let place = solved();
+    tamper(&place, |row| row.stated_error = None);
     let row = ["--scenario", "1", "--pattern", "3", "--json"];
     let ended = place.run(&[&["verify", RESULTS, "--time-domain"], &row[..]].concat());
     assert_eq!(ended.code, 11, "{}{}", ended.stdout, ended.stderr);
@@ -475,7 +471,10 @@ fn a_row_that_the_dynamics_do_not_confirm_exits_with_11() {
 fn a_row_that_cannot_be_integrated_in_time_is_refused() {
     let place = solved();
     for (more, wanted) in [
-        (&["--scenario", "0", "--pattern", "3"][..], "normal load in N"),
+        (
+            &["--scenario", "0", "--pattern", "3"][..],
+            "normal load in N",
+        ),
         (&["--scenario", "7", "--pattern", "3"], "a scenario below 3"),
         (&["--scenario", "1"], "--pattern"),
         (&["--dense-sweep"], "--dense-sweep"),
@@ -484,7 +483,13 @@ fn a_row_that_cannot_be_integrated_in_time_is_refused() {
         assert_eq!(ended.code, 2, "{more:?} {}", ended.stderr);
         assert!(ended.stderr.contains(wanted), "{more:?} {}", ended.stderr);
     }
-    let creeping = GOOD.replace("[contact]\n", "[contact]\nring = \"creeping\"\n");
+    // Nothing but friction holds the ring.
+    let creeping = GOOD
+        .replace("[contact]\n", "[contact]\nring = \"creeping\"\n")
+        .replace(
+            "ring_disk_stiffness_n_per_m = 1.0e4",
+            "ring_disk_stiffness_n_per_m = 0.0",
+        );
     let place = Place::with(&creeping);
     assert_eq!(place.run(&["run", "study.toml"]).code, 0);
     let ended = place.run(&["verify", RESULTS, "--time-domain"]);
