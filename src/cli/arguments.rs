@@ -131,6 +131,18 @@ pub enum Command {
         /// Writes `peak_audit.parquet` into the results folder.
         #[arg(long)]
         dense_sweep: bool,
+        /// Integrate one row in time instead, and compare it with harmonic balance.
+        ///
+        /// The row of --scenario and --pattern at its peak frequency, or the first one of the
+        /// sample under friction. Writes no table.
+        #[arg(long, conflicts_with = "dense_sweep")]
+        time_domain: bool,
+        /// Scenario of that row, counted from 0.
+        #[arg(long, value_name = "I", requires_all = ["time_domain", "pattern"])]
+        scenario: Option<usize>,
+        /// Pattern of that row.
+        #[arg(long, value_name = "ID", requires_all = ["time_domain", "scenario"])]
+        pattern: Option<u32>,
         /// Where the inputs lie now: beside this study file [default: that of the last run].
         #[arg(long, value_name = "FILE")]
         study: Option<PathBuf>,

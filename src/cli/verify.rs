@@ -9,7 +9,10 @@ use serde::Serialize;
 use super::progress::RunProgress;
 use super::run_command::Failure;
 use super::{ExitStatus, output};
-use crate::study::{ReducedEngineSource, StoredStudy, Study, VerifyRequest, audit_peaks, verify};
+use crate::study::{
+    ReducedEngineSource, StoredStudy, Study, TimeDomainRequest, VerifyRequest, audit_peaks, verify,
+    verify_in_time,
+};
 
 /// Arguments of the command.
 #[derive(Debug)]
@@ -17,10 +20,32 @@ pub(super) struct VerifyArguments {
     pub(super) target: PathBuf,
     pub(super) sample: u32,
     pub(super) seed: Option<u64>,
-    pub(super) dense_sweep: bool,
+    pub(super) question: Question,
     pub(super) study: Option<PathBuf>,
     pub(super) threads: Option<u16>,
     pub(super) json: bool,
+}
+
+/// What is asked of the rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Question {
+    /// The same on the full-contact model?
+    FullModel,
+    /// A higher peak elsewhere?
+    DenseSweep,
+    /// The same in time? Of one row, by scenario and pattern, or the first of the sample.
+    TimeDomain(Option<(usize, u32)>),
+}
+
+impl Question {
+    /// By the flags, of which at most one is set, and the row.
+    pub(super) fn of(dense_sweep: bool, time_domain: bool, row: Option<(usize, u32)>) -> Self {
+        match (dense_sweep, time_domain) {
+            (true, _) => Self::DenseSweep,
+            (_, true) => Self::TimeDomain(row),
+            _ => Self::FullModel,
+        }
+    }
 }
 
 pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure> {
@@ -34,39 +59,45 @@ pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure
         ),
     };
     let progress = RunProgress::new();
-    if arguments.dense_sweep {
-        let report = audit_peaks(&stored, &ReducedEngineSource, request, &progress);
-        progress.finish();
-        let report = report?;
-        return Ok(finish(
-            arguments,
-            &stored,
-            "peak_audit.parquet",
-            &report,
-            report.verified,
-        ));
+    match arguments.question {
+        Question::FullModel => {
+            let report = verify(&stored, &ReducedEngineSource, request, &progress);
+            progress.finish();
+            let report = report?;
+            name_table(&stored, "verification.parquet");
+            Ok(finish(arguments, &report, report.verified))
+        }
+        Question::DenseSweep => {
+            let report = audit_peaks(&stored, &ReducedEngineSource, request, &progress);
+            progress.finish();
+            let report = report?;
+            name_table(&stored, "peak_audit.parquet");
+            Ok(finish(arguments, &report, report.verified))
+        }
+        Question::TimeDomain(row) => {
+            let request = TimeDomainRequest {
+                row,
+                sample: request,
+            };
+            let report = verify_in_time(&stored, &ReducedEngineSource, request, &progress);
+            progress.finish();
+            let report = report?;
+            Ok(finish(arguments, &report, report.verified))
+        }
     }
-    let report = verify(&stored, &ReducedEngineSource, request, &progress);
-    progress.finish();
-    let report = report?;
-    Ok(finish(
-        arguments,
-        &stored,
-        "verification.parquet",
-        &report,
-        report.verified,
-    ))
 }
 
-/// Names the table that was written, prints the report and says how the command ends.
+/// Names the table that was written.
+fn name_table(stored: &StoredStudy, table: &str) {
+    output::message(&format!("wrote {}", stored.folder.join(table).display()));
+}
+
+/// Prints the report and says how the command ends.
 fn finish(
     arguments: &VerifyArguments,
-    stored: &StoredStudy,
-    table: &str,
     report: &(impl Serialize + Display),
     verified: bool,
 ) -> ExitStatus {
-    output::message(&format!("wrote {}", stored.folder.join(table).display()));
     output::result(arguments.json, report);
     if verified {
         ExitStatus::Done

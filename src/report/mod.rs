@@ -5,11 +5,13 @@ mod peak_audit;
 mod summary;
 mod summary_text;
 mod text_table;
+mod time_domain;
 mod verification;
 mod warning;
 
 pub use model_report::{ModelReport, NodalDiameterFacts};
 pub use peak_audit::PeakAuditReport;
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
+pub use time_domain::{StepReport, TimeDomainReport};
 pub use verification::{ErrorDistribution, RegimeErrors, VerificationContext, VerificationReport};
 pub use warning::Warning;

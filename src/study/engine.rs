@@ -12,6 +12,7 @@ use crate::report::ModelReport;
 use crate::response::forced_response::{ResponseTrace, SearchPlan};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
+use crate::response::time_integration::{PointComparison, TimeOptions};
 
 /// A reduced model with the settings of a study, ready to be solved; shared between threads.
 pub trait Engine: Sync {
@@ -68,6 +69,19 @@ pub trait Engine: Sync {
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
     ) -> Result<[ResponseTrace; 2], Status>;
+
+    /// The point of a delivered row, its pattern at its peak frequency, by harmonic balance and by
+    /// time integration.
+    ///
+    /// # Errors
+    /// The status of the harmonic balance where it has no solution to start from.
+    fn compare_in_time(
+        &self,
+        pattern: &Pattern,
+        scenario: &Scenario,
+        row: &ResponseRow,
+        options: &TimeOptions,
+    ) -> Result<PointComparison, Status>;
 }
 
 /// Maker of engines.

@@ -21,6 +21,7 @@ mod sector_model;
 mod source_map;
 mod stored_study;
 mod template;
+mod time_domain;
 mod traced_curve;
 mod validate;
 mod validate_mistuning;
@@ -42,5 +43,6 @@ pub use response_curve::{CurveRequest, full_response_curve, response_curve, trac
 pub use sector_model::{load_sector_model, pattern_source};
 pub use stored_study::{StoredModel, StoredStudy};
 pub use template::STUDY_TEMPLATE;
+pub use time_domain::{TimeDomainRequest, verify_in_time};
 pub use traced_curve::{TracedCurve, TracedFold};
 pub use verify::{VerifyRequest, verify};

@@ -78,6 +78,12 @@ pub enum PipelineError {
         /// What is missing.
         reason: &'static str,
     },
+    /// A row is to be integrated in time that cannot be.
+    #[error("{reason}")]
+    NoTimeDomain {
+        /// What is missing, and what is accepted.
+        reason: &'static str,
+    },
     /// The study has no such pattern.
     #[error("there is no pattern {id}; accepted: tuned, or {accepted}")]
     NoPattern {

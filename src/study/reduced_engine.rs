@@ -21,6 +21,7 @@ use crate::response::forced_response::{Harmonics, ResponseTrace, RowsBeyondToler
 use crate::response::friction::{ContactLaw, ContactOptions, PairParameters, Ring};
 use crate::response::harmonic_balance::{Status, TransformError};
 use crate::response::mistuning::Pattern;
+use crate::response::time_integration::{PointComparison, TimeOptions};
 
 /// Harmonics that an automatic set begins with.
 const FIRST_HARMONICS: [u32; 1] = [1];
@@ -249,6 +250,16 @@ impl Engine for ReducedEngine {
             pattern,
             frequencies_hz,
         )
+    }
+
+    fn compare_in_time(
+        &self,
+        pattern: &Pattern,
+        scenario: &Scenario,
+        row: &ResponseRow,
+        options: &TimeOptions,
+    ) -> Result<PointComparison, Status> {
+        self.solver.compare_in_time(pattern, scenario, row, options)
     }
 }
 

@@ -10,6 +10,7 @@ use blisk::report::ModelReport;
 use blisk::response::forced_response::{ResponseTrace, SearchPlan};
 use blisk::response::harmonic_balance::Status;
 use blisk::response::mistuning::{Deviations, Pattern};
+use blisk::response::time_integration::{PointComparison, TimeOptions};
 use blisk::study::{Engine, EngineSource, PipelineError, Study};
 use serde_json::{Value, json};
 
@@ -138,6 +139,16 @@ impl Engine for MockEngine {
         _frequencies_hz: &[f64],
     ) -> Result<[ResponseTrace; 2], Status> {
         Err(Status::InvalidPattern)
+    }
+
+    fn compare_in_time(
+        &self,
+        _pattern: &Pattern,
+        _scenario: &Scenario,
+        _row: &ResponseRow,
+        _options: &TimeOptions,
+    ) -> Result<PointComparison, Status> {
+        unreachable!("no test asks for it")
     }
 }
 

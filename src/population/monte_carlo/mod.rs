@@ -9,6 +9,7 @@ mod row;
 mod row_solver;
 mod scenario;
 mod sink;
+mod time_domain;
 
 pub use blocks::{PatternBlock, block_size, plan_blocks};
 pub use curves::CurveResult;

@@ -7,6 +7,7 @@ use super::{
     ErrorTolerance, HarmonicChoice, ResponseRow, Scenario, ScenarioError, TunedReference,
     stated_error,
 };
+use crate::linalg::Matrix;
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
     ContactCondition, ErrorEstimate, Excited, FrequencyBand, LimitsWanted, Peak, Point,
@@ -276,14 +277,30 @@ impl RowSolver {
         pattern: &Pattern,
         wanted: LimitsWanted,
     ) -> Result<(StructuralModes, Wheel), Status> {
+        let modes = self
+            .stiffness_change(pattern)
+            .and_then(|change| StructuralModes::of_wheel(&self.basis, &change))
+            .ok_or(Status::InvalidPattern)?;
+        let wheel = Wheel::mistuned(
+            modes.clone(),
+            self.basis.model(),
+            self.settings.damping,
+            wanted,
+        );
+        Ok((modes, wheel))
+    }
+
+    /// What the pattern adds to the stiffness of the wheel, in its coordinates; none if it cannot
+    /// be applied.
+    pub(super) fn stiffness_change(&self, pattern: &Pattern) -> Option<Matrix<f64>> {
         let physical = pattern
             .entries()
             .iter()
             .all(|&(_, _, deviation)| deviation > -1.0 && deviation.is_finite());
         if !physical {
-            return Err(Status::InvalidPattern);
+            return None;
         }
-        let change = match (&pattern.deviations, self.settings.projection) {
+        match (&pattern.deviations, self.settings.projection) {
             (Deviations::PerBlade(values), Projection::Exact) => {
                 Some(self.basis.blade_stiffness_change(values))
             }
@@ -296,17 +313,7 @@ impl RowSolver {
                     place.map_or(0.0, |place| values[blade * modes.len() + place])
                 })
             }
-        };
-        let modes = change
-            .and_then(|change| StructuralModes::of_wheel(&self.basis, &change))
-            .ok_or(Status::InvalidPattern)?;
-        let wheel = Wheel::mistuned(
-            modes.clone(),
-            self.basis.model(),
-            self.settings.damping,
-            wanted,
-        );
-        Ok((modes, wheel))
+        }
     }
 
     /// Where the peak of a mistuned wheel is sought.

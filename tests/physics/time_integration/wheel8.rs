@@ -125,9 +125,10 @@ fn where_the_motion_repeats_itself_harmonic_balance_has_found_it() {
 }
 
 /// Where every pair slips with a load that varies much, the periodic solution of the tuned wheel is
-/// unstable: waves of other nodal diameters at frequencies between the harmonics (5.32, 8.32, 9.32
-/// times that of the excitation at 400 N) grow from nothing within some ten periods and stay, with
-/// a ring that creeps as with one that is pinned. Harmonic balance cannot know; the march says so.
+/// unstable: waves of other nodal diameters at frequencies between the harmonics grow from nothing
+/// within some ten periods and stay, with a ring that creeps as with one that is pinned. At 400 N
+/// the Floquet multipliers say so (section 10 of docs/formulation.md). Harmonic balance cannot know;
+/// the march says so.
 #[test]
 #[ignore = "minutes: points whose periodic motion is unstable"]
 fn where_the_periodic_motion_is_unstable_the_march_reports_it() {
