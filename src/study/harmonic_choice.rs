@@ -50,6 +50,31 @@ pub fn choose_harmonics(
     Ok(choices)
 }
 
+/// The choices with the harmonics that separation needs, and the remainder of each such set.
+///
+/// # Errors
+/// As [`choose_harmonics`].
+pub fn with_separation(
+    model: &Arc<ReducedModel>,
+    settings: &RowSettings,
+    choices: Vec<HarmonicChoice>,
+) -> Result<Vec<HarmonicChoice>, PipelineError> {
+    let admitted = choices.into_iter().map(|mut choice| {
+        if choice.admits_separation() {
+            return Ok(choice);
+        }
+        choice.admit_separation();
+        let tuned = TunedWheel {
+            model,
+            settings,
+            engine_order: choice.engine_order,
+            contact: choice.contact,
+        };
+        Ok(tuned.judged(choice)?.0)
+    });
+    admitted.collect()
+}
+
 /// The tuned wheel whose peak judges a set.
 struct TunedWheel<'a> {
     model: &'a Arc<ReducedModel>,
