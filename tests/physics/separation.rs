@@ -130,7 +130,7 @@ fn find<'a>(value: &'a serde_json::Value, key: &str) -> Option<&'a serde_json::V
     }
 }
 
-const LOADS: &str = "30, 60, 1000";
+const LOADS: &str = "42, 44, 1000";
 
 #[test]
 fn rows_that_separate_are_solved_again_and_replayed() {
