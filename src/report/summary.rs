@@ -299,34 +299,33 @@ fn warnings(
 /// separates.
 fn separation(harmonics: &Harmonics, records: &[ScenarioRecord]) -> Option<Warning> {
     let has_even = |set: &[u32]| set.contains(&0) && set.iter().any(|k| *k > 0 && k % 2 == 0);
-    let even = match harmonics {
-        Harmonics::Auto => records.iter().all(|record| {
-            let set: Vec<u32> = record
-                .tuned
-                .harmonics
-                .split('-')
-                .filter_map(|k| k.parse().ok())
-                .collect();
-            record.scenario.contact.normal_load_n().is_none() || has_even(&set)
-        }),
-        Harmonics::Set(set) => has_even(set),
+    let lacks_even = |record: &&ScenarioRecord| match harmonics {
+        Harmonics::Auto => {
+            let names = record.tuned.harmonics.split('-');
+            let set: Vec<u32> = names.filter_map(|k| k.parse().ok()).collect();
+            !has_even(&set)
+        }
+        Harmonics::Set(set) => !has_even(set),
     };
     let separated = |record: &ScenarioRecord| -> f64 {
         let tuned = record.tuned.separated_fraction.unwrap_or(0.0);
-        record
-            .statistics
-            .largest_separated_fraction
-            .unwrap_or(0.0)
-            .max(tuned)
+        let rows = record.statistics.largest_separated_fraction;
+        rows.unwrap_or(0.0).max(tuned)
     };
-    let largest_fraction = records.iter().map(separated).fold(0.0, f64::max);
-    (!even && largest_fraction > 0.0).then(|| Warning::SeparationWithFewHarmonics {
-        scenarios: records
+    let concerned: Vec<&ScenarioRecord> = records
+        .iter()
+        .filter(lacks_even)
+        .filter(|record| separated(record) > 0.0)
+        .collect();
+    (!concerned.is_empty()).then(|| Warning::SeparationWithFewHarmonics {
+        scenarios: concerned
             .iter()
-            .filter(|record| separated(record) > 0.0)
             .map(|record| record.scenario.index)
             .collect(),
-        largest_fraction,
+        largest_fraction: concerned
+            .iter()
+            .map(|record| separated(record))
+            .fold(0.0, f64::max),
     })
 }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::harmonic_choice::choose_harmonics;
 use super::reduced_engine::{contact_stiffness, row_settings, sensitivity_vectors};
 use super::{PipelineError, Study};
 use crate::model::ReducedModel;
@@ -9,7 +10,7 @@ use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{RowSettings, RowSolver, Scenario};
 use crate::population::table::CurvePoint;
-use crate::response::forced_response::FrequencyBand;
+use crate::response::forced_response::{ContactCondition, FrequencyBand, Harmonics};
 use crate::response::harmonic_balance::{HarmonicTransform, Status, TransformError};
 use crate::response::mistuning::Pattern;
 use crate::response::reference::{
@@ -26,6 +27,8 @@ pub struct FullModel {
     /// Says where the linear limits of a row resonate; no nonlinear solution is taken from it.
     scout: RowSolver,
     samples_per_period: usize,
+    /// Whether the study leaves the harmonics to the program, and none were asked for instead.
+    automatic: bool,
 }
 
 /// Temporal harmonics and samples of a solution on the full-contact model.
@@ -93,16 +96,40 @@ impl FullModel {
                 settings.clone(),
             )?,
             samples_per_period: options.samples_per_period,
+            automatic: options.harmonics.is_none() && study.solver.harmonics == Harmonics::Auto,
             row: settings,
         };
-        full.settings(full.harmonics())?;
+        full.settings(&full.row.harmonics)?;
         Ok(full)
     }
 
-    /// Harmonic set of the study, or the one asked for instead.
-    #[must_use]
-    pub fn harmonics(&self) -> &[u32] {
-        &self.row.harmonics
+    /// Harmonic set under an engine order and contact condition: the one asked for, else that of the
+    /// study, which is the one that a run of the study chooses there where it is automatic.
+    ///
+    /// # Errors
+    /// The samples per period of the study cannot tell the harmonics apart.
+    pub fn harmonics(
+        &self,
+        engine_order: u32,
+        contact: ContactCondition,
+    ) -> Result<Vec<u32>, PipelineError> {
+        let given = &self.row.harmonics;
+        if !self.automatic {
+            return Ok(given.clone());
+        }
+        let chosen = choose_harmonics(
+            &self.model,
+            &self.row,
+            &[engine_order],
+            &[contact],
+            given,
+            Some(self.row.solver.harmonic_tolerance),
+        )?;
+        // A linear limit has the fundamental alone, and nothing is chosen there.
+        Ok(chosen
+            .into_iter()
+            .next()
+            .map_or_else(|| given.clone(), |choice| choice.harmonics))
     }
 
     /// Number of complex coordinates of the wheel.

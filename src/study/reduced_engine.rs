@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::basis_choice::{BasisEvidence, Judged, choose_basis, judged_conditions};
-use super::harmonic_choice::choose_harmonics;
+use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::{Engine, EngineSource, MistuningSource, PipelineError, Study};
 use crate::model::reduction::{Basis, BasisChoice, ContactStiffness, Reduction, ReductionOptions};
 use crate::model::sector::SectorModel;
@@ -312,9 +312,7 @@ fn reduced(
             harmonics.clone()
         };
         if automatic && separates {
-            harmonics
-                .iter_mut()
-                .for_each(HarmonicChoice::admit_separation);
+            harmonics = with_separation(&full, settings, harmonics)?;
         }
         let options = ReductionOptions {
             basis: if by_modes {

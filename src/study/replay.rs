@@ -103,11 +103,11 @@ fn full_peaks(
     settings: &FullSettings,
 ) -> Result<(ReferencePeak, ReferencePeak, Vec<u32>), PipelineError> {
     let full = FullModel::build(&stored.study, &model.sector, settings)?;
-    let harmonics = settings
-        .harmonics
-        .clone()
-        .or_else(|| harmonics_of(&delivered.harmonics))
-        .unwrap_or_else(|| full.harmonics().to_vec());
+    let asked = settings.harmonics.clone();
+    let harmonics = match asked.or_else(|| harmonics_of(&delivered.harmonics)) {
+        Some(harmonics) => harmonics,
+        None => full.harmonics(scenario.engine_order, scenario.contact)?,
+    };
     let settings = full.settings(&harmonics)?;
     let row = FullRow {
         scenario,

@@ -68,7 +68,8 @@ pub fn full_response_curve(
 ) -> Result<Vec<CurvePoint>, PipelineError> {
     let wanted = Wanted::of(study, request)?;
     let full = FullModel::build(study, &wanted.sector, settings)?;
-    let settings = full.settings(full.harmonics())?;
+    let harmonics = full.harmonics(request.engine_order, request.contact)?;
+    let settings = full.settings(&harmonics)?;
     Ok(full.curve(
         &wanted.scenario,
         wanted.pattern.as_ref(),

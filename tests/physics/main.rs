@@ -16,5 +16,6 @@ mod peaks;
 mod reduction;
 mod reference;
 mod sector_sources;
+mod separation;
 mod time_integration;
 mod wheels;
