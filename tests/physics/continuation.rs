@@ -16,7 +16,7 @@ use blisk::response::harmonic_balance::{
 use blisk::response::mistuning::{ModalRows, StructuralModes};
 
 use super::sector_sources::lumped::lumped24;
-use super::wheels::{Wheel, full};
+use super::wheels::{ENGINE_ORDER, Wheel, full};
 
 mod oscillator {
     //! One mass on a spring, held by a preloaded contact that can open: it softens, and its
@@ -165,7 +165,10 @@ fn walk(
 
 #[test]
 fn both_folds_of_an_opening_contact_are_found_where_the_closed_form_has_them() {
-    let system = oscillator::system(4096, oscillator::PRELOAD_N);
+    // Contact opens at samples, not between them, which gives the curve a ripple as the phase turns from
+    // sample to sample. Its slope goes as the inverse of their number; near a fold, where the curve's own
+    // slope vanishes, a coarse ripple makes folds of its own.
+    let system = oscillator::system(65_536, oscillator::PRELOAD_N);
     let expected = oscillator::folds(0, oscillator::PRELOAD_N);
     assert_eq!(expected.len(), 2, "{expected:?}");
     for (from, to) in [(900.0, 1300.0), (1300.0, 900.0)] {
@@ -299,6 +302,42 @@ fn both_directions_pass_every_branch_and_sweeps_differ_between_the_folds() {
         }
     }
     assert!(several >= 5, "{several}");
+}
+
+/// The top of the folded curve is where reactance vanishes: `F / (eta k)` whatever the preload.
+#[test]
+fn the_peak_of_a_folded_curve_is_its_top_or_has_a_status() {
+    let wheel = oscillator_wheel();
+    let options = SolverOptions {
+        samples_per_period: 1024,
+        ..SolverOptions::default()
+    };
+    let tolerance = options.peak_tolerance;
+    let solver = wheel.solver(&[1], options);
+    let (mut folded, mut failed) = (0, 0);
+    for load in (2..=60).map(f64::from) {
+        let peak = solver.tuned_peak(ENGINE_ORDER, full(load));
+        let ratio = peak
+            .amplitude_m()
+            .map(|found| found / oscillator::highest());
+        println!(
+            "{load} N: {} {ratio:?}, bracketed {}, {:?}",
+            peak.status.name(),
+            peak.bracketed,
+            peak.work
+        );
+        folded += usize::from(peak.work.folds > 0);
+        match ratio {
+            Some(ratio) => assert!((ratio - 1.0).abs() < tolerance, "{load} N: {ratio}"),
+            None => failed += 1,
+        }
+    }
+    println!("{folded} rows passed folds, {failed} failed");
+    // Where the search ends beside a cliff without lower samples on both sides the row has a status.
+    assert!(
+        folded >= 15 && failed <= 25,
+        "{folded} folded, {failed} failed"
+    );
 }
 
 #[test]

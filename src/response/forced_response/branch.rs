@@ -170,7 +170,7 @@ impl PointSolver<'_> {
     /// Walks from `from` until beyond the first of `ends_hz`, or until told to stop; hands over steps,
     /// folds and passages of the grid. Beyond the second one, behind the start, it is `branch_jump`:
     /// the wanted end belongs to another curve.
-    fn follow(
+    pub(super) fn follow(
         &mut self,
         from: &Point,
         ends_hz: (f64, f64),
@@ -262,7 +262,7 @@ impl PointSolver<'_> {
     }
 
     /// Bounds in which the half-bandwidth of the nearest linear resonance is the frequency scale.
-    fn continuation_bounds(&self, frequency_hz: f64) -> ContinuationBounds {
+    pub(super) fn continuation_bounds(&self, frequency_hz: f64) -> ContinuationBounds {
         let nearest = self
             .excited
             .linear_peaks(self.condition)

@@ -4,6 +4,7 @@ mod a_posteriori;
 mod branch;
 mod dense_sweep;
 mod excited;
+mod folded_peak;
 mod homotopy;
 mod linear_peaks;
 mod observed_amplitude;

@@ -3,7 +3,7 @@
 use super::excited::Excited;
 use super::linear_peaks::LinearPeak;
 use super::options::{ContactCondition, FrequencyBand};
-use super::peak_search::{Envelope, SearchEnd, SearchSettings, find_peak};
+use super::peak_search::{Envelope, Sample, SearchEnd, SearchSettings, find_peak};
 use super::point_settings::PointSettings;
 use super::point_solver::{Point, PointSolver, Work};
 use crate::response::harmonic_balance::Status;
@@ -203,26 +203,57 @@ pub fn peak(
             .find(|point| point.frequency_hz.total_cmp(&best.frequency_hz).is_eq())
             .cloned()
     });
-    let mean_friction_n = point
-        .as_ref()
-        .and_then(|point| solver.mean_friction_n(point));
     let status = match result.end {
         SearchEnd::Found if result.bracketed => Status::Ok,
-        SearchEnd::Found | SearchEnd::Open => Status::NotBracketed,
+        SearchEnd::Found | SearchEnd::Open => {
+            failure_beyond(&solver, best).unwrap_or(Status::NotBracketed)
+        }
         SearchEnd::Exhausted => Status::WorkBudget,
         SearchEnd::Incomplete => solver
             .failures()
             .last()
             .map_or(Status::SweepIncomplete, |&(_, status)| status),
     };
+    let higher = match (status, &point) {
+        (Status::Ok, Some(point)) => {
+            solver.over_folds(point, search.tolerance, plan.extensions > 0)
+        }
+        _ => Ok(None),
+    };
+    let status = higher.as_ref().err().copied().unwrap_or(status);
+    let point = higher.ok().flatten().or(point);
+    let mean_friction_n = point
+        .as_ref()
+        .and_then(|point| solver.mean_friction_n(point));
     Peak {
         status,
+        blade: point.as_ref().map_or(0, Point::largest_blade),
         point,
-        blade: best.map_or(0, |best| best.blade),
         bracketed: result.bracketed,
         mean_friction_n,
         work: solver.work(),
     }
+}
+
+/// Status of the failed frequency nearest to the best point, among those with no lower amplitude
+/// known between: the curve may well have turned there. None if the search only ran out of band.
+fn failure_beyond(solver: &PointSolver<'_>, best: Option<&Sample>) -> Option<Status> {
+    let at = best?.frequency_hz;
+    let lower = |side: f64| {
+        solver
+            .points()
+            .iter()
+            .map(|point| side * (point.frequency_hz - at))
+            .filter(|distance| *distance > 0.0)
+            .fold(f64::INFINITY, f64::min)
+    };
+    let nearest = [lower(-1.0), lower(1.0)];
+    solver
+        .failures()
+        .iter()
+        .filter(|(hz, _)| (hz - at).abs() < nearest[usize::from(*hz > at)])
+        .min_by(|a, b| (a.0 - at).abs().total_cmp(&(b.0 - at).abs()))
+        .map(|&(_, status)| status)
 }
 
 /// Resonances of each limit inside the window, or all of them where none of a limit is: a

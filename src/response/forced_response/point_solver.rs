@@ -52,6 +52,19 @@ impl Point {
     pub fn largest_amplitude_m(&self) -> f64 {
         self.amplitudes_m.iter().copied().fold(0.0, f64::max)
     }
+
+    /// Blade of the largest amplitude, the first where several share it.
+    #[must_use]
+    pub fn largest_blade(&self) -> usize {
+        let amplitudes = &self.amplitudes_m;
+        (0..amplitudes.len()).fold(0, |best, blade| {
+            if amplitudes[blade] > amplitudes[best] {
+                blade
+            } else {
+                best
+            }
+        })
+    }
 }
 
 /// Solver of the points of one row; keeps the converged points as starts for others.

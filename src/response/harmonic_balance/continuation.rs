@@ -37,9 +37,11 @@ const RESCALING: f64 = 2.0;
 /// the solution from the chord over the length of the chord.
 const LANDING_HALVINGS: usize = 12;
 const LANDING_DEVIATION: f64 = 0.35;
-/// Corrections to the place of a fold, and the slope of frequency over arc length at which it is found.
-const FOLD_CORRECTIONS: usize = 12;
+/// A fold is found at this slope of frequency over arc length, or once it lies within this length;
+/// largest number of corrections, two per halving of the largest step to that length.
 const FOLD_SLOPE: f64 = 1e-4;
+const FOLD_WIDTH: f64 = 1e-6;
+const FOLD_CORRECTIONS: usize = 40;
 
 /// Bounds of a continuation. Steps are relative: 1 is a change of the solution by its own norm, or
 /// of the frequency by [`Self::frequency_scale`].
@@ -393,24 +395,29 @@ impl<'a> Continuation<'a> {
     }
 
     /// Where the frequency turns between `before` and the point a step of length `taken` behind
-    /// it: the slope is brought to zero by the Illinois form of false position. At a kink it has
-    /// no zero, and the smaller and smaller bracket still holds the place.
+    /// it: the slope is brought to zero by the Illinois form of false position, and by halving where
+    /// that is slow, since a sharp fold makes the slope jump. At a kink it has no zero: the bracket
+    /// shrinks round the place.
     fn fold_between(&mut self, before: &Place, taken: f64) -> Fold {
         let largest = before.slope() > 0.0;
         let outer = |a: &Place, b: &Place| (a.u[a.u.len() - 1] > b.u[b.u.len() - 1]) == largest;
-        let mut best = if outer(before, &self.here) {
-            before.clone()
+        let (mut best, mut along) = if outer(before, &self.here) {
+            (before.clone(), 0.0)
         } else {
-            self.here.clone()
-        };
-        let mut along = if outer(before, &self.here) {
-            0.0
-        } else {
-            taken
+            (self.here.clone(), taken)
         };
         let (mut low, mut high) = ((0.0, before.slope()), (taken, self.here.slope()));
+        let mut halve = false;
         for _ in 0..FOLD_CORRECTIONS {
-            let at = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            let width = high.0 - low.0;
+            if width <= FOLD_WIDTH {
+                break;
+            }
+            let at = if halve {
+                0.5 * (low.0 + high.0)
+            } else {
+                (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1)
+            };
             let Ok((place, _)) = self.corrected(before, at) else {
                 break;
             };
@@ -428,6 +435,7 @@ impl<'a> Continuation<'a> {
                 high = (at, slope);
                 low.1 *= 0.5;
             }
+            halve = !halve && high.0 - low.0 > 0.5 * width;
         }
         Fold {
             point: self.path_point(&best, along),

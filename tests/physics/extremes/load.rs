@@ -165,13 +165,14 @@ fn claps(loads: &[f64], harmonics: &[u32]) -> usize {
     good
 }
 
+/// With the fundamental alone every row is solved. With the constant harmonic, whose contact force a
+/// light ring hardly carries, only those that hardly separate: the lighter ones fail, with a status.
 #[test]
 fn clapping_ends_in_a_number_or_a_status() {
     let loads = [0.0, 1e-6, 1e-3, 1.0, 10.0, 100.0, 1e4, 1e6];
-    for harmonics in [&[1_u32][..], &[0, 1, 2, 3]] {
-        // Those that do not separate at least; lighter ones may fail, with a status that says so.
+    for (harmonics, wanted) in [(&[1_u32][..], loads.len()), (&[0, 1, 2, 3], 3)] {
         let good = claps(&loads, harmonics);
-        assert!(good >= 3, "{good} of {} rows", loads.len());
+        assert!(good >= wanted, "{good} of {} rows", loads.len());
     }
 }
 
@@ -179,14 +180,15 @@ fn clapping_ends_in_a_number_or_a_status() {
 #[ignore = "long form: `cargo test --release --test physics extremes -- --ignored`"]
 fn clapping_ends_in_a_number_or_a_status_long() {
     let loads = decades(-6, 6, 4);
-    for harmonics in [
-        &[1_u32][..],
-        &[1, 3],
-        &[0, 1, 2],
-        &[0, 1, 2, 3],
-        &[0, 1, 2, 3, 4, 5],
+    for (harmonics, wanted) in [
+        (&[1_u32][..], loads.len()),
+        (&[1, 3], loads.len()),
+        (&[0, 1, 2], 19),
+        (&[0, 1, 2, 3], 18),
+        (&[0, 1, 2, 3, 4, 5], 18),
     ] {
         let good = claps(&loads, harmonics);
         println!("{harmonics:?}: {good} of {}", loads.len());
+        assert!(good >= wanted, "{harmonics:?}: {good} of {}", loads.len());
     }
 }

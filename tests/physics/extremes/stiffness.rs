@@ -94,6 +94,8 @@ fn settles(stiffnesses: &[f64]) {
                 row.status == Status::Ok || kt > A_JUMP,
                 "{load} N, {kt:e}: {row:?}"
             );
+            // The band holds the peak: a row without one has failed points, and says how they failed.
+            assert_ne!(row.status, Status::NotBracketed, "{load} N, {kt:e}");
             peaks.extend(row.peak_amplitude_m.map(|peak| (kt, peak)));
         }
         let rigid = peaks[peaks.len() - 1].1;
