@@ -41,7 +41,8 @@ impl PointSolver<'_> {
         tolerance: f64,
         open: bool,
     ) -> Result<Option<Point>, Status> {
-        let creeps = self.settings.ring == Ring::Creeping && best.ring_drift_m != [0.0; 2];
+        let creeps = self.settings.ring == Ring::Creeping
+            && best.ring_drift_m.iter().any(|drift| drift.abs() > 0.0);
         if best.shares.separated <= 0.0 || creeps {
             return Ok(None);
         }
