@@ -16,10 +16,10 @@ import pandas
 import polars
 import pyarrow.parquet
 
-INT32 = {"scenario", "engine_order", "pattern", "peak_blade", "planned", "ok", "failed", "blade", "mode"}
+INT32 = {"scenario", "engine_order", "pattern", "peak_blade", "planned", "ok", "failed", "blade", "mode", "beyond_tolerance"}
 INT64 = {"nonlinear_solves", "newton_iterations", "retries"}
-BOOLEAN = {"peak_bracketed"}
-STRING = {"contact", "status", "tuned_status", "harmonics", "shortcut"}
+BOOLEAN = {"peak_bracketed", "error_within_tolerance"}
+STRING = {"contact", "status", "tuned_status", "harmonics", "shortcut", "basis"}
 
 # Name of each type in pyarrow, Polars, DuckDB and (without nulls) pandas.
 TYPES = {
