@@ -5,11 +5,12 @@ use std::str::FromStr;
 
 use serde_json::json;
 
-use super::fidelity::FidelityArguments;
+use super::fidelity::{Fidelity, FidelityArguments};
 use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::population::table::{CurveFormat, TableHeader, write_curve, write_traced_curve};
 use crate::response::forced_response::ContactCondition;
+use crate::response::friction::Ring;
 use crate::response::harmonic_balance::Status;
 use crate::study::{
     CurveRequest, ReducedEngineSource, Study, StudyDigest, TracedCurve, full_response_curve,
@@ -214,6 +215,17 @@ fn followed(
             "--continuation with --load {}: a linear response has one branch; accepted: a normal load in N",
             request.contact.name()
         )));
+    }
+    if arguments.fidelity.fidelity == Fidelity::Full {
+        return Err(Failure::usage(
+            "--continuation with --fidelity full: a curve is followed on the reduced model; accepted: --fidelity reduced".to_owned(),
+        ));
+    }
+    let ring = study.contact.as_ref().map(|contact| contact.ring);
+    if ring == Some(Ring::Creeping) {
+        return Err(Failure::usage(
+            "--continuation: the curve of a creeping ring is not followed; accepted: contact.ring = \"locked\"".to_owned(),
+        ));
     }
     if request.frequencies_hz.len() < 2 {
         return Err(Failure::usage(

@@ -324,6 +324,13 @@ fn response_by_continuation_says_whether_the_curve_is_complete_and_the_direction
     assert_eq!(value["complete"]["down"], true);
     assert_eq!(value["curve"]["directions_agree"], true);
     assert_eq!(value["curve"]["folds"].as_array().map(Vec::len), Some(0));
+    let full = response("50", "340:370:7", &["--fidelity", "full"]);
+    assert_eq!(full.code, 2);
+    assert!(
+        full.stderr.contains("--fidelity reduced"),
+        "{}",
+        full.stderr
+    );
     // Two directions, seven frequencies, six blades.
     assert_eq!(value["rows"], 84);
     let table = std::fs::read_to_string(place.path("curve.csv")).expect("the table");

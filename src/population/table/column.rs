@@ -108,3 +108,38 @@ pub(super) fn frame(columns: &[ColumnSpec], values: Vec<Values>) -> Result<DataF
         .collect();
     DataFrame::new(height, columns).map_err(|error| error.to_string())
 }
+
+/// Columns that name a row in every table that has it.
+pub(super) mod key {
+    use super::{ColumnKind, ColumnSpec};
+    use ColumnKind::{Float64, Int32, String as Text};
+
+    pub(in super::super) const SCENARIO: ColumnSpec = ColumnSpec::new(
+        "scenario",
+        Int32,
+        "",
+        "Index in the order engine order, standard deviation, normal load of this study",
+    );
+    pub(in super::super) const CONTACT: ColumnSpec = ColumnSpec::new(
+        "contact",
+        Text,
+        "",
+        "full, or the linear limit stuck, slide or free",
+    );
+    pub(in super::super) const ENGINE_ORDER: ColumnSpec =
+        ColumnSpec::new("engine_order", Int32, "1", "Engine order of the excitation");
+    pub(in super::super) const NORMAL_LOAD: ColumnSpec = ColumnSpec::new(
+        "normal_load_n",
+        Float64,
+        "N",
+        "Damper normal load per sector; null for the linear limits",
+    );
+    pub(in super::super) const STANDARD_DEVIATION: ColumnSpec = ColumnSpec::new(
+        "standard_deviation",
+        Float64,
+        "1",
+        "Standard deviation of the blades' relative stiffness deviation, after truncation; null for patterns from a file",
+    );
+    pub(in super::super) const PATTERN: ColumnSpec =
+        ColumnSpec::new("pattern", Int32, "", "Pattern id");
+}

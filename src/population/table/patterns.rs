@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::column::{ColumnKind, ColumnSpec, Values};
+use super::column::{ColumnKind, ColumnSpec, Values, key};
 use super::writer::TableWriter;
 use super::{TableError, TableHeader};
 use crate::response::mistuning::PatternSource;
@@ -17,7 +17,7 @@ pub const PATTERN_COLUMNS: &[ColumnSpec] = &[
         "1",
         "Standard deviation of the law, after truncation; null for patterns from a file",
     ),
-    ColumnSpec::new("pattern", Int32, "", "Pattern id"),
+    key::PATTERN,
     ColumnSpec::new("blade", Int32, "", "Blade, from 0"),
     ColumnSpec::new(
         "mode",

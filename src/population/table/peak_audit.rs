@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use super::column::{ColumnKind, ColumnSpec, Values};
+use super::column::{ColumnKind, ColumnSpec, Values, key};
 use super::writer::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::response::forced_response::DensePeak;
 
-use ColumnKind::{Boolean, Float64, Int32, Int64, String as Text};
+use ColumnKind::{Boolean, Float64, Int64, String as Text};
 
 /// One delivered row with what a dense sweep saw.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,32 +32,12 @@ impl PeakAuditRecord {
 
 /// Columns of `peak_audit.parquet`.
 pub const PEAK_AUDIT_COLUMNS: &[ColumnSpec] = &[
-    ColumnSpec::new(
-        "scenario",
-        Int32,
-        "",
-        "Index in the order engine order, standard deviation, normal load of this study",
-    ),
-    ColumnSpec::new(
-        "contact",
-        Text,
-        "",
-        "full, or the linear limit stuck, slide or free",
-    ),
-    ColumnSpec::new("engine_order", Int32, "1", "Engine order of the excitation"),
-    ColumnSpec::new(
-        "normal_load_n",
-        Float64,
-        "N",
-        "Damper normal load per sector; null for the linear limits",
-    ),
-    ColumnSpec::new(
-        "standard_deviation",
-        Float64,
-        "1",
-        "Standard deviation of the blades' relative stiffness deviation, after truncation; null for patterns from a file",
-    ),
-    ColumnSpec::new("pattern", Int32, "", "Pattern id"),
+    key::SCENARIO,
+    key::CONTACT,
+    key::ENGINE_ORDER,
+    key::NORMAL_LOAD,
+    key::STANDARD_DEVIATION,
+    key::PATTERN,
     ColumnSpec::new("status", Text, "", "How the delivered solution ended"),
     ColumnSpec::new(
         "peak_amplitude_m",

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::column::{ColumnKind, ColumnSpec, Values};
+use super::column::{ColumnKind, ColumnSpec, Values, key};
 use super::reader::TableReader;
 use super::writer::TableWriter;
 use super::{TableError, TableHeader};
@@ -13,32 +13,12 @@ use ColumnKind::{Boolean, Float64, Int32, Int64, String as Text};
 
 /// Columns of `responses.parquet`.
 pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
-    ColumnSpec::new(
-        "scenario",
-        Int32,
-        "",
-        "Index in the order engine order, standard deviation, normal load of this study",
-    ),
-    ColumnSpec::new(
-        "contact",
-        Text,
-        "",
-        "full, or the linear limit stuck, slide or free",
-    ),
-    ColumnSpec::new("engine_order", Int32, "1", "Engine order of the excitation"),
-    ColumnSpec::new(
-        "normal_load_n",
-        Float64,
-        "N",
-        "Damper normal load per sector; null for the linear limits",
-    ),
-    ColumnSpec::new(
-        "standard_deviation",
-        Float64,
-        "1",
-        "Standard deviation of the blades' relative stiffness deviation, after truncation; null for patterns from a file",
-    ),
-    ColumnSpec::new("pattern", Int32, "", "Pattern id"),
+    key::SCENARIO,
+    key::CONTACT,
+    key::ENGINE_ORDER,
+    key::NORMAL_LOAD,
+    key::STANDARD_DEVIATION,
+    key::PATTERN,
     ColumnSpec::new(
         "status",
         Text,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::column::{ColumnKind, ColumnSpec, Values};
+use super::column::{ColumnKind, ColumnSpec, Values, key};
 use super::writer::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{Scenario, TunedReference};
@@ -23,31 +23,11 @@ pub struct ScenarioRecord {
 
 /// Columns of `scenarios.parquet`.
 pub const SCENARIO_COLUMNS: &[ColumnSpec] = &[
-    ColumnSpec::new(
-        "scenario",
-        Int32,
-        "",
-        "Index in the order engine order, standard deviation, normal load of this study",
-    ),
-    ColumnSpec::new(
-        "contact",
-        Text,
-        "",
-        "full, or the linear limit stuck, slide or free",
-    ),
-    ColumnSpec::new("engine_order", Int32, "1", "Engine order of the excitation"),
-    ColumnSpec::new(
-        "normal_load_n",
-        Float64,
-        "N",
-        "Damper normal load per sector; null for the linear limits",
-    ),
-    ColumnSpec::new(
-        "standard_deviation",
-        Float64,
-        "1",
-        "Standard deviation of the blades' relative stiffness deviation, after truncation; null for patterns from a file",
-    ),
+    key::SCENARIO,
+    key::CONTACT,
+    key::ENGINE_ORDER,
+    key::NORMAL_LOAD,
+    key::STANDARD_DEVIATION,
     ColumnSpec::new(
         "tuned_amplitude_m",
         Float64,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::column::{ColumnKind, ColumnSpec, Values};
+use super::column::{ColumnKind, ColumnSpec, Values, key};
 use super::writer::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
@@ -79,32 +79,12 @@ fn relative(own: Option<f64>, reference: Option<f64>) -> Option<f64> {
 
 /// Columns of `verification.parquet`.
 pub const VERIFICATION_COLUMNS: &[ColumnSpec] = &[
-    ColumnSpec::new(
-        "scenario",
-        Int32,
-        "",
-        "Index in the order engine order, standard deviation, normal load of this study",
-    ),
-    ColumnSpec::new(
-        "contact",
-        Text,
-        "",
-        "full, or the linear limit stuck, slide or free",
-    ),
-    ColumnSpec::new("engine_order", Int32, "1", "Engine order of the excitation"),
-    ColumnSpec::new(
-        "normal_load_n",
-        Float64,
-        "N",
-        "Damper normal load per sector; null for the linear limits",
-    ),
-    ColumnSpec::new(
-        "standard_deviation",
-        Float64,
-        "1",
-        "Standard deviation of the blades' relative stiffness deviation, after truncation; null for patterns from a file",
-    ),
-    ColumnSpec::new("pattern", Int32, "", "Pattern id"),
+    key::SCENARIO,
+    key::CONTACT,
+    key::ENGINE_ORDER,
+    key::NORMAL_LOAD,
+    key::STANDARD_DEVIATION,
+    key::PATTERN,
     ColumnSpec::new(
         "harmonics",
         Text,

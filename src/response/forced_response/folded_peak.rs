@@ -8,6 +8,7 @@
 use std::ops::ControlFlow;
 
 use super::branch::BranchPlace;
+use super::peak_search::{Envelope, Sample};
 use super::point_solver::{Point, PointSolver};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{ContinuationBounds, Status};
@@ -16,7 +17,8 @@ use crate::response::harmonic_balance::{ContinuationBounds, Status};
 const CORRECTORS: u64 = 400;
 /// First step of a walk down from the peak, see [`ContinuationBounds`].
 const FIRST_STEP: f64 = 0.25;
-/// A walk ends at a known point this low relative to the highest passed: at half the power.
+/// What is this low relative to the highest point, at half the power, is off the peak: a walk ends there, and a
+/// fall from there is none of the peak's.
 const FAR_DOWN: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Beyond the ends of a band that may be widened, a walk goes on for this share of the frequency.
 const BEYOND_BAND: f64 = 0.5;
@@ -24,6 +26,28 @@ const BEYOND_BAND: f64 = 0.5;
 const SAME: f64 = 1e-3;
 /// Steps are made this much smaller round after round to read the top.
 const FINER: f64 = 8.0;
+
+/// Steepness of a fall that no single branch shows, over that of the narrowest linear resonance:
+/// friction only adds damping.
+const CLIFF: f64 = 8.0;
+/// Share of the higher of two neighbours at which a fall begins to count.
+const FALLEN: f64 = 0.98;
+
+/// Whether two neighbouring samples, the higher one of at least half the power of the best, are
+/// further apart in height than on any one branch.
+pub(super) fn falls_off(samples: &[Sample], best: usize, envelope: Envelope) -> bool {
+    samples.windows(2).any(|pair| {
+        let (lower, higher) = if pair[0].largest < pair[1].largest {
+            (&pair[0], &pair[1])
+        } else {
+            (&pair[1], &pair[0])
+        };
+        let distance = (pair[1].frequency_hz - pair[0].frequency_hz).abs();
+        let widths = CLIFF * distance / envelope.linear_half_bandwidth_hz;
+        higher.largest >= FAR_DOWN * samples[best].largest
+            && lower.largest < FALLEN * higher.largest / (1.0 + widths * widths).sqrt()
+    })
+}
 
 impl PointSolver<'_> {
     /// A point higher than `best`, the highest one solved, on the curve from `best` to known points of

@@ -1,6 +1,7 @@
 //! The peak of a row: band, starting points, search, and what was found.
 
 use super::excited::Excited;
+use super::folded_peak::falls_off;
 use super::linear_peaks::LinearPeak;
 use super::options::{ContactCondition, FrequencyBand};
 use super::peak_search::{Envelope, Sample, SearchEnd, SearchSettings, find_peak};
@@ -237,30 +238,6 @@ pub fn peak(
         mean_friction_n,
         work: solver.work(),
     }
-}
-
-/// Steepness of a fall that no single branch shows, over that of the narrowest linear resonance:
-/// friction only adds damping.
-const CLIFF: f64 = 8.0;
-/// Share of the higher of two neighbours at which a fall begins to count.
-const FALLEN: f64 = 0.98;
-/// Share of the peak from which on a fall is one of the peak.
-const HALF_POWER: f64 = std::f64::consts::FRAC_1_SQRT_2;
-
-/// Whether two neighbouring samples, the higher one of at least half the power of the best, are
-/// further apart in height than on any one branch.
-fn falls_off(samples: &[Sample], best: usize, envelope: Envelope) -> bool {
-    samples.windows(2).any(|pair| {
-        let (lower, higher) = if pair[0].largest < pair[1].largest {
-            (&pair[0], &pair[1])
-        } else {
-            (&pair[1], &pair[0])
-        };
-        let distance = (pair[1].frequency_hz - pair[0].frequency_hz).abs();
-        let widths = CLIFF * distance / envelope.linear_half_bandwidth_hz;
-        higher.largest >= HALF_POWER * samples[best].largest
-            && lower.largest < FALLEN * higher.largest / (1.0 + widths * widths).sqrt()
-    })
 }
 
 /// Status of the failed frequency nearest to the best point, among those with no lower amplitude
