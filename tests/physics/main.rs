@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod bounds;
+mod calculix_sector;
 mod contact;
 mod continuation;
 mod error_columns;
