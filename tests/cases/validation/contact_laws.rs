@@ -2,13 +2,12 @@
 
 use blisk::response::forced_response::ContactCondition;
 use blisk::response::friction::{ContactLaw, Ring};
-use blisk::response::harmonic_balance::Status;
 use blisk::study::Study;
 use rayon::prelude::*;
 
 use super::super::support::Case;
-use super::models::reference_wheel;
-use super::report::{Section, Verdict, micrometres, percent, signed_percent, table, worst};
+use super::models::{Amplitude, reference_wheel, shown};
+use super::report::{Section, Verdict, percent, signed_percent, table, worst};
 
 /// Laws, the full one first: the others are documented simplifications of it.
 const LAWS: [ContactLaw; 3] = [
@@ -21,20 +20,6 @@ const LOADS_N: [f64; 6] = [160.0, 240.0, 320.0, 480.0, 640.0, 1280.0];
 const NEAR: f64 = 0.03;
 /// At which pattern 1 is solved too.
 const MISTUNED_LOADS_N: [f64; 3] = [160.0, 320.0, 1280.0];
-
-/// A peak, m, or why there is none.
-type Amplitude = Result<f64, Status>;
-
-fn amplitude(found: Option<f64>, status: Status) -> Amplitude {
-    found.ok_or(status)
-}
-
-fn shown(found: Amplitude) -> String {
-    found.map_or_else(
-        |status| status.name().to_owned(),
-        |metres| micrometres(Some(metres)),
-    )
-}
 
 pub fn section() -> Section {
     let (laws, rings) = rayon::join(of_laws, of_rings);
@@ -157,10 +142,10 @@ fn of_laws() -> Vec<OfLaws> {
                 let contact = ContactCondition::Full { normal_load_n };
                 let tuned = case.tuned(contact);
                 if pattern == "tuned" {
-                    return amplitude(tuned.amplitude_m, tuned.status);
+                    return tuned.amplitude_m.ok_or(tuned.status);
                 }
                 let row = case.row(&case.pattern(1, None), contact, &tuned);
-                amplitude(row.peak_amplitude_m, row.status)
+                row.peak_amplitude_m.ok_or(row.status)
             };
             places.par_iter().with_max_len(1).map(solve).collect()
         })
@@ -186,7 +171,7 @@ fn of_rings() -> Vec<OfRings> {
                 let case = Case::new(study(wheel, &loads, ContactLaw::Simplified3d, ring));
                 loads.map(|normal_load_n| {
                     let tuned = case.tuned(ContactCondition::Full { normal_load_n });
-                    amplitude(tuned.amplitude_m, tuned.status)
+                    tuned.amplitude_m.ok_or(tuned.status)
                 })
             });
             let rows = loads.into_iter().enumerate();

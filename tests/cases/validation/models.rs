@@ -2,9 +2,22 @@
 
 use blisk::model::reduction::ReductionOptions;
 use blisk::response::forced_response::{ContactCondition, Harmonics, SolverOptions};
+use blisk::response::harmonic_balance::Status;
 use blisk::study::Study;
 
 use super::super::support::package;
+use super::report::micrometres;
+
+/// A peak, m, or why there is none.
+pub type Amplitude = Result<f64, Status>;
+
+/// A peak in um, or its status.
+pub fn shown(found: Amplitude) -> String {
+    found.map_or_else(
+        |status| status.name().to_owned(),
+        |metres| micrometres(Some(metres)),
+    )
+}
 
 /// Friction under each of these loads, N per sector.
 pub fn under(loads_n: &[f64]) -> Vec<ContactCondition> {

@@ -71,7 +71,8 @@ pub fn section() -> Section {
         compared: format!(
             "Tuned wheels, harmonic 1, engine order equal to the nodal diameter; the lowest of the tuned peaks over {} normal loads from {} to {} N per \
              N of excitation. The effect of the ring is the peak of the sliding wheel over that lowest one. Where pairs separate at the lowest peak \
-             one harmonic is too few, and the row shows a tendency only.",
+             one harmonic is too few, and the row shows a tendency only. The disks of solid elements stiffen with the nodal diameter until blades alone \
+             move; that of lumped24 is held by springs to the ground and hardly stiffens, while its ring does.",
             LOADS.len(),
             LOADS[0],
             LOADS[LOADS.len() - 1]
