@@ -184,7 +184,8 @@ pub fn write_report(sections: &[Entry]) -> Vec<&'static str> {
 fn write(path: &Path, sections: &[Entry], done: &[Option<Done>]) {
     let mut report = format!(
         "# Validation report\n\nblisk {}. Made by `cargo test --release --test cases -- --ignored --nocapture \
-         the_validation_report` ([studies/validation](../../studies/validation/README.md)).\n\n{HOW_TO_READ}\n## Summary\n\n",
+         the_validation_report` ([studies/validation](../../studies/validation/README.md)).\n\n{HOW_TO_READ}\n## Summary\n\n\
+         | section | verdict | by the numbers |\n| --- | --- | --- |\n",
         env!("CARGO_PKG_VERSION")
     );
     let mut body = String::new();
@@ -198,12 +199,7 @@ fn write(path: &Path, sections: &[Entry], done: &[Option<Done>]) {
             Some((_, Ok(section))) => {
                 for verdict in &section.verdicts {
                     let (word, text) = (verdict.word(), &verdict.text);
-                    writeln!(
-                        report,
-                        "- **{word}**, {}: {text}",
-                        section.title.to_lowercase()
-                    )
-                    .unwrap();
+                    writeln!(report, "| {} | **{word}** | {text} |", section.title).unwrap();
                 }
                 write!(body, "\n{}", section.markdown()).unwrap();
             }
