@@ -64,7 +64,6 @@ pub fn section() -> Section {
         "half as many stick modes, and attachment vectors",
     ];
     Section {
-        title: "Two families of modes against either alone",
         compared: format!(
             "Worst error of the peak amplitude over the tuned wheel, pattern 1 and three normal loads without separation (harmonic 1, 128 samples), \
              against `stick_attachment` with {REFERENCE_MODES} stick modes. The last column is `stick_attachment`, which has one vector per contact \

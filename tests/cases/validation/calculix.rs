@@ -62,7 +62,6 @@ pub fn section() -> Section {
     ];
     let count: usize = compared.iter().map(|(_, pairs)| pairs.len()).sum();
     Section {
-        title: "Frequencies of a cyclic sector by CalculiX",
         compared: format!(
             "The lowest {MODES} natural frequencies of nodal diameters 0 to 6, {count} in all, of a disk and blade of C3D20 elements: mesh and \
              frequencies (seven digits) of CalculiX 2.20, matrices and cyclic conditions of this program."

@@ -60,7 +60,6 @@ pub fn section() -> Section {
         })
         .collect();
     Section {
-        title: "Contact laws, and a ring that creeps",
         compared: "Peaks of wheel24 with harmonics 1 and 3 and the basis `auto` takes for each law, peak tolerance 1e-4; change against `coulomb_3d`, the \
                    law with the friction circle. Below, tuned wheels with `simplified_3d`, harmonics 1 and 3, and a ring that something holds or that \
                    gives way to mean friction. The third column of either table is the fuller model, the others show what a simplification costs."

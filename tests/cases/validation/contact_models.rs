@@ -193,7 +193,6 @@ pub fn section() -> Section {
     ];
     let cells: Vec<Vec<String>> = rows.iter().map(Compared::cells).collect();
     Section {
-        title: "Fast path, full contact model and an independent code",
         compared: format!(
             "Peaks of {} rows. *Reference*: rows of tests/data by a Craig-Bampton and harmonic balance code written independently, every contact \
              dof kept, 512 samples, 25 fixed-interface modes, the same harmonics; trusted by its makers to 0.1 % in amplitude and 0.02 % in frequency \

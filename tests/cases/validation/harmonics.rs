@@ -101,7 +101,6 @@ pub fn section() -> Section {
     ];
     let cells: Vec<Vec<String>> = rows.iter().map(Compared::cells).collect();
     Section {
-        title: "Default settings against converged harmonics",
         compared: format!(
             "Peaks with automatic harmonics and basis against the full contact model with harmonics 0 to 15 and 512 samples, with the default 25 \
              fixed-interface modes and with {CONVERGED_MODES}; of lumped24 the five stored patterns against the odd harmonics to 15 (the law's normal load is \

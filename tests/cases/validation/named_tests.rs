@@ -130,7 +130,6 @@ pub fn section() -> Section {
         .map(|(what, test)| vec![(*what).to_owned(), format!("`{test}`")])
         .collect();
     Section {
-        title: "Oracles held by tests alone",
         compared: "Exact properties whose test runs with `cargo test --release` and is not repeated here; that a test of this name exists is checked."
             .to_owned(),
         body: table(&["oracle", "test"], &cells),

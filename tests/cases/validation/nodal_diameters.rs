@@ -67,7 +67,6 @@ pub fn section() -> Section {
         "separated there",
     ];
     Section {
-        title: "Effect of the ring by nodal diameter",
         compared: format!(
             "Tuned wheels, harmonic 1, engine order equal to the nodal diameter; the lowest of the tuned peaks over {} normal loads from {} to {} N per \
              N of excitation. The effect of the ring is the peak of the sliding wheel over that lowest one. Where pairs separate at the lowest peak \

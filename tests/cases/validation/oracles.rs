@@ -104,7 +104,6 @@ pub fn section() -> Section {
         })
         .collect();
     Section {
-        title: "Oracles",
         compared: format!(
             "Closed forms, limits and symmetries, each with the test that holds it. Below, amplification factors of the chain of 24 blades of \
              studies/one-dof.toml, {PATTERNS} patterns for each standard deviation, against 20,000 other patterns by another program (distance in standard \

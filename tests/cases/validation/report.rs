@@ -1,5 +1,6 @@
 //! Sections, verdicts and tables of the report, and the file that they are written to.
 
+use std::any::Any;
 use std::fmt::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -9,9 +10,17 @@ use rayon::prelude::*;
 
 use super::super::support::package;
 
-/// A section: what was compared, the tables, and what follows from the numbers.
-pub struct Section {
+/// A section of the report.
+#[derive(Clone, Copy)]
+pub struct Entry {
+    /// By which it is asked for.
+    pub name: &'static str,
     pub title: &'static str,
+    pub compute: fn() -> Section,
+}
+
+/// What was compared, the tables, and what follows from the numbers.
+pub struct Section {
     /// What was compared with what, with the sizes of the samples.
     pub compared: String,
     /// Tables and remarks in Markdown.
@@ -20,15 +29,9 @@ pub struct Section {
 }
 
 impl Section {
-    pub fn markdown(&self) -> String {
-        let Self {
-            title,
-            compared,
-            body,
-            verdicts,
-        } = self;
-        let verdicts: String = verdicts.iter().map(Verdict::line).collect();
-        format!("## {title}\n\n{compared}\n\n{body}\n{verdicts}")
+    fn markdown(&self) -> String {
+        let verdicts: String = self.verdicts.iter().map(Verdict::line).collect();
+        format!("{}\n\n{}\n{verdicts}", self.compared, self.body)
     }
 }
 
@@ -38,6 +41,9 @@ pub struct Verdict {
     pub text: String,
     pub met: bool,
 }
+
+/// How the line of a verdict begins.
+const VERDICT: &str = "- **";
 
 /// What a verdict is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,7 +102,7 @@ impl Verdict {
     }
 
     fn line(&self) -> String {
-        format!("- **{}**: {}\n", self.word(), self.text)
+        format!("{VERDICT}{}**: {}\n", self.word(), self.text)
     }
 }
 
@@ -142,70 +148,76 @@ pub fn set_name(harmonics: &[u32]) -> String {
     names.join("-")
 }
 
-/// A section by its name.
-pub type Entry = (&'static str, fn() -> Section);
-
-/// Name, and the section or why there is none.
-type Done = (&'static str, Result<Section, String>);
-
-/// Computes the sections, as many at once as there are threads, and writes the report anew whenever
-/// one is done, so that a run that is cut short leaves what it has. Returns the names of those that
-/// could not be computed.
-pub fn write_report(sections: &[Entry]) -> Vec<&'static str> {
+/// Computes sections, as many at once as there are threads, and writes the report anew whenever one is
+/// done, so that a run that is cut short leaves what it has. `wanted` names those to compute, all if it is
+/// none; the others are kept as they stand. Returns the names of those that could not be computed.
+pub fn write_report(entries: &[Entry], wanted: Option<&str>) -> Vec<&'static str> {
+    let names: Vec<&str> = entries.iter().map(|entry| entry.name).collect();
+    let wanted: Vec<&str> = wanted.map_or_else(|| names.clone(), |list| list.split(',').collect());
+    for name in &wanted {
+        assert!(names.contains(name), "{name:?} is none of {names:?}");
+    }
     let folder = package("results/validation");
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join("report.md");
-    let done: Mutex<Vec<Option<Done>>> = Mutex::new(sections.iter().map(|_| None).collect());
-    sections
+    let old = std::fs::read_to_string(&path).unwrap_or_default();
+    let kept = entries.iter().map(|entry| {
+        let text = text_of(&old, entry.title).filter(|_| !wanted.contains(&entry.name));
+        text.map_or_else(|| "Not computed yet.\n".to_owned(), str::to_owned)
+    });
+    let texts: Mutex<Vec<String>> = Mutex::new(kept.collect());
+    let failed = entries
         .par_iter()
         .with_max_len(1)
         .enumerate()
-        .for_each(|(place, &(name, section))| {
-            let section = catch_unwind(AssertUnwindSafe(section)).map_err(|panic| {
-                let text = panic.downcast_ref::<String>().cloned();
-                text.or_else(|| panic.downcast_ref::<&str>().map(|&text| text.to_owned()))
-                    .unwrap_or_default()
-            });
-            if let Ok(section) = &section {
-                println!("{}", section.markdown());
-            }
-            let mut done = done.lock().unwrap();
-            done[place] = Some((name, section));
-            write(&path, sections, &done);
+        .filter(|(_, entry)| wanted.contains(&entry.name))
+        .filter_map(|(place, entry)| {
+            let section = catch_unwind(AssertUnwindSafe(entry.compute));
+            let text = section.as_ref().map(Section::markdown);
+            let mut texts = texts.lock().unwrap();
+            texts[place] = text
+                .unwrap_or_else(|panic| format!("{VERDICT}NOT COMPUTED**: {}\n", reason(panic)));
+            println!("{}: {}", entry.name, texts[place]);
+            write(&path, entries, &texts);
+            section.is_err().then_some(entry.name)
         });
-    let done = done.into_inner().unwrap();
-    let failed = done
-        .iter()
-        .flatten()
-        .filter(|(_, section)| section.is_err());
-    failed.map(|(name, _)| *name).collect()
+    failed.collect()
 }
 
-fn write(path: &Path, sections: &[Entry], done: &[Option<Done>]) {
+/// What a panic says.
+fn reason(panic: &Box<dyn Any + Send>) -> String {
+    let text = panic.downcast_ref::<String>().cloned();
+    text.or_else(|| panic.downcast_ref::<&str>().map(|&text| text.to_owned()))
+        .unwrap_or_default()
+        .replace('\n', " ")
+}
+
+/// The text of a section of a report.
+fn text_of<'a>(report: &'a str, title: &str) -> Option<&'a str> {
+    let heading = format!("\n## {title}\n\n");
+    let start = report.find(&heading)? + heading.len();
+    let text = &report[start..];
+    Some(text.find("\n## ").map_or(text, |end| &text[..end]))
+}
+
+fn write(path: &Path, entries: &[Entry], texts: &[String]) {
     let mut report = format!(
         "# Validation report\n\nblisk {}. Made by `cargo test --release --test cases -- --ignored --nocapture \
          the_validation_report` ([studies/validation](../../studies/validation/README.md)).\n\n{HOW_TO_READ}\n## Summary\n\n\
          | section | verdict | by the numbers |\n| --- | --- | --- |\n",
         env!("CARGO_PKG_VERSION")
     );
-    let mut body = String::new();
-    for ((name, _), done) in sections.iter().zip(done) {
-        match done {
-            None => writeln!(body, "\n## {name}\n\nNot computed yet.").unwrap(),
-            Some((_, Err(reason))) => {
-                writeln!(report, "| {name} | **NOT COMPUTED** | |").unwrap();
-                writeln!(body, "\n## {name}\n\nNot computed: {reason}").unwrap();
-            }
-            Some((_, Ok(section))) => {
-                for verdict in &section.verdicts {
-                    let (word, text) = (verdict.word(), &verdict.text);
-                    writeln!(report, "| {} | **{word}** | {text} |", section.title).unwrap();
-                }
-                write!(body, "\n{}", section.markdown()).unwrap();
-            }
+    let sections = || entries.iter().zip(texts);
+    for (entry, text) in sections() {
+        for verdict in text.lines().filter_map(|line| line.strip_prefix(VERDICT)) {
+            let (word, text) = verdict.split_once("**: ").unwrap();
+            writeln!(report, "| {} | **{word}** | {text} |", entry.title).unwrap();
         }
     }
-    std::fs::write(path, report + &body).unwrap();
+    for (entry, text) in sections() {
+        write!(report, "\n## {}\n\n{text}", entry.title).unwrap();
+    }
+    std::fs::write(path, report).unwrap();
 }
 
 const HOW_TO_READ: &str = "\

@@ -205,7 +205,6 @@ pub fn section() -> Section {
         "periods",
     ];
     Section {
-        title: "Harmonic balance and time integration",
         compared: "The same reduced model (`stick_attachment` 4), pattern and viscous damping on both sides; the march starts from the harmonic \
                    balance solution and its step is halved until the largest amplitude changes by less than 0.1 %. `ok`: the motion became periodic; \
                    `work_budget`: it did not within the periods given, so the periodic solution is unstable there or settles more slowly than that; \
