@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction};
+use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction, ReductionOptions};
 use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{
     ContactCondition, Excited, FrequencyBand, Harmonics, LimitsWanted, Peak, PointSettings, Wheel,
@@ -52,8 +52,9 @@ impl Case {
                 stick: stick.unwrap_or(4),
             },
         };
-        let reduction = Reduction::new(&model, stiffness, study.reduction.craig_bampton_modes, 0)
-            .expect("reduced");
+        let modes = study.reduction.craig_bampton_modes;
+        let modes = modes.unwrap_or(ReductionOptions::FIRST_CRAIG_BAMPTON_MODES);
+        let reduction = Reduction::new(&model, stiffness, modes, 0).expect("reduced");
         let reduced = Arc::new(reduction.reduce(choice, None).expect("reduced"));
         let harmonics = match &study.solver.harmonics {
             Harmonics::Auto => vec![1, 3],

@@ -5,6 +5,7 @@ mod contact_displacement;
 mod digest;
 mod engine;
 mod error;
+mod fixed_interface;
 mod full_model;
 mod harmonic_choice;
 mod mistuning;

@@ -462,6 +462,7 @@ fn basis_of(manifest: &Manifest) -> BasisSummary {
             taken["contact_displacement"]["any_nodal_diameter"]["error"].as_f64()
         }),
         craig_bampton_reach: manifest.reduction["craig_bampton_reach"].as_f64(),
+        craig_bampton_error: manifest.reduction["craig_bampton_error"].as_f64(),
         wanted_error: wanted.unwrap_or(f64::INFINITY),
     }
 }

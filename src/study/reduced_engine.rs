@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::basis_choice::{BasisEvidence, Judged, choose_basis, judged_conditions};
+use super::fixed_interface::{FixedInterface, reduce_sector};
 use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::{Engine, EngineSource, MistuningSource, PipelineError, Study};
 use crate::model::reduction::{Basis, BasisChoice, ContactStiffness, Reduction, ReductionOptions};
@@ -40,6 +41,7 @@ pub struct ReducedEngineSource;
 struct ReducedEngine {
     solver: RowSolver,
     evidence: BasisEvidence,
+    fixed_interface: FixedInterface,
     wanted_error: f64,
     digest: String,
     sector_dofs: usize,
@@ -51,6 +53,7 @@ struct ReducedEngine {
 struct Stored {
     model: ReducedModel,
     evidence: BasisEvidence,
+    fixed_interface: FixedInterface,
     harmonics: Vec<HarmonicChoice>,
     beyond: Option<StoredBeyond>,
 }
@@ -87,13 +90,8 @@ impl EngineSource for ReducedEngineSource {
         let stored = if let Some(stored) = cached {
             stored
         } else {
-            let reduction = Reduction::new(
-                model,
-                stiffness,
-                study.reduction.craig_bampton_modes,
-                sensitivity,
-            )?;
-            let stored = reduced(study, &reduction, &settings)?;
+            let (reduction, fixed_interface) = reduce_sector(study, model)?;
+            let stored = reduced(study, &reduction, fixed_interface, &settings)?;
             if let Some(folder) = cache {
                 write_cached(folder, &digest, &stored)?;
             }
@@ -101,6 +99,7 @@ impl EngineSource for ReducedEngineSource {
         };
         Ok(Box::new(ReducedEngine {
             evidence: stored.evidence.clone(),
+            fixed_interface: stored.fixed_interface.clone(),
             solver: solver_of(study, stored, settings)?,
             wanted_error: study.reduction.error,
             digest,
@@ -132,6 +131,7 @@ impl Engine for ReducedEngine {
             contact_displacement_error: contact_displacement
                 .map(|errors| errors.any_nodal_diameter.error),
             craig_bampton_reach,
+            craig_bampton_error: self.fixed_interface.error,
             wanted_error: self.wanted_error,
         };
         ModelReport {
@@ -144,6 +144,8 @@ impl Engine for ReducedEngine {
             reduced_coordinates: self.solver.basis().size(),
             error,
             contact_displacement,
+            craig_bampton_modes: self.fixed_interface.modes,
+            craig_bampton_error: self.fixed_interface.error,
             craig_bampton_reach,
             warnings: summary.warnings(),
             memory_bytes: memory_bytes(model),
@@ -172,6 +174,9 @@ impl Engine for ReducedEngine {
             "whole_space": self.evidence.whole_space,
             "reduced_coordinates": self.solver.basis().size(),
             "tuned_peak_errors": self.evidence.tried,
+            "craig_bampton_modes": self.fixed_interface.modes,
+            "craig_bampton_error": self.fixed_interface.error,
+            "craig_bampton_modes_tried": self.fixed_interface.tried,
             "craig_bampton_reach": self.evidence.craig_bampton_reach,
         })
     }
@@ -268,6 +273,7 @@ impl Engine for ReducedEngine {
 fn reduced(
     study: &Study,
     reduction: &Reduction<'_>,
+    fixed_interface: FixedInterface,
     settings: &RowSettings,
 ) -> Result<Stored, PipelineError> {
     let automatic = study.solver.harmonics == Harmonics::Auto;
@@ -334,6 +340,7 @@ fn reduced(
     Ok(Stored {
         model: reduction.reduce(choice, modes)?,
         evidence,
+        fixed_interface,
         harmonics,
         beyond,
     })
@@ -352,14 +359,17 @@ fn solver_of(
     stored: Stored,
     settings: RowSettings,
 ) -> Result<RowSolver, TransformError> {
-    let error = basis_error(&stored.evidence);
+    // Either part is measured on its own: what the basis leaves out of the Craig-Bampton model, and
+    // what that model leaves out of the sector.
+    let truncation = stored.fixed_interface.error.unwrap_or(f64::INFINITY);
+    let error = basis_error(&stored.evidence) + truncation;
     let solver = RowSolver::new(Arc::new(stored.model), settings.clone())?
         .with_choices(stored.harmonics, error)?;
     let Some(beyond) = stored.beyond else {
         return Ok(solver);
     };
     let finer = RowSolver::new(Arc::new(beyond.model), settings)?
-        .with_choices(beyond.harmonics, beyond.basis_error)?;
+        .with_choices(beyond.harmonics, beyond.basis_error + truncation)?;
     let inexact = study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
     Ok(solver.with_beyond(finer, inexact))
 }

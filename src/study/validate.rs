@@ -289,7 +289,7 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
         ("reduction.slide_modes", options.slide_modes, 1),
         (
             "reduction.craig_bampton_modes",
-            Some(options.craig_bampton_modes),
+            options.craig_bampton_modes,
             1,
         ),
         (

@@ -446,7 +446,7 @@ fn a_row_integrated_in_time_has_the_amplitude_of_harmonic_balance() {
     assert_eq!(json(&first)["scenario"], 1);
     let text = place.run(&["verify", RESULTS, "--time-domain"]);
     assert!(
-        text.stdout.contains("periodic (ok): verified"),
+        text.stdout.contains("stable (ok): verified"),
         "{}",
         text.stdout
     );

@@ -191,6 +191,7 @@ fn a_basis_less_accurate_than_asked_for_is_a_warning_and_an_accurate_one_is_not(
             tuned_peak_error: Some(error),
             contact_displacement_error: None,
             craig_bampton_reach: None,
+            craig_bampton_error: None,
             wanted_error: 0.005,
         };
         let context = SummaryContext {
@@ -218,6 +219,7 @@ fn a_basis_that_cannot_follow_the_contact_and_a_short_reach_of_modes_are_warning
             tuned_peak_error: Some(0.0),
             contact_displacement_error: Some(contact),
             craig_bampton_reach: Some(reach),
+            craig_bampton_error: None,
             wanted_error,
         };
         basis.warnings()

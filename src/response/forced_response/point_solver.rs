@@ -253,6 +253,7 @@ impl<'a> PointSolver<'a> {
             Attempt::Continuation => self.continue_to(frequency_hz),
             Attempt::StiffnessHomotopy => self.stiffen_contact(frequency_hz),
             Attempt::LoadHomotopy => self.lower_normal_load(frequency_hz),
+            Attempt::LoadContinuation => self.follow_normal_load(frequency_hz),
         }
     }
 
@@ -347,15 +348,18 @@ enum Attempt {
     StiffnessHomotopy,
     /// Homotopy in normal load.
     LoadHomotopy,
+    /// Arc-length continuation in normal load.
+    LoadContinuation,
 }
 
 impl Attempt {
-    const LADDER: [Self; 5] = [
+    const LADDER: [Self; 6] = [
         Self::Neighbours,
         Self::Stuck,
         Self::Continuation,
         Self::StiffnessHomotopy,
         Self::LoadHomotopy,
+        Self::LoadContinuation,
     ];
 }
 

@@ -11,6 +11,7 @@ mod frequency_derivative;
 mod jacobian;
 mod linear;
 mod newton;
+mod normal_load_derivative;
 mod pair_harmonics;
 mod ring_drift;
 mod status;
@@ -20,6 +21,7 @@ mod transform;
 
 pub use continuation::{Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint};
 pub use convergence::NewtonBounds;
+pub use curve::Along;
 pub use damping::Damping;
 pub use enlarged::{Effects, Enlarged, EnlargedSet, enlarge};
 pub use linear::linear_response;

@@ -64,6 +64,11 @@ impl ContactRows {
             .collect()
     }
 
+    /// Parameters of every pair.
+    pub(super) fn parameters(&self) -> impl Iterator<Item = &PairParameters> {
+        self.pairs.iter().map(|pair| &pair.parameters)
+    }
+
     /// Tangential rows of every pair.
     pub(super) fn tangential_rows(&self) -> impl Iterator<Item = usize> + '_ {
         self.pairs
