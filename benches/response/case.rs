@@ -11,7 +11,7 @@ use blisk::response::forced_response::{
 };
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{ContactInterface, HarmonicSystem, HarmonicTransform};
-use blisk::response::mistuning::{Deviations, Pattern, StructuralModes};
+use blisk::response::mistuning::{ContactFactors, Deviations, Pattern, StructuralModes};
 use blisk::study::{Study, load_sector_model, pattern_source};
 
 /// A reduced study and its first patterns.
@@ -70,7 +70,7 @@ impl Case {
             projection: study.mistuning.projection,
             solver: study.solver.clone(),
         };
-        let source = pattern_source(&study, model.sectors).expect("patterns");
+        let source = pattern_source(&study, &model).expect("patterns");
         let deviation = study.standard_deviations[0];
         let patterns = source
             .ids()
@@ -102,7 +102,13 @@ impl Case {
             slide: true,
             free: false,
         };
-        let wheel = Wheel::mistuned(modes, basis.model(), self.study.damping, wanted);
+        let wheel = Wheel::mistuned(
+            modes,
+            basis.model(),
+            &ContactFactors::default(),
+            self.study.damping,
+            wanted,
+        );
         Excited::wheel(&wheel, force, &self.harmonics)
     }
 
@@ -115,6 +121,7 @@ impl Case {
         let model = self.solver.basis().model();
         let tuned = Excited::tuned(
             model,
+            &ContactFactors::default(),
             self.engine_order(),
             self.study.amplitude_n,
             self.study.damping,

@@ -25,6 +25,7 @@ mod template;
 mod time_domain;
 mod traced_curve;
 mod validate;
+mod validate_contact;
 mod validate_mistuning;
 mod validate_solver;
 mod verify;

@@ -111,7 +111,7 @@ pub fn run(
     let outcome = pool.install(|| {
         progress.stage(Stage::LoadModel);
         let model = load_sector_model(study)?;
-        let patterns = pattern_source(study, model.sectors)?;
+        let patterns = pattern_source(study, &model)?;
         progress.stage(Stage::Reduce);
         let cache = folder.path().join("model");
         let engine = source.build(study, &model, Some(&cache))?;
@@ -297,6 +297,7 @@ impl<'a> Work<'a> {
             scenarios
                 .iter()
                 .map(|(scenario, _)| ResponseRow {
+                    contact_factors: pattern.contact.means(),
                     scenario: scenario.index,
                     pattern: pattern.id,
                     status: Status::Panicked,

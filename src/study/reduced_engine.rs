@@ -6,7 +6,9 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::basis_choice::{BasisEvidence, Judged, choose_basis, judged_conditions};
+use super::basis_choice::{
+    BasisEvidence, Judged, choose_basis, judged_conditions, judged_variations,
+};
 use super::fixed_interface::{FixedInterface, reduce_sector};
 use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::{Engine, EngineSource, MistuningSource, PipelineError, Study};
@@ -79,11 +81,12 @@ impl EngineSource for ReducedEngineSource {
         // Everything the stored models and sets depend on besides the sector: also what their
         // errors are judged by.
         let key = format!(
-            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?}",
+            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?}",
             study.reduction,
             study.mistuning.cantilever_mode_count,
             study.engine_orders,
-            study.contacts
+            study.contacts,
+            study.contact_variations
         );
         let digest = reduction_digest(model, &key);
         let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
@@ -290,12 +293,14 @@ fn reduced(
         )
     };
     let conditions = judged_conditions(&study.contacts);
+    let varied = judged_variations(&study.contact_variations);
     let basis = |options: &ReductionOptions, sets: &[HarmonicChoice]| {
         let judged = Judged {
             settings,
             engine_orders: &study.engine_orders,
             conditions: &conditions,
             sets,
+            varied: &varied,
         };
         choose_basis(reduction, options, judged)
     };

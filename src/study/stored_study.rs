@@ -102,7 +102,7 @@ impl StoredStudy {
     pub fn model(&self) -> Result<StoredModel, PipelineError> {
         let sector = load_sector_model(&self.study)?;
         Ok(StoredModel {
-            patterns: pattern_source(&self.study, sector.sectors)?,
+            patterns: pattern_source(&self.study, &sector)?,
             sector,
         })
     }

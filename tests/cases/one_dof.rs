@@ -3,7 +3,7 @@
 use blisk::population::monte_carlo::ResponseRow;
 use blisk::population::statistics::SampleStatistics;
 use blisk::response::forced_response::ContactCondition;
-use blisk::response::mistuning::{Deviations, Pattern};
+use blisk::response::mistuning::{ContactFactors, Deviations, Pattern};
 use blisk::study::Study;
 use rayon::prelude::*;
 
@@ -39,6 +39,7 @@ fn a_given_pattern_has_its_known_amplification() {
     let pattern = Pattern {
         id: 0,
         deviations: Deviations::PerBlade((0..24).map(|n| deviation(f64::from(n))).collect()),
+        contact: ContactFactors::default(),
     };
     let row = case.row(&pattern, FREE, &case.tuned(FREE));
     let error = (row.amplification_factor.unwrap() - 1.371_081_258).abs();

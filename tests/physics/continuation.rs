@@ -10,8 +10,8 @@ use blisk::model::sector::{Body, Component, ContactPair, Dof, ObservedNode, Sect
 use blisk::response::forced_response::{PointSettings, PointSolver, ResponseTrace, SolverOptions};
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{
-    Along, ContactInterface, Continuation, ContinuationBounds, Damping, HarmonicBlock, HarmonicSystem,
-    HarmonicTransform, NewtonBounds, PathPoint, Status, Structure,
+    Along, ContactInterface, Continuation, ContinuationBounds, Damping, HarmonicBlock,
+    HarmonicSystem, HarmonicTransform, NewtonBounds, PathPoint, Status, Structure,
 };
 use blisk::response::mistuning::{ModalRows, StructuralModes};
 

@@ -4,6 +4,7 @@
 
 mod bounds;
 mod contact;
+mod contact_variation;
 mod continuation;
 mod error_columns;
 mod extremes;

@@ -89,6 +89,7 @@ impl Engine for MockEngine {
                     scenario: scenario.index,
                     pattern: pattern.id,
                     status: if good { Status::Ok } else { Status::Stagnated },
+                    contact_factors: None,
                     peak_amplitude_m: amplitude.filter(|_| good),
                     peak_frequency_hz: good.then_some(500.0),
                     peak_blade: good.then_some(pattern.id % 24),

@@ -41,6 +41,7 @@ fn row(pattern: u32, scenario: usize) -> ResponseRow {
         scenario,
         pattern,
         status,
+        contact_factors: None,
         peak_amplitude_m: good.then_some(1.0 / f64::from(pattern + 3)),
         peak_frequency_hz: good.then_some(1e3),
         peak_blade: good.then_some(23),

@@ -32,6 +32,7 @@ fn record(
         let good = i >= failed;
         let amplitude = scale * (1.0 + f64::from(i) / 1000.0);
         rows.add(&ResponseRow {
+            contact_factors: None,
             scenario: index,
             pattern: i,
             status: if good { Status::Ok } else { Status::Stagnated },

@@ -8,6 +8,7 @@ use super::writer::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;
+use crate::response::mistuning::{ContactQuantity, PairFactors};
 
 use ColumnKind::{Boolean, Float64, Int32, Int64, String as Text};
 
@@ -129,6 +130,30 @@ pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
         Text,
         "",
         "Basis of the reduced model that the row was solved on",
+    ),
+    ColumnSpec::new(
+        "friction_coefficient_factor",
+        Float64,
+        "1",
+        "Factor on the coefficient of friction of this wheel, mean over its pairs; null where the contact does not vary",
+    ),
+    ColumnSpec::new(
+        "tangential_stiffness_factor",
+        Float64,
+        "1",
+        "Factor on the tangential contact stiffness of this wheel, mean over its pairs; null where the contact does not vary",
+    ),
+    ColumnSpec::new(
+        "normal_stiffness_factor",
+        Float64,
+        "1",
+        "Factor on the normal contact stiffness of this wheel, mean over its pairs; null where the contact does not vary",
+    ),
+    ColumnSpec::new(
+        "normal_load_factor",
+        Float64,
+        "1",
+        "Factor on the normal load of this wheel, mean over its pairs; null where the contact does not vary",
     ),
 ];
 
@@ -255,6 +280,16 @@ fn columns_of(rows: &[ResponseRow], scenarios: &[Scenario]) -> Result<Vec<Values
         floats(&|row| row.stated_error),
         Values::Boolean(rows.iter().map(|row| row.error_within_tolerance).collect()),
         names(&|row| row.basis.clone()),
+        floats(&|row| {
+            row.contact_factors
+                .map(|factors| factors.friction_coefficient)
+        }),
+        floats(&|row| {
+            row.contact_factors
+                .map(|factors| factors.tangential_stiffness)
+        }),
+        floats(&|row| row.contact_factors.map(|factors| factors.normal_stiffness)),
+        floats(&|row| row.contact_factors.map(|factors| factors.normal_load)),
     ])
 }
 
@@ -362,6 +397,11 @@ impl ResponseReader {
         let stated_errors = slice.float64("stated_error")?;
         let within = slice.boolean("error_within_tolerance")?;
         let mut bases = slice.string("basis")?;
+        let factors_of = ContactQuantity::ALL.map(|quantity| format!("{}_factor", quantity.name()));
+        let mut contact_factors = Vec::new();
+        for column in &factors_of {
+            contact_factors.push(slice.float64(column)?);
+        }
         (0..scenarios.len())
             .map(|i| {
                 let status = statuses[i]
@@ -390,6 +430,22 @@ impl ResponseReader {
                     harmonic_error: harmonic_errors[i],
                     stated_error: stated_errors[i],
                     error_within_tolerance: within[i],
+                    contact_factors: match [0, 1, 2, 3]
+                        .map(|column: usize| contact_factors[column][i])
+                    {
+                        [
+                            Some(friction_coefficient),
+                            Some(tangential_stiffness),
+                            Some(normal_stiffness),
+                            Some(normal_load),
+                        ] => Some(PairFactors {
+                            friction_coefficient,
+                            tangential_stiffness,
+                            normal_stiffness,
+                            normal_load,
+                        }),
+                        _ => None,
+                    },
                     basis: bases[i].take().ok_or_else(|| gap(i, "basis"))?,
                 })
             })

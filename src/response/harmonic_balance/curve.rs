@@ -116,9 +116,10 @@ impl Curve {
             Along::Frequency => self
                 .system
                 .frequency_derivative(omega, &self.x, by_parameter),
-            Along::NormalLoad { .. } => self
-                .system
-                .normal_load_derivative(&self.x, residual, jacobian, by_parameter),
+            Along::NormalLoad { .. } => {
+                self.system
+                    .normal_load_derivative(&self.x, residual, jacobian, by_parameter)
+            }
         }
         let state = self.state_scale / self.system.force_norm();
         for column in (0..n).rev() {

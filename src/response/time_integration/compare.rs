@@ -17,7 +17,7 @@ use crate::response::forced_response::{
 };
 use crate::response::friction::{ContactLaw, PairParameters};
 use crate::response::harmonic_balance::{ContactInterface, Damping, Status};
-use crate::response::mistuning::{StructuralModes, WheelBasis};
+use crate::response::mistuning::{ContactFactors, StructuralModes, WheelBasis};
 
 /// A point of a row: everything that both paths start from.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +38,8 @@ pub struct PointCase<'a> {
     pub law: ContactLaw,
     /// Contact parameters of a sector, its normal load included.
     pub sector: PairParameters,
+    /// Contact of the wheel relative to that.
+    pub factors: &'a ContactFactors,
     /// Harmonics of the harmonic balance, ascending, with 1.
     pub harmonics: &'a [u32],
     /// Settings of the harmonic balance; its measure of amplitude is that of the comparison.
@@ -202,6 +204,7 @@ impl PointCase<'_> {
         let wheel = Wheel::mistuned(
             modes.clone(),
             self.basis.model(),
+            self.factors,
             self.damping,
             LimitsWanted::default(),
         );
@@ -213,7 +216,9 @@ impl PointCase<'_> {
         let weights = &geometry.weights;
         ContactInterface {
             law: self.law,
-            pairs: weights.iter().map(|&w| self.sector.share(w)).collect(),
+            pairs: self
+                .sector
+                .pairs_under(self.sector.normal_load_n, weights, self.factors),
             geometry,
         }
     }
@@ -231,6 +236,7 @@ impl PointCase<'_> {
         let model = self.basis.model();
         let waves = Excited::tuned(
             model,
+            &ContactFactors::default(),
             self.engine_order,
             self.amplitude_n,
             self.damping,
@@ -250,7 +256,8 @@ impl PointCase<'_> {
             Some((self.law, self.sector)),
             self.basis.model().contact.clone(),
         )
-        .map_err(|_| Status::IterationLimit)?;
+        .map_err(|_| Status::IterationLimit)?
+        .with_factors(self.factors);
         let condition = ContactCondition::Full {
             normal_load_n: self.sector.normal_load_n,
         };

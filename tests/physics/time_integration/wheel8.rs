@@ -57,6 +57,7 @@ impl Point {
                 normal_load_n: self.normal_load_n,
                 ..wheel.sector
             },
+            factors: &blisk::response::mistuning::ContactFactors::default(),
             harmonics: &harmonics,
             solver: &solver,
             frequency_hz: self.frequency_hz,
