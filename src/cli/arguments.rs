@@ -157,6 +157,11 @@ pub enum Command {
     Stats {
         /// The results folder.
         results: PathBuf,
+        /// Fit Weibull and generalised extreme value laws to the tails, beside the percentiles.
+        ///
+        /// Writes `tail_fits.parquet` into the results folder.
+        #[arg(long)]
+        tails: bool,
         /// Print JSON.
         #[arg(long)]
         json: bool,

@@ -95,7 +95,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             threads,
             json,
         }),
-        Command::Stats { results, json } => stats::command(&results, json),
+        Command::Stats {
+            results,
+            tails,
+            json,
+        } => stats::command(&results, tails, json),
     };
     match ended {
         Ok(status) => status,

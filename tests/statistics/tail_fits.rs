@@ -49,7 +49,10 @@ fn quantile_distribution_and_density_agree_with_the_textbook() {
             let slope = (textbook(&law, x + h) - textbook(&law, x - h)) / (2.0 * h);
             let (value, _) = law.negative_log_density(x).expect("inside");
             if shape == 0.0 || shape.abs() > 1e-4 {
-                assert!(((-value).exp() / slope - 1.0).abs() < 1e-5, "xi {shape}, p {p}");
+                assert!(
+                    ((-value).exp() / slope - 1.0).abs() < 1e-5,
+                    "xi {shape}, p {p}"
+                );
             }
         }
     }
@@ -107,7 +110,11 @@ fn the_distance_is_that_of_anderson_and_darling() {
         integral += (empirical - f).powi(2) / (f * (1.0 - f)) / f64::from(steps);
     }
     let found = anderson_darling(&values, &law);
-    assert!((found - 25.0 * integral).abs() < 1e-4, "{found} {}", 25.0 * integral);
+    assert!(
+        (found - 25.0 * integral).abs() < 1e-4,
+        "{found} {}",
+        25.0 * integral
+    );
 }
 
 #[test]
@@ -121,9 +128,18 @@ fn parameters_of_known_laws_are_recovered_within_their_standard_errors() {
         let mean = |value: fn(&ExtremeValueLaw) -> f64| fits.iter().map(value).sum::<f64>() / 60.0;
         // Standard errors of a mean of 60: sigma/sqrt(60000) times about 1 to 1.1 for each.
         let error = 1.1 / 60_000.0_f64.sqrt();
-        assert!((mean(|f| f.location) - 1.7).abs() < 5.0 * 0.2 * error, "xi {shape}");
-        assert!((mean(|f| f.scale) - 0.2).abs() < 5.0 * 0.2 * error, "xi {shape}");
-        assert!((mean(|f| f.shape) - shape).abs() < 5.0 * error, "xi {shape}");
+        assert!(
+            (mean(|f| f.location) - 1.7).abs() < 5.0 * 0.2 * error,
+            "xi {shape}"
+        );
+        assert!(
+            (mean(|f| f.scale) - 0.2).abs() < 5.0 * 0.2 * error,
+            "xi {shape}"
+        );
+        assert!(
+            (mean(|f| f.shape) - shape).abs() < 5.0 * error,
+            "xi {shape}"
+        );
     }
     let gumbel = law(1.7, 0.2, 0.0);
     let found = fit_gumbel(&sample(&gumbel, 20_000, 3)).expect("a fit");
@@ -137,13 +153,33 @@ fn a_fit_is_a_maximum_of_the_likelihood_and_follows_units() {
     let fitted = fit_extreme_value(&values).expect("a fit");
     let total = |law: ExtremeValueLaw| -> f64 {
         let terms = values.iter().map(|&x| law.negative_log_density(x));
-        terms.map(|term| term.map_or(f64::INFINITY, |term| term.0)).sum()
+        terms
+            .map(|term| term.map_or(f64::INFINITY, |term| term.0))
+            .sum()
     };
     let best = total(fitted);
     for step in [-1e-3, 1e-3] {
-        assert!(total(law(fitted.location * (1.0 + step), fitted.scale, fitted.shape)) > best);
-        assert!(total(law(fitted.location, fitted.scale * (1.0 + step), fitted.shape)) > best);
-        assert!(total(law(fitted.location, fitted.scale, fitted.shape * (1.0 + step))) > best);
+        assert!(
+            total(law(
+                fitted.location * (1.0 + step),
+                fitted.scale,
+                fitted.shape
+            )) > best
+        );
+        assert!(
+            total(law(
+                fitted.location,
+                fitted.scale * (1.0 + step),
+                fitted.shape
+            )) > best
+        );
+        assert!(
+            total(law(
+                fitted.location,
+                fitted.scale,
+                fitted.shape * (1.0 + step)
+            )) > best
+        );
     }
     let scaled: Vec<f64> = values.iter().map(|x| 1e-5 * x).collect();
     let other = fit_extreme_value(&scaled).expect("a fit");
@@ -156,7 +192,10 @@ fn samples_that_no_law_fits_say_so() {
     let fit = |values: &[f64]| fit_extreme_value(values);
     assert_eq!(fit(&[1.0; 500]), Err(FitStatus::NoSpread));
     assert_eq!(fit(&[]), Err(FitStatus::TooFewValues));
-    assert_eq!(fit(&sample(&law(1.0, 0.1, -0.1), 19, 1)), Err(FitStatus::TooFewValues));
+    assert_eq!(
+        fit(&sample(&law(1.0, 0.1, -0.1), 19, 1)),
+        Err(FitStatus::TooFewValues)
+    );
     // Uniform values have shape -1: the likelihood grows up to the end of the range.
     let uniform = sample(&law(1.0, 1.0, -1.0), 400, 1);
     assert_eq!(fit(&uniform), Err(FitStatus::ShapeAtBound));
@@ -167,7 +206,11 @@ fn samples_that_no_law_fits_say_so() {
     for fit in [weibull, general] {
         assert_ne!(fit.status, FitStatus::Converged);
         assert!(fit.parameters.is_none() && fit.p_value.is_none());
-        assert!(fit.percentiles.iter().all(|p| p.model.is_none() && !p.outside_interval));
+        assert!(
+            fit.percentiles
+                .iter()
+                .all(|p| p.model.is_none() && !p.outside_interval)
+        );
         // The empirical percentile is there whatever becomes of the model.
         assert!(fit.percentiles[0].empirical.upper.is_some());
         assert_eq!(fit.failures_left_out, 3);
@@ -178,7 +221,10 @@ fn samples_that_no_law_fits_say_so() {
 fn an_unbounded_law_leaves_the_bounded_one_at_the_end_of_its_family() {
     let heavy = sample(&law(1.0, 0.1, 0.3), 500, 2);
     let [weibull, general] = fit_tails(&heavy, 0, 50, 1, 0);
-    assert_eq!((weibull.law, weibull.status), (TailLaw::WeibullBoundedAbove, FitStatus::ShapeAtBound));
+    assert_eq!(
+        (weibull.law, weibull.status),
+        (TailLaw::WeibullBoundedAbove, FitStatus::ShapeAtBound)
+    );
     assert!(weibull.percentiles.iter().all(|p| p.model.is_none()));
     assert_eq!(general.status, FitStatus::Converged);
     let parameters = general.parameters.expect("parameters");
@@ -191,7 +237,11 @@ fn a_bounded_law_is_given_in_both_forms_with_the_same_numbers() {
     let truth = law(1.7, 0.2, -0.25);
     let values = sample(&truth, 600, 8);
     let [weibull, general] = fit_tails(&values, 0, 200, 9, 4);
-    assert_eq!(fit_tails(&values, 0, 200, 9, 4)[0], weibull, "the same seed gives the same fit");
+    assert_eq!(
+        fit_tails(&values, 0, 200, 9, 4)[0],
+        weibull,
+        "the same seed gives the same fit"
+    );
     let (w, g) = (
         weibull.parameters.expect("parameters"),
         general.parameters.expect("parameters"),
@@ -217,8 +267,10 @@ fn a_wrong_law_is_rejected_and_its_percentile_outside_of_the_interval_marked() {
     let mut values = sample(&law(1.0, 0.05, -0.1), 450, 1);
     values.extend(sample(&law(3.0, 0.05, -0.1), 50, 2));
     let fits = fit_tails(&values, 0, 100, 1, 0);
-    let converged: Vec<&TailFit> =
-        fits.iter().filter(|fit| fit.status == FitStatus::Converged).collect();
+    let converged: Vec<&TailFit> = fits
+        .iter()
+        .filter(|fit| fit.status == FitStatus::Converged)
+        .collect();
     assert!(!converged.is_empty());
     for fit in converged {
         assert!(fit.rejected, "p = {:?}", fit.p_value);
@@ -235,7 +287,10 @@ fn uniformity(truth: &ExtremeValueLaw, n: usize, samples: u64, resamples: u32) -
         classes[((p * 10.0) as usize).min(9)] += 1.0;
     }
     let expected = samples as f64 / 10.0;
-    classes.iter().map(|count| (count - expected).powi(2) / expected).sum()
+    classes
+        .iter()
+        .map(|count| (count - expected).powi(2) / expected)
+        .sum()
 }
 
 /// 0.999 quantile of chi-square with 9 degrees of freedom.

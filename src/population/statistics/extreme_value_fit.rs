@@ -309,9 +309,7 @@ fn information(
         let mut step = [0.0; 3];
         step[j] = h;
         let there = sums(values, &moved(law, step))?;
-        for i in 0..free {
-            column[i] = (here.score[i] - there.score[i]) / h;
-        }
+        *column = [0, 1, 2].map(|i| (here.score[i] - there.score[i]) / h);
     }
     let mut information = [[0.0; 3]; 3];
     for i in 0..free {

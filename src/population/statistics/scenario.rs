@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Accounting, DistributionBand, SampleStatistics};
+use super::{Accounting, DistributionBand, Quantity, SampleStatistics};
 use crate::population::monte_carlo::ResponseRow;
 use crate::response::harmonic_balance::Status;
 
@@ -54,8 +54,10 @@ impl ScenarioAccumulator {
         if row.status != Status::Ok {
             return;
         }
-        self.amplification_factor.extend(row.amplification_factor);
-        self.peak_amplitude_m.extend(row.peak_amplitude_m);
+        self.amplification_factor
+            .extend(Quantity::AmplificationFactor.of(row));
+        self.peak_amplitude_m
+            .extend(Quantity::PeakAmplitudeM.of(row));
         if let Some(stated) = row.stated_error {
             let largest = self.largest_stated_error.unwrap_or(0.0);
             self.largest_stated_error = Some(largest.max(stated));

@@ -202,7 +202,7 @@ impl Sample<'_> {
         let good: Vec<Fitted> = simulated.iter().filter_map(|fit| *fit).collect();
         let lost = simulated.len() - good.len();
         let enough = !good.is_empty() && lost as f64 <= FAILED_RESAMPLES * simulated.len() as f64;
-        let estimate = |value: &dyn Fn(&ExtremeValueLaw) -> f64| {
+        let estimate = |value: Of| {
             let law = fitted.ok()?;
             let mut values: Vec<f64> = good.iter().map(|(law, _)| value(law)).collect();
             values.sort_unstable_by(f64::total_cmp);
@@ -232,7 +232,7 @@ impl Sample<'_> {
         TailFit {
             law: name,
             status: fitted.err().unwrap_or(FitStatus::Converged),
-            parameters: parameters(name, &estimate),
+            parameters: parameters(name, estimate),
             anderson_darling: distance,
             p_value,
             resamples: simulated.len() as u32,
@@ -261,11 +261,11 @@ impl Sample<'_> {
     }
 }
 
+/// A number of a law.
+type Of<'a> = &'a dyn Fn(&ExtremeValueLaw) -> f64;
+
 /// The parameters that `name` has; none without a fit.
-fn parameters(
-    name: TailLaw,
-    estimate: &dyn Fn(&dyn Fn(&ExtremeValueLaw) -> f64) -> Option<Estimate>,
-) -> Option<TailParameters> {
+fn parameters(name: TailLaw, estimate: impl Fn(Of) -> Option<Estimate>) -> Option<TailParameters> {
     let upper_end = estimate(&|law| law.upper_end().unwrap_or(f64::INFINITY))?;
     Some(match name {
         TailLaw::WeibullBoundedAbove => TailParameters {

@@ -14,6 +14,7 @@ mod percentiles;
 mod reader;
 mod responses;
 mod scenarios;
+mod tail_fits;
 mod traced_curve;
 mod verification;
 mod writer;
@@ -26,13 +27,14 @@ pub use error::TableError;
 pub use manifest::{Manifest, RunRecord, RunState, ScenarioEntry, StatusCounts};
 pub use parts::{PartSink, PartStore};
 pub use pattern_file::{PatternParquetError, read_pattern_parquet};
-pub use patterns::{PATTERN_COLUMNS, write_patterns};
+pub use patterns::{PATTERN_COLUMNS, StoredPatterns, read_patterns, write_patterns};
 pub use peak_audit::{PEAK_AUDIT_COLUMNS, PeakAuditRecord, write_peak_audit};
 pub use percentiles::{PERCENTILE_COLUMNS, write_percentiles};
 pub use responses::{RESPONSE_COLUMNS, ResponseReader, ResponseWriter};
 pub use scenarios::{
     SCENARIO_COLUMNS, STATISTICS_TABLES, ScenarioRecord, write_scenarios, write_statistics,
 };
+pub use tail_fits::{TAIL_FIT_COLUMNS, TailFitRecord, write_tail_fits};
 pub use traced_curve::{Direction, TRACE_COLUMNS, TracePoint, write_traced_curve};
 pub use verification::{VERIFICATION_COLUMNS, VerificationRecord, write_verification};
 pub use writer::{Compression, SCHEMA_VERSION, TableHeader};
