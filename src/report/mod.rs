@@ -1,5 +1,7 @@
 //! The numbers of a report as one struct, warnings with advice, and the summary as text.
 
+mod comparison;
+mod comparison_text;
 mod model_report;
 mod peak_audit;
 mod summary;
@@ -10,6 +12,10 @@ mod time_domain;
 mod verification;
 mod warning;
 
+pub use comparison::{
+    BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet, QuantityComparison,
+    ScenarioComparison,
+};
 pub use model_report::{ModelReport, NodalDiameterFacts};
 pub use peak_audit::PeakAuditReport;
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};

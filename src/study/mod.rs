@@ -1,6 +1,7 @@
 //! The study file: as written, checked, resolved; and the pipeline that turns it into tables.
 
 mod basis_choice;
+mod compare;
 mod contact_displacement;
 mod digest;
 mod engine;
@@ -8,6 +9,7 @@ mod error;
 mod full_model;
 mod harmonic_choice;
 mod mistuning;
+mod pairing;
 mod peak_audit;
 mod pipeline;
 mod pipeline_error;
@@ -30,11 +32,13 @@ mod validate_mistuning;
 mod validate_solver;
 mod verify;
 
+pub use compare::{CompareRequest, compare};
 pub use digest::{StudyDigest, digest_file};
 pub use engine::{Engine, EngineSource};
 pub use error::{Finding, Problem, StudyError};
 pub use full_model::{FullModel, FullRow, FullSettings};
 pub use mistuning::{Mistuning, MistuningSource};
+pub use pairing::{PairedPlaces, Pairing};
 pub use peak_audit::audit_peaks;
 pub use pipeline::{Progress, RunOutcome, RunRequest, Stage, run, summarise};
 pub use pipeline_error::PipelineError;
