@@ -59,6 +59,7 @@ impl From<&PipelineError> for ExitStatus {
             PipelineError::Unfinished { .. }
             | PipelineError::NoPattern { .. }
             | PipelineError::NoRow { .. }
+            | PipelineError::NoScenario { .. }
             | PipelineError::NoTimeDomain { .. }
             | PipelineError::NoContact { .. } => Self::Usage,
             PipelineError::Threads { .. } => Self::InternalError,

@@ -4,9 +4,11 @@ use std::ffi::OsString;
 
 use clap::Parser;
 
+use crate::study::CompareRequest;
+
 use super::{
-    Arguments, Command, ExitStatus, check, init, model, output, replay, response, run, stats,
-    verify,
+    Arguments, Command, ExitStatus, check, compare, init, model, output, replay, response, run,
+    stats, verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).
@@ -95,7 +97,24 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             threads,
             json,
         }),
-        Command::Stats { results, json } => stats::command(&results, json),
+        Command::Compare {
+            results,
+            baseline,
+            percentile,
+            json,
+        } => {
+            let request = CompareRequest {
+                folders: results,
+                baseline,
+                percent: percentile,
+            };
+            compare::command(&request, json)
+        }
+        Command::Stats {
+            results,
+            tails,
+            json,
+        } => stats::command(&results, tails, json),
     };
     match ended {
         Ok(status) => status,

@@ -4,13 +4,17 @@ use std::path::Path;
 
 use super::run_command::Failure;
 use super::{ExitStatus, output};
-use crate::report::StudySummary;
-use crate::study::summarise;
+use crate::report::{StatisticsReport, StudySummary};
+use crate::study::{fit_result_tails, summarise};
 
-pub(super) fn command(results: &Path, json: bool) -> Result<ExitStatus, Failure> {
+pub(super) fn command(results: &Path, tails: bool, json: bool) -> Result<ExitStatus, Failure> {
     let summary = summarise(results)?;
-    output::result(json, &summary);
-    Ok(status_of(&summary))
+    let report = StatisticsReport {
+        tails: tails.then(|| fit_result_tails(results)).transpose()?,
+        summary,
+    };
+    output::result(json, &report);
+    Ok(status_of(&report.summary))
 }
 
 /// How a command that shows `summary` ends.

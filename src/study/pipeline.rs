@@ -15,9 +15,9 @@ use crate::population::monte_carlo::{
 };
 use crate::population::statistics::{Accounting, ScenarioAccumulator};
 use crate::population::table::{
-    Manifest, PartStore, ResponseReader, RunRecord, RunState, SCHEMA_VERSION, ScenarioEntry,
-    ScenarioRecord, StatusCounts, TableError, TableHeader, write_atomically, write_patterns,
-    write_scenarios,
+    Manifest, PartStore, ResponseReader, RunRecord, RunState, SCHEMA_VERSION, STATISTICS_TABLES,
+    ScenarioEntry, ScenarioRecord, StatusCounts, TableError, TableHeader, write_atomically,
+    write_patterns, write_statistics,
 };
 use crate::report::{BasisSummary, StudySummary, SummaryContext};
 use crate::response::forced_response::Harmonics;
@@ -336,11 +336,7 @@ impl<'a> Work<'a> {
             accumulators[row.scenario].add(row);
         })?;
         let records = records_of(&self.scenarios, tuned, accumulators);
-        write_scenarios(
-            &self.results.join("scenarios.parquet"),
-            &records,
-            &self.header,
-        )?;
+        write_statistics(self.results, &records, &self.header)?;
         if self.writes_patterns() {
             write_patterns(
                 &self.results.join("patterns.parquet"),
@@ -359,7 +355,8 @@ impl<'a> Work<'a> {
     }
 
     fn table_digests(&self) -> Result<BTreeMap<String, String>, PipelineError> {
-        let mut names = vec!["responses.parquet", "scenarios.parquet"];
+        let mut names = vec!["responses.parquet"];
+        names.extend(STATISTICS_TABLES);
         if self.writes_patterns() {
             names.push("patterns.parquet");
         }

@@ -92,6 +92,16 @@ pub enum PipelineError {
         /// The ids there are, in words.
         accepted: String,
     },
+    /// A results folder has no such scenario.
+    #[error(
+        "there is no scenario {scenario} to compare with; accepted: a number below {scenarios}"
+    )]
+    NoScenario {
+        /// Scenario asked for.
+        scenario: usize,
+        /// Number of scenarios.
+        scenarios: usize,
+    },
     /// A results folder has no such row.
     #[error(
         "there is no row of scenario {scenario} and pattern {pattern}; accepted: a scenario below {scenarios}, and a pattern of the study"

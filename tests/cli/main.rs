@@ -5,4 +5,5 @@ mod bad_study_table;
 mod blisk;
 mod commands;
 mod runs;
+mod statistics;
 mod verification;

@@ -40,9 +40,11 @@ fn run_in(
     run(request, source, &Silent)
 }
 
-const FILES: [&str; 5] = [
+const FILES: [&str; 7] = [
     "responses.parquet",
     "scenarios.parquet",
+    "percentiles.parquet",
+    "distribution.parquet",
     "patterns.parquet",
     "manifest.json",
     "summary.txt",

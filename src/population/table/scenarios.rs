@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::column::{ColumnKind, ColumnSpec, Values, key};
 use super::writer::TableWriter;
-use super::{TableError, TableHeader};
+use super::{TableError, TableHeader, write_distribution, write_percentiles};
 use crate::population::monte_carlo::{Scenario, TunedReference};
 use crate::population::statistics::{PERCENTILES, SampleStatistics, ScenarioStatistics};
 
@@ -249,6 +249,28 @@ pub const SCENARIO_COLUMNS: &[ColumnSpec] = &[
     ),
 ];
 
+/// Tables that [`write_statistics`] writes.
+pub const STATISTICS_TABLES: [&str; 3] = [
+    "scenarios.parquet",
+    "percentiles.parquet",
+    "distribution.parquet",
+];
+
+/// Writes the tables of [`STATISTICS_TABLES`] into the folder `results`.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write_statistics(
+    results: &Path,
+    records: &[ScenarioRecord],
+    header: &TableHeader,
+) -> Result<(), TableError> {
+    let [scenarios, percentiles, distribution] = STATISTICS_TABLES.map(|name| results.join(name));
+    write_scenarios(&scenarios, records, header)?;
+    write_percentiles(&percentiles, records, header)?;
+    write_distribution(&distribution, records, header)
+}
+
 /// Writes `scenarios.parquet`.
 ///
 /// # Errors
@@ -297,10 +319,11 @@ pub fn write_scenarios(
     for quantity in quantities {
         values.push(floats(&|record| quantity(record).mean));
         values.push(floats(&|record| quantity(record).standard_deviation));
-        for place in 0..PERCENTILES.len() {
-            values.push(floats(&|record| quantity(record).percentiles[place].value));
-            values.push(floats(&|record| quantity(record).percentiles[place].lower));
-            values.push(floats(&|record| quantity(record).percentiles[place].upper));
+        for percent in PERCENTILES {
+            let of = |record: &ScenarioRecord| quantity(record).percentile(percent).copied();
+            values.push(floats(&|record| of(record)?.value));
+            values.push(floats(&|record| of(record)?.lower));
+            values.push(floats(&|record| of(record)?.upper));
         }
     }
     values.push(Values::String(
