@@ -6,12 +6,13 @@ use clap::{Parser, Subcommand};
 
 use super::fidelity::FidelityArguments;
 use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
+use super::scheduler::ShardArgument;
 
 /// Forced response of randomly mistuned bladed disks with a friction ring damper.
 #[derive(Debug, Parser)]
 #[command(name = "blisk", version, about, disable_help_subcommand = true)]
 #[command(
-    after_help = "Exit codes: 0 done, 1 internal error, 2 usage, 3 study invalid, 4 model invalid,\n5 failures leave a statistic without a value, 7 input/output, 8 store damaged,\n9 different study, 10 locked by another process,\n11 a verification failed."
+    after_help = "Exit codes: 0 done, 1 internal error, 2 usage, 3 study invalid, 4 model invalid,\n5 failures leave a statistic without a value, 7 input/output, 8 store damaged,\n9 different study, 10 locked by another process,\n11 a verification failed, 130/143 interrupted, what is solved is stored."
 )]
 pub struct Arguments {
     /// What to do.
@@ -54,11 +55,43 @@ pub enum Command {
         /// The results folder [default: results/NAME].
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// Number of threads [default: all cores]; results do not depend on it.
+        /// Number of threads [default: those of the scheduler's allocation, else all cores]; results
+        /// do not depend on it.
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
         threads: Option<u16>,
+        /// Only share k of n of the patterns, into a folder of its own below the results folder;
+        /// without a value the share is that of a task of a Slurm, PBS, LSF, Grid Engine or
+        /// Kubernetes array.
+        #[arg(long, value_name = "k/n|auto", num_args = 0..=1, default_missing_value = "auto")]
+        shard: Option<ShardArgument>,
         /// Print the summary as JSON.
         #[arg(long)]
+        json: bool,
+    },
+    /// Join the shards of a study to its results.
+    Merge {
+        /// Folders of shards, in any order, or the results folder that they lie in.
+        #[arg(required = true, value_name = "DIR")]
+        shards: Vec<PathBuf>,
+        /// The results folder.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// Where the inputs lie now: beside this study file [default: that of the last run].
+        #[arg(long, value_name = "FILE")]
+        study: Option<PathBuf>,
+        /// Print the summary as JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Show how far a results folder is, without touching it.
+    Status {
+        /// The results folder.
+        results: PathBuf,
+        /// Print only the numbers of the shards that are not finished, as for `sbatch --array=`.
+        #[arg(long)]
+        missing: bool,
+        /// Print JSON.
+        #[arg(long, conflicts_with = "missing")]
         json: bool,
     },
     /// Amplitude of every blade over frequency, for one pattern and one contact condition.
@@ -143,10 +176,14 @@ pub enum Command {
         /// Pattern of that row.
         #[arg(long, value_name = "ID", requires_all = ["time_domain", "scenario"])]
         pattern: Option<u32>,
+        /// Set damaged files aside, into `damaged/`, and solve again what they held; draws no rows.
+        #[arg(long, conflicts_with_all = ["dense_sweep", "time_domain"])]
+        repair: bool,
         /// Where the inputs lie now: beside this study file [default: that of the last run].
         #[arg(long, value_name = "FILE")]
         study: Option<PathBuf>,
-        /// Number of threads [default: all cores]; results do not depend on it.
+        /// Number of threads [default: those of the scheduler's allocation, else all cores]; results
+        /// do not depend on it.
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
         threads: Option<u16>,
         /// Print JSON.

@@ -5,13 +5,17 @@ mod check;
 mod exit;
 mod fidelity;
 mod init;
+mod interrupt;
+mod merge;
 mod model;
 mod output;
 mod progress;
 mod replay;
 mod response;
 mod run;
+mod scheduler;
 mod stats;
+mod status;
 mod verify;
 
 pub use arguments::{Arguments, Command};

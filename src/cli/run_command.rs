@@ -5,8 +5,8 @@ use std::ffi::OsString;
 use clap::Parser;
 
 use super::{
-    Arguments, Command, ExitStatus, check, init, model, output, replay, response, run, stats,
-    verify,
+    Arguments, Command, ExitStatus, check, init, merge, model, output, replay, response, run,
+    stats, status, verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).
@@ -35,8 +35,26 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             study,
             out,
             threads,
+            shard,
             json,
-        } => run::command(&study, out, threads, json),
+        } => run::command(run::RunArguments {
+            study,
+            out,
+            threads,
+            shard,
+            json,
+        }),
+        Command::Merge {
+            shards,
+            out,
+            study,
+            json,
+        } => merge::command(&shards, &out, study.as_deref(), json),
+        Command::Status {
+            results,
+            missing,
+            json,
+        } => status::command(&results, missing, json),
         Command::Response {
             study,
             pattern,
@@ -83,6 +101,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             time_domain,
             scenario,
             pattern,
+            repair,
             study,
             threads,
             json,
@@ -90,7 +109,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             target,
             sample,
             seed,
-            question: verify::Question::of(dense_sweep, time_domain, scenario.zip(pattern)),
+            question: if repair {
+                verify::Question::Files
+            } else {
+                verify::Question::of(dense_sweep, time_domain, scenario.zip(pattern))
+            },
             study,
             threads,
             json,

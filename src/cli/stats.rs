@@ -1,16 +1,49 @@
-//! `blisk stats`: the summary of a results folder, from its tables.
+//! `blisk stats`: the summary of a results folder, from its tables or from what is stored so far.
 
 use std::path::Path;
+
+use serde::Serialize;
 
 use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::report::StudySummary;
-use crate::study::summarise;
+use crate::study::{PartialSummary, summarise, summarise_partly};
 
 pub(super) fn command(results: &Path, json: bool) -> Result<ExitStatus, Failure> {
-    let summary = summarise(results)?;
-    output::result(json, &summary);
-    Ok(status_of(&summary))
+    let Some(partial) = summarise_partly(results)? else {
+        let summary = summarise(results)?;
+        output::result(json, &summary);
+        return Ok(status_of(&summary));
+    };
+    let PartialSummary {
+        summary,
+        stored,
+        planned,
+    } = &partial;
+    let warning = format!(
+        "UNFINISHED: these are the statistics of {stored} of {planned} rows; `blisk run` continues the study"
+    );
+    if json {
+        output::json_only(&Unfinished {
+            unfinished: true,
+            rows_stored: *stored,
+            rows_planned: *planned,
+            summary,
+        });
+    } else {
+        output::text(&format!("{warning}\n\n{summary}\n{warning}"));
+    }
+    Ok(ExitStatus::Done)
+}
+
+/// The summary of an unfinished study as JSON.
+#[derive(Serialize)]
+struct Unfinished<'a> {
+    unfinished: bool,
+    rows_stored: u64,
+    rows_planned: u64,
+    #[serde(flatten)]
+    summary: &'a StudySummary,
 }
 
 /// How a command that shows `summary` ends.

@@ -4,5 +4,6 @@ mod bad_studies;
 mod bad_study_table;
 mod blisk;
 mod commands;
+mod interruption;
 mod runs;
 mod verification;

@@ -15,6 +15,8 @@ pub const SCHEMA_VERSION: u32 = 1;
 
 /// Key of the study digest in the metadata of a file.
 pub(super) const STUDY_DIGEST_KEY: &str = "blisk.study_digest";
+/// Key of the digests of what the rows of each scenario are made from, separated by commas.
+pub(super) const ROW_DIGESTS_KEY: &str = "blisk.row_digests";
 
 /// Compression of the pages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -98,7 +100,7 @@ impl TableWriter {
             .set_parallel(false)
             .with_key_value_metadata(Some(header.metadata(columns, more)))
             .batched(&polars_schema(columns))
-            .map_err(|error| TableError::encoding(path, error.to_string()))?;
+            .map_err(|error| TableError::polars(path, error))?;
         Ok(Self {
             path: path.to_owned(),
             columns,
@@ -113,14 +115,22 @@ impl TableWriter {
             frame(self.columns, values).map_err(|error| TableError::encoding(&self.path, error))?;
         self.writer
             .write_batch(&frame)
-            .map_err(|error| TableError::encoding(&self.path, error.to_string()))
+            .map_err(|error| TableError::polars(&self.path, error))
     }
 
     /// Writes the footer and puts the file in its place.
     pub(super) fn finish(self) -> Result<(), TableError> {
         self.writer
             .finish()
-            .map_err(|error| TableError::encoding(&self.path, error.to_string()))?;
+            .map_err(|error| TableError::polars(&self.path, error))?;
         self.file.commit()
+    }
+
+    /// The same under a name made from the digest of the file.
+    pub(super) fn finish_as(self, name: impl FnOnce(&str) -> String) -> Result<(), TableError> {
+        self.writer
+            .finish()
+            .map_err(|error| TableError::polars(&self.path, error))?;
+        self.file.commit_as(name)
     }
 }

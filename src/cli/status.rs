@@ -1,0 +1,67 @@
+//! `blisk status`: how far a results folder is.
+
+use std::path::Path;
+
+use super::run_command::Failure;
+use super::{ExitStatus, output};
+use crate::study::{FolderStatus, Work, status_of_folder};
+
+pub(super) fn command(results: &Path, missing: bool, json: bool) -> Result<ExitStatus, Failure> {
+    let status = status_of_folder(results)?;
+    if missing {
+        let numbers: Vec<String> = status.missing_shards.iter().map(u32::to_string).collect();
+        output::text(&numbers.join(","));
+    } else if json {
+        output::json_only(&status);
+    } else {
+        output::text(&lines(&status).join("\n"));
+    }
+    Ok(ExitStatus::Done)
+}
+
+fn lines(status: &FolderStatus) -> Vec<String> {
+    let mut lines = vec![format!("study {}: {}", status.name, line(status))];
+    for shard in &status.shards {
+        let name = shard.shard.as_deref().unwrap_or_default();
+        lines.push(format!("  shard {name}: {}", line(shard)));
+    }
+    if !status.missing_shards.is_empty() {
+        let numbers: Vec<String> = status.missing_shards.iter().map(u32::to_string).collect();
+        lines.push(format!("  shards not finished: {}", numbers.join(",")));
+    }
+    lines
+}
+
+fn line(status: &FolderStatus) -> String {
+    let counts: Vec<String> = status
+        .rows
+        .by_status()
+        .into_iter()
+        .map(|(status, count)| format!("{count} {status}"))
+        .collect();
+    let mut line = format!(
+        "{}, {} of {} rows",
+        match status.work {
+            Work::Running => "running",
+            Work::Finished => "finished",
+            Work::Interrupted => "not running",
+        },
+        status.rows.planned(),
+        status.planned
+    );
+    if !counts.is_empty() {
+        line += &format!(" ({})", counts.join(", "));
+    }
+    if let Some(rate) = status.rows_per_second {
+        line += &format!(", {rate:.3} rows per second");
+    }
+    if let Some(left) = status.seconds_left {
+        line += &format!(", about {left:.0} s left");
+    }
+    match (&status.holder, status.work) {
+        (Some(holder), Work::Running) => line += &format!("; {holder}"),
+        (Some(holder), _) => line += &format!("; {holder} was broken off"),
+        (None, _) => {}
+    }
+    line
+}
