@@ -5,8 +5,11 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use super::fidelity::FidelityArguments;
+use super::merge::MergeArguments;
 use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
-use super::scheduler::ShardArgument;
+use super::run::RunArguments;
+use super::slurm::SlurmArguments;
+use super::status::StatusArguments;
 
 /// Forced response of randomly mistuned bladed disks with a friction ring damper.
 #[derive(Debug, Parser)]
@@ -49,51 +52,13 @@ pub enum Command {
         json: bool,
     },
     /// Solve a study, or continue it; a finished study is shown, not solved again.
-    Run {
-        /// The study file.
-        study: PathBuf,
-        /// The results folder [default: results/NAME].
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-        /// Number of threads [default: those of the scheduler's allocation, else all cores]; results
-        /// do not depend on it.
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-        threads: Option<u16>,
-        /// Only share k of n of the patterns, into a folder of its own below the results folder;
-        /// without a value the share is that of a task of a Slurm, PBS, LSF, Grid Engine or
-        /// Kubernetes array.
-        #[arg(long, value_name = "k/n|auto", num_args = 0..=1, default_missing_value = "auto")]
-        shard: Option<ShardArgument>,
-        /// Print the summary as JSON.
-        #[arg(long)]
-        json: bool,
-    },
+    Run(RunArguments),
     /// Join the shards of a study to its results.
-    Merge {
-        /// Folders of shards, in any order, or the results folder that they lie in.
-        #[arg(required = true, value_name = "DIR")]
-        shards: Vec<PathBuf>,
-        /// The results folder.
-        #[arg(long, value_name = "DIR")]
-        out: PathBuf,
-        /// Where the inputs lie now: beside this study file [default: that of the last run].
-        #[arg(long, value_name = "FILE")]
-        study: Option<PathBuf>,
-        /// Print the summary as JSON.
-        #[arg(long)]
-        json: bool,
-    },
+    Merge(MergeArguments),
+    /// Write a script that submits a study to Slurm as an array of shards and a merge after it.
+    Slurm(SlurmArguments),
     /// Show how far a results folder is, without touching it.
-    Status {
-        /// The results folder.
-        results: PathBuf,
-        /// Print only the numbers of the shards that are not finished, as for `sbatch --array=`.
-        #[arg(long)]
-        missing: bool,
-        /// Print JSON.
-        #[arg(long, conflicts_with = "missing")]
-        json: bool,
-    },
+    Status(StatusArguments),
     /// Amplitude of every blade over frequency, for one pattern and one contact condition.
     Response {
         /// The study file.

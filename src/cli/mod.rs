@@ -14,6 +14,7 @@ mod replay;
 mod response;
 mod run;
 mod scheduler;
+mod slurm;
 mod stats;
 mod status;
 mod verify;

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::Args;
+
 use super::progress::RunProgress;
 use super::run_command::Failure;
 use super::scheduler::{ShardArgument, threads};
@@ -9,13 +11,25 @@ use super::{ExitStatus, interrupt, output};
 use crate::study::{PipelineError, ReducedEngineSource, RunRequest, Study, run, run_shard};
 
 /// Arguments of the command.
-#[derive(Debug)]
-pub(super) struct RunArguments {
-    pub(super) study: PathBuf,
-    pub(super) out: Option<PathBuf>,
-    pub(super) threads: Option<u16>,
-    pub(super) shard: Option<ShardArgument>,
-    pub(super) json: bool,
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    /// The study file.
+    pub study: PathBuf,
+    /// The results folder [default: results/NAME].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of threads [default: those of the scheduler's allocation, else all cores]; results
+    /// do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Only share k of n of the patterns, into a folder of its own below the results folder;
+    /// without a value the share is that of a task of a Slurm, PBS, LSF, Grid Engine or
+    /// Kubernetes array.
+    #[arg(long, value_name = "k/n|auto", num_args = 0..=1, default_missing_value = "auto")]
+    pub shard: Option<ShardArgument>,
+    /// Print the summary as JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 pub(super) fn command(arguments: RunArguments) -> Result<ExitStatus, Failure> {

@@ -24,7 +24,7 @@ pub(super) fn command(results: &Path, json: bool) -> Result<ExitStatus, Failure>
         "UNFINISHED: these are the statistics of {stored} of {planned} rows; `blisk run` continues the study"
     );
     if json {
-        output::json_only(&Unfinished {
+        output::json_only(&PartialJson {
             unfinished: true,
             rows_stored: *stored,
             rows_planned: *planned,
@@ -38,7 +38,7 @@ pub(super) fn command(results: &Path, json: bool) -> Result<ExitStatus, Failure>
 
 /// The summary of an unfinished study as JSON.
 #[derive(Serialize)]
-struct Unfinished<'a> {
+struct PartialJson<'a> {
     unfinished: bool,
     rows_stored: u64,
     rows_planned: u64,

@@ -1,17 +1,33 @@
 //! `blisk status`: how far a results folder is.
 
-use std::path::Path;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
 
 use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::study::{FolderStatus, Work, status_of_folder};
 
-pub(super) fn command(results: &Path, missing: bool, json: bool) -> Result<ExitStatus, Failure> {
-    let status = status_of_folder(results)?;
-    if missing {
+/// Arguments of the command.
+#[derive(Debug, Args)]
+pub struct StatusArguments {
+    /// The results folder.
+    pub results: PathBuf,
+    /// Print only the numbers of the shards that are not finished, as for `sbatch --array=`.
+    #[arg(long)]
+    pub missing: bool,
+    /// Print JSON.
+    #[arg(long, conflicts_with = "missing")]
+    pub json: bool,
+}
+
+pub(super) fn command(arguments: &StatusArguments) -> Result<ExitStatus, Failure> {
+    let status = status_of_folder(&arguments.results)?;
+    if arguments.missing {
         let numbers: Vec<String> = status.missing_shards.iter().map(u32::to_string).collect();
         output::text(&numbers.join(","));
-    } else if json {
+    } else if arguments.json {
         output::json_only(&status);
     } else {
         output::text(&lines(&status).join("\n"));
@@ -49,18 +65,23 @@ fn line(status: &FolderStatus) -> String {
         status.rows.planned(),
         status.planned
     );
+    // Writing to a String cannot fail.
     if !counts.is_empty() {
-        line += &format!(" ({})", counts.join(", "));
+        let _ = write!(line, " ({})", counts.join(", "));
     }
     if let Some(rate) = status.rows_per_second {
-        line += &format!(", {rate:.3} rows per second");
+        let _ = write!(line, ", {rate:.3} rows per second");
     }
     if let Some(left) = status.seconds_left {
-        line += &format!(", about {left:.0} s left");
+        let _ = write!(line, ", about {left:.0} s left");
     }
     match (&status.holder, status.work) {
-        (Some(holder), Work::Running) => line += &format!("; {holder}"),
-        (Some(holder), _) => line += &format!("; {holder} was broken off"),
+        (Some(holder), Work::Running) => {
+            let _ = write!(line, "; {holder}");
+        }
+        (Some(holder), _) => {
+            let _ = write!(line, "; {holder} was broken off");
+        }
         (None, _) => {}
     }
     line

@@ -7,7 +7,7 @@ use super::pipeline::{Clock, RowCounts};
 use super::pipeline_tables::{Facts, TableWork};
 use super::results_folder::{ResultsFolder, finished_rows, verify_tables};
 use super::{PipelineError, RunOutcome, StoredStudy, StudyDigest};
-use crate::population::table::{Manifest, RowStore, RunState, Shard};
+use crate::population::table::{Manifest, RowStore, RunState, ScenarioEntry, Shard};
 
 /// A finished shard.
 struct Part {
@@ -48,7 +48,7 @@ pub fn merge(
     let model = stored.model()?;
     let folder = ResultsFolder::open(results)?;
     folder.find(&stored.study, &digest, None)?;
-    let facts = facts(first)?;
+    let facts = facts(first);
     let tables = TableWork::new(&stored.study, &digest, &model.patterns, None, facts);
     let files = parts
         .iter()
@@ -163,7 +163,7 @@ fn belongs(part: &Part, first: &Part) -> Result<(), PipelineError> {
             part.shard
         )));
     }
-    if facts(part)? != facts(first)? {
+    if facts(part) != facts(first) {
         return Err(shards(format!(
             "shard {} in {} and shard {} in {} come from different reduced models of the same study: \
              their machines calculate differently; solve them on machines of one kind, or with one \
@@ -177,17 +177,17 @@ fn belongs(part: &Part, first: &Part) -> Result<(), PipelineError> {
     Ok(())
 }
 
-fn facts(part: &Part) -> Result<Facts, PipelineError> {
+fn facts(part: &Part) -> Facts {
     let entries = &part.manifest.scenarios;
-    Ok(Facts {
-        tuned: entries.iter().map(|entry| entry.tuned()).collect(),
+    Facts {
+        tuned: entries.iter().map(ScenarioEntry::tuned).collect(),
         row_digests: entries
             .iter()
             .map(|entry| entry.row_digest.clone())
             .collect(),
         chosen: part.manifest.chosen.clone(),
         reduction: part.manifest.reduction.clone(),
-    })
+    }
 }
 
 /// Whether every shard is there once; `parts` are sorted by number and cut alike.

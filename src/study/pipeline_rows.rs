@@ -21,17 +21,20 @@ impl RowWork<'_> {
     /// Rows of one pattern under the scenarios `wanted`, in their order; the engine sees the
     /// scenarios of each standard deviation together.
     pub(super) fn of_pattern(&self, id: u32, wanted: &[usize]) -> Vec<ResponseRow> {
-        let mut groups: Vec<(Option<f64>, Vec<(&Scenario, &TunedReference)>)> = Vec::new();
+        let mut standard_deviations: Vec<Option<f64>> = Vec::new();
         for &index in wanted {
-            let both = (&self.scenarios[index], &self.tuned[index]);
-            let standard_deviation = both.0.standard_deviation;
-            match groups.iter_mut().find(|(of, _)| *of == standard_deviation) {
-                Some((_, group)) => group.push(both),
-                None => groups.push((standard_deviation, vec![both])),
+            let standard_deviation = self.scenarios[index].standard_deviation;
+            if !standard_deviations.contains(&standard_deviation) {
+                standard_deviations.push(standard_deviation);
             }
         }
         let mut rows = Vec::with_capacity(wanted.len());
-        for (standard_deviation, group) in groups {
+        for standard_deviation in standard_deviations {
+            let group: Vec<(&Scenario, &TunedReference)> = wanted
+                .iter()
+                .map(|&index| (&self.scenarios[index], &self.tuned[index]))
+                .filter(|(scenario, _)| scenario.standard_deviation == standard_deviation)
+                .collect();
             if let Some(pattern) = self.patterns.pattern(id, standard_deviation) {
                 rows.extend(self.rows_or_panicked(&pattern, &group));
             }

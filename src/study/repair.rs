@@ -64,14 +64,30 @@ pub fn repair(
             folder: results.to_owned(),
         });
     }
-    repair.tables(results, &tables)?;
+    let goes_on = !part_files(results)?.is_empty();
+    let tables_are_whole = repair.tables(results, &tables)?;
     repair.parts(results)?;
     let finished = match &manifest {
         Some(manifest) => manifest.state == RunState::Finished,
         None => !tables.is_empty(),
     };
-    let whole = manifest.is_some() && repair.missing.is_empty() && repair.set_aside.is_empty();
-    if whole || !finished {
+    if !finished || (manifest.is_some() && tables_are_whole) {
+        return Ok(repair);
+    }
+    // What is left of the rows is known by its digest, as a part is.
+    if let Some(digest) = tables.get(RESPONSES) {
+        keep_as_part(results, &results.join(RESPONSES), digest)?;
+    }
+    if manifest.is_some() {
+        let path = results.join(MANIFEST);
+        std::fs::remove_file(&path).map_err(|source| TableError::Io {
+            action: "remove",
+            path,
+            source,
+        })?;
+    }
+    if goes_on {
+        // The study that goes on from these results is not known here, and needs its parts.
         return Ok(repair);
     }
     let study = match (&manifest, beside) {
@@ -86,18 +102,6 @@ pub fn repair(
             });
         }
     };
-    // What is left of the rows is known by its digest, as a part is.
-    if let Some(digest) = tables.get(RESPONSES) {
-        keep_as_part(results, &results.join(RESPONSES), digest)?;
-    }
-    if manifest.is_some() {
-        let path = results.join(MANIFEST);
-        std::fs::remove_file(&path).map_err(|source| TableError::Io {
-            action: "remove",
-            path,
-            source,
-        })?;
-    }
     drop(lock);
     let shard = match &manifest {
         Some(manifest) => manifest.shard,
@@ -141,12 +145,15 @@ impl Repair {
         }
     }
 
+    /// Whether all tables are as they were written.
     fn tables(
         &mut self,
         results: &Path,
         tables: &BTreeMap<String, String>,
-    ) -> Result<(), TableError> {
-        for name in changed_tables(results, tables)? {
+    ) -> Result<bool, TableError> {
+        let changed = changed_tables(results, tables)?;
+        let whole = changed.is_empty();
+        for name in changed {
             let path = results.join(name);
             if path.exists() {
                 self.put(results, path)?;
@@ -159,7 +166,7 @@ impl Repair {
         if !tables.contains_key(RESPONSES) && unknown.exists() {
             self.put(results, unknown)?;
         }
-        Ok(())
+        Ok(whole)
     }
 
     fn parts(&mut self, results: &Path) -> Result<(), TableError> {

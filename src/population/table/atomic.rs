@@ -3,11 +3,16 @@
 //! A file is written beside its place, synced, renamed, and its folder synced. Whoever is
 //! interrupted leaves a hidden `.*.tmp`, which [`remove_leftovers`] takes away.
 
+use std::fmt::Display;
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 
 use super::TableError;
+
+/// Bytes that are gathered before they are written.
+const BUFFER: usize = 1 << 16;
 
 /// BLAKE3 digest of a file, hexadecimal.
 ///
@@ -25,7 +30,44 @@ pub(super) struct AtomicFile {
     target: PathBuf,
     temporary: PathBuf,
     file: File,
+    failure: Failure,
     committed: bool,
+}
+
+/// The first error of the file system while a file was written.
+type Failure = Arc<Mutex<Option<io::Error>>>;
+
+/// An open file under construction; keeps the error of the file system, which encoders turn into words.
+#[derive(Debug)]
+pub(super) struct BufferedFile {
+    file: BufWriter<File>,
+    failure: Failure,
+}
+
+impl BufferedFile {
+    fn keep<T>(&self, written: io::Result<T>) -> io::Result<T> {
+        written.inspect_err(|error| {
+            let same = match error.raw_os_error() {
+                Some(code) => io::Error::from_raw_os_error(code),
+                None => io::Error::from(error.kind()),
+            };
+            if let Ok(mut kept) = self.failure.lock() {
+                kept.get_or_insert(same);
+            }
+        })
+    }
+}
+
+impl Write for BufferedFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes);
+        self.keep(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let flushed = self.file.flush();
+        self.keep(flushed)
+    }
 }
 
 impl AtomicFile {
@@ -43,15 +85,30 @@ impl AtomicFile {
             target: target.to_owned(),
             temporary,
             file,
+            failure: Failure::default(),
             committed: false,
         })
     }
 
-    /// A second handle to the open file.
-    pub(super) fn handle(&self) -> Result<File, TableError> {
-        self.file
+    /// The open file, to be written to from its beginning and flushed before the commit.
+    pub(super) fn writer(&self) -> Result<BufferedFile, TableError> {
+        let file = self
+            .file
             .try_clone()
-            .map_err(TableError::io("open", &self.temporary))
+            .map_err(TableError::io("open", &self.temporary))?;
+        Ok(BufferedFile {
+            file: BufWriter::with_capacity(BUFFER, file),
+            failure: Arc::clone(&self.failure),
+        })
+    }
+
+    /// Why writing failed: what the file system said, or else `reason`.
+    pub(super) fn failed(&self, reason: impl Display) -> TableError {
+        let failure = self.failure.lock().ok().and_then(|mut kept| kept.take());
+        match failure {
+            Some(source) => TableError::io("write", &self.target)(source),
+            None => TableError::encoding(&self.target, reason.to_string()),
+        }
     }
 
     /// Syncs the content and puts the file in its place.
@@ -148,8 +205,8 @@ fn folder_of(target: &Path) -> Option<&Path> {
 /// The file system refused.
 pub fn write_atomically(target: &Path, content: &[u8]) -> Result<(), TableError> {
     let file = AtomicFile::create(target)?;
-    file.handle()?
-        .write_all(content)
-        .map_err(TableError::io("write", target))?;
+    let mut writer = file.writer()?;
+    let written = writer.write_all(content).and_then(|()| writer.flush());
+    written.map_err(|error| file.failed(error))?;
     file.commit()
 }

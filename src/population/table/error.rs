@@ -8,7 +8,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum TableError {
     /// The file system refused.
-    #[error("cannot {action} {}: {source}{}", path.display(), remedy(source))]
+    #[error("cannot {action} {}: {source}", path.display())]
     Io {
         /// What was tried, for instance `write`.
         action: &'static str,
@@ -44,19 +44,6 @@ impl TableError {
         }
     }
 
-    /// What the encoder says: the file system's own error where there is one.
-    pub(super) fn polars(path: &Path, error: polars::prelude::PolarsError) -> Self {
-        use polars::prelude::PolarsError;
-        match error {
-            PolarsError::IO { error, .. } => Self::Io {
-                action: "write",
-                path: path.to_owned(),
-                source: std::io::Error::new(error.kind(), error.to_string()),
-            },
-            other => Self::encoding(path, other.to_string()),
-        }
-    }
-
     pub(super) fn damaged(path: &Path, reason: impl Into<String>) -> Self {
         Self::Damaged {
             path: path.to_owned(),
@@ -69,26 +56,5 @@ impl TableError {
             path: path.to_owned(),
             reason: reason.into(),
         }
-    }
-}
-
-/// What can be done about an error of the file system, as the end of a sentence.
-fn remedy(error: &std::io::Error) -> &'static str {
-    use std::io::ErrorKind;
-    match error.kind() {
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
-            "; free some space, or choose another --out, and run again: what is stored stays stored"
-        }
-        ErrorKind::PermissionDenied => {
-            "; grant this user access to it, or choose another --out, and run again"
-        }
-        ErrorKind::ReadOnlyFilesystem => {
-            "; make the file system writable, or choose another --out, and run again"
-        }
-        ErrorKind::NotFound
-        | ErrorKind::NotADirectory
-        | ErrorKind::IsADirectory
-        | ErrorKind::AlreadyExists => "; check the path",
-        _ => "; check the disk and run again: what is stored stays stored",
     }
 }

@@ -150,7 +150,7 @@ pub struct Shard {
 impl Shard {
     /// The patterns of this shard among all `ids`.
     #[must_use]
-    pub fn of<'a>(self, ids: &'a [u32]) -> &'a [u32] {
+    pub fn of(self, ids: &[u32]) -> &[u32] {
         &ids[self.cut(self.number - 1, ids.len())..self.cut(self.number, ids.len())]
     }
 

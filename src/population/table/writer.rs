@@ -1,12 +1,11 @@
 //! Writer of one Parquet file, row group by row group, atomically, with described columns.
 
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use polars::prelude::{BatchedWriter, KeyValueMetadata, ParquetCompression, ParquetWriter};
 use serde::{Deserialize, Serialize};
 
-use super::atomic::AtomicFile;
+use super::atomic::{AtomicFile, BufferedFile};
 use super::column::{Values, frame, polars_schema};
 use super::{ColumnSpec, TableError};
 
@@ -70,7 +69,7 @@ pub(super) struct TableWriter {
     path: PathBuf,
     columns: &'static [ColumnSpec],
     file: AtomicFile,
-    writer: BatchedWriter<File>,
+    writer: BatchedWriter<BufferedFile>,
 }
 
 impl TableWriter {
@@ -95,12 +94,12 @@ impl TableWriter {
             Compression::Snappy => ParquetCompression::Snappy,
         };
         // One thread, so that the writer neither needs a pool of its own nor depends on its size.
-        let writer = ParquetWriter::new(file.handle()?)
+        let writer = ParquetWriter::new(file.writer()?)
             .with_compression(compression)
             .set_parallel(false)
             .with_key_value_metadata(Some(header.metadata(columns, more)))
             .batched(&polars_schema(columns))
-            .map_err(|error| TableError::polars(path, error))?;
+            .map_err(|error| file.failed(error))?;
         Ok(Self {
             path: path.to_owned(),
             columns,
@@ -115,14 +114,14 @@ impl TableWriter {
             frame(self.columns, values).map_err(|error| TableError::encoding(&self.path, error))?;
         self.writer
             .write_batch(&frame)
-            .map_err(|error| TableError::polars(&self.path, error))
+            .map_err(|error| self.file.failed(error))
     }
 
     /// Writes the footer and puts the file in its place.
     pub(super) fn finish(self) -> Result<(), TableError> {
         self.writer
             .finish()
-            .map_err(|error| TableError::polars(&self.path, error))?;
+            .map_err(|error| self.file.failed(error))?;
         self.file.commit()
     }
 
@@ -130,7 +129,7 @@ impl TableWriter {
     pub(super) fn finish_as(self, name: impl FnOnce(&str) -> String) -> Result<(), TableError> {
         self.writer
             .finish()
-            .map_err(|error| TableError::polars(&self.path, error))?;
+            .map_err(|error| self.file.failed(error))?;
         self.file.commit_as(name)
     }
 }
