@@ -190,7 +190,8 @@ fn best_line(best: &BestLoad, unit: Unit) -> String {
 }
 
 pub(super) fn load(contact: &str, normal_load_n: Option<f64>) -> String {
-    normal_load_n.map_or_else(|| contact.to_owned(), trimmed)
+    // As written in the study.
+    normal_load_n.map_or_else(|| contact.to_owned(), |load| load.to_string())
 }
 
 fn share(fraction: Option<f64>) -> String {

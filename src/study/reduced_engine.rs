@@ -46,6 +46,8 @@ struct ReducedEngine {
     fixed_interface: FixedInterface,
     wanted_error: f64,
     digest: String,
+    /// Digest of the models that rows are solved on, with their errors.
+    models: String,
     sector_dofs: usize,
     observed: Vec<String>,
 }
@@ -103,6 +105,7 @@ impl EngineSource for ReducedEngineSource {
         Ok(Box::new(ReducedEngine {
             evidence: stored.evidence.clone(),
             fixed_interface: stored.fixed_interface.clone(),
+            models: models_digest(&stored),
             solver: solver_of(study, stored, settings)?,
             wanted_error: study.reduction.error,
             digest,
@@ -193,6 +196,25 @@ impl Engine for ReducedEngine {
                 "harmonics": beyond.choices().collect::<Vec<_>>(),
             })),
         })
+    }
+
+    fn rows_made_from(&self, scenario: &Scenario) -> String {
+        let of = |solver: &RowSolver| -> Vec<String> {
+            solver
+                .choices()
+                .filter(|choice| {
+                    choice.engine_order == scenario.engine_order
+                        && choice.contact == scenario.contact
+                })
+                .map(|choice| format!("{choice:?}"))
+                .collect()
+        };
+        format!(
+            "{} {:?} {:?}",
+            self.models,
+            of(&self.solver),
+            self.solver.beyond().map(of)
+        )
     }
 
     fn tuned(&self, scenario: &Scenario) -> TunedReference {
@@ -441,6 +463,22 @@ pub(super) fn sensitivity_vectors(study: &Study) -> usize {
             0
         },
     )
+}
+
+/// Digest of the reduced models and the errors that their rows state.
+fn models_digest(stored: &Stored) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let mut add = |model: &ReducedModel, error: f64| {
+        // A model that could not be written down could not be cached either.
+        let bytes = postcard::to_stdvec(model).unwrap_or_default();
+        hasher.update(&bytes);
+        hasher.update(&error.to_bits().to_le_bytes());
+    };
+    add(&stored.model, basis_error(&stored.evidence));
+    if let Some(beyond) = &stored.beyond {
+        add(&beyond.model, beyond.basis_error);
+    }
+    hasher.finalize().to_hex().to_string()
 }
 
 fn memory_bytes(model: &ReducedModel) -> usize {

@@ -74,7 +74,7 @@ fn rows_come_back_as_they_were_written_over_several_row_groups() {
             .flat_map(|pattern| [row(pattern, 0), row(pattern, 1)])
             .collect();
         let mut writer =
-            ResponseWriter::create(&path, &scenarios(), &header(compression)).expect("create");
+            ResponseWriter::create(&path, &scenarios(), &header(compression), &[]).expect("create");
         // Batches of odd sizes must not show in the file.
         for batch in rows.chunks(9_973) {
             writer.write(batch.to_vec()).expect("write");
@@ -103,8 +103,8 @@ fn rows_come_back_as_they_were_written_over_several_row_groups() {
 fn an_unfinished_table_leaves_nothing_behind() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("responses.parquet");
-    let mut writer =
-        ResponseWriter::create(&path, &scenarios(), &header(Compression::Zstd)).expect("create");
+    let mut writer = ResponseWriter::create(&path, &scenarios(), &header(Compression::Zstd), &[])
+        .expect("create");
     writer.write([row(0, 0)]).expect("write");
     drop(writer);
     assert_eq!(std::fs::read_dir(folder.path()).expect("read").count(), 0);

@@ -1,39 +1,44 @@
 //! Parquet tables and manifest of a results folder: schema, atomic writing, reading, parts.
 
 mod atomic;
+mod checked_json;
 mod column;
 mod curve;
 mod distribution;
 mod error;
+mod main_effects;
 mod manifest;
 mod parts;
 mod pattern_file;
 mod patterns;
 mod peak_audit;
 mod percentiles;
+mod publication;
 mod reader;
 mod responses;
+mod row_file;
 mod scenarios;
 mod tail_fits;
 mod traced_curve;
 mod verification;
 mod writer;
 
-pub use atomic::write_atomically;
+pub use atomic::{digest_file, remove_leftovers, write_atomically};
 pub use column::{ColumnKind, ColumnSpec};
 pub use curve::{CURVE_COLUMNS, CurveFormat, CurvePoint, write_curve};
 pub use distribution::{DISTRIBUTION_COLUMNS, write_distribution};
 pub use error::TableError;
-pub use manifest::{Manifest, RunRecord, RunState, ScenarioEntry, StatusCounts};
-pub use parts::{PartSink, PartStore};
+pub use main_effects::{EffectRows, MAIN_EFFECT_COLUMNS, write_main_effects};
+pub use manifest::{MANIFEST, Manifest, RunRecord, RunState, ScenarioEntry, Shard, StatusCounts};
+pub use parts::{PartSink, RowSchema, RowStore, part_files, remove_parts};
 pub use pattern_file::{PatternParquetError, read_pattern_parquet};
 pub use patterns::{PATTERN_COLUMNS, StoredPatterns, read_patterns, write_patterns};
 pub use peak_audit::{PEAK_AUDIT_COLUMNS, PeakAuditRecord, write_peak_audit};
 pub use percentiles::{PERCENTILE_COLUMNS, write_percentiles};
+pub use publication::{Staging, complete_publication, keep_as_part, set_aside};
 pub use responses::{RESPONSE_COLUMNS, ResponseReader, ResponseWriter};
-pub use scenarios::{
-    SCENARIO_COLUMNS, STATISTICS_TABLES, ScenarioRecord, write_scenarios, write_statistics,
-};
+pub use row_file::RowFile;
+pub use scenarios::{SCENARIO_COLUMNS, ScenarioRecord, write_scenarios};
 pub use tail_fits::{TAIL_FIT_COLUMNS, TailFitRecord, write_tail_fits};
 pub use traced_curve::{Direction, TRACE_COLUMNS, TracePoint, write_traced_curve};
 pub use verification::{VERIFICATION_COLUMNS, VerificationRecord, write_verification};

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::column::{ColumnKind, ColumnSpec, Values, key};
 use super::reader::TableReader;
-use super::writer::TableWriter;
+use super::writer::{ROW_DIGESTS_KEY, TableWriter};
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;
@@ -170,7 +170,8 @@ pub struct ResponseWriter {
 }
 
 impl ResponseWriter {
-    /// Begins the file `path`; `scenarios` are those of the study, in order.
+    /// Begins the file `path`; `scenarios` are those of the study, in order. `row_digests` says what
+    /// the rows are made from, a digest for each scenario that has rows in the file.
     ///
     /// # Errors
     /// The file cannot be created.
@@ -178,10 +179,12 @@ impl ResponseWriter {
         path: &Path,
         scenarios: &[Scenario],
         header: &TableHeader,
+        row_digests: &[String],
     ) -> Result<Self, TableError> {
+        let digests = [(ROW_DIGESTS_KEY, row_digests.join(","))];
         Ok(Self {
             scenarios: scenarios.to_vec(),
-            writer: TableWriter::create(path, RESPONSE_COLUMNS, header)?,
+            writer: TableWriter::create_with(path, RESPONSE_COLUMNS, header, &digests)?,
             waiting: Vec::new(),
         })
     }
@@ -207,6 +210,12 @@ impl ResponseWriter {
     pub fn finish(mut self) -> Result<(), TableError> {
         self.flush()?;
         self.writer.finish()
+    }
+
+    /// The same under a name made from the digest of the file.
+    pub(super) fn finish_as(mut self, name: impl FnOnce(&str) -> String) -> Result<(), TableError> {
+        self.flush()?;
+        self.writer.finish_as(name)
     }
 
     fn flush(&mut self) -> Result<(), TableError> {
@@ -324,6 +333,12 @@ impl ResponseReader {
     #[must_use]
     pub fn study_digest(&self) -> Option<&str> {
         self.table.study_digest()
+    }
+
+    /// Digests of what the rows of each scenario of the file are made from.
+    #[must_use]
+    pub fn row_digests(&self) -> &[String] {
+        self.table.row_digests()
     }
 
     /// The next rows, at most one row group; empty at the end.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::column::{ColumnKind, ColumnSpec, Values, key};
 use super::writer::TableWriter;
-use super::{TableError, TableHeader, write_distribution, write_percentiles};
+use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{Scenario, TunedReference};
 use crate::population::statistics::{PERCENTILES, SampleStatistics, ScenarioStatistics};
 
@@ -248,28 +248,6 @@ pub const SCENARIO_COLUMNS: &[ColumnSpec] = &[
         "Patterns whose sampling or harmonic error exceeds its tolerance",
     ),
 ];
-
-/// Tables that [`write_statistics`] writes.
-pub const STATISTICS_TABLES: [&str; 3] = [
-    "scenarios.parquet",
-    "percentiles.parquet",
-    "distribution.parquet",
-];
-
-/// Writes the tables of [`STATISTICS_TABLES`] into the folder `results`.
-///
-/// # Errors
-/// A file cannot be written.
-pub fn write_statistics(
-    results: &Path,
-    records: &[ScenarioRecord],
-    header: &TableHeader,
-) -> Result<(), TableError> {
-    let [scenarios, percentiles, distribution] = STATISTICS_TABLES.map(|name| results.join(name));
-    write_scenarios(&scenarios, records, header)?;
-    write_percentiles(&percentiles, records, header)?;
-    write_distribution(&distribution, records, header)
-}
 
 /// Writes `scenarios.parquet`.
 ///
