@@ -163,7 +163,12 @@ impl Truth<'_> {
         let deviation = study.standard_deviations[0];
         let facts = default.reduction();
         let of_model = |key: &str| facts[key].as_f64();
-        let basis = facts["tuned_peak_errors"].as_array().unwrap().last().unwrap()["error"].as_f64();
+        let basis = facts["tuned_peak_errors"]
+            .as_array()
+            .unwrap()
+            .last()
+            .unwrap()["error"]
+            .as_f64();
         let mut compared = Vec::new();
         for (place, &normal_load_n) in loads.iter().enumerate() {
             let contact = ContactCondition::Full { normal_load_n };
@@ -236,7 +241,11 @@ fn assert_covered(compared: &[Compared]) {
         .filter(|own| !own.within)
         .map(|own| own.line.as_str())
         .collect();
-    println!("{} of {} within", compared.len() - outside.len(), compared.len());
+    println!(
+        "{} of {} within",
+        compared.len() - outside.len(),
+        compared.len()
+    );
     assert!(20 * outside.len() <= compared.len(), "{outside:?}");
 }
 
@@ -296,7 +305,10 @@ fn a_fixed_number_of_fixed_interface_modes_states_what_it_leaves_out() {
 fn default_settings_are_within_the_stated_error_of_tuned_wheels() {
     let mut compared = Vec::new();
     for (name, loads) in [
-        ("wheel8", &[100.0, 200.0, 300.0, 400.0, 600.0, 800.0, 1600.0, 3200.0][..]),
+        (
+            "wheel8",
+            &[100.0, 200.0, 300.0, 400.0, 600.0, 800.0, 1600.0, 3200.0][..],
+        ),
         ("wheel24", &[160.0, 240.0, 320.0, 640.0, 1280.0, 2560.0]),
     ] {
         let truth = Truth {

@@ -102,7 +102,10 @@ fn pair(kn: f64, kt: f64, normal_load_n: f64) -> PairParameters {
 /// Product of the multipliers that are neither of a friction force that is reset (0) nor of one that
 /// stays (1).
 fn product(motion: &PeriodicMotion) -> f64 {
-    let sizes = motion.multipliers.iter().map(|multiplier| multiplier.norm());
+    let sizes = motion
+        .multipliers
+        .iter()
+        .map(|multiplier| multiplier.norm());
     sizes.filter(|size| *size > 1e-6).product()
 }
 
@@ -122,7 +125,10 @@ fn a_pair_that_sticks_has_the_multipliers_of_the_spring_that_it_is() {
         assert!(nearest.fold(f64::INFINITY, f64::min) < 1e-4, "{motion:?}");
     }
     // The other two are the friction forces, which keep any offset.
-    let offsets = motion.multipliers.iter().filter(|m| (*m - 1.0).norm() < 1e-6);
+    let offsets = motion
+        .multipliers
+        .iter()
+        .filter(|m| (*m - 1.0).norm() < 1e-6);
     assert_eq!(offsets.count(), 2);
 }
 
@@ -155,7 +161,10 @@ fn of_three_motions_over_a_fold_the_middle_one_is_unstable_and_the_march_leaves_
     }
     motions.sort_by(|a, b| a.fundamental_m[0].total_cmp(&b.fundamental_m[0]));
     let stable: Vec<bool> = motions.iter().map(|m| m.is_stable().unwrap()).collect();
-    let heights: Vec<f64> = motions.iter().map(|motion| motion.fundamental_m[0]).collect();
+    let heights: Vec<f64> = motions
+        .iter()
+        .map(|motion| motion.fundamental_m[0])
+        .collect();
     println!("{heights:?} {stable:?}");
     assert_eq!(stable, [true, false, true]);
     // Nothing separates on the lowest: F / (2 - w^2 + i c w).
@@ -168,7 +177,10 @@ fn of_three_motions_over_a_fold_the_middle_one_is_unstable_and_the_march_leaves_
         ..TimeOptions::default()
     };
     for motion in &motions {
-        assert!((product(motion) / one.shrinks() - 1.0).abs() < 1e-3, "{motion:?}");
+        assert!(
+            (product(motion) / one.shrinks() - 1.0).abs() < 1e-3,
+            "{motion:?}"
+        );
         let mut aside = motion.state.clone();
         aside.position[0] *= 1.0 + 1e-3;
         let settled = settle(&one.wheel(), &aside, &options);
