@@ -20,6 +20,7 @@ use crate::model::reduction::{BasisChoice, Reduction, ReductionOptions};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{RowSettings, RowSolver, Scenario};
 use crate::response::forced_response::{SearchEnd, SearchPlan, SearchSettings, find_peak};
+use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::HarmonicTransform;
 use crate::response::reference::{ReferenceSettings, ReferenceSolver};
 
@@ -180,7 +181,7 @@ impl Compared {
     fn new(study: &Study) -> Result<Self, PipelineError> {
         let row = row_settings(study);
         let law = row.contact.map(|(law, _)| law);
-        let all: Vec<usize> = if law.is_some_and(|law| law.has_variable_load()) {
+        let all: Vec<usize> = if law.is_some_and(ContactLaw::has_variable_load) {
             (0..=HIGHEST_HARMONIC).collect()
         } else {
             (1..=HIGHEST_HARMONIC).step_by(2).collect()

@@ -193,7 +193,7 @@ impl Truth<'_> {
                 study.name, facts["craig_bampton_modes"]
             );
             compared.push(Compared::new(
-                format!("{name}, tuned, {}", tuned.harmonics),
+                &format!("{name}, tuned, {}", tuned.harmonics),
                 tuned.amplitude_m.unwrap() / truth.amplitude_m.unwrap() - 1.0,
                 stated,
             ));
@@ -206,7 +206,7 @@ impl Truth<'_> {
                     ..row
                 });
                 compared.push(Compared::new(
-                    format!(
+                    &format!(
                         "{name}, pattern {id}, {}, separated {:?}",
                         own.harmonics, own.separated_fraction
                     ),
@@ -220,7 +220,7 @@ impl Truth<'_> {
 }
 
 impl Compared {
-    fn new(name: String, error: f64, stated: f64) -> Self {
+    fn new(name: &str, error: f64, stated: f64) -> Self {
         let line = format!(
             "{name}: error {:+.3} %, stated {:.3} %",
             100.0 * error,
@@ -252,7 +252,7 @@ fn assert_covered(compared: &[Compared]) {
 fn default_wheel(name: &str, loads: &[f64]) -> Study {
     let loads: Vec<String> = loads.iter().map(f64::to_string).collect();
     let mut study = wheel(name, &loads.join(", "), "", "");
-    study.name = name.to_owned();
+    name.clone_into(&mut study.name);
     study
 }
 
