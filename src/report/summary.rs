@@ -41,7 +41,8 @@ pub struct BasisSummary {
     pub contact_displacement_error: Option<f64>,
     /// Highest fixed-interface frequency over what it should be; 1 is enough.
     pub craig_bampton_reach: Option<f64>,
-    /// Largest relative change of a tuned peak by more fixed-interface modes.
+    /// Largest relative change of a tuned peak by more fixed-interface modes than the study asks for;
+    /// none where the program chooses their number.
     pub craig_bampton_error: Option<f64>,
     /// Error that the study asks for.
     pub wanted_error: f64,

@@ -19,8 +19,10 @@ use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, Reduction, ReductionOptions};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{RowSettings, RowSolver, Scenario};
+use crate::response::forced_response::{SearchEnd, SearchPlan, SearchSettings, find_peak};
+use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::HarmonicTransform;
-use crate::response::reference::{ReferenceSettings, ReferenceSolver, reference_peak};
+use crate::response::reference::{ReferenceSettings, ReferenceSolver};
 
 /// Modes beyond which none are added without being asked for.
 const MOST_MODES: usize = 200;
@@ -28,6 +30,12 @@ const MOST_MODES: usize = 200;
 const HIGHEST_HARMONIC: usize = 15;
 /// Samples per period of the compared peaks; their error is the same on either side.
 const SAMPLES: usize = 256;
+/// Tolerance of the compared peaks.
+const PEAK_TOLERANCE: f64 = 1e-4;
+/// Frequencies of one peak at most.
+const EVALUATIONS: usize = 100;
+/// Half-bandwidths on either side of a known peak in which that of more modes is sought first.
+const NEAR: f64 = 1.0;
 
 /// The number of fixed-interface modes that was taken, and the evidence for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -91,6 +99,20 @@ pub fn reduce_sector<'a>(
         }
         (coarse, peaks) = (next, next_peaks);
         (next, next_peaks) = (finest, finest_peaks);
+    }
+}
+
+/// The models of [`reduce_sector`] alone: where the study says how many modes, nothing is measured.
+///
+/// # Errors
+/// As [`reduce_sector`].
+pub fn reduction_of<'a>(
+    study: &Study,
+    sector: &'a SectorModel,
+) -> Result<Reduction<'a>, PipelineError> {
+    match study.reduction.craig_bampton_modes {
+        Some(modes) => Ok(Rung::new(study, sector, modes)?.reduction),
+        None => Ok(reduce_sector(study, sector)?.0),
     }
 }
 
@@ -159,7 +181,7 @@ impl Compared {
     fn new(study: &Study) -> Result<Self, PipelineError> {
         let row = row_settings(study);
         let law = row.contact.map(|(law, _)| law);
-        let all: Vec<usize> = if law.is_some_and(|law| law.has_variable_load()) {
+        let all: Vec<usize> = if law.is_some_and(ContactLaw::has_variable_load) {
             (0..=HIGHEST_HARMONIC).collect()
         } else {
             (1..=HIGHEST_HARMONIC).step_by(2).collect()
@@ -218,14 +240,44 @@ impl Compared {
         expected_hz: Option<f64>,
     ) -> Option<TunedPeak> {
         let plan = scout.search_plan(case, None, None).ok()?;
-        let settings = &self.sets[set];
         let (engine_order, contact) = (case.engine_order, case.contact);
-        let mut solver = ReferenceSolver::new(model, settings, engine_order, contact, None).ok()?;
-        let found = reference_peak(&mut solver, &plan, expected_hz);
+        let mut solver =
+            ReferenceSolver::new(model, &self.sets[set], engine_order, contact, None).ok()?;
+        let (band_hz, starts_hz) = sought(&plan, expected_hz);
+        let settings = SearchSettings {
+            tolerance: PEAK_TOLERANCE,
+            evaluations: EVALUATIONS,
+            extensions: plan.extensions,
+        };
+        let found = find_peak(
+            band_hz,
+            &starts_hz,
+            plan.envelope,
+            settings,
+            |frequency_hz| {
+                let point = solver.solve(frequency_hz).ok();
+                point.map(|point| point.amplitudes_m.clone())
+            },
+        );
+        let best = found
+            .best
+            .filter(|_| found.end == SearchEnd::Found && found.bracketed)?;
+        let sample = &found.samples[best];
         Some(TunedPeak {
-            amplitude_m: found.amplitude_m?,
-            frequency_hz: found.frequency_hz?,
+            amplitude_m: sample.largest,
+            frequency_hz: sample.frequency_hz,
             set,
         })
     }
+}
+
+/// Band and first frequencies, Hz: all of the plan, or next to a peak known with fewer modes.
+fn sought(plan: &SearchPlan, expected_hz: Option<f64>) -> ((f64, f64), Vec<f64>) {
+    let Some(expected) = expected_hz else {
+        return (plan.band_hz, plan.starts_hz.clone());
+    };
+    let near = NEAR * plan.envelope.linear_half_bandwidth_hz;
+    let (low, high) = plan.band_hz;
+    let band = (low.max(expected - near), high.min(expected + near));
+    (band, vec![band.0, expected, band.1])
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::fixed_interface::reduce_sector;
+use super::fixed_interface::reduction_of;
 use super::harmonic_choice::choose_harmonics;
 use super::reduced_engine::row_settings;
 use super::{PipelineError, Study};
@@ -75,7 +75,7 @@ impl FullModel {
         sector: &SectorModel,
         options: &FullSettings,
     ) -> Result<Self, PipelineError> {
-        let (reduction, _) = reduce_sector(study, sector)?;
+        let reduction = reduction_of(study, sector)?;
         let cantilever = study.mistuning.cantilever_mode_count;
         let mut settings = row_settings(study);
         if let Some(harmonics) = &options.harmonics {

@@ -44,6 +44,8 @@ struct ReducedEngine {
     solver: RowSolver,
     evidence: BasisEvidence,
     fixed_interface: FixedInterface,
+    /// Whether the study says how many fixed-interface modes there are.
+    fixed_modes: bool,
     wanted_error: f64,
     digest: String,
     /// Digest of the models that rows are solved on, with their errors.
@@ -106,6 +108,7 @@ impl EngineSource for ReducedEngineSource {
             evidence: stored.evidence.clone(),
             fixed_interface: stored.fixed_interface.clone(),
             models: models_digest(&stored),
+            fixed_modes: study.reduction.craig_bampton_modes.is_some(),
             solver: solver_of(study, stored, settings)?,
             wanted_error: study.reduction.error,
             digest,
@@ -137,7 +140,7 @@ impl Engine for ReducedEngine {
             contact_displacement_error: contact_displacement
                 .map(|errors| errors.any_nodal_diameter.error),
             craig_bampton_reach,
-            craig_bampton_error: self.fixed_interface.error,
+            craig_bampton_error: self.fixed_interface.error.filter(|_| self.fixed_modes),
             wanted_error: self.wanted_error,
         };
         ModelReport {

@@ -141,20 +141,21 @@ pub(super) fn context_of(manifest: &Manifest) -> SummaryContext {
 
 /// The basis and its measured error, from the facts that the engine gave.
 fn basis_of(manifest: &Manifest) -> BasisSummary {
-    let tried = manifest.reduction["tuned_peak_errors"].as_array();
-    let taken = tried.and_then(|tried| tried.last());
-    let wanted = manifest.study["reduction"]["error"].as_f64();
+    let facts = &manifest.reduction;
+    let taken = facts["tuned_peak_errors"]
+        .as_array()
+        .and_then(|tried| tried.last());
+    let asked = &manifest.study["reduction"];
+    let number = |key: &str| facts[key].as_f64();
+    let truncation = number("craig_bampton_error");
     BasisSummary {
-        name: manifest.reduction["basis"]
-            .as_str()
-            .unwrap_or_default()
-            .to_owned(),
+        name: facts["basis"].as_str().unwrap_or_default().to_owned(),
         tuned_peak_error: taken.and_then(|taken| taken["error"].as_f64()),
         contact_displacement_error: taken.and_then(|taken| {
             taken["contact_displacement"]["any_nodal_diameter"]["error"].as_f64()
         }),
-        craig_bampton_reach: manifest.reduction["craig_bampton_reach"].as_f64(),
-        craig_bampton_error: manifest.reduction["craig_bampton_error"].as_f64(),
-        wanted_error: wanted.unwrap_or(f64::INFINITY),
+        craig_bampton_reach: number("craig_bampton_reach"),
+        craig_bampton_error: truncation.filter(|_| asked["craig_bampton_modes"].is_u64()),
+        wanted_error: asked["error"].as_f64().unwrap_or(f64::INFINITY),
     }
 }

@@ -57,7 +57,7 @@ fn automatic_harmonics_find_the_internal_contact_resonances() {
         let study = wheel(
             name,
             load,
-            "basis = \"stick_attachment\"",
+            "basis = \"stick_attachment\"\ncraig_bampton_modes = 25",
             "harmonics = \"auto\"",
         );
         let case = Case::new(study);
@@ -193,7 +193,7 @@ impl Truth<'_> {
                 study.name, facts["craig_bampton_modes"]
             );
             compared.push(Compared::new(
-                format!("{name}, tuned, {}", tuned.harmonics),
+                &format!("{name}, tuned, {}", tuned.harmonics),
                 tuned.amplitude_m.unwrap() / truth.amplitude_m.unwrap() - 1.0,
                 stated,
             ));
@@ -206,7 +206,7 @@ impl Truth<'_> {
                     ..row
                 });
                 compared.push(Compared::new(
-                    format!(
+                    &format!(
                         "{name}, pattern {id}, {}, separated {:?}",
                         own.harmonics, own.separated_fraction
                     ),
@@ -220,7 +220,7 @@ impl Truth<'_> {
 }
 
 impl Compared {
-    fn new(name: String, error: f64, stated: f64) -> Self {
+    fn new(name: &str, error: f64, stated: f64) -> Self {
         let line = format!(
             "{name}: error {:+.3} %, stated {:.3} %",
             100.0 * error,
@@ -252,7 +252,7 @@ fn assert_covered(compared: &[Compared]) {
 fn default_wheel(name: &str, loads: &[f64]) -> Study {
     let loads: Vec<String> = loads.iter().map(f64::to_string).collect();
     let mut study = wheel(name, &loads.join(", "), "", "");
-    study.name = name.to_owned();
+    name.clone_into(&mut study.name);
     study
 }
 
@@ -269,7 +269,9 @@ fn default_model(loads: &[f64]) -> Study {
 
 const ALL: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
+/// `cargo test --release --test cases stated_errors -- --ignored --nocapture`
 #[test]
+#[ignore = "half a minute: the choice of harmonics with 57 fixed-interface modes"]
 fn default_settings_state_what_fixed_interface_modes_and_harmonics_leave_out() {
     // With 25 modes the tuned peak at 400 N is 3.7 % off, harmonics 0 to 15 and 86 modes beside it.
     let loads = [400.0];
@@ -283,18 +285,19 @@ fn default_settings_state_what_fixed_interface_modes_and_harmonics_leave_out() {
 }
 
 #[test]
-fn a_fixed_number_of_fixed_interface_modes_states_what_it_leaves_out() {
-    let study = wheel(
-        "wheel8",
-        "400",
-        "basis = \"stick_attachment\"\nstick_modes = 4\ncraig_bampton_modes = 25",
-        "harmonics = [1]",
-    );
-    let case = Case::new(study);
-    let stated = case.reduction()["craig_bampton_error"].as_f64().unwrap();
-    println!("{stated}");
-    // 1.2192e-4 m with 25 modes, 1.2641e-4 m with 57 (harmonics 0 to 15, condensed full model).
-    assert!((0.03..0.045).contains(&stated), "{stated}");
+fn fixed_interface_modes_follow_the_tuned_peak_and_a_fixed_number_states_what_it_leaves_out() {
+    let facts = |modes: &str| {
+        let reduction = format!("basis = \"stick_attachment\"\nstick_modes = 4\n{modes}");
+        Case::new(wheel("wheel8", "400", &reduction, "harmonics = [1]")).reduction()
+    };
+    // Harmonics 0 to 15: 1.2192e-4 m with 25 modes, 1.2641e-4 with 57, 1.2662e-4 with 130.
+    let fixed = facts("craig_bampton_modes = 25");
+    let error = fixed["craig_bampton_error"].as_f64().unwrap();
+    assert!((0.03..0.045).contains(&error), "{error}");
+    let chosen = facts("");
+    assert_eq!(chosen["craig_bampton_modes"], 57, "{chosen}");
+    let error = chosen["craig_bampton_error"].as_f64().unwrap();
+    assert!((5e-4..3e-3).contains(&error), "{error}");
 }
 
 /// Tuned figures at many loads, light ones with separation included.

@@ -33,9 +33,9 @@ use crate::response::harmonic_balance::{ContactShares, Status};
 /// Components of the state at most: a march each, several times.
 const MOST_COMPONENTS: usize = 700;
 /// Steps of Newton's method at most.
-const STEPS: usize = 15;
+const STEPS: usize = 20;
 /// Change of the state over a period, relative to its scale, at which the period counts as closed.
-const CLOSED: f64 = 1e-7;
+const CLOSED: f64 = 1e-5;
 /// Disturbance of the differences, relative to the scale of the component.
 const DISTURBANCE: f64 = 1e-6;
 /// Singular values of `M - I` below this, relative to the largest, are directions in which any
@@ -216,7 +216,8 @@ impl<'a> PeriodMap<'a> {
         Ok(Matrix::from_fn(z.len(), z.len(), |i, j| columns[j][i]))
     }
 
-    /// Newton's method on `Phi(z) = z`; a step is shortened until the change over a period shrinks.
+    /// Newton's method on `Phi(z) = z`; of several lengths of a step that with the smallest change over a
+    /// period is taken, also if it is larger than before: the map has kinks.
     fn close(&self, z: &mut Vec<f64>, found: &mut PeriodicMotion) -> Status {
         let Some(mut stepper) = self.stepper(z) else {
             return Status::SingularJacobian;
@@ -251,16 +252,13 @@ impl<'a> PeriodMap<'a> {
                 return Status::Stagnated;
             };
             found.newton_steps += 1;
-            let shortened = [1.0, 0.5, 0.25, 0.125, 0.0625]
-                .into_iter()
-                .find_map(|factor| {
-                    let trial: Vec<f64> =
-                        z.iter().zip(&step).map(|(z, s)| z + factor * s).collect();
-                    let marched = self.march(&mut stepper, &trial).ok()?;
-                    let smaller = norm(&change(&trial, &marched)) < norm(&residual);
-                    smaller.then_some((trial, marched))
-                });
-            let Some((trial, next)) = shortened else {
+            let trials = [1.0, 0.5, 0.25, 0.125].into_iter().filter_map(|factor| {
+                let trial: Vec<f64> = z.iter().zip(&step).map(|(z, s)| z + factor * s).collect();
+                let marched = self.march(&mut stepper, &trial).ok()?;
+                Some((norm(&change(&trial, &marched)), trial, marched))
+            });
+            let best = trials.min_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((_, trial, next)) = best else {
                 return Status::Stagnated;
             };
             (*z, marched) = (trial, next);
