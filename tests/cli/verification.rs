@@ -493,3 +493,43 @@ fn a_row_that_cannot_be_integrated_in_time_is_refused() {
     assert_eq!(ended.code, 2, "{}", ended.stdout);
     assert!(ended.stderr.contains("contact.ring"), "{}", ended.stderr);
 }
+
+/// Where nothing is reduced both fidelities choose the same set, and solve the same equation.
+#[test]
+fn automatic_harmonics_are_those_of_the_study_on_the_full_model_too() {
+    let place = Place::with(&GOOD.replace("harmonics = [1, 3]", "harmonics = \"auto\""));
+    let curve = |more: &[&str]| -> Vec<f64> {
+        let arguments = [
+            "response",
+            "study.toml",
+            "--load",
+            "50",
+            "--frequencies",
+            "340:370:7",
+            "--pattern",
+            "tuned",
+            "--out",
+            "c.csv",
+        ];
+        let ended = place.run(&[&arguments[..], more].concat());
+        assert_eq!(ended.code, 0, "{}", ended.stderr);
+        let text = std::fs::read_to_string(place.path("c.csv")).expect("read");
+        let amplitude = |line: &str| line.split(',').nth(2).map(str::parse::<f64>);
+        let amplitudes = text.lines().skip(1).filter_map(amplitude);
+        amplitudes.map(|value| value.expect("a number")).collect()
+    };
+    let apart = |a: &[f64], b: &[f64]| {
+        let largest = a.iter().copied().fold(0.0, f64::max);
+        let pairs = a.iter().zip(b);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
+    };
+    let reduced = curve(&[]);
+    let full = curve(&["--fidelity", "full", "--samples", "128"]);
+    assert_eq!(full.len(), 42);
+    assert!(apart(&reduced, &full) < 1e-6);
+    let fundamental = curve(&["--fidelity", "full", "--samples", "128", "--harmonics", "1"]);
+    assert!(
+        apart(&full, &fundamental) > 1e-4,
+        "the set has more than the fundamental"
+    );
+}
