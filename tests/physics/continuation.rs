@@ -10,8 +10,8 @@ use blisk::model::sector::{Body, Component, ContactPair, Dof, ObservedNode, Sect
 use blisk::response::forced_response::{PointSettings, PointSolver, ResponseTrace, SolverOptions};
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{
-    Along, ContactInterface, Continuation, ContinuationBounds, Damping, HarmonicBlock,
-    HarmonicSystem, HarmonicTransform, NewtonBounds, PathPoint, Status, Structure,
+    ContactInterface, Continuation, ContinuationBounds, Damping, HarmonicBlock, HarmonicSystem,
+    HarmonicTransform, NewtonBounds, PathPoint, Status, Structure,
 };
 use blisk::response::mistuning::{ModalRows, StructuralModes};
 
@@ -151,13 +151,12 @@ fn walk(
     to: f64,
 ) -> (Vec<PathPoint>, Vec<(f64, f64, bool)>, u64) {
     let rising = to > from;
-    let along = Along::Frequency;
-    let mut walk = Continuation::new(system, along, from, &stuck(from), rising, bounds()).unwrap();
+    let mut walk = Continuation::new(system, from, &stuck(from), rising, bounds()).unwrap();
     let mut points = vec![walk.point()];
     let mut folds = Vec::new();
-    while (points[points.len() - 1].parameter < to) == rising {
+    while (points[points.len() - 1].omega < to) == rising {
         if let Some(fold) = walk.advance().unwrap() {
-            folds.push((fold.point.parameter, amplitude(&fold.point), fold.largest));
+            folds.push((fold.point.omega, amplitude(&fold.point), fold.largest));
         }
         points.push(walk.point());
     }
@@ -189,52 +188,11 @@ fn both_folds_of_an_opening_contact_are_found_where_the_closed_form_has_them() {
         assert!(folds[0].2 && !folds[1].2 && folds[0].0 > folds[1].0);
         for point in &points {
             let omega = oscillator::frequencies(amplitude(point), oscillator::PRELOAD_N).unwrap();
-            let off = omega.map(|omega| (omega / point.parameter - 1.0).abs());
+            let off = omega.map(|omega| (omega / point.omega - 1.0).abs());
             // At the top a millionth of the amplitude is a thousandth of a half-bandwidth.
-            assert!(off[0].min(off[1]) < 1e-5, "{} {omega:?}", point.parameter);
+            assert!(off[0].min(off[1]) < 1e-5, "{} {omega:?}", point.omega);
         }
     }
-}
-
-/// The load falls from one that holds the contact closed to one under which several solutions belong to
-/// the frequency: the walk passes its folds in load, and every point lies on the closed form of its load.
-#[test]
-fn the_normal_load_is_followed_through_its_folds() {
-    const LOADS: (f64, f64) = (2.0 * oscillator::PRELOAD_N, 0.1 * oscillator::PRELOAD_N);
-    let system = oscillator::system(65_536, LOADS.0);
-    let mut folded = 0;
-    for omega in [1080.0, 1100.0, 1120.0, 1150.0] {
-        let along = Along::NormalLoad { omega };
-        let bounds = ContinuationBounds {
-            parameter_scale: 1.0,
-            ..bounds()
-        };
-        let mut walk =
-            Continuation::new(&system, along, 0.0, &stuck(omega), false, bounds).unwrap();
-        let mut points = vec![walk.point()];
-        let mut folds = 0;
-        while points[points.len() - 1].parameter > (LOADS.1 / LOADS.0).ln() {
-            folds += usize::from(walk.step_on().unwrap());
-            points.push(walk.point());
-        }
-        for point in &points {
-            let load = LOADS.0 * point.parameter.exp();
-            let known = oscillator::frequencies(amplitude(point), load);
-            let off = known.map(|known| known.map(|known| (known / omega - 1.0).abs()));
-            assert!(
-                off.is_some_and(|off| off[0].min(off[1]) < 1e-4),
-                "{omega}, {load} N: {off:?}"
-            );
-        }
-        let opened = points.last().unwrap().shares.separated;
-        println!(
-            "{omega} rad/s: {} points, {folds} folds in load, separated {opened}",
-            points.len()
-        );
-        assert!(points.len() < 400 && opened > 0.0);
-        folded += folds;
-    }
-    assert!(folded > 0, "no fold in load at any of the frequencies");
 }
 
 /// The same oscillator as the blades of a wheel: blade and a ring node that hardly moves, radial.

@@ -279,58 +279,6 @@ mod derivative {
         );
     }
 
-    /// Load is scaled by 1 +- a millionth, on smooth pieces of the law exactly half of what is seen on
-    /// either side; away from kinks alone, since a load that lifts a pair off bends the curve.
-    #[test]
-    fn the_normal_load_derivative_is_the_difference_quotient_away_from_kinks() {
-        const STEP: f64 = 1e-6;
-        let mut random = Random(9);
-        let wheel8 = Wheel::wheel8();
-        let (mut rows, mut kinks) = (0, 0);
-        for law in LAWS {
-            for (damping, harmonics, tuned) in settings() {
-                let wheel = Wheel {
-                    law,
-                    damping,
-                    ..wheel8.clone()
-                };
-                let excited = excited(&wheel, tuned, harmonics, &mut random);
-                let stuck = system(&wheel, &excited, 64, 1e30);
-                let (x, _) = random_state(&stuck, &mut random);
-                let omega = TAU * 613.0;
-                let system = at_work(&wheel, &stuck, omega, &x);
-                let here = linearise(&system, omega, &x);
-                let mut exact = vec![0.0; x.len()];
-                system.normal_load_derivative(&x, &here.residual, &here.jacobian, &mut exact);
-                let [above, below] = [1.0 + STEP, 1.0 - STEP].map(|factor| {
-                    let loaded = system.pairs().iter().map(|pair| PairParameters {
-                        normal_load_n: factor * pair.normal_load_n,
-                        ..*pair
-                    });
-                    linearise(&system.with_pairs(loaded.collect()), omega, &x).residual
-                });
-                let size = exact.iter().fold(0.0_f64, |size, d| size.max(d.abs()));
-                assert!(size > 0.0);
-                for row in 0..x.len() {
-                    rows += 1;
-                    let bend = above[row] + below[row] - 2.0 * here.residual[row];
-                    if bend.abs() > 1e-7 * size * STEP {
-                        kinks += 1;
-                        continue;
-                    }
-                    let quotient = (above[row] - below[row]) / (2.0 * STEP);
-                    let error = (quotient - exact[row]).abs() / size;
-                    assert!(
-                        error < 1e-5,
-                        "{law:?} {damping:?} {harmonics:?} {tuned}: {error:e}"
-                    );
-                }
-            }
-        }
-        println!("{kinks} of {rows} rows at a kink");
-        assert!(2 * kinks < rows, "{kinks} of {rows} rows at a kink");
-    }
-
     /// Every damping, harmonic set and kind of wheel (tuned or not).
     fn settings() -> impl Iterator<Item = (Damping, &'static [u32], bool)> {
         DAMPINGS.into_iter().flat_map(|damping| {

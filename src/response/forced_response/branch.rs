@@ -8,9 +8,7 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use super::point_solver::{Point, PointSolver};
-use crate::response::harmonic_balance::{
-    Along, Continuation, ContinuationBounds, PathPoint, Status,
-};
+use crate::response::harmonic_balance::{Continuation, ContinuationBounds, PathPoint, Status};
 
 /// Frequency scale where no linear resonance tells it, over the frequency.
 const FREQUENCY_SCALE: f64 = 1e-3;
@@ -130,7 +128,7 @@ impl PointSolver<'_> {
             return trace;
         }
         let bounds = self.continuation_bounds(start_hz);
-        let scales = TAU * (stop_hz - start_hz).abs() / bounds.parameter_scale;
+        let scales = TAU * (stop_hz - start_hz).abs() / bounds.frequency_scale;
         let bounds = ContinuationBounds {
             correctors: CORRECTORS + (CORRECTORS_PER_SCALE * scales).min(MOST_CORRECTORS) as u64,
             ..bounds
@@ -186,9 +184,7 @@ impl PointSolver<'_> {
         let (stop_hz, back_hz) = ends_hz;
         let rising = stop_hz > from.frequency_hz;
         let omega = TAU * from.frequency_hz;
-        let along = Along::Frequency;
-        let start = &from.solution;
-        let mut walk = match Continuation::new(system, along, omega, start, rising, bounds) {
+        let mut walk = match Continuation::new(system, omega, &from.solution, rising, bounds) {
             Ok(walk) => walk,
             Err(status) => return status,
         };
@@ -230,7 +226,7 @@ impl PointSolver<'_> {
                 } else {
                     BranchPlace::Step
                 };
-                let end_hz = end.parameter / TAU;
+                let end_hz = end.omega / TAU;
                 if (end_hz < stop_hz) == rising {
                     stopped |= hand_over(&end, end_hz, branch, place);
                 }
@@ -239,7 +235,7 @@ impl PointSolver<'_> {
             if let Some(status) = failed {
                 break status;
             }
-            let at_hz = walk.point().parameter / TAU;
+            let at_hz = walk.point().omega / TAU;
             if stopped || (at_hz >= stop_hz) == rising {
                 break Status::Ok;
             }
@@ -291,7 +287,7 @@ impl PointSolver<'_> {
 
 /// The frequencies of the grid, Hz, behind `begin` up to `end`, in the order in which they are passed.
 fn passed(begin: &PathPoint, end: &PathPoint, grid_hz: &[f64]) -> Vec<f64> {
-    let (from, to) = (begin.parameter, end.parameter);
+    let (from, to) = (begin.omega, end.omega);
     let mut inside: Vec<f64> = grid_hz
         .iter()
         .copied()

@@ -4,23 +4,13 @@ use std::f64::consts::TAU;
 
 use super::point_solver::{Point, PointSolver};
 use crate::response::friction::PairParameters;
-use crate::response::harmonic_balance::{
-    Along, ContactShares, Continuation, ContinuationBounds, HarmonicSystem, Status, linear_response,
-};
+use crate::response::harmonic_balance::{HarmonicSystem, Status, linear_response};
 
 /// Softest contact of the homotopy in stiffness: this power of [`STIFFNESS_RATIO`] below the wanted one.
 const STIFFNESS_STAGES: f64 = 6.0;
 const STIFFNESS_RATIO: f64 = 4.0;
 /// Smallest step of its exponent.
 const SMALLEST_STIFFNESS_STEP: f64 = 1.0 / 8.0;
-
-/// Factor on the normal load, again and again, until every pair sticks, and how often at most.
-const TOWARDS_STUCK: f64 = 4.0;
-const LOAD_RAISES: i32 = 40;
-/// Change of the logarithm of the normal load that weighs as much as a change of the whole solution,
-/// and correctors on the way.
-const LOAD_SCALE: f64 = 1.0;
-const LOAD_CORRECTORS: u64 = 400;
 
 impl PointSolver<'_> {
     /// Homotopy in normal load: from a load at which every pair sticks down to that of the
@@ -80,59 +70,6 @@ impl PointSolver<'_> {
                 Err(_) => return Err(Status::StepTooSmall),
             }
         }
-    }
-
-    /// Continuation in normal load, from one at which every pair sticks and the linear stuck solution
-    /// is exact down to that of the scenario: it passes folds, at which a homotopy ends.
-    pub(super) fn follow_normal_load(&mut self, frequency_hz: f64) -> Result<Point, Status> {
-        let omega = TAU * frequency_hz;
-        let start = self.stuck_start(frequency_hz)?;
-        let raised = self.sticking_factor(omega, &start);
-        let factor = raised.ok_or(Status::StepTooSmall)?;
-        let (system, _) = self.nonlinear.as_ref().ok_or(Status::SingularJacobian)?;
-        let system = locked(system.clone());
-        let bounds = ContinuationBounds {
-            correctors: LOAD_CORRECTORS,
-            ..ContinuationBounds::new(self.settings.bounds, LOAD_SCALE)
-        };
-        let along = Along::NormalLoad { omega };
-        let mut walk = Continuation::new(&system, along, factor.ln(), &start, false, bounds)?;
-        let arrived = loop {
-            if let Err(status) = walk.step_on() {
-                break Err(status);
-            }
-            let (before, here) = (walk.previous(), walk.point());
-            if here.parameter <= 0.0 {
-                break walk.land(&before, &here, 0.0);
-            }
-            // Back beyond where every pair sticks: no way leads to the load of the scenario.
-            if here.parameter > factor.ln() {
-                break Err(Status::BranchJump);
-            }
-        };
-        let work = walk.work();
-        self.work.newton_iterations += work.iterations;
-        self.work.factorisations += work.factorisations;
-        self.newton(frequency_hz, arrived?.solution, None)
-    }
-
-    /// Smallest factor tried on the normal load under which every pair sticks at the stuck solution;
-    /// none where no load is raised.
-    fn sticking_factor(&mut self, omega: f64, stuck: &[f64]) -> Option<f64> {
-        let mut residual = vec![0.0; stuck.len()];
-        (0..LOAD_RAISES)
-            .map(|raise| TOWARDS_STUCK.powi(raise))
-            .find(|&factor| {
-                let Some(system) = self.under_load(factor) else {
-                    return false;
-                };
-                let Some((_, workspace)) = &mut self.nonlinear else {
-                    return false;
-                };
-                let buffers = workspace.system_mut();
-                let (_, shares) = system.residual(omega, stuck, &mut residual, false, buffers);
-                shares == ContactShares::default()
-            })
     }
 
     /// The system of the row under its normal load times `factor`.

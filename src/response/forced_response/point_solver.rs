@@ -257,7 +257,6 @@ impl<'a> PointSolver<'a> {
             Attempt::Continuation => self.continue_to(frequency_hz),
             Attempt::StiffnessHomotopy => self.stiffen_contact(frequency_hz),
             Attempt::LoadHomotopy => self.lower_normal_load(frequency_hz),
-            Attempt::LoadContinuation => self.follow_normal_load(frequency_hz),
         }
     }
 
@@ -352,18 +351,15 @@ enum Attempt {
     StiffnessHomotopy,
     /// Homotopy in normal load.
     LoadHomotopy,
-    /// Arc-length continuation in normal load.
-    LoadContinuation,
 }
 
 impl Attempt {
-    const LADDER: [Self; 6] = [
+    const LADDER: [Self; 5] = [
         Self::Neighbours,
         Self::Stuck,
         Self::Continuation,
         Self::StiffnessHomotopy,
         Self::LoadHomotopy,
-        Self::LoadContinuation,
     ];
 }
 

@@ -1,9 +1,8 @@
-//! Pseudo-arc-length continuation of the harmonic balance equation in one parameter, through folds.
+//! Pseudo-arc-length continuation of the harmonic balance equation in frequency, through folds.
 //!
-//! The unknowns `u = (x / X, p / W)` are solution and parameter (frequency, or logarithm of the normal
-//! load), each in a size that makes a step of one as large as one of the other: X is the norm of the
-//! solution, W given by the caller, for a frequency as a rule a half-bandwidth. With
-//! `DR = (X dR/dx, W dR/dp)`,
+//! The unknowns `u = (x / X, omega / W)` are solution and frequency, each in a size that makes a
+//! step of one as large as one of the other: X is the norm of the solution, W the frequency given
+//! by the caller, as a rule a half-bandwidth. With `DR = (X dR/dx, W dR/domega)`,
 //!
 //! ```text
 //! tangent      DR t = 0,  |t| = 1
@@ -18,7 +17,7 @@
 //! way on is told by the sign of `det (DR; t^T)`, which is the same on all pieces of one curve
 //! (Allgower & Georg 1990, Numerical Continuation Methods, section 2.1 and chapter 15).
 
-use super::curve::{Along, AtParameter, Curve, distance, dot};
+use super::curve::{AtFrequency, Curve, distance, dot};
 use super::newton::{Equation, NewtonBuffers, iterate, norm_of};
 use super::{ContactShares, HarmonicSystem, NewtonBounds, NewtonOutcome, Status};
 
@@ -38,20 +37,20 @@ const RESCALING: f64 = 2.0;
 /// the solution from the chord over the length of the chord.
 const LANDING_HALVINGS: usize = 12;
 const LANDING_DEVIATION: f64 = 0.35;
-/// A fold is found at this slope of the parameter over arc length, or once it lies within this length;
+/// A fold is found at this slope of frequency over arc length, or once it lies within this length;
 /// largest number of corrections, two per halving of the largest step to that length.
 const FOLD_SLOPE: f64 = 1e-4;
 const FOLD_WIDTH: f64 = 1e-6;
 const FOLD_CORRECTIONS: usize = 40;
 
 /// Bounds of a continuation. Steps are relative: 1 is a change of the solution by its own norm, or
-/// of the parameter by [`Self::parameter_scale`].
+/// of the frequency by [`Self::frequency_scale`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContinuationBounds {
     /// Bounds of the corrector.
     pub newton: NewtonBounds,
-    /// Change of the parameter that weighs as much as a change of the whole solution.
-    pub parameter_scale: f64,
+    /// Frequency change that weighs as much as a change of the whole solution, rad/s.
+    pub frequency_scale: f64,
     /// First step.
     pub first_step: f64,
     /// Steps below this end the continuation.
@@ -63,16 +62,16 @@ pub struct ContinuationBounds {
 }
 
 impl ContinuationBounds {
-    /// Default bounds for a curve whose parameter scale is given.
+    /// Default bounds for a curve whose frequency scale, rad/s, is given.
     #[must_use]
-    pub fn new(newton: NewtonBounds, parameter_scale: f64) -> Self {
+    pub fn new(newton: NewtonBounds, frequency_scale: f64) -> Self {
         Self {
             newton: NewtonBounds {
                 iterations: 30,
                 halvings: 3,
                 ..newton
             },
-            parameter_scale,
+            frequency_scale,
             first_step: 0.05,
             smallest_step: 1e-6,
             largest_step: 1.0,
@@ -84,8 +83,8 @@ impl ContinuationBounds {
 /// A converged point of the curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathPoint {
-    /// The parameter, see [`Along`].
-    pub parameter: f64,
+    /// Angular frequency, rad/s.
+    pub omega: f64,
     /// Unknowns of the system.
     pub solution: Vec<f64>,
     /// Length of the tangent step that led to it, relative.
@@ -96,12 +95,12 @@ pub struct PathPoint {
     pub shares: ContactShares,
 }
 
-/// A point at which the parameter turns.
+/// A point at which the frequency turns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fold {
     /// The point.
     pub point: PathPoint,
-    /// Whether the parameter is largest there, else smallest.
+    /// Whether the frequency is largest there, else smallest.
     pub largest: bool,
 }
 
@@ -132,9 +131,9 @@ impl Place {
 }
 
 /// A walk along the curve.
-pub struct Continuation {
+pub struct Continuation<'a> {
     bounds: ContinuationBounds,
-    curve: Curve,
+    curve: Curve<'a>,
     buffers: NewtonBuffers,
     here: Place,
     previous: Place,
@@ -144,16 +143,14 @@ pub struct Continuation {
     work: ContinuationWork,
 }
 
-impl Continuation {
-    /// Starts at a solution `x` of the equation at a value of the parameter, towards larger or smaller
-    /// ones.
+impl<'a> Continuation<'a> {
+    /// Starts at a solution `x` of the equation at `omega`, towards larger or smaller frequencies.
     ///
     /// # Errors
     /// `non_finite` or `singular_jacobian` where there is no tangent at the start.
     pub fn new(
-        system: &HarmonicSystem,
-        along: Along,
-        parameter: f64,
+        system: &'a HarmonicSystem,
+        omega: f64,
         x: &[f64],
         rising: bool,
         bounds: ContinuationBounds,
@@ -163,9 +160,9 @@ impl Continuation {
             return Err(Status::NonFinite);
         }
         let n = system.unknowns();
-        let curve = Curve::new(system, along, state_scale, bounds.parameter_scale);
+        let curve = Curve::new(system, state_scale, bounds.frequency_scale);
         let mut u: Vec<f64> = x.iter().map(|x| x / state_scale).collect();
-        u.push(parameter / bounds.parameter_scale);
+        u.push(omega / bounds.frequency_scale);
         let start = Place {
             tangent: curve.border.clone(),
             u,
@@ -217,19 +214,9 @@ impl Continuation {
     /// One step along the curve; the fold that lies in it, if there is one.
     ///
     /// # Errors
-    /// As [`Self::step_on`].
-    pub fn advance(&mut self) -> Result<Option<Fold>, Status> {
-        let turned = self.step_on()?;
-        let before = self.previous.clone();
-        Ok(turned.then(|| self.fold_between(&before, self.taken)))
-    }
-
-    /// One step along the curve; whether the parameter turns in it.
-    ///
-    /// # Errors
     /// `step_too_small` where no corrector converges, `branch_jump` where it does so to another
     /// branch alone, `work_budget` when the correctors are used up.
-    pub fn step_on(&mut self) -> Result<bool, Status> {
+    pub fn advance(&mut self) -> Result<Option<Fold>, Status> {
         self.rescale();
         let before = self.here.clone();
         let mut failure = Status::StepTooSmall;
@@ -261,10 +248,11 @@ impl Continuation {
         self.here = after;
         self.previous = before.clone();
         self.taken = taken;
-        Ok(before.slope() * self.here.slope() < 0.0)
+        let turned = before.slope() * self.here.slope() < 0.0;
+        Ok(turned.then(|| self.fold_between(&before, taken)))
     }
 
-    /// The solution at a value of the parameter, which lies between `from` and `to`: two of the place before the last
+    /// The solution at `omega`, which lies between `from` and `to`: two of the place before the last
     /// step, the fold in it and the place behind it. Where Newton's method from the chord does not
     /// stay by the curve, the stretch is halved.
     ///
@@ -274,12 +262,12 @@ impl Continuation {
         &mut self,
         from: &PathPoint,
         to: &PathPoint,
-        parameter: f64,
+        omega: f64,
     ) -> Result<PathPoint, Status> {
         let (mut from, mut to) = (from.clone(), to.clone());
         let mut failure = Status::StepTooSmall;
         for _ in 0..LANDING_HALVINGS {
-            match self.land_on_chord(&from, &to, parameter) {
+            match self.land_on_chord(&from, &to, omega) {
                 Ok(point) => return Ok(point),
                 Err(status) => failure = status,
             }
@@ -287,7 +275,7 @@ impl Continuation {
             let along = 0.5 * (from.along + to.along);
             let (place, _) = self.corrected(&start, along)?;
             let middle = self.path_point(&place, along);
-            if (middle.parameter < parameter) == (from.parameter < parameter) {
+            if (middle.omega < omega) == (from.omega < omega) {
                 from = middle;
             } else {
                 to = middle;
@@ -300,19 +288,19 @@ impl Continuation {
         &mut self,
         from: &PathPoint,
         to: &PathPoint,
-        parameter: f64,
+        omega: f64,
     ) -> Result<PathPoint, Status> {
-        let share = (parameter - from.parameter) / (to.parameter - from.parameter);
-        let (state, scale) = (self.curve.state_scale, self.curve.parameter_scale);
+        let share = (omega - from.omega) / (to.omega - from.omega);
+        let (state, frequency) = (self.curve.state_scale, self.curve.frequency_scale);
         let mut u: Vec<f64> = from
             .solution
             .iter()
             .zip(&to.solution)
             .map(|(a, b)| (a + share * (b - a)) / state)
             .collect();
-        u.push(parameter / scale);
+        u.push(omega / frequency);
         let chord = u.clone();
-        let mut fixed = AtParameter::new(&mut self.curve);
+        let mut fixed = AtFrequency::new(&mut self.curve);
         let outcome = iterate(&mut fixed, &mut u, self.bounds.newton, &mut self.buffers);
         self.curve.factored = false;
         self.count(outcome);
@@ -322,7 +310,7 @@ impl Continuation {
         let pairs = from.solution.iter().zip(&to.solution);
         let length = pairs
             .map(|(a, b)| ((a - b) / state).powi(2))
-            .chain([((from.parameter - to.parameter) / scale).powi(2)])
+            .chain([((from.omega - to.omega) / frequency).powi(2)])
             .sum::<f64>()
             .sqrt();
         if distance(&u, &chord) > LANDING_DEVIATION * length {
@@ -335,7 +323,7 @@ impl Continuation {
             u,
         };
         Ok(PathPoint {
-            parameter,
+            omega,
             ..self.path_point(&place, from.along + share * (to.along - from.along))
         })
     }
@@ -352,7 +340,7 @@ impl Continuation {
             .zip(&from.tangent)
             .map(|(u, t)| u + step * t)
             .collect();
-        if !self.curve.admits(&predicted) {
+        if predicted[predicted.len() - 1] <= 0.0 {
             return Err(Status::StepTooSmall);
         }
         self.curve.border.copy_from_slice(&from.tangent);
@@ -406,7 +394,7 @@ impl Continuation {
         Ok(tangent)
     }
 
-    /// Where the parameter turns between `before` and the point a step of length `taken` behind
+    /// Where the frequency turns between `before` and the point a step of length `taken` behind
     /// it: the slope is brought to zero by the Illinois form of false position, and by halving where
     /// that is slow, since a sharp fold makes the slope jump. At a kink it has no zero: the bracket
     /// shrinks round the place.
@@ -474,7 +462,7 @@ impl Continuation {
     fn path_point(&self, place: &Place, along: f64) -> PathPoint {
         let n = self.curve.x.len();
         PathPoint {
-            parameter: place.u[n] * self.curve.parameter_scale,
+            omega: place.u[n] * self.curve.frequency_scale,
             solution: place.u[..n]
                 .iter()
                 .map(|u| u * self.curve.state_scale)

@@ -1,9 +1,7 @@
-//! The harmonic balance equation with one parameter as a further unknown, bordered to a square matrix.
-//!
-//! The parameter p is the frequency, or the logarithm of the normal load.
+//! The harmonic balance equation with frequency as a further unknown, bordered to a square matrix.
 //!
 //! ```text
-//! u = (x / X, p / W),    DR = (X dR/dx, W dR/dp),    A = (DR; c^T)
+//! u = (x / X, omega / W),    DR = (X dR/dx, W dR/domega),    A = (DR; c^T)
 //! ```
 //!
 //! relative to the excitation. The kernel of `DR` is that of `A t = (0, 1)`, the shortest step
@@ -12,32 +10,16 @@
 use super::newton::Equation;
 use super::{ContactShares, HarmonicSystem, SystemWorkspace};
 use crate::linalg::LuWorkspace;
-use crate::response::friction::PairParameters;
-
-/// What varies along a curve besides the solution: the parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Along {
-    /// The angular frequency, rad/s.
-    Frequency,
-    /// The natural logarithm of the factor on the normal load of every pair, at one frequency.
-    NormalLoad {
-        /// Angular frequency, rad/s.
-        omega: f64,
-    },
-}
 
 /// `R(u) = 0` with one unknown more than equations; residuals have a zero at the end.
-pub(super) struct Curve {
-    system: HarmonicSystem,
-    along: Along,
-    /// Pairs of a sector where the factor on their normal load is 1.
-    pairs: Vec<PairParameters>,
+pub(super) struct Curve<'a> {
+    system: &'a HarmonicSystem,
     workspace: SystemWorkspace,
     /// Factors of `(DR; c^T)`.
     pub(super) factors: LuWorkspace<f64>,
     pub(super) factored: bool,
     pub(super) state_scale: f64,
-    pub(super) parameter_scale: f64,
+    pub(super) frequency_scale: f64,
     /// The solution without its scale.
     pub(super) x: Vec<f64>,
     /// The border c.
@@ -48,26 +30,19 @@ pub(super) struct Curve {
     pub(super) orientation: f64,
 }
 
-impl Curve {
+impl<'a> Curve<'a> {
     /// The curve of a system in the sizes X and W of the unknowns.
-    pub(super) fn new(
-        system: &HarmonicSystem,
-        along: Along,
-        state_scale: f64,
-        parameter_scale: f64,
-    ) -> Self {
+    pub(super) fn new(system: &'a HarmonicSystem, state_scale: f64, frequency_scale: f64) -> Self {
         let n = system.unknowns();
         let mut border = vec![0.0; n + 1];
         border[n] = 1.0;
         Self {
-            system: system.clone(),
-            along,
-            pairs: system.pairs().to_vec(),
+            system,
             workspace: system.workspace(),
             factors: LuWorkspace::new(n + 1),
             factored: false,
             state_scale,
-            parameter_scale,
+            frequency_scale,
             x: vec![0.0; n],
             border,
             kernel: vec![0.0; n + 1],
@@ -75,52 +50,20 @@ impl Curve {
         }
     }
 
-    /// Whether the parameter has a meaning at `u`.
-    pub(super) fn admits(&self, u: &[f64]) -> bool {
-        match self.along {
-            Along::Frequency => u[u.len() - 1] > 0.0,
-            Along::NormalLoad { .. } => true,
-        }
-    }
-
-    /// Takes the scale off and sets the normal load; returns the frequency.
+    /// Takes the scale off; returns the frequency.
     fn unscale(&mut self, u: &[f64]) -> f64 {
         for (x, u) in self.x.iter_mut().zip(u) {
             *x = self.state_scale * u;
         }
-        let parameter = self.parameter_scale * u[u.len() - 1];
-        match self.along {
-            Along::Frequency => parameter,
-            Along::NormalLoad { omega } => {
-                let factor = parameter.exp();
-                let own = self.system.interface.pairs.iter_mut();
-                for (own, pair) in own.zip(&self.pairs) {
-                    own.normal_load_n = factor * pair.normal_load_n;
-                }
-                omega
-            }
-        }
+        self.frequency_scale * u[u.len() - 1]
     }
 
-    /// Fills `factors` with `(X dR/dx, W dR/dp; c^T)` relative to the excitation; `residual` is that
-    /// of the system at the same place.
-    fn fill_bordered(&mut self, omega: f64, residual: &[f64]) {
+    /// Fills `factors` with `(X dR/dx, W dR/domega; c^T)` relative to the excitation.
+    fn fill_bordered(&mut self, omega: f64) {
         let n = self.x.len();
         let matrix = self.factors.matrix_mut();
-        let (jacobian, last) = matrix.split_at_mut(n * n);
         self.system
-            .jacobian(omega, &mut self.workspace, &mut jacobian[..]);
-        // The last column has its place behind the n - 1 entries by which the others grow.
-        let by_parameter = &mut last[n..2 * n];
-        match self.along {
-            Along::Frequency => self
-                .system
-                .frequency_derivative(omega, &self.x, by_parameter),
-            Along::NormalLoad { .. } => {
-                self.system
-                    .normal_load_derivative(&self.x, residual, jacobian, by_parameter)
-            }
-        }
+            .jacobian(omega, &mut self.workspace, &mut matrix[..n * n]);
         let state = self.state_scale / self.system.force_norm();
         for column in (0..n).rev() {
             matrix.copy_within(column * n..(column + 1) * n, column * (n + 1));
@@ -131,15 +74,17 @@ impl Curve {
             column_entries[n] = self.border[column];
         }
         let last = &mut matrix[n * (n + 1)..];
-        let parameter = self.parameter_scale / self.system.force_norm();
+        self.system
+            .frequency_derivative(omega, &self.x, &mut last[..n]);
+        let frequency = self.frequency_scale / self.system.force_norm();
         for entry in last.iter_mut() {
-            *entry *= parameter;
+            *entry *= frequency;
         }
         last[n] = self.border[n];
     }
 }
 
-impl Equation for Curve {
+impl Equation for Curve<'_> {
     fn residual(&mut self, u: &[f64], residual: &mut [f64]) -> (f64, ContactShares) {
         let n = self.x.len();
         let omega = self.unscale(u);
@@ -167,11 +112,11 @@ impl Equation for Curve {
             true,
             &mut self.workspace,
         );
-        self.fill_bordered(omega, &residual[..n]);
         for r in residual.iter_mut() {
             *r /= self.system.force_norm();
         }
         residual[n] = 0.0;
+        self.fill_bordered(omega);
         self.factored = self.factors.factor();
         if self.factored {
             self.kernel.fill(0.0);
@@ -196,12 +141,12 @@ impl Equation for Curve {
     }
 }
 
-/// The curve with its parameter held: the border is the parameter alone.
-pub(super) struct AtParameter<'a>(&'a mut Curve);
+/// The curve with its frequency held: the border is `omega` alone.
+pub(super) struct AtFrequency<'a, 'b>(&'a mut Curve<'b>);
 
-impl<'a> AtParameter<'a> {
-    /// Holds the parameter from now on; factors of the free curve do not serve.
-    pub(super) fn new(curve: &'a mut Curve) -> Self {
+impl<'a, 'b> AtFrequency<'a, 'b> {
+    /// Holds the frequency from now on; factors of the free curve do not serve.
+    pub(super) fn new(curve: &'a mut Curve<'b>) -> Self {
         let n = curve.x.len();
         curve.border.fill(0.0);
         curve.border[n] = 1.0;
@@ -210,7 +155,7 @@ impl<'a> AtParameter<'a> {
     }
 }
 
-impl Equation for AtParameter<'_> {
+impl Equation for AtFrequency<'_, '_> {
     fn residual(&mut self, u: &[f64], residual: &mut [f64]) -> (f64, ContactShares) {
         self.0.residual(u, residual)
     }
