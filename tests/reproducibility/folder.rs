@@ -61,9 +61,11 @@ pub fn interrupt_in(folder: &Path, study: &Study, rows: i64) {
     assert!(matches!(stopped, Err(PipelineError::Interrupted { .. })));
 }
 
-const FILES: [&str; 5] = [
+const FILES: [&str; 7] = [
     "responses.parquet",
     "scenarios.parquet",
+    "percentiles.parquet",
+    "distribution.parquet",
     "patterns.parquet",
     "manifest.json",
     "summary.txt",
