@@ -114,10 +114,10 @@ array=$(sbatch --parsable --array="${{1:-1-{tasks}}}" --output="$results/slurm/s
 #SBATCH --signal=B:USR1@120
 {time}
 # USR1 comes before the time limit: blisk stores what is solved, and the task queues again.
-# TERM comes with a preemption, after which Slurm queues the task again, or with scancel.
+# TERM may come with scancel or a preemption; after the latter Slurm itself queues the task again.
 again=
-trap 'again=yes; kill -TERM "$solver"' USR1
-trap 'kill -TERM "$solver"' TERM
+trap 'again=yes; kill -TERM "$solver" 2>/dev/null' USR1
+trap 'kill -TERM "$solver" 2>/dev/null' TERM
 "$blisk" run "$study" --out "$results" --shard "$SLURM_ARRAY_TASK_ID/{tasks}" &
 solver=$!
 # A signal ends a wait before its time.

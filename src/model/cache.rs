@@ -90,7 +90,12 @@ pub fn write_cached<T: Serialize>(
         file.sync_all()?;
         std::fs::rename(&partial, &path)
     };
-    write().map_err(failed)
+    write()
+        .inspect_err(|_| {
+            // Nothing more can be done about a leftover than to try to remove it.
+            let _ = std::fs::remove_file(&partial);
+        })
+        .map_err(failed)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 //! machine, lives or it does not.
 
 use std::fs::{File, TryLockError};
-use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -113,7 +113,8 @@ impl FolderLock {
                     std::thread::sleep(PAUSE);
                 }
                 Err(TryLockError::WouldBlock) => return Err(held(read(&path))),
-                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
+                Err(TryLockError::Error(_)) => {
+                    // A file system without locks, or none to be had.
                     if let Some(holder) = read(&path)
                         && !holder.has_ended(&here, process_start)
                     {
@@ -121,7 +122,6 @@ impl FolderLock {
                     }
                     break;
                 }
-                Err(TryLockError::Error(error)) => return Err(io(error).into()),
             }
         }
         let before = read(&path);

@@ -146,11 +146,11 @@ pub(super) fn run_in(
         progress,
     };
     let tables = |facts: Facts| TableWork::new(study, &digest, &patterns, shard, facts);
+    let pool = pool_of(request.threads)?;
     let (outcome, manifest) = if let Some(facts) = job.facts_of_stored_rows() {
         let tables = tables(facts);
-        job.publish(&tables, 0, tables.planned())?
+        pool.install(|| job.publish(&tables, 0, tables.planned()))?
     } else {
-        let pool = pool_of(request.threads)?;
         progress.stage(Stage::Reduce);
         let engine = pool.install(|| source.build(study, &model, Some(model_cache)))?;
         progress.stage(Stage::Tuned);
@@ -167,7 +167,7 @@ pub(super) fn run_in(
                 planned: tables.planned(),
             });
         }
-        job.publish(&tables, rows.solved, rows.reused)?
+        pool.install(|| job.publish(&tables, rows.solved, rows.reused))?
     };
     let rows = RowCounts {
         solved: outcome.rows_solved,

@@ -196,6 +196,10 @@ fn a_living_process_keeps_others_out_and_a_killed_one_is_taken_over() {
             .as_u64()
             .is_some_and(|rows| rows >= 24)
     );
+    // A reader that is broken off leaves nothing behind.
+    let mut reader = start(&place, &["status", "out"]);
+    reader.kill().expect("killed");
+    reader.wait().expect("ended");
     child.kill().expect("killed");
     child.wait().expect("ended");
     let status = place.run(&["status", "out"]);
