@@ -4,8 +4,6 @@ use std::ffi::OsString;
 
 use clap::Parser;
 
-use crate::study::CompareRequest;
-
 use super::{
     Arguments, Command, ExitStatus, check, compare, init, model, output, replay, response, run,
     stats, verify,
@@ -97,24 +95,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             threads,
             json,
         }),
-        Command::Compare {
-            results,
-            baseline,
-            percentile,
-            json,
-        } => {
-            let request = CompareRequest {
-                folders: results,
-                baseline,
-                percent: percentile,
-            };
-            compare::command(&request, json)
-        }
-        Command::Stats {
-            results,
-            tails,
-            json,
-        } => stats::command(&results, tails, json),
+        Command::Compare(arguments) => compare::command(&arguments),
+        Command::Stats(arguments) => stats::command(&arguments),
     };
     match ended {
         Ok(status) => status,
