@@ -4,11 +4,13 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use super::compare::CompareArguments;
 use super::fidelity::FidelityArguments;
 use super::merge::MergeArguments;
 use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
 use super::run::RunArguments;
 use super::slurm::SlurmArguments;
+use super::stats::StatsArguments;
 use super::status::StatusArguments;
 
 /// Forced response of randomly mistuned bladed disks with a friction ring damper.
@@ -160,31 +162,7 @@ pub enum Command {
     /// Within one results folder each scenario is compared with the first of its engine order and
     /// standard deviation; between folders, with the scenario of the first folder that has the same
     /// engine order, standard deviation and load.
-    Compare {
-        /// Results folders; the baseline is in the first.
-        #[arg(required = true, value_name = "DIR")]
-        results: Vec<PathBuf>,
-        /// Scenario of the first folder, counted from 0, that all others are compared with.
-        #[arg(long, value_name = "I")]
-        baseline: Option<usize>,
-        /// The percentile.
-        #[arg(long, value_name = "P", default_value = "95", value_parser = super::compare::percent)]
-        percentile: f64,
-        /// Print JSON.
-        #[arg(long)]
-        json: bool,
-    },
+    Compare(CompareArguments),
     /// Show the statistics of a results folder again, from its tables.
-    Stats {
-        /// The results folder.
-        results: PathBuf,
-        /// Fit Weibull and generalised extreme value laws to the tails, beside the percentiles.
-        ///
-        /// Writes `tail_fits.parquet` into the results folder.
-        #[arg(long)]
-        tails: bool,
-        /// Print JSON.
-        #[arg(long)]
-        json: bool,
-    },
+    Stats(StatsArguments),
 }

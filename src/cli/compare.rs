@@ -1,12 +1,37 @@
 //! `blisk compare`: scenarios against each other, on common patterns where there are any.
 
+use std::path::PathBuf;
+
+use clap::Args;
+
 use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::study::{CompareRequest, compare};
 
-pub(super) fn command(request: &CompareRequest, json: bool) -> Result<ExitStatus, Failure> {
-    let report = compare(request)?;
-    output::result(json, &report);
+/// Arguments of `blisk compare`.
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// Results folders; the baseline is in the first.
+    #[arg(required = true, value_name = "DIR")]
+    results: Vec<PathBuf>,
+    /// Scenario of the first folder, counted from 0, that all others are compared with.
+    #[arg(long, value_name = "I")]
+    baseline: Option<usize>,
+    /// The percentile.
+    #[arg(long, value_name = "P", default_value = "95", value_parser = percent)]
+    percentile: f64,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn command(arguments: &CompareArguments) -> Result<ExitStatus, Failure> {
+    let report = compare(&CompareRequest {
+        folders: arguments.results.clone(),
+        baseline: arguments.baseline,
+        percent: arguments.percentile,
+    })?;
+    output::result(arguments.json, &report);
     Ok(if report.failures_cost_a_comparison() {
         ExitStatus::FailureGate
     } else {
@@ -15,7 +40,7 @@ pub(super) fn command(request: &CompareRequest, json: bool) -> Result<ExitStatus
 }
 
 /// A percentile on the command line: between 0 and 100, both excluded.
-pub(super) fn percent(text: &str) -> Result<f64, String> {
+fn percent(text: &str) -> Result<f64, String> {
     text.parse::<f64>()
         .ok()
         .filter(|percent| *percent > 0.0 && *percent < 100.0)

@@ -5,8 +5,6 @@ use std::io::{self, ErrorKind};
 
 use clap::Parser;
 
-use crate::study::CompareRequest;
-
 use super::{
     Arguments, Command, ExitStatus, check, compare, init, merge, model, output, replay, response,
     run, slurm, stats, status, verify,
@@ -101,24 +99,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             threads,
             json,
         }),
-        Command::Compare {
-            results,
-            baseline,
-            percentile,
-            json,
-        } => {
-            let request = CompareRequest {
-                folders: results,
-                baseline,
-                percent: percentile,
-            };
-            compare::command(&request, json)
-        }
-        Command::Stats {
-            results,
-            tails,
-            json,
-        } => stats::command(&results, tails, json),
+        Command::Compare(arguments) => compare::command(&arguments),
+        Command::Stats(arguments) => stats::command(&arguments),
     };
     match ended {
         Ok(status) => status,

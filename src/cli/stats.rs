@@ -1,6 +1,8 @@
 //! `blisk stats`: the summary of a results folder, from its tables or from what is stored so far.
 
-use std::path::Path;
+use std::path::PathBuf;
+
+use clap::Args;
 
 use serde::Serialize;
 
@@ -9,14 +11,33 @@ use super::{ExitStatus, output};
 use crate::report::{StatisticsReport, StudySummary};
 use crate::study::{PartialSummary, fit_result_tails, summarise, summarise_partly};
 
-pub(super) fn command(results: &Path, tails: bool, json: bool) -> Result<ExitStatus, Failure> {
+/// Arguments of `blisk stats`.
+#[derive(Debug, Args)]
+pub struct StatsArguments {
+    /// The results folder.
+    results: PathBuf,
+    /// Fit Weibull and generalised extreme value laws to the tails, beside the percentiles.
+    ///
+    /// Writes `tail_fits.parquet` into the results folder.
+    #[arg(long)]
+    tails: bool,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn command(arguments: &StatsArguments) -> Result<ExitStatus, Failure> {
+    let results = &arguments.results;
     let Some(partial) = summarise_partly(results)? else {
         let summary = summarise(results)?;
         let report = StatisticsReport {
-            tails: tails.then(|| fit_result_tails(results)).transpose()?,
+            tails: arguments
+                .tails
+                .then(|| fit_result_tails(results))
+                .transpose()?,
             summary,
         };
-        output::result(json, &report);
+        output::result(arguments.json, &report);
         return Ok(status_of(&report.summary));
     };
     let PartialSummary {
@@ -27,7 +48,7 @@ pub(super) fn command(results: &Path, tails: bool, json: bool) -> Result<ExitSta
     let warning = format!(
         "UNFINISHED: these are the statistics of {stored} of {planned} rows; `blisk run` continues the study"
     );
-    if json {
+    if arguments.json {
         output::json_only(&PartialJson {
             unfinished: true,
             rows_stored: *stored,

@@ -29,7 +29,7 @@ impl fmt::Display for StatisticsReport {
         for record in self.tails.iter().flatten() {
             write!(f, "\n{}", heading(record))?;
             let mut table = TextTable::new(&["", "P95", "P99", "P99.9", "P99.99", "fit"]);
-            let empirical = |p: &TailPercentile| shown(&sample(&p.empirical));
+            let empirical = |p: &TailPercentile| shown(sample(&p.empirical).as_ref());
             let mut row = vec!["sample".to_owned()];
             row.extend(record.fits[0].percentiles.iter().map(empirical));
             table.row(row);
@@ -83,7 +83,7 @@ fn law_row(fit: &TailFit) -> Vec<String> {
         let marks = [(p.outside_interval, "*"), (p.extrapolates, "+")];
         let marks = marks.iter().filter(|mark| mark.0 && p.model.is_some());
         let marks: String = marks.map(|mark| mark.1).collect();
-        format!("{}{marks}", shown(&p.model))
+        format!("{}{marks}", shown(p.model.as_ref()))
     }));
     row.push(verdict(fit));
     row
@@ -110,9 +110,9 @@ fn verdict(fit: &TailFit) -> String {
 }
 
 /// Four significant digits, in the unit of the table.
-fn shown(estimate: &Option<Estimate>) -> String {
+fn shown(estimate: Option<&Estimate>) -> String {
     let bound = |bound: Option<f64>| bound.map_or_else(|| "-".to_owned(), digits);
-    estimate.as_ref().map_or_else(
+    estimate.map_or_else(
         || "-".to_owned(),
         |found| {
             let (lower, upper) = (bound(found.lower), bound(found.upper));

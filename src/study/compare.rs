@@ -37,6 +37,9 @@ pub struct CompareRequest {
 /// A scenario by folder and index.
 type Place = (usize, usize);
 
+/// Baselines and candidates.
+type Pairs = Vec<(Place, Place)>;
+
 /// Compares as `request` says.
 ///
 /// # Errors
@@ -89,10 +92,7 @@ struct Comparison<'a> {
 
 impl Comparison<'_> {
     /// Pairs of baseline and candidate, and candidates without baseline.
-    fn pairs(
-        &self,
-        baseline: Option<usize>,
-    ) -> Result<(Vec<(Place, Place)>, Vec<Place>), PipelineError> {
+    fn pairs(&self, baseline: Option<usize>) -> Result<(Pairs, Vec<Place>), PipelineError> {
         let first = &self.folders[0];
         if let Some(index) = baseline.filter(|&index| index >= first.scenarios.len()) {
             return Err(PipelineError::NoScenario {
@@ -100,7 +100,7 @@ impl Comparison<'_> {
                 scenarios: first.scenarios.len(),
             });
         }
-        let (mut pairs, mut unmatched) = (Vec::new(), Vec::new());
+        let (mut pairs, mut unmatched) = (Pairs::new(), Vec::new());
         for (folder, columns) in self.folders.iter().enumerate() {
             for (index, candidate) in columns.scenarios.iter().enumerate() {
                 let of_candidate = match baseline {

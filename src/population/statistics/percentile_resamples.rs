@@ -2,7 +2,7 @@
 //!
 //! A resample draws patterns with replacement and takes the rows of all quantities along, so that what
 //! they share stays shared. Of a resample the percentile is a weighted mean of neighbouring order
-//! statistics (Harrell & Davis 1982, with their window 1.75 times as wide and cut off at 2.5 of its
+//! statistics (Harrell & Davis 1982, with their window twice as wide and cut off at 2.5 of its
 //! standard deviations): with the single order statistic the intervals of differences are far too wide
 //! where quantities are correlated (a test of size 5 % has 2 %), with this window they are not. Where
 //! rows failed it is the single order statistic all the same, whose bounds stay finite.
@@ -16,7 +16,7 @@ use super::point_rank;
 use super::resampling::resampling_stream;
 
 /// Width of the window over that of Harrell and Davis.
-const WIDENING: f64 = 1.75;
+const WIDENING: f64 = 2.0;
 
 /// Standard deviations of the window at which it is cut off.
 const CUT_OFF: f64 = 2.5;
