@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction};
+use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction, ReductionOptions};
 use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{
     ContactCondition, Excited, FrequencyBand, Harmonics, LimitsWanted, Peak, PointSettings, Wheel,
@@ -11,7 +11,7 @@ use blisk::response::forced_response::{
 };
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{ContactInterface, HarmonicSystem, HarmonicTransform};
-use blisk::response::mistuning::{Deviations, Pattern, StructuralModes};
+use blisk::response::mistuning::{ContactFactors, Deviations, Pattern, StructuralModes};
 use blisk::study::{Study, load_sector_model, pattern_source};
 
 /// A reduced study and its first patterns.
@@ -52,8 +52,9 @@ impl Case {
                 stick: stick.unwrap_or(4),
             },
         };
-        let reduction = Reduction::new(&model, stiffness, study.reduction.craig_bampton_modes, 0)
-            .expect("reduced");
+        let modes = study.reduction.craig_bampton_modes;
+        let modes = modes.unwrap_or(ReductionOptions::FIRST_CRAIG_BAMPTON_MODES);
+        let reduction = Reduction::new(&model, stiffness, modes, 0).expect("reduced");
         let reduced = Arc::new(reduction.reduce(choice, None).expect("reduced"));
         let harmonics = match &study.solver.harmonics {
             Harmonics::Auto => vec![1, 3],
@@ -69,7 +70,7 @@ impl Case {
             projection: study.mistuning.projection,
             solver: study.solver.clone(),
         };
-        let source = pattern_source(&study, model.sectors).expect("patterns");
+        let source = pattern_source(&study, &model).expect("patterns");
         let deviation = study.standard_deviations[0];
         let patterns = source
             .ids()
@@ -101,7 +102,13 @@ impl Case {
             slide: true,
             free: false,
         };
-        let wheel = Wheel::mistuned(modes, basis.model(), self.study.damping, wanted);
+        let wheel = Wheel::mistuned(
+            modes,
+            basis.model(),
+            &ContactFactors::default(),
+            self.study.damping,
+            wanted,
+        );
         Excited::wheel(&wheel, force, &self.harmonics)
     }
 
@@ -114,6 +121,7 @@ impl Case {
         let model = self.solver.basis().model();
         let tuned = Excited::tuned(
             model,
+            &ContactFactors::default(),
             self.engine_order(),
             self.study.amplitude_n,
             self.study.damping,

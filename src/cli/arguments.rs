@@ -4,14 +4,20 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use super::compare::CompareArguments;
 use super::fidelity::FidelityArguments;
+use super::merge::MergeArguments;
 use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
+use super::run::RunArguments;
+use super::slurm::SlurmArguments;
+use super::stats::StatsArguments;
+use super::status::StatusArguments;
 
 /// Forced response of randomly mistuned bladed disks with a friction ring damper.
 #[derive(Debug, Parser)]
 #[command(name = "blisk", version, about, disable_help_subcommand = true)]
 #[command(
-    after_help = "Exit codes: 0 done, 1 internal error, 2 usage, 3 study invalid, 4 model invalid,\n5 failures leave a statistic without a value, 7 input/output, 8 store damaged,\n9 different study, 10 locked by another process,\n11 a verification failed."
+    after_help = "Exit codes: 0 done, 1 internal error, 2 usage, 3 study invalid, 4 model invalid,\n5 failures leave a statistic without a value, 7 input/output, 8 store damaged,\n9 different study, 10 locked by another process,\n11 a verification failed, 130/143 interrupted, what is solved is stored."
 )]
 pub struct Arguments {
     /// What to do.
@@ -48,19 +54,13 @@ pub enum Command {
         json: bool,
     },
     /// Solve a study, or continue it; a finished study is shown, not solved again.
-    Run {
-        /// The study file.
-        study: PathBuf,
-        /// The results folder [default: results/NAME].
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-        /// Number of threads [default: all cores]; results do not depend on it.
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-        threads: Option<u16>,
-        /// Print the summary as JSON.
-        #[arg(long)]
-        json: bool,
-    },
+    Run(RunArguments),
+    /// Join the shards of a study to its results.
+    Merge(MergeArguments),
+    /// Write a script that submits a study to Slurm as an array of shards and a merge after it.
+    Slurm(SlurmArguments),
+    /// Show how far a results folder is, without touching it.
+    Status(StatusArguments),
     /// Amplitude of every blade over frequency, for one pattern and one contact condition.
     Response {
         /// The study file.
@@ -143,22 +143,26 @@ pub enum Command {
         /// Pattern of that row.
         #[arg(long, value_name = "ID", requires_all = ["time_domain", "scenario"])]
         pattern: Option<u32>,
+        /// Set damaged files aside, into `damaged/`, and solve again what they held; draws no rows.
+        #[arg(long, conflicts_with_all = ["dense_sweep", "time_domain"])]
+        repair: bool,
         /// Where the inputs lie now: beside this study file [default: that of the last run].
         #[arg(long, value_name = "FILE")]
         study: Option<PathBuf>,
-        /// Number of threads [default: all cores]; results do not depend on it.
+        /// Number of threads [default: those of the scheduler's allocation, else all cores]; results
+        /// do not depend on it.
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
         threads: Option<u16>,
         /// Print JSON.
         #[arg(long)]
         json: bool,
     },
+    /// Compare a percentile between scenarios, on common patterns where there are any.
+    ///
+    /// Within one results folder each scenario is compared with the first of its engine order and
+    /// standard deviation; between folders, with the scenario of the first folder that has the same
+    /// engine order, standard deviation and load.
+    Compare(CompareArguments),
     /// Show the statistics of a results folder again, from its tables.
-    Stats {
-        /// The results folder.
-        results: PathBuf,
-        /// Print JSON.
-        #[arg(long)]
-        json: bool,
-    },
+    Stats(StatsArguments),
 }

@@ -11,7 +11,7 @@ use crate::study::{Study, StudyDigest, load_sector_model, pattern_source};
 pub(super) fn command(study: &Path, json: bool) -> Result<ExitStatus, Failure> {
     let study = Study::read(study)?;
     let model = load_sector_model(&study)?;
-    pattern_source(&study, model.sectors)?;
+    pattern_source(&study, &model)?;
     let digest = StudyDigest::of(&study)?;
     let scenarios = study.scenarios().len();
     if json {

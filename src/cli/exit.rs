@@ -33,6 +33,10 @@ pub enum ExitStatus {
     Locked = 10,
     /// A comparison or verification failed.
     VerificationFailed = 11,
+    /// Interrupted from the keyboard; what was solved is stored.
+    Interrupted = 130,
+    /// Asked to end by the system or a scheduler; what was solved is stored.
+    Terminated = 143,
 }
 
 impl From<ExitStatus> for ExitCode {
@@ -52,13 +56,16 @@ impl From<&PipelineError> for ExitStatus {
             PipelineError::Cache(_) => Self::InputOutput,
             PipelineError::Harmonics(_) => Self::StudyInvalid,
             PipelineError::Table(error) => error.into(),
-            PipelineError::DifferentStudy { .. } | PipelineError::InputsChanged { .. } => {
-                Self::DifferentStudy
-            }
+            PipelineError::DifferentStudy { .. }
+            | PipelineError::DifferentShards { .. }
+            | PipelineError::InputsChanged { .. } => Self::DifferentStudy,
+            PipelineError::Interrupted { .. } => Self::Interrupted,
             PipelineError::Locked { .. } => Self::Locked,
             PipelineError::Unfinished { .. }
+            | PipelineError::Shards { .. }
             | PipelineError::NoPattern { .. }
             | PipelineError::NoRow { .. }
+            | PipelineError::NoScenario { .. }
             | PipelineError::NoTimeDomain { .. }
             | PipelineError::NoContact { .. } => Self::Usage,
             PipelineError::Threads { .. } => Self::InternalError,

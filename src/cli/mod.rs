@@ -2,16 +2,22 @@
 
 mod arguments;
 mod check;
+mod compare;
 mod exit;
 mod fidelity;
 mod init;
+mod interrupt;
+mod merge;
 mod model;
 mod output;
 mod progress;
 mod replay;
 mod response;
 mod run;
+mod scheduler;
+mod slurm;
 mod stats;
+mod status;
 mod verify;
 
 pub use arguments::{Arguments, Command};

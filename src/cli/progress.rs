@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::interrupt::Signals;
 use super::output;
 use crate::response::harmonic_balance::Status;
 use crate::study::{Progress, Stage};
@@ -19,6 +20,7 @@ pub(super) struct RunProgress {
     bar: Option<ProgressBar>,
     failed: AtomicU64,
     plain: Mutex<Plain>,
+    signals: Option<&'static Signals>,
 }
 
 /// State of the plain lines.
@@ -43,6 +45,15 @@ impl RunProgress {
                 reused: 0,
                 solved: 0,
             }),
+            signals: None,
+        }
+    }
+
+    /// The same for a run that stops when one of `signals` comes.
+    pub(super) fn stopped_by(self, signals: &'static Signals) -> Self {
+        Self {
+            signals: Some(signals),
+            ..self
         }
     }
 
@@ -102,6 +113,21 @@ impl Progress for RunProgress {
             plain.began = Instant::now();
             plain.planned = planned;
             plain.reused = done;
+        }
+    }
+
+    fn taken_over(&self, holder: &str) {
+        output::message(&format!("taken over from {holder}, which was broken off"));
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.signals.is_some_and(|signals| signals.came().is_some())
+    }
+
+    fn saved(&self) {
+        if let Some(signals) = self.signals {
+            self.finish();
+            signals.leave_if_asked();
         }
     }
 

@@ -1,40 +1,70 @@
-//! `blisk run`: solves a study or continues it.
+//! `blisk run`: solves a study or continues it, or one shard of it.
 
-use std::num::NonZero;
 use std::path::{Path, PathBuf};
+
+use clap::Args;
 
 use super::progress::RunProgress;
 use super::run_command::Failure;
-use super::{ExitStatus, output};
-use crate::study::{ReducedEngineSource, RunRequest, Study, run};
+use super::scheduler::{ShardArgument, threads};
+use super::{ExitStatus, interrupt, output};
+use crate::study::{PipelineError, ReducedEngineSource, RunRequest, Study, run, run_shard};
 
-pub(super) fn command(
-    study: &Path,
-    out: Option<PathBuf>,
-    threads: Option<u16>,
-    json: bool,
-) -> Result<ExitStatus, Failure> {
-    let study = Study::read(study)?;
+/// Arguments of the command.
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    /// The study file.
+    pub study: PathBuf,
+    /// The results folder [default: results/NAME].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of threads [default: those of the scheduler's allocation, else all cores]; results
+    /// do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Only share k of n of the patterns, into a folder of its own below the results folder;
+    /// without a value the share is that of a task of a Slurm, PBS, LSF, Grid Engine or
+    /// Kubernetes array.
+    #[arg(long, value_name = "k/n|auto", num_args = 0..=1, default_missing_value = "auto")]
+    pub shard: Option<ShardArgument>,
+    /// Print the summary as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+pub(super) fn command(arguments: RunArguments) -> Result<ExitStatus, Failure> {
+    let study = Study::read(&arguments.study)?;
+    let shard = arguments.shard.map(ShardArgument::shard).transpose()?;
+    let out = arguments.out;
     let results = out.unwrap_or_else(|| Path::new("results").join(&study.name));
-    let threads = threads.map_or_else(
-        || std::thread::available_parallelism().map_or(1, NonZero::get),
-        usize::from,
-    );
-    let progress = RunProgress::new();
-    let outcome = run(
-        RunRequest {
-            study: &study,
-            results: &results,
-            threads,
-        },
-        &ReducedEngineSource,
-        &progress,
-    );
+    let signals = interrupt::watch().map_err(|error| Failure {
+        status: ExitStatus::InternalError,
+        message: format!("cannot watch for signals: {error}"),
+    })?;
+    let progress = RunProgress::new().stopped_by(signals);
+    let request = RunRequest {
+        study: &study,
+        results: &results,
+        threads: threads(arguments.threads),
+    };
+    let outcome = match shard {
+        None => run(request, &ReducedEngineSource, &progress),
+        Some(shard) => run_shard(request, shard, &ReducedEngineSource, &progress),
+    };
     progress.finish();
-    let outcome = outcome?;
+    let outcome = match outcome {
+        Err(error @ PipelineError::Interrupted { .. }) => {
+            return Err(Failure {
+                status: signals.came().unwrap_or(ExitStatus::Interrupted),
+                message: error.to_string(),
+            });
+        }
+        outcome => outcome?,
+    };
+    let what = shard.map_or_else(String::new, |shard| format!("shard {shard} of "));
     if outcome.rows_solved == 0 {
         output::message(&format!(
-            "{} is complete, nothing to solve",
+            "{what}{} is complete, nothing to solve",
             results.display()
         ));
     } else {
@@ -45,6 +75,10 @@ pub(super) fn command(
             results.display()
         ));
     }
-    output::result(json, &outcome.summary);
+    if shard.is_some() {
+        // Statistics are those of the whole, once it is merged.
+        return Ok(ExitStatus::Done);
+    }
+    output::result(arguments.json, &outcome.summary);
     Ok(super::stats::status_of(&outcome.summary))
 }

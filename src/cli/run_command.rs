@@ -1,12 +1,13 @@
 //! From the command line to an exit code.
 
 use std::ffi::OsString;
+use std::io::{self, ErrorKind};
 
 use clap::Parser;
 
 use super::{
-    Arguments, Command, ExitStatus, check, init, model, output, replay, response, run, stats,
-    verify,
+    Arguments, Command, ExitStatus, check, compare, init, merge, model, output, replay, response,
+    run, slurm, stats, status, verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).
@@ -31,12 +32,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             export,
             json,
         } => model::command(&study, export.as_deref(), json),
-        Command::Run {
-            study,
-            out,
-            threads,
-            json,
-        } => run::command(&study, out, threads, json),
+        Command::Run(arguments) => run::command(arguments),
+        Command::Merge(arguments) => merge::command(&arguments),
+        Command::Slurm(arguments) => slurm::command(&arguments),
+        Command::Status(arguments) => status::command(&arguments),
         Command::Response {
             study,
             pattern,
@@ -83,6 +82,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             time_domain,
             scenario,
             pattern,
+            repair,
             study,
             threads,
             json,
@@ -90,12 +90,17 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             target,
             sample,
             seed,
-            question: verify::Question::of(dense_sweep, time_domain, scenario.zip(pattern)),
+            question: if repair {
+                verify::Question::Files
+            } else {
+                verify::Question::of(dense_sweep, time_domain, scenario.zip(pattern))
+            },
             study,
             threads,
             json,
         }),
-        Command::Stats { results, json } => stats::command(&results, json),
+        Command::Compare(arguments) => compare::command(&arguments),
+        Command::Stats(arguments) => stats::command(&arguments),
     };
     match ended {
         Ok(status) => status,
@@ -124,13 +129,50 @@ impl Failure {
 
 impl<E> From<E> for Failure
 where
-    E: std::error::Error,
+    E: std::error::Error + 'static,
     for<'a> ExitStatus: From<&'a E>,
 {
     fn from(error: E) -> Self {
+        let status = ExitStatus::from(&error);
+        let remedy = match status {
+            ExitStatus::InputOutput => remedy(&error),
+            _ => "",
+        };
         Self {
-            status: ExitStatus::from(&error),
-            message: error.to_string(),
+            status,
+            message: format!("{error}{remedy}"),
         }
+    }
+}
+
+/// What can be done about an error of the file system, as the end of a sentence.
+fn remedy(error: &(dyn std::error::Error + 'static)) -> &'static str {
+    let mut cause = Some(error);
+    let kind = loop {
+        match cause {
+            None => return "",
+            Some(error) => {
+                if let Some(error) = error.downcast_ref::<io::Error>() {
+                    break error.kind();
+                }
+                cause = error.source();
+            }
+        }
+    };
+    match kind {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            "; free some space, or choose another --out, and run again: what is stored stays stored"
+        }
+        ErrorKind::PermissionDenied => {
+            "; grant this user access to it, or choose another --out, and run again"
+        }
+        ErrorKind::ReadOnlyFilesystem => {
+            "; make the file system writable, or choose another --out, and run again"
+        }
+        ErrorKind::NotFound
+        | ErrorKind::NotADirectory
+        | ErrorKind::IsADirectory
+        | ErrorKind::AlreadyExists => "; check the path",
+        _ => "; check the disk and run again: what is stored stays stored",
     }
 }

@@ -1,17 +1,18 @@
 //! `blisk verify`: a random sample of delivered rows solved again.
 
 use std::fmt::Display;
-use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use serde_json::json;
 
 use super::progress::RunProgress;
 use super::run_command::Failure;
-use super::{ExitStatus, output};
+use super::scheduler::threads;
+use super::{ExitStatus, interrupt, output};
 use crate::study::{
-    ReducedEngineSource, StoredStudy, Study, TimeDomainRequest, VerifyRequest, audit_peaks, verify,
-    verify_in_time,
+    PipelineError, ReducedEngineSource, Repair, StoredStudy, Study, TimeDomainRequest,
+    VerifyRequest, audit_peaks, repair, verify, verify_in_time,
 };
 
 /// Arguments of the command.
@@ -35,6 +36,8 @@ pub(super) enum Question {
     DenseSweep,
     /// The same in time? Of one row, by scenario and pattern, or the first of the sample.
     TimeDomain(Option<(usize, u32)>),
+    /// None: are the files as they were written? Damaged ones are set aside and solved again.
+    Files,
 }
 
 impl Question {
@@ -49,18 +52,16 @@ impl Question {
 }
 
 pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure> {
-    let stored = stored(&arguments.target, arguments.study.as_deref())?;
+    let stored = || stored(&arguments.target, arguments.study.as_deref());
     let request = VerifyRequest {
         sample: arguments.sample as usize,
         seed: arguments.seed,
-        threads: arguments.threads.map_or_else(
-            || std::thread::available_parallelism().map_or(1, NonZero::get),
-            usize::from,
-        ),
+        threads: threads(arguments.threads),
     };
     let progress = RunProgress::new();
     match arguments.question {
         Question::FullModel => {
+            let stored = stored()?;
             let report = verify(&stored, &ReducedEngineSource, request, &progress);
             progress.finish();
             let report = report?;
@@ -68,6 +69,7 @@ pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure
             Ok(finish(arguments, &report, report.verified))
         }
         Question::DenseSweep => {
+            let stored = stored()?;
             let report = audit_peaks(&stored, &ReducedEngineSource, request, &progress);
             progress.finish();
             let report = report?;
@@ -79,12 +81,93 @@ pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure
                 row,
                 sample: request,
             };
-            let report = verify_in_time(&stored, &ReducedEngineSource, request, &progress);
+            let report = verify_in_time(&stored()?, &ReducedEngineSource, request, &progress);
             progress.finish();
             let report = report?;
             Ok(finish(arguments, &report, report.verified))
         }
+        Question::Files => repaired(arguments),
     }
+}
+
+/// Sets damaged files aside and solves again what they held.
+fn repaired(arguments: &VerifyArguments) -> Result<ExitStatus, Failure> {
+    let (results, study) = if arguments.target.is_dir() {
+        (arguments.target.clone(), arguments.study.clone())
+    } else {
+        let name = Study::read(&arguments.target)?.name;
+        let file = Some(arguments.target.clone());
+        (Path::new("results").join(name), file)
+    };
+    let signals = interrupt::watch().map_err(|error| Failure {
+        status: ExitStatus::InternalError,
+        message: format!("cannot watch for signals: {error}"),
+    })?;
+    let progress = RunProgress::new().stopped_by(signals);
+    let repaired = repair(
+        &results,
+        study.as_deref(),
+        threads(arguments.threads),
+        &ReducedEngineSource,
+        &progress,
+    );
+    progress.finish();
+    let repaired = match repaired {
+        Err(error @ PipelineError::Interrupted { .. }) => {
+            return Err(Failure {
+                status: signals.came().unwrap_or(ExitStatus::Interrupted),
+                message: error.to_string(),
+            });
+        }
+        other => other?,
+    };
+    let words = in_words(&repaired, &results);
+    if arguments.json {
+        output::json_only(&json!({
+            "set_aside": repaired.set_aside.iter().map(|(from, to)| json!({ "file": from, "now": to })).collect::<Vec<_>>(),
+            "missing": repaired.missing,
+            "rows_solved": repaired.outcome.as_ref().map(|outcome| outcome.rows_solved),
+            "rows_reused": repaired.outcome.as_ref().map(|outcome| outcome.rows_reused),
+            "different": repaired.different,
+        }));
+    } else {
+        output::text(&words.join("\n"));
+    }
+    Ok(if repaired.different.is_empty() {
+        ExitStatus::Done
+    } else {
+        ExitStatus::VerificationFailed
+    })
+}
+
+/// What a repair came to, a line each.
+fn in_words(repaired: &Repair, results: &Path) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for (from, to) in &repaired.set_aside {
+        lines.push(format!(
+            "{} was damaged; it is now {}",
+            from.display(),
+            to.display()
+        ));
+    }
+    for path in &repaired.missing {
+        lines.push(format!("{} was missing", path.display()));
+    }
+    lines.push(match &repaired.outcome {
+        None if lines.is_empty() => format!("{}: no file is damaged", results.display()),
+        None => "`blisk run` solves its rows again, with the others that are missing".to_owned(),
+        Some(outcome) if repaired.different.is_empty() => format!(
+            "solved {} rows again, reused {}; every table is the same bytes as before",
+            outcome.rows_solved, outcome.rows_reused
+        ),
+        Some(outcome) => format!(
+            "solved {} rows again, reused {}; NOT the same as before: {}",
+            outcome.rows_solved,
+            outcome.rows_reused,
+            repaired.different.join(", ")
+        ),
+    });
+    lines
 }
 
 /// Names the table that was written.

@@ -8,6 +8,7 @@ use faer::linalg::evd::{
 };
 use faer::{Auto, Par, Side, Spec};
 
+use super::Complex64;
 use super::matrix::{Matrix, Scalar};
 
 /// The mass matrix of a pencil is not positive definite, or a decomposition broke down on
@@ -161,10 +162,22 @@ pub fn orthonormal_basis<T: Scalar>(
     })
 }
 
+/// Eigenvalues of a real square matrix, the largest modulus first; none for one with values that are
+/// not finite.
+#[must_use]
+pub fn eigenvalues(a: &Matrix<f64>) -> Vec<Complex64> {
+    sequential();
+    if !a.as_slice().iter().all(|x| x.is_finite()) {
+        return Vec::new();
+    }
+    let mut values: Vec<Complex64> = a.view().eigenvalues().unwrap_or_default();
+    values.sort_by(|a, b| b.norm().total_cmp(&a.norm()).then(b.im.total_cmp(&a.im)));
+    values
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::Complex64;
 
     fn sample(n: usize) -> (Matrix<Complex64>, Matrix<Complex64>) {
         let raw = Matrix::from_fn(n, n, |i, j| {

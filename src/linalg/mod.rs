@@ -7,7 +7,8 @@ mod sparse;
 mod symmetric_sparse;
 
 pub use dense::{
-    NotPositiveDefinite, OrthonormalBasis, hermitian_eigen, hermitian_pencil, orthonormal_basis,
+    NotPositiveDefinite, OrthonormalBasis, eigenvalues, hermitian_eigen, hermitian_pencil,
+    orthonormal_basis,
 };
 pub use lu::LuWorkspace;
 pub use matrix::{

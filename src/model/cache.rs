@@ -10,7 +10,7 @@ use thiserror::Error;
 use super::sector::SectorModel;
 
 /// Layout and meaning of the stored bytes; part of every digest, so that an older file is never misread.
-const LAYOUT: u32 = 3;
+const LAYOUT: u32 = 4;
 
 /// A cache that cannot be written. An unreadable entry is no error: it is made anew.
 #[derive(Debug, Error)]
@@ -90,7 +90,12 @@ pub fn write_cached<T: Serialize>(
         file.sync_all()?;
         std::fs::rename(&partial, &path)
     };
-    write().map_err(failed)
+    write()
+        .inspect_err(|_| {
+            // Nothing more can be done about a leftover than to try to remove it.
+            let _ = std::fs::remove_file(&partial);
+        })
+        .map_err(failed)
 }
 
 #[cfg(test)]

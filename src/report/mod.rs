@@ -1,17 +1,25 @@
 //! The numbers of a report as one struct, warnings with advice, and the summary as text.
 
+mod comparison;
+mod comparison_text;
 mod model_report;
 mod peak_audit;
 mod summary;
 mod summary_text;
+mod tail_report;
 mod text_table;
 mod time_domain;
 mod verification;
 mod warning;
 
+pub use comparison::{
+    BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet, QuantityComparison,
+    ScenarioComparison,
+};
 pub use model_report::{ModelReport, NodalDiameterFacts};
 pub use peak_audit::PeakAuditReport;
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
+pub use tail_report::StatisticsReport;
 pub use time_domain::{StepReport, TimeDomainReport};
 pub use verification::{ErrorDistribution, RegimeErrors, VerificationContext, VerificationReport};
 pub use warning::Warning;

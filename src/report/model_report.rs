@@ -48,6 +48,11 @@ pub struct ModelReport {
     pub error: Option<f64>,
     /// Error of the relative displacement at the contact, under friction.
     pub contact_displacement: Option<ContactDisplacementErrors>,
+    /// Fixed-interface modes of the Craig-Bampton model, per nodal diameter.
+    pub craig_bampton_modes: usize,
+    /// Largest relative change of a tuned peak by more fixed-interface modes; zero where none is left
+    /// out, none where no tuned peak was found.
+    pub craig_bampton_error: Option<f64>,
     /// Highest fixed-interface frequency over what it should be, 1 is enough; none where no mode
     /// is left out.
     pub craig_bampton_reach: Option<f64>,
@@ -92,10 +97,18 @@ impl fmt::Display for ModelReport {
             )?;
         }
         if let Some(reach) = self.craig_bampton_reach {
-            writeln!(
+            write!(
                 f,
-                "fixed-interface modes reach {reach:.1} times the frequency needed"
+                "{} fixed-interface modes reach {reach:.1} times the frequency needed",
+                self.craig_bampton_modes
             )?;
+            match self.craig_bampton_error {
+                Some(error) => {
+                    let percent = 100.0 * error;
+                    writeln!(f, "; more change the tuned peak by {percent:.2} %")?;
+                }
+                None => writeln!(f)?,
+            }
         }
         for warning in &self.warnings {
             writeln!(f, "warning: {warning}")?;

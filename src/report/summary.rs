@@ -41,6 +41,9 @@ pub struct BasisSummary {
     pub contact_displacement_error: Option<f64>,
     /// Highest fixed-interface frequency over what it should be; 1 is enough.
     pub craig_bampton_reach: Option<f64>,
+    /// Largest relative change of a tuned peak by more fixed-interface modes than the study asks for;
+    /// none where the program chooses their number.
+    pub craig_bampton_error: Option<f64>,
     /// Error that the study asks for.
     pub wanted_error: f64,
 }
@@ -70,7 +73,18 @@ impl BasisSummary {
             .craig_bampton_reach
             .filter(|&reach| reach < 1.0)
             .map(|reach| Warning::CraigBamptonModes { reach });
-        peak.into_iter().chain(contact).chain(modes).collect()
+        let truncation = self
+            .craig_bampton_error
+            .filter(|&error| error > self.wanted_error)
+            .map(|error| Warning::CraigBamptonError {
+                error,
+                wanted: self.wanted_error,
+            });
+        peak.into_iter()
+            .chain(contact)
+            .chain(modes)
+            .chain(truncation)
+            .collect()
     }
 }
 

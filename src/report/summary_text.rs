@@ -189,8 +189,9 @@ fn best_line(best: &BestLoad, unit: Unit) -> String {
     )
 }
 
-fn load(contact: &str, normal_load_n: Option<f64>) -> String {
-    normal_load_n.map_or_else(|| contact.to_owned(), trimmed)
+pub(super) fn load(contact: &str, normal_load_n: Option<f64>) -> String {
+    // As written in the study.
+    normal_load_n.map_or_else(|| contact.to_owned(), |load| load.to_string())
 }
 
 fn share(fraction: Option<f64>) -> String {
@@ -213,14 +214,14 @@ fn unit_of(scenarios: &[ScenarioSummary]) -> Unit {
 }
 
 /// `value` with four significant digits, or as a whole number.
-fn four_digits(value: f64) -> String {
+pub(super) fn four_digits(value: f64) -> String {
     let before_point = value.abs().max(1e-9).log10().floor() as i32;
     let decimals = (3 - before_point).clamp(0, 9) as usize;
     format!("{value:.decimals$}")
 }
 
 /// `value` with at most six decimals and no trailing zeros.
-fn trimmed(value: f64) -> String {
+pub(super) fn trimmed(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::text_table::TextTable;
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;
-use crate::response::time_integration::PointComparison;
+use crate::response::time_integration::{PeriodicMotion, PointComparison, Stability};
 
 /// Difference of a blade's amplitude that is accepted besides the stated error of the row, relative
 /// to the largest amplitude.
@@ -70,6 +70,11 @@ pub struct TimeDomainReport {
     pub accepted_difference: f64,
     /// Whether the motion repeats itself.
     pub periodic: bool,
+    /// Whether the wheel stays on the motion of harmonic balance; none where nothing was marched.
+    pub stability: Option<Stability>,
+    /// Largest modulus of a Floquet multiplier, where the march is not periodic and the multipliers
+    /// were looked for.
+    pub largest_floquet_multiplier: Option<f64>,
     /// Periods marched, all step sizes.
     pub periods: usize,
     /// Change of the blades' displacements over the last period, relative to the largest.
@@ -138,6 +143,10 @@ impl TimeDomainReport {
             stated_error: row.stated_error,
             accepted_difference,
             periodic: settled.is_some_and(|settled| settled.status == Status::Ok),
+            stability: compared.map(PointComparison::stability),
+            largest_floquet_multiplier: compared
+                .and_then(|found| found.motion.as_ref())
+                .and_then(PeriodicMotion::largest_multiplier),
             periods: steps.iter().map(|step| step.periods).sum(),
             blade_change_per_period: settled.and_then(|settled| finite(settled.blade_change)),
             force_change_per_period: settled.and_then(|settled| finite(settled.force_change)),
@@ -217,13 +226,19 @@ impl fmt::Display for TimeDomainReport {
             short(self.creep_per_period_m, " m"),
             short(self.drift, "")
         )?;
+        let multiplier = self
+            .largest_floquet_multiplier
+            .map_or_else(String::new, |size| {
+                format!(", largest Floquet multiplier {size:.4}")
+            });
         writeln!(
             f,
-            "{} ({}): {}",
-            if self.periodic {
-                "periodic"
-            } else {
-                "NOT periodic"
+            "{}{multiplier} ({}): {}",
+            match self.stability {
+                Some(Stability::Stable) => "stable",
+                Some(Stability::Unstable) => "UNSTABLE",
+                Some(Stability::NotSettled) => "NOT settled",
+                None => "not marched",
             },
             self.status.name(),
             if self.verified {

@@ -47,6 +47,13 @@ pub enum Warning {
         /// Highest fixed-interface frequency over what it should be.
         reach: f64,
     },
+    /// More fixed-interface modes change the tuned peak.
+    CraigBamptonError {
+        /// Measured relative change.
+        error: f64,
+        /// Error asked for.
+        wanted: f64,
+    },
     /// Rows without result.
     Failures {
         /// Rows that failed.
@@ -128,6 +135,13 @@ impl fmt::Display for Warning {
                 "the fixed-interface modes reach only {reach:.2} times the frequency that they should \
                  (6 times that of the tuned peak, 1.5 times that of its harmonics); raise \
                  reduction.craig_bampton_modes"
+            ),
+            Self::CraigBamptonError { error, wanted } => write!(
+                f,
+                "more fixed-interface modes change the tuned peak by {:.2} %, more than \
+                 reduction.error = {wanted}; leave reduction.craig_bampton_modes out or raise it, or \
+                 accept it by a larger reduction.error",
+                100.0 * error
             ),
             Self::Failures { failed, planned } => write!(
                 f,

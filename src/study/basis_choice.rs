@@ -9,10 +9,12 @@ use super::contact_displacement::ContactMotion;
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::model::reduction::{
-    Basis, BasisChoice, ContactDisplacementErrors, Reduction, ReductionOptions, wanted_reach_hz,
+    Basis, BasisChoice, ContactDisplacementErrors, ContactSprings, Reduction, ReductionOptions,
+    wanted_reach_hz,
 };
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
 use crate::response::forced_response::{ContactCondition, Peak};
+use crate::response::mistuning::{ContactFactors, ContactQuantity, ContactVariation, PairFactors};
 
 /// Numbers of stick modes of `stick_attachment` that are tried, ascending.
 const ATTACHMENT_LADDER: [usize; 5] = [4, 8, 14, 20, 28];
@@ -20,6 +22,10 @@ const ATTACHMENT_LADDER: [usize; 5] = [4, 8, 14, 20, 28];
 const STICK_SLIDE_LADDER: [usize; 9] = [2, 3, 4, 6, 8, 10, 14, 20, 28];
 /// Loads of a study by which a basis is judged at most.
 const LOADS_JUDGED: usize = 8;
+/// Standard deviations at which a varied contact stiffness is judged: 90 % of a normal law lie within.
+const END_OF_VARIATION: f64 = 1.645;
+/// Factor below which none is judged.
+const SMALLEST_FACTOR: f64 = 0.05;
 /// Relative tolerance of the peaks that are compared.
 const PEAK_TOLERANCE: f64 = 1e-5;
 
@@ -74,6 +80,8 @@ pub struct Judged<'a> {
     pub conditions: &'a [ContactCondition],
     /// Harmonic sets that differ from that of the settings.
     pub sets: &'a [HarmonicChoice],
+    /// Factors on the contact stiffness besides the nominal one.
+    pub varied: &'a [PairFactors],
 }
 
 impl<'a> Judged<'a> {
@@ -114,12 +122,12 @@ pub fn choose_basis(
         return Ok((BasisChoice::CraigBampton, evidence));
     }
     let whole = Arc::new(reduction.tuned(BasisChoice::CraigBampton)?);
-    let reference = Peaks::of(Arc::clone(&whole), judged)?;
+    let reference = Peaks::of(&whole, judged)?;
     let motions = reference.contact_motions(&whole, judged)?;
     let mut tried: Vec<(BasisChoice, BasisError)> = Vec::new();
     for choice in candidates(reduction, options) {
         let model = Arc::new(reduction.tuned(choice)?);
-        let peaks = Peaks::of(Arc::clone(&model), judged)?;
+        let peaks = Peaks::of(&model, judged)?;
         let own = BasisError {
             basis: choice.to_string(),
             vectors: vectors(reduction, choice),
@@ -204,20 +212,34 @@ fn largest_displacement_error(
         .reduce(|a, b| Some(a?.larger(b?)))?
 }
 
-/// Tuned peaks, one per engine order and condition.
+/// Tuned peaks, one per engine order and condition, those under the nominal contact first.
 struct Peaks(Vec<Peak>);
 
 impl Peaks {
-    fn of(model: Arc<ReducedModel>, judged: Judged<'_>) -> Result<Self, PipelineError> {
-        let mut settings = judged.settings.clone();
-        settings.solver.peak_tolerance = PEAK_TOLERANCE;
-        let solver = RowSolver::new(model, settings)?.with_choices(judged.sets.to_vec(), 0.0)?;
-        Ok(Self(
-            judged
-                .each()
-                .map(|(engine_order, condition)| solver.tuned_peak(engine_order, condition))
-                .collect(),
-        ))
+    fn of(model: &ReducedModel, judged: Judged<'_>) -> Result<Self, PipelineError> {
+        let mut peaks = Vec::new();
+        let nominal = PairFactors::default();
+        for factors in std::iter::once(&nominal).chain(judged.varied) {
+            let mut settings = judged.settings.clone();
+            settings.solver.peak_tolerance = PEAK_TOLERANCE;
+            settings.contact = settings
+                .contact
+                .map(|(law, sector)| (law, sector.varied(factors)));
+            let mut varied = model.clone();
+            let of_sector = ContactFactors::new(vec![*factors; model.contact.weights.len()]);
+            varied.springs = ContactSprings {
+                stick: of_sector.springs(&model.springs.stick, &model.contact.rows),
+                slide: of_sector.springs(&model.springs.slide, &model.contact.rows),
+            };
+            let solver = RowSolver::new(Arc::new(varied), settings)?
+                .with_choices(judged.sets.to_vec(), 0.0)?;
+            peaks.extend(
+                judged
+                    .each()
+                    .map(|(engine_order, condition)| solver.tuned_peak(engine_order, condition)),
+            );
+        }
+        Ok(Self(peaks))
     }
 
     /// Largest relative difference; none if a peak of either is missing.
@@ -307,4 +329,26 @@ pub fn judged_conditions(conditions: &[ContactCondition]) -> Vec<ContactConditio
         }
     }
     judged
+}
+
+/// Contact by which a basis is judged besides the nominal one: all stiffnesses that vary at their
+/// lower, then at their upper end.
+#[must_use]
+pub fn judged_variations(variations: &[ContactVariation]) -> Vec<PairFactors> {
+    let at = |unit: f64| {
+        let mut factors = PairFactors::default();
+        for variation in variations {
+            let factor = variation.factor(unit).max(SMALLEST_FACTOR);
+            match variation.quantity {
+                ContactQuantity::TangentialStiffness => factors.tangential_stiffness = factor,
+                ContactQuantity::NormalStiffness => factors.normal_stiffness = factor,
+                ContactQuantity::FrictionCoefficient | ContactQuantity::NormalLoad => {}
+            }
+        }
+        factors
+    };
+    [at(-END_OF_VARIATION), at(END_OF_VARIATION)]
+        .into_iter()
+        .filter(|factors| *factors != PairFactors::default())
+        .collect()
 }

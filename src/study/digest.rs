@@ -1,12 +1,13 @@
 //! Digest of everything in a study that can change a number.
 
 use std::collections::BTreeMap;
-use std::io;
 use std::path::Path;
 
 use serde_json::Value;
 
 use super::{MistuningSource, ModelSource, Study, StudyError};
+use crate::population::monte_carlo::Scenario;
+use crate::population::table::digest_file;
 
 /// What the digest of a study is made from, and the digest.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -26,15 +27,8 @@ const NEUTRAL: [&str; 5] = [
     "output.",
 ];
 
-/// BLAKE3 digest of a file, hexadecimal.
-///
-/// # Errors
-/// The file cannot be read.
-pub fn digest_file(path: &Path) -> io::Result<String> {
-    let mut hasher = blake3::Hasher::new();
-    io::copy(&mut std::fs::File::open(path)?, &mut hasher)?;
-    Ok(hasher.finalize().to_hex().to_string())
-}
+/// Keys that list the scenarios; a row depends on those of its own alone.
+const OF_SCENARIOS: [&str; 2] = ["sweep.", "excitation.engine_orders"];
 
 impl StudyDigest {
     /// The digest of `study`, its input files included.
@@ -71,6 +65,25 @@ impl StudyDigest {
         for (key, value) in &self.number_keys {
             hasher.update(format!("{key} = {value}\n").as_bytes());
         }
+        hasher.finalize().to_hex().to_string()
+    }
+
+    /// Digest, hexadecimal, of what the rows of `scenario` are made from: the keys that every row
+    /// depends on, those of the scenario, and what the engine was built from.
+    #[must_use]
+    pub fn of_rows(&self, scenario: &Scenario, engine: &str) -> String {
+        let mut hasher = blake3::Hasher::new();
+        for (key, value) in &self.number_keys {
+            if !OF_SCENARIOS.iter().any(|list| key.starts_with(list)) {
+                hasher.update(format!("{key} = {value}\n").as_bytes());
+            }
+        }
+        let keys = (
+            scenario.engine_order,
+            scenario.standard_deviation,
+            scenario.contact,
+        );
+        hasher.update(format!("{keys:?}\n{engine}").as_bytes());
         hasher.finalize().to_hex().to_string()
     }
 

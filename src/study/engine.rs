@@ -15,7 +15,7 @@ use crate::response::mistuning::Pattern;
 use crate::response::time_integration::{PointComparison, TimeOptions};
 
 /// A reduced model with the settings of a study, ready to be solved; shared between threads.
-pub trait Engine: Sync {
+pub trait Engine: Send + Sync {
     /// Sizes, frequencies, rank and condition of the reduced model.
     fn model_report(&self) -> ModelReport;
 
@@ -24,6 +24,12 @@ pub trait Engine: Sync {
 
     /// Settings chosen where the study says `auto`.
     fn chosen_settings(&self) -> Value;
+
+    /// Digest of all that the rows of a scenario depend on beside the study's keys: the reduced model
+    /// and the settings chosen for the scenario. Stored rows are used again where it is the same.
+    fn rows_made_from(&self, _scenario: &Scenario) -> String {
+        String::new()
+    }
 
     /// Peak of the tuned wheel.
     fn tuned(&self, scenario: &Scenario) -> TunedReference;

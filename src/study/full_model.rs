@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use super::fixed_interface::reduction_of;
 use super::harmonic_choice::choose_harmonics;
-use super::reduced_engine::{contact_stiffness, row_settings, sensitivity_vectors};
+use super::reduced_engine::row_settings;
 use super::{PipelineError, Study};
 use crate::model::ReducedModel;
-use crate::model::reduction::{BasisChoice, Reduction};
+use crate::model::reduction::BasisChoice;
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{RowSettings, RowSolver, Scenario};
 use crate::population::table::CurvePoint;
@@ -74,12 +75,7 @@ impl FullModel {
         sector: &SectorModel,
         options: &FullSettings,
     ) -> Result<Self, PipelineError> {
-        let reduction = Reduction::new(
-            sector,
-            contact_stiffness(study.contact.as_ref()),
-            study.reduction.craig_bampton_modes,
-            sensitivity_vectors(study),
-        )?;
+        let reduction = reduction_of(study, sector)?;
         let cantilever = study.mistuning.cantilever_mode_count;
         let mut settings = row_settings(study);
         if let Some(harmonics) = &options.harmonics {
@@ -205,17 +201,8 @@ impl FullModel {
     /// The samples per period cannot tell the harmonics apart.
     pub fn settings(&self, harmonics: &[u32]) -> Result<ReferenceSettings, TransformError> {
         let set: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
-        Ok(ReferenceSettings {
-            transform: Arc::new(HarmonicTransform::new(&set, self.samples_per_period)?),
-            residual_tolerance: ReferenceSettings::RESIDUAL_TOLERANCE,
-            peak_tolerance: ReferenceSettings::PEAK_TOLERANCE,
-            contact: self.row.contact,
-            damping: self.row.damping,
-            amplitude_n: self.row.amplitude_n,
-            amplitude: self.row.solver.amplitude,
-            time_samples: self.row.solver.time_samples,
-            projection: self.row.projection,
-        })
+        let transform = HarmonicTransform::new(&set, self.samples_per_period)?;
+        Ok(reference_settings(&self.row, transform))
     }
 
     fn solver(
@@ -230,5 +217,23 @@ impl FullModel {
             ..
         } = *scenario;
         ReferenceSolver::new(&self.model, settings, engine_order, contact, pattern)
+    }
+}
+
+/// The settings of a study's rows as the full-contact model takes them.
+pub(super) fn reference_settings(
+    row: &RowSettings,
+    transform: HarmonicTransform,
+) -> ReferenceSettings {
+    ReferenceSettings {
+        transform: Arc::new(transform),
+        residual_tolerance: ReferenceSettings::RESIDUAL_TOLERANCE,
+        peak_tolerance: ReferenceSettings::PEAK_TOLERANCE,
+        contact: row.contact,
+        damping: row.damping,
+        amplitude_n: row.amplitude_n,
+        amplitude: row.solver.amplitude,
+        time_samples: row.solver.time_samples,
+        projection: row.projection,
     }
 }

@@ -1,31 +1,24 @@
 //! A study from file to tables: one call per stage.
 
 use std::collections::BTreeMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::Instant;
 
-use super::results_folder::{Found, ResultsFolder, host_name, verify_tables};
+use rayon::ThreadPool;
+
+use super::lock::{host_name, unix_seconds};
+use super::pipeline_rows::RowWork;
+use super::pipeline_tables::{Facts, TableWork};
+use super::results_folder::{Found, ResultsFolder, finished_rows, is_complete};
 use super::{
-    Engine, EngineSource, PipelineError, Study, StudyDigest, digest_file, load_sector_model,
-    pattern_source,
+    Engine, EngineSource, PipelineError, Study, StudyDigest, load_sector_model, pattern_source,
+    summarise,
 };
-use crate::population::monte_carlo::{
-    ResponseRow, Scenario, TunedReference, block_size, plan_blocks, solve_blocks,
-};
-use crate::population::statistics::{Accounting, ScenarioAccumulator};
-use crate::population::table::{
-    Manifest, PartStore, ResponseReader, RunRecord, RunState, SCHEMA_VERSION, ScenarioEntry,
-    ScenarioRecord, StatusCounts, TableError, TableHeader, write_atomically, write_patterns,
-    write_scenarios,
-};
-use crate::report::{BasisSummary, StudySummary, SummaryContext};
-use crate::response::forced_response::Harmonics;
+use crate::population::monte_carlo::{Interruption, block_size, plan_blocks, solve_blocks};
+use crate::population::table::{Manifest, PartSink, RowStore, RunRecord, Shard};
+use crate::report::StudySummary;
 use crate::response::harmonic_balance::Status;
-use crate::response::mistuning::{GENERATOR, Pattern, PatternSource};
-
-/// Patterns up to which `patterns.parquet` is written without being asked for.
-const PATTERNS_WRITTEN: u32 = 10_000;
+use crate::response::mistuning::PatternSource;
 
 /// A stage of a run, for progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +35,7 @@ pub enum Stage {
     Tables,
 }
 
-/// Listener to a run; called from several threads.
+/// Listener to a run, which also says when it is to stop; called from several threads.
 pub trait Progress: Sync {
     /// A stage begins.
     fn stage(&self, _stage: Stage) {}
@@ -50,6 +43,15 @@ pub trait Progress: Sync {
     fn begin_rows(&self, _planned: u64, _done: u64) {}
     /// A row has been solved.
     fn row(&self, _status: Status) {}
+    /// The folder is taken over from a process that ended without letting go of it.
+    fn taken_over(&self, _holder: &str) {}
+    /// Whether the run is to store what it has and stop.
+    fn stop_requested(&self) -> bool {
+        false
+    }
+    /// After a stop was requested, rows in work take long: all others are stored, and the process may
+    /// end. The run waits for them otherwise.
+    fn saved(&self) {}
 }
 
 /// What to run and where.
@@ -76,7 +78,8 @@ pub struct RunOutcome {
 
 /// Creates or continues the study of `request`.
 ///
-/// A finished study is not solved again. A study whose `patterns` were raised keeps its rows.
+/// A finished study is not solved again. A study whose patterns or scenarios became more keeps its
+/// rows, as far as they are made from the same.
 ///
 /// # Errors
 /// A stage that failed; what is stored stays stored, and the same call continues.
@@ -85,413 +88,256 @@ pub fn run(
     source: &dyn EngineSource,
     progress: &dyn Progress,
 ) -> Result<RunOutcome, PipelineError> {
-    let RunRequest {
-        study,
-        results,
-        threads,
-    } = request;
+    let model = request.results.join("model");
+    run_in(request, None, &model, source, progress)
+}
+
+/// Creates or continues the shard `shard` of the study of `request`, in a folder of its own below
+/// the results folder: `shards/<number>-of-<count>`.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_shard(
+    request: RunRequest<'_>,
+    shard: Shard,
+    source: &dyn EngineSource,
+    progress: &dyn Progress,
+) -> Result<RunOutcome, PipelineError> {
+    let folder = request.results.join("shards").join(shard.folder_name());
+    let model = request.results.join("model");
+    let of_shard = RunRequest {
+        results: &folder,
+        ..request
+    };
+    run_in(of_shard, Some(shard), &model, source, progress)
+}
+
+pub(super) fn run_in(
+    request: RunRequest<'_>,
+    shard: Option<Shard>,
+    model_cache: &Path,
+    source: &dyn EngineSource,
+    progress: &dyn Progress,
+) -> Result<RunOutcome, PipelineError> {
+    let RunRequest { study, results, .. } = request;
     let clock = Clock::start();
     let digest = StudyDigest::of(study)?;
-    let folder = ResultsFolder::open(results)?;
-    if let Found::Finished(manifest) = folder.find(study, &digest)? {
-        let summary = summarise(results)?;
+    let mut folder = ResultsFolder::open(results)?;
+    if let Some(holder) = folder.broken_off() {
+        progress.taken_over(&holder.to_string());
+    }
+    let found = folder.find(study, &digest, shard)?;
+    if let Found::Finished(manifest) = &found
+        && is_complete(manifest, study)
+    {
         return Ok(RunOutcome {
             rows_reused: manifest.counts.planned,
             rows_solved: 0,
-            summary,
+            summary: summarise(results)?,
         });
     }
-    let pool = rayon::ThreadPoolBuilder::new()
+    progress.stage(Stage::LoadModel);
+    let model = load_sector_model(study)?;
+    let patterns = pattern_source(study, &model)?;
+    let job = Job {
+        request,
+        found: &found,
+        patterns: &patterns,
+        progress,
+    };
+    let tables = |facts: Facts| TableWork::new(study, &digest, &patterns, shard, facts);
+    let pool = pool_of(request.threads)?;
+    let (outcome, manifest) = if let Some(facts) = job.facts_of_stored_rows() {
+        let tables = tables(facts);
+        pool.install(|| job.publish(&tables, 0, tables.planned()))?
+    } else {
+        progress.stage(Stage::Reduce);
+        let engine = pool.install(|| source.build(study, &model, Some(model_cache)))?;
+        progress.stage(Stage::Tuned);
+        let facts = pool.install(|| Facts::solve(engine.as_ref(), study, &digest));
+        let tables = tables(facts);
+        let rows = job.solve(&pool, engine.as_ref(), &tables, &mut folder)?;
+        if rows.stored() < tables.planned() {
+            clock
+                .record(&study.path, request.threads, rows, BTreeMap::new())
+                .write(results)?;
+            return Err(PipelineError::Interrupted {
+                folder: results.to_owned(),
+                stored: rows.stored(),
+                planned: tables.planned(),
+            });
+        }
+        pool.install(|| job.publish(&tables, rows.solved, rows.reused))?
+    };
+    let rows = RowCounts {
+        solved: outcome.rows_solved,
+        reused: outcome.rows_reused,
+    };
+    clock
+        .record(&study.path, request.threads, rows, manifest.tables)
+        .write(results)?;
+    Ok(outcome)
+}
+
+/// Threads of a run.
+fn pool_of(threads: usize) -> Result<ThreadPool, PipelineError> {
+    rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .map_err(|error| PipelineError::Threads {
             threads,
             reason: error.to_string(),
-        })?;
-    let outcome = pool.install(|| {
-        progress.stage(Stage::LoadModel);
-        let model = load_sector_model(study)?;
-        let patterns = pattern_source(study, model.sectors)?;
-        progress.stage(Stage::Reduce);
-        let cache = folder.path().join("model");
-        let engine = source.build(study, &model, Some(&cache))?;
-        let work = Work::new(study, &digest, engine.as_ref(), &patterns, results);
-        work.solve(progress)
-    })?;
-    clock.record(study, threads, &outcome).write(results)?;
-    Ok(outcome)
+        })
 }
 
-/// The summary of the finished study in the folder `results`, from its tables.
-///
-/// # Errors
-/// The folder holds no finished study, or a file of it is damaged.
-pub fn summarise(results: &Path) -> Result<StudySummary, PipelineError> {
-    let folder = || results.to_owned();
-    let manifest =
-        Manifest::read(results)?.ok_or_else(|| PipelineError::NoResults { folder: folder() })?;
-    if manifest.state != RunState::Finished {
-        return Err(PipelineError::Unfinished { folder: folder() });
-    }
-    verify_tables(results, &manifest)?;
-    let keys: Vec<Scenario> = manifest.scenarios.iter().map(ScenarioEntry::keys).collect();
-    let tuned: Vec<TunedReference> = manifest
-        .scenarios
-        .iter()
-        .map(ScenarioEntry::tuned)
-        .collect();
-    let mut accumulators = vec![ScenarioAccumulator::default(); keys.len()];
-    let mut reader = ResponseReader::open(&results.join("responses.parquet"))?;
-    loop {
-        let rows = reader.next_batch()?;
-        if rows.is_empty() {
-            break;
-        }
-        for row in &rows {
-            if let Some(accumulator) = accumulators.get_mut(row.scenario) {
-                accumulator.add(row);
-            }
-        }
-    }
-    let records = records_of(&keys, &tuned, accumulators);
-    Ok(StudySummary::new(&context_of(&manifest), &records))
+/// Rows solved by a run and rows that were stored before.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RowCounts {
+    pub(super) solved: u64,
+    pub(super) reused: u64,
 }
 
-/// All that the solution of rows needs.
-struct Work<'a> {
-    study: &'a Study,
-    digest: &'a StudyDigest,
-    engine: &'a dyn Engine,
+impl RowCounts {
+    fn stored(self) -> u64 {
+        self.solved + self.reused
+    }
+}
+
+/// A run that has something to do.
+struct Job<'a> {
+    request: RunRequest<'a>,
+    found: &'a Found,
     patterns: &'a PatternSource,
-    results: &'a Path,
-    scenarios: Vec<Scenario>,
-    header: TableHeader,
+    progress: &'a dyn Progress,
 }
 
-impl<'a> Work<'a> {
-    fn new(
-        study: &'a Study,
-        digest: &'a StudyDigest,
-        engine: &'a dyn Engine,
-        patterns: &'a PatternSource,
-        results: &'a Path,
-    ) -> Self {
-        Self {
-            study,
-            digest,
+impl Job<'_> {
+    /// The manifest of what is stored.
+    fn stored(&self) -> Option<&Manifest> {
+        match self.found {
+            Found::Nothing => None,
+            Found::Unfinished(manifest) | Found::Finished(manifest) => Some(manifest),
+        }
+    }
+
+    /// What the tables are made from, if all rows are stored: in another order, or with other tables
+    /// asked for.
+    fn facts_of_stored_rows(&self) -> Option<Facts> {
+        match self.found {
+            Found::Finished(manifest) => Facts::stored(manifest, self.request.study),
+            _ => None,
+        }
+    }
+
+    /// The rows stored.
+    fn store(&self, tables: &TableWork) -> Result<RowStore, PipelineError> {
+        let results = self.request.results;
+        let finished = self
+            .stored()
+            .map_or_else(Vec::new, |manifest| finished_rows(results, manifest));
+        Ok(RowStore::open(results, tables.schema().clone(), finished)?)
+    }
+
+    /// Solves the rows that are not stored yet.
+    fn solve(
+        &self,
+        pool: &ThreadPool,
+        engine: &dyn Engine,
+        tables: &TableWork,
+        folder: &mut ResultsFolder,
+    ) -> Result<RowCounts, PipelineError> {
+        let results = self.request.results;
+        if !matches!(self.found, Found::Finished(_)) {
+            tables.unfinished(self.stored()).write(results)?;
+        }
+        self.progress.stage(Stage::Rows);
+        let ids = tables.ids();
+        let scenarios = &tables.schema().scenarios;
+        let stored = self.store(tables)?.stored()?;
+        let blocks = plan_blocks(ids, &stored, scenarios.len(), block_size(ids.len()));
+        let reused = stored.count(ids);
+        folder.announce(tables.planned(), reused)?;
+        self.progress.begin_rows(tables.planned(), reused);
+        let rows = RowWork {
             engine,
-            patterns,
-            results,
-            scenarios: study.scenarios(),
-            header: TableHeader {
-                study_digest: digest.hex(),
-                compression: study.output.compression,
-            },
-        }
-    }
-
-    fn solve(&self, progress: &dyn Progress) -> Result<RunOutcome, PipelineError> {
-        progress.stage(Stage::Tuned);
-        let tuned = self.tuned();
-        self.manifest(
-            RunState::Running,
-            &tuned,
-            &vec![Accounting::default(); tuned.len()],
-        )
-        .write(self.results)?;
-        progress.stage(Stage::Rows);
-        let store = PartStore::new(self.results, &self.scenarios, self.header.clone());
-        let (rows_solved, rows_reused) = self.rows(&store, &tuned, progress)?;
-        progress.stage(Stage::Tables);
-        let records = self.tables(&store, &tuned)?;
-        let counts: Vec<Accounting> = records
-            .iter()
-            .map(|record| record.statistics.accounting)
-            .collect();
-        let mut manifest = self.manifest(RunState::Finished, &tuned, &counts);
-        manifest.tables = self.table_digests()?;
-        let summary = StudySummary::new(&context_of(&manifest), &records);
-        write_atomically(
-            &self.results.join("summary.txt"),
-            summary.to_string().as_bytes(),
-        )?;
-        manifest.write(self.results)?;
-        Ok(RunOutcome {
-            summary,
-            rows_solved,
-            rows_reused,
-        })
-    }
-
-    /// The tuned wheel knows no standard deviation: solved once per engine order and contact.
-    fn tuned(&self) -> Vec<TunedReference> {
-        let mut solved: Vec<(Scenario, TunedReference)> = Vec::new();
-        for scenario in &self.scenarios {
-            let same = solved.iter().find(|(other, _)| {
-                other.engine_order == scenario.engine_order && other.contact == scenario.contact
-            });
-            let reference = match same {
-                Some((_, reference)) => TunedReference {
-                    scenario: scenario.index,
-                    ..reference.clone()
-                },
-                None => self.engine.tuned(scenario),
-            };
-            solved.push((*scenario, reference));
-        }
-        solved.into_iter().map(|(_, reference)| reference).collect()
-    }
-
-    /// Solves the patterns that are not stored yet; rows solved and rows reused.
-    fn rows(
-        &self,
-        store: &PartStore,
-        tuned: &[TunedReference],
-        progress: &dyn Progress,
-    ) -> Result<(u64, u64), PipelineError> {
-        let ids = self.patterns.ids();
-        let done = store.done()?;
-        let blocks = plan_blocks(&ids, &done, block_size(ids.len()));
-        let per_pattern = self.scenarios.len() as u64;
-        let reused = done.len() as u64 * per_pattern;
-        progress.begin_rows(ids.len() as u64 * per_pattern, reused);
-        let solve = |id: u32| {
-            let rows = self.rows_of_pattern(id, tuned);
-            for row in &rows {
-                progress.row(row.status);
-            }
-            rows
-        };
-        solve_blocks(&blocks, solve, store.sink(&blocks))?;
-        let solved: usize = blocks.iter().map(|block| block.patterns.len()).sum();
-        Ok((solved as u64 * per_pattern, reused))
-    }
-
-    /// Rows of one pattern in scenario order; the engine sees the scenarios of each standard
-    /// deviation together.
-    fn rows_of_pattern(&self, id: u32, tuned: &[TunedReference]) -> Vec<ResponseRow> {
-        let mut rows = Vec::with_capacity(self.scenarios.len());
-        for &standard_deviation in &self.study.standard_deviations {
-            let of_deviation: Vec<(&Scenario, &TunedReference)> = self
-                .scenarios
-                .iter()
-                .zip(tuned)
-                .filter(|(scenario, _)| scenario.standard_deviation == standard_deviation)
-                .collect();
-            if let Some(pattern) = self.patterns.pattern(id, standard_deviation) {
-                rows.extend(self.rows_or_panicked(&pattern, &of_deviation));
-            }
-        }
-        rows.sort_by_key(|row| row.scenario);
-        rows
-    }
-
-    /// A panic while one pattern is solved costs the rows of that pattern, not the run.
-    fn rows_or_panicked(
-        &self,
-        pattern: &Pattern,
-        scenarios: &[(&Scenario, &TunedReference)],
-    ) -> Vec<ResponseRow> {
-        let solve = AssertUnwindSafe(|| self.engine.rows(pattern, scenarios));
-        catch_unwind(solve).unwrap_or_else(|_| {
-            scenarios
-                .iter()
-                .map(|(scenario, _)| ResponseRow {
-                    scenario: scenario.index,
-                    pattern: pattern.id,
-                    status: Status::Panicked,
-                    peak_amplitude_m: None,
-                    peak_frequency_hz: None,
-                    peak_blade: None,
-                    amplification_factor: None,
-                    peak_bracketed: None,
-                    harmonics: String::new(),
-                    nonlinear_solves: 0,
-                    newton_iterations: 0,
-                    retries: 0,
-                    residual: None,
-                    slipping_fraction: None,
-                    separated_fraction: None,
-                    mean_friction_circumferential_n: None,
-                    mean_friction_axial_n: None,
-                    shortcut: "none".to_owned(),
-                    sampling_error: None,
-                    harmonic_error: None,
-                    stated_error: None,
-                    error_within_tolerance: None,
-                    basis: String::new(),
-                })
-                .collect()
-        })
-    }
-
-    fn tables(
-        &self,
-        store: &PartStore,
-        tuned: &[TunedReference],
-    ) -> Result<Vec<ScenarioRecord>, PipelineError> {
-        let mut accumulators = vec![ScenarioAccumulator::default(); self.scenarios.len()];
-        store.assemble(&self.patterns.ids(), |row| {
-            accumulators[row.scenario].add(row);
-        })?;
-        let records = records_of(&self.scenarios, tuned, accumulators);
-        write_scenarios(
-            &self.results.join("scenarios.parquet"),
-            &records,
-            &self.header,
-        )?;
-        if self.writes_patterns() {
-            write_patterns(
-                &self.results.join("patterns.parquet"),
-                self.patterns,
-                &self.study.standard_deviations,
-                &self.header,
-            )?;
-        }
-        Ok(records)
-    }
-
-    /// Whether `patterns.parquet` is part of the results.
-    fn writes_patterns(&self) -> bool {
-        let few = self.study.patterns <= PATTERNS_WRITTEN;
-        self.study.output.patterns.unwrap_or(few)
-    }
-
-    fn table_digests(&self) -> Result<BTreeMap<String, String>, PipelineError> {
-        let mut names = vec!["responses.parquet", "scenarios.parquet"];
-        if self.writes_patterns() {
-            names.push("patterns.parquet");
-        }
-        let digest = |name: &str| {
-            let path = self.results.join(name);
-            match digest_file(&path) {
-                Ok(digest) => Ok((name.to_owned(), digest)),
-                Err(source) => Err(TableError::Io {
-                    action: "read",
-                    path,
-                    source,
-                }),
-            }
-        };
-        Ok(names.into_iter().map(digest).collect::<Result<_, _>>()?)
-    }
-
-    fn manifest(
-        &self,
-        state: RunState,
-        tuned: &[TunedReference],
-        counts: &[Accounting],
-    ) -> Manifest {
-        let mut total = Accounting::default();
-        for count in counts {
-            total.merge(count);
-        }
-        let scenarios = self
-            .scenarios
-            .iter()
-            .zip(tuned)
-            .zip(counts)
-            .map(|((scenario, tuned), count)| ScenarioEntry::new(scenario, tuned, count))
-            .collect();
-        Manifest {
-            schema: SCHEMA_VERSION,
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            state,
-            name: self.study.name.clone(),
-            study_digest: self.header.study_digest.clone(),
-            seed: self.study.seed,
-            generator: GENERATOR.to_owned(),
-            patterns: u64::from(self.study.patterns),
-            number_keys: self.digest.number_keys.clone(),
-            inputs: self.digest.inputs.clone(),
-            study: self.study.resolved(),
-            chosen: self.engine.chosen_settings(),
-            reduction: self.engine.reduction_facts(),
-            counts: StatusCounts::from(&total),
-            tables: BTreeMap::new(),
+            patterns: self.patterns,
             scenarios,
-        }
+            tuned: tables.tuned(),
+            progress: self.progress,
+        };
+        let mut sink = PartSink::new(results, tables.schema());
+        let solved = solve_blocks(
+            pool,
+            &blocks,
+            |block, id| rows.of_pattern(id, &block.scenarios),
+            &mut sink,
+            &Stop(self.progress),
+        )?;
+        Ok(RowCounts { solved, reused })
+    }
+
+    /// Writes the tables of the rows stored.
+    fn publish(
+        &self,
+        tables: &TableWork,
+        solved: u64,
+        reused: u64,
+    ) -> Result<(RunOutcome, Manifest), PipelineError> {
+        self.progress.stage(Stage::Tables);
+        let (manifest, summary) = tables.publish(&self.store(tables)?, self.request.results)?;
+        let outcome = RunOutcome {
+            summary,
+            rows_solved: solved,
+            rows_reused: reused,
+        };
+        Ok((outcome, manifest))
     }
 }
 
-fn records_of(
-    scenarios: &[Scenario],
-    tuned: &[TunedReference],
-    accumulators: Vec<ScenarioAccumulator>,
-) -> Vec<ScenarioRecord> {
-    scenarios
-        .iter()
-        .zip(tuned)
-        .zip(accumulators)
-        .map(|((scenario, tuned), accumulator)| ScenarioRecord {
-            scenario: *scenario,
-            tuned: tuned.clone(),
-            statistics: accumulator.finish(),
-        })
-        .collect()
-}
+/// The listener as the one that stops the solution of rows.
+struct Stop<'a>(&'a dyn Progress);
 
-fn context_of(manifest: &Manifest) -> SummaryContext {
-    let harmonics = manifest.study["solver"]["harmonics"].as_array().map(|set| {
-        let numbers = set.iter().filter_map(serde_json::Value::as_u64);
-        Harmonics::Set(numbers.map(|number| number as u32).collect())
-    });
-    SummaryContext {
-        name: manifest.name.clone(),
-        study_digest: manifest.study_digest.clone(),
-        seed: manifest.seed,
-        patterns: manifest.patterns,
-        harmonics: harmonics.unwrap_or(Harmonics::Auto),
-        basis: basis_of(manifest),
-        version: manifest.version.clone(),
+impl Interruption for Stop<'_> {
+    fn requested(&self) -> bool {
+        self.0.stop_requested()
     }
-}
 
-/// The basis and its measured error, from the facts that the engine gave.
-fn basis_of(manifest: &Manifest) -> BasisSummary {
-    let tried = manifest.reduction["tuned_peak_errors"].as_array();
-    let taken = tried.and_then(|tried| tried.last());
-    let wanted = manifest.study["reduction"]["error"].as_f64();
-    BasisSummary {
-        name: manifest.reduction["basis"]
-            .as_str()
-            .unwrap_or_default()
-            .to_owned(),
-        tuned_peak_error: taken.and_then(|taken| taken["error"].as_f64()),
-        contact_displacement_error: taken.and_then(|taken| {
-            taken["contact_displacement"]["any_nodal_diameter"]["error"].as_f64()
-        }),
-        craig_bampton_reach: manifest.reduction["craig_bampton_reach"].as_f64(),
-        wanted_error: wanted.unwrap_or(f64::INFINITY),
+    fn saved(&self) {
+        self.0.saved();
     }
 }
 
 /// Wall clock of a run.
-struct Clock {
+pub(super) struct Clock {
     started_unix_s: u64,
     began: Instant,
 }
 
 impl Clock {
-    fn start() -> Self {
+    pub(super) fn start() -> Self {
         Self {
-            started_unix_s: SystemTime::now()
-                .duration_since(UNIX_EPOCH)
-                .map_or(0, |since| since.as_secs()),
+            started_unix_s: unix_seconds(),
             began: Instant::now(),
         }
     }
 
-    fn record(&self, study: &Study, threads: usize, outcome: &RunOutcome) -> RunRecord {
+    pub(super) fn record(
+        &self,
+        study_file: &Path,
+        threads: usize,
+        rows: RowCounts,
+        tables: BTreeMap<String, String>,
+    ) -> RunRecord {
         RunRecord {
             started_unix_s: self.started_unix_s,
             wall_time_s: self.began.elapsed().as_secs_f64(),
             host: host_name(),
             threads,
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            rows_solved: outcome.rows_solved,
-            rows_reused: outcome.rows_reused,
-            study_file: std::path::absolute(&study.path).unwrap_or_else(|_| study.path.clone()),
+            rows_solved: rows.solved,
+            rows_reused: rows.reused,
+            study_file: std::path::absolute(study_file).unwrap_or_else(|_| study_file.to_owned()),
+            tables,
         }
     }
 }

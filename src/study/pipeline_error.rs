@@ -30,6 +30,16 @@ pub enum PipelineError {
         /// `(key, value in the folder, value in the study)`.
         differences: Vec<(String, String, String)>,
     },
+    /// A shard belongs to another study than another.
+    #[error("{} is no shard of the study of {}:\n{}", folder.display(), other.display(), between(differences))]
+    DifferentShards {
+        /// The folder.
+        folder: PathBuf,
+        /// The folder that it is compared with.
+        other: PathBuf,
+        /// `(key, value in the folder, value in the other)`.
+        differences: Vec<(String, String, String)>,
+    },
     /// What a results folder was made from is no longer the same.
     #[error("{} was not made from the present inputs or by the present version; restore them, or run the study again:\n{}", folder.display(), listed(differences))]
     InputsChanged {
@@ -53,10 +63,26 @@ pub enum PipelineError {
         folder: PathBuf,
     },
     /// The results folder is not complete.
-    #[error("{} is not complete; `blisk run` continues it", folder.display())]
+    #[error("{} is not complete; `blisk run` continues it, `blisk stats` and `blisk status` show what there is", folder.display())]
     Unfinished {
         /// The folder.
         folder: PathBuf,
+    },
+    /// The run was asked to stop.
+    #[error("interrupted: {stored} of {planned} rows are stored in {}; the same command continues", folder.display())]
+    Interrupted {
+        /// The folder.
+        folder: PathBuf,
+        /// Rows stored.
+        stored: u64,
+        /// Rows of the study.
+        planned: u64,
+    },
+    /// Shards that do not make up a study.
+    #[error("{reason}")]
+    Shards {
+        /// What is missing, there twice or foreign, and what to do.
+        reason: String,
     },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
@@ -92,6 +118,16 @@ pub enum PipelineError {
         /// The ids there are, in words.
         accepted: String,
     },
+    /// A results folder has no such scenario.
+    #[error(
+        "there is no scenario {scenario} to compare with; accepted: a number below {scenarios}"
+    )]
+    NoScenario {
+        /// Scenario asked for.
+        scenario: usize,
+        /// Number of scenarios.
+        scenarios: usize,
+    },
     /// A results folder has no such row.
     #[error(
         "there is no row of scenario {scenario} and pattern {pattern}; accepted: a scenario below {scenarios}, and a pattern of the study"
@@ -110,6 +146,14 @@ fn listed(differences: &[(String, String, String)]) -> String {
     differences
         .iter()
         .map(|(key, theirs, ours)| format!("  {key}: {theirs} in the folder, {ours} in the study"))
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+fn between(differences: &[(String, String, String)]) -> String {
+    differences
+        .iter()
+        .map(|(key, ours, theirs)| format!("  {key}: {ours} in the first, {theirs} in the second"))
         .collect::<Vec<_>>()
         .join("\n")
 }

@@ -10,7 +10,7 @@ use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::table::Compression;
 use crate::response::forced_response::{AmplitudeMeasure, RowsBeyondTolerance};
 use crate::response::friction::{ContactLaw, Ring};
-use crate::response::mistuning::Projection;
+use crate::response::mistuning::{Projection, VariesPer};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -70,6 +70,35 @@ pub(super) struct RawContact {
     pub tangential_stiffness_n_per_m: Option<f64>,
     pub normal_stiffness_n_per_m: Option<f64>,
     pub ring: Option<Ring>,
+    #[serde(default)]
+    pub variation: RawContactVariation,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawContactVariation {
+    pub friction_coefficient: Option<RawVariation>,
+    pub tangential_stiffness: Option<RawVariation>,
+    pub normal_stiffness: Option<RawVariation>,
+    pub normal_load: Option<RawVariation>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum RawFactorKind {
+    Normal,
+    Uniform,
+    TruncatedNormal,
+    Lognormal,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawVariation {
+    pub kind: Option<RawFactorKind>,
+    pub standard_deviation: Option<f64>,
+    pub truncation: Option<f64>,
+    pub per: Option<VariesPer>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -6,7 +6,10 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::basis_choice::{BasisEvidence, Judged, choose_basis, judged_conditions};
+use super::basis_choice::{
+    BasisEvidence, Judged, choose_basis, judged_conditions, judged_variations,
+};
+use super::fixed_interface::{FixedInterface, reduce_sector};
 use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::{Engine, EngineSource, MistuningSource, PipelineError, Study};
 use crate::model::reduction::{Basis, BasisChoice, ContactStiffness, Reduction, ReductionOptions};
@@ -40,8 +43,13 @@ pub struct ReducedEngineSource;
 struct ReducedEngine {
     solver: RowSolver,
     evidence: BasisEvidence,
+    fixed_interface: FixedInterface,
+    /// Whether the study says how many fixed-interface modes there are.
+    fixed_modes: bool,
     wanted_error: f64,
     digest: String,
+    /// Digest of the models that rows are solved on, with their errors.
+    models: String,
     sector_dofs: usize,
     observed: Vec<String>,
 }
@@ -51,6 +59,7 @@ struct ReducedEngine {
 struct Stored {
     model: ReducedModel,
     evidence: BasisEvidence,
+    fixed_interface: FixedInterface,
     harmonics: Vec<HarmonicChoice>,
     beyond: Option<StoredBeyond>,
 }
@@ -76,24 +85,20 @@ impl EngineSource for ReducedEngineSource {
         // Everything the stored models and sets depend on besides the sector: also what their
         // errors are judged by.
         let key = format!(
-            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?}",
+            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?}",
             study.reduction,
             study.mistuning.cantilever_mode_count,
             study.engine_orders,
-            study.contacts
+            study.contacts,
+            study.contact_variations
         );
         let digest = reduction_digest(model, &key);
         let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
         let stored = if let Some(stored) = cached {
             stored
         } else {
-            let reduction = Reduction::new(
-                model,
-                stiffness,
-                study.reduction.craig_bampton_modes,
-                sensitivity,
-            )?;
-            let stored = reduced(study, &reduction, &settings)?;
+            let (reduction, fixed_interface) = reduce_sector(study, model)?;
+            let stored = reduced(study, &reduction, fixed_interface, &settings)?;
             if let Some(folder) = cache {
                 write_cached(folder, &digest, &stored)?;
             }
@@ -101,6 +106,9 @@ impl EngineSource for ReducedEngineSource {
         };
         Ok(Box::new(ReducedEngine {
             evidence: stored.evidence.clone(),
+            fixed_interface: stored.fixed_interface.clone(),
+            models: models_digest(&stored),
+            fixed_modes: study.reduction.craig_bampton_modes.is_some(),
             solver: solver_of(study, stored, settings)?,
             wanted_error: study.reduction.error,
             digest,
@@ -132,6 +140,7 @@ impl Engine for ReducedEngine {
             contact_displacement_error: contact_displacement
                 .map(|errors| errors.any_nodal_diameter.error),
             craig_bampton_reach,
+            craig_bampton_error: self.fixed_interface.error.filter(|_| self.fixed_modes),
             wanted_error: self.wanted_error,
         };
         ModelReport {
@@ -144,6 +153,8 @@ impl Engine for ReducedEngine {
             reduced_coordinates: self.solver.basis().size(),
             error,
             contact_displacement,
+            craig_bampton_modes: self.fixed_interface.modes,
+            craig_bampton_error: self.fixed_interface.error,
             craig_bampton_reach,
             warnings: summary.warnings(),
             memory_bytes: memory_bytes(model),
@@ -172,6 +183,9 @@ impl Engine for ReducedEngine {
             "whole_space": self.evidence.whole_space,
             "reduced_coordinates": self.solver.basis().size(),
             "tuned_peak_errors": self.evidence.tried,
+            "craig_bampton_modes": self.fixed_interface.modes,
+            "craig_bampton_error": self.fixed_interface.error,
+            "craig_bampton_modes_tried": self.fixed_interface.tried,
             "craig_bampton_reach": self.evidence.craig_bampton_reach,
         })
     }
@@ -185,6 +199,25 @@ impl Engine for ReducedEngine {
                 "harmonics": beyond.choices().collect::<Vec<_>>(),
             })),
         })
+    }
+
+    fn rows_made_from(&self, scenario: &Scenario) -> String {
+        let of = |solver: &RowSolver| -> Vec<String> {
+            solver
+                .choices()
+                .filter(|choice| {
+                    choice.engine_order == scenario.engine_order
+                        && choice.contact == scenario.contact
+                })
+                .map(|choice| format!("{choice:?}"))
+                .collect()
+        };
+        format!(
+            "{} {:?} {:?}",
+            self.models,
+            of(&self.solver),
+            self.solver.beyond().map(of)
+        )
     }
 
     fn tuned(&self, scenario: &Scenario) -> TunedReference {
@@ -268,6 +301,7 @@ impl Engine for ReducedEngine {
 fn reduced(
     study: &Study,
     reduction: &Reduction<'_>,
+    fixed_interface: FixedInterface,
     settings: &RowSettings,
 ) -> Result<Stored, PipelineError> {
     let automatic = study.solver.harmonics == Harmonics::Auto;
@@ -284,12 +318,14 @@ fn reduced(
         )
     };
     let conditions = judged_conditions(&study.contacts);
+    let varied = judged_variations(&study.contact_variations);
     let basis = |options: &ReductionOptions, sets: &[HarmonicChoice]| {
         let judged = Judged {
             settings,
             engine_orders: &study.engine_orders,
             conditions: &conditions,
             sets,
+            varied: &varied,
         };
         choose_basis(reduction, options, judged)
     };
@@ -334,6 +370,7 @@ fn reduced(
     Ok(Stored {
         model: reduction.reduce(choice, modes)?,
         evidence,
+        fixed_interface,
         harmonics,
         beyond,
     })
@@ -352,14 +389,17 @@ fn solver_of(
     stored: Stored,
     settings: RowSettings,
 ) -> Result<RowSolver, TransformError> {
-    let error = basis_error(&stored.evidence);
+    // Either part is measured on its own: what the basis leaves out of the Craig-Bampton model, and
+    // what that model leaves out of the sector.
+    let truncation = stored.fixed_interface.error.unwrap_or(f64::INFINITY);
+    let error = basis_error(&stored.evidence) + truncation;
     let solver = RowSolver::new(Arc::new(stored.model), settings.clone())?
         .with_choices(stored.harmonics, error)?;
     let Some(beyond) = stored.beyond else {
         return Ok(solver);
     };
     let finer = RowSolver::new(Arc::new(beyond.model), settings)?
-        .with_choices(beyond.harmonics, beyond.basis_error)?;
+        .with_choices(beyond.harmonics, beyond.basis_error + truncation)?;
     let inexact = study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
     Ok(solver.with_beyond(finer, inexact))
 }
@@ -426,6 +466,22 @@ pub(super) fn sensitivity_vectors(study: &Study) -> usize {
             0
         },
     )
+}
+
+/// Digest of the reduced models and the errors that their rows state.
+fn models_digest(stored: &Stored) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let mut add = |model: &ReducedModel, error: f64| {
+        // A model that could not be written down could not be cached either.
+        let bytes = postcard::to_stdvec(model).unwrap_or_default();
+        hasher.update(&bytes);
+        hasher.update(&error.to_bits().to_le_bytes());
+    };
+    add(&stored.model, basis_error(&stored.evidence));
+    if let Some(beyond) = &stored.beyond {
+        add(&beyond.model, beyond.basis_error);
+    }
+    hasher.finalize().to_hex().to_string()
 }
 
 fn memory_bytes(model: &ReducedModel) -> usize {

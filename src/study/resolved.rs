@@ -13,6 +13,7 @@ use crate::population::table::Compression;
 use crate::response::forced_response::{ContactCondition, FrequencyBand, Harmonics, SolverOptions};
 use crate::response::friction::ContactOptions;
 use crate::response::harmonic_balance::Damping;
+use crate::response::mistuning::{ContactVariation, Distribution, FactorLaw};
 
 /// Where the sector model comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +59,8 @@ pub struct Study {
     pub reduction: ReductionOptions,
     /// Contact law; none for a model without contact.
     pub contact: Option<ContactOptions>,
+    /// What of the contact varies from wheel to wheel, sector to sector or pair to pair.
+    pub contact_variations: Vec<ContactVariation>,
     /// Damping of the structure.
     pub damping: Damping,
     /// Engine orders, as written.
@@ -151,6 +154,9 @@ impl Study {
         });
         if let Some(contact) = &self.contact {
             study["contact"] = json!(contact);
+            if !self.contact_variations.is_empty() {
+                study["contact"]["variation"] = variation_value(&self.contact_variations);
+            }
         }
         study
     }
@@ -183,4 +189,24 @@ impl Study {
             json!({ "normal_load_n": loads, "standard_deviation": deviations })
         }
     }
+}
+
+fn variation_value(variations: &[ContactVariation]) -> Value {
+    let mut value = json!({});
+    for variation in variations {
+        let kind = match &variation.law {
+            FactorLaw::Relative(distribution) => distribution.name(),
+            FactorLaw::Lognormal => "lognormal",
+        };
+        let own = &mut value[variation.quantity.name()];
+        *own = json!({
+            "kind": kind,
+            "standard_deviation": variation.standard_deviation,
+            "per": variation.per,
+        });
+        if let FactorLaw::Relative(Distribution::TruncatedNormal { truncation }) = variation.law {
+            own["truncation"] = json!(truncation);
+        }
+    }
+    value
 }

@@ -98,7 +98,7 @@ impl Wanted {
                 return Err(PipelineError::NoContact { reason });
             }
         }
-        let patterns = pattern_source(study, sector.sectors)?;
+        let patterns = pattern_source(study, &sector)?;
         let pattern = match request.pattern {
             None => None,
             Some(id) => Some(

@@ -1,69 +1,63 @@
 //! The results folder of a study: who may write to it, and whether it is the same study.
 
-use std::fs::{File, TryLockError};
-use std::io::Write;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::{PipelineError, Study, StudyDigest, digest_file};
-use crate::population::table::{Manifest, RunState, TableError};
+use serde_json::Value;
+
+use super::lock::{FolderLock, LockHolder};
+use super::{PipelineError, Study, StudyDigest};
+use crate::population::table::{
+    Manifest, RowFile, RunState, ScenarioEntry, Shard, TableError, complete_publication,
+    digest_file, remove_leftovers,
+};
+
+/// The table of rows.
+pub(super) const RESPONSES: &str = "responses.parquet";
+
+/// Lists of the study that may grow while the rows of their former members stay.
+const GROWING: [&str; 3] = [
+    "excitation.engine_orders",
+    "sweep.standard_deviation",
+    "sweep.normal_load_n",
+];
 
 /// A results folder that this process alone writes to.
 #[derive(Debug)]
 pub(super) struct ResultsFolder {
     path: PathBuf,
-    /// Held as long as the folder is; the lock ends with the process, however it ends.
-    _lock: File,
+    lock: FolderLock,
+    broken_off: Option<LockHolder>,
 }
 
 /// What a results folder holds of a study.
 #[derive(Debug)]
 pub(super) enum Found {
-    /// Nothing, or an interrupted run, or fewer patterns.
-    Unfinished,
-    /// Everything that the study asks for.
+    /// Nothing.
+    Nothing,
+    /// A run that did not come to its end.
+    Unfinished(Box<Manifest>),
+    /// A finished run of this study, or of one with fewer patterns or scenarios.
     Finished(Box<Manifest>),
 }
 
 impl ResultsFolder {
-    /// Makes the folder if need be and locks it.
+    /// Makes the folder if need be, locks it, and completes what an interrupted process had decided.
     pub(super) fn open(path: &Path) -> Result<Self, PipelineError> {
-        let io = |action: &'static str| {
-            move |source| TableError::Io {
-                action,
-                path: path.to_owned(),
-                source,
-            }
-        };
-        std::fs::create_dir_all(path).map_err(io("create the folder"))?;
-        let lock_path = path.join(".lock");
-        let mut lock = File::options()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(&lock_path)
-            .map_err(io("write to the folder"))?;
-        match lock.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                let holder = std::fs::read_to_string(&lock_path).unwrap_or_default();
-                return Err(PipelineError::Locked {
-                    folder: path.to_owned(),
-                    holder: if holder.is_empty() {
-                        "another process".to_owned()
-                    } else {
-                        holder
-                    },
-                });
-            }
-            Err(TryLockError::Error(source)) => return Err(io("lock the folder")(source).into()),
+        std::fs::create_dir_all(path).map_err(|source| TableError::Io {
+            action: "create the folder",
+            path: path.to_owned(),
+            source,
+        })?;
+        let (lock, broken_off) = FolderLock::take(path)?;
+        complete_publication(path)?;
+        for folder in [path.to_owned(), path.join("parts"), path.join("runs")] {
+            remove_leftovers(&folder)?;
         }
-        lock.set_len(0).map_err(io("write to the folder"))?;
-        write!(lock, "process {} on {}", std::process::id(), host_name())
-            .map_err(io("write to the folder"))?;
         Ok(Self {
             path: path.to_owned(),
-            _lock: lock,
+            lock,
+            broken_off,
         })
     }
 
@@ -71,71 +65,163 @@ impl ResultsFolder {
         &self.path
     }
 
-    /// What the folder holds of `study`.
+    /// The process that worked here before and did not come to its end, whose lock was taken over.
+    pub(super) fn broken_off(&self) -> Option<&LockHolder> {
+        self.broken_off.as_ref()
+    }
+
+    /// Lets everyone see how many rows are to be solved and how many were stored before.
+    pub(super) fn announce(&mut self, planned: u64, stored: u64) -> Result<(), TableError> {
+        self.lock.announce(planned, stored)
+    }
+
+    /// What the folder holds of `study`, or of the shard `shard` of it.
     ///
     /// # Errors
-    /// It holds a different study, or its manifest is damaged.
-    pub(super) fn find(&self, study: &Study, digest: &StudyDigest) -> Result<Found, PipelineError> {
+    /// It holds a different study, or a file of it is damaged.
+    pub(super) fn find(
+        &self,
+        study: &Study,
+        digest: &StudyDigest,
+        shard: Option<Shard>,
+    ) -> Result<Found, PipelineError> {
         let Some(manifest) = Manifest::read(&self.path)? else {
-            return Ok(Found::Unfinished);
+            if self.path.join(RESPONSES).exists() {
+                return Err(TableError::Damaged {
+                    path: self.path.join("manifest.json"),
+                    reason: format!(
+                        "it is missing beside {RESPONSES}; {}",
+                        repair_of(&self.path)
+                    ),
+                }
+                .into());
+            }
+            return Ok(Found::Nothing);
         };
-        let mut differences = digest.differences(&manifest.number_keys);
-        if manifest.patterns > u64::from(study.patterns) {
-            differences.push((
-                "study.patterns".to_owned(),
-                manifest.patterns.to_string(),
-                format!("{} (a total, which can grow only)", study.patterns),
-            ));
-        }
+        let differences = differences(&manifest, study, digest, shard);
         if !differences.is_empty() {
             return Err(PipelineError::DifferentStudy {
                 folder: self.path.clone(),
                 differences,
             });
         }
-        if manifest.state == RunState::Finished {
-            verify_tables(&self.path, &manifest)?;
+        if manifest.state == RunState::Running {
+            return Ok(Found::Unfinished(Box::new(manifest)));
         }
-        let complete =
-            manifest.state == RunState::Finished && manifest.patterns == u64::from(study.patterns);
-        Ok(if complete {
-            Found::Finished(Box::new(manifest))
-        } else {
-            Found::Unfinished
-        })
+        verify_tables(&self.path, &manifest)?;
+        Ok(Found::Finished(Box::new(manifest)))
     }
+}
+
+/// Whether a finished run is all that `study` asks for: rows, their order, and tables.
+pub(super) fn is_complete(manifest: &Manifest, study: &Study) -> bool {
+    let keys = manifest.scenarios.iter().map(ScenarioEntry::keys);
+    manifest.patterns == u64::from(study.patterns)
+        && keys.eq(study.scenarios())
+        && manifest.study["output"] == study.resolved()["output"]
+}
+
+/// Keys of the study that are not those of the folder and may not differ: `(key, there, here)`.
+pub(super) fn differences(
+    manifest: &Manifest,
+    study: &Study,
+    digest: &StudyDigest,
+    shard: Option<Shard>,
+) -> Vec<(String, String, String)> {
+    let mut differences = digest.differences(&manifest.number_keys);
+    differences.retain_mut(|(key, theirs, ours)| {
+        if !GROWING.contains(&key.as_str()) {
+            return true;
+        }
+        let gone = is_gone(theirs, ours);
+        ours.push_str(" (values can be added, none taken away)");
+        gone
+    });
+    let patterns = u64::from(study.patterns);
+    if manifest.patterns > patterns || (shard.is_some() && manifest.patterns != patterns) {
+        let rule = match shard {
+            None => "a total, which can only grow",
+            Some(_) => "fixed in a shard",
+        };
+        differences.push((
+            "study.patterns".to_owned(),
+            manifest.patterns.to_string(),
+            format!("{patterns} ({rule})"),
+        ));
+    }
+    if manifest.shard != shard {
+        let name = |shard: Option<Shard>| shard.map_or("all".to_owned(), |shard| shard.to_string());
+        differences.push(("--shard".to_owned(), name(manifest.shard), name(shard)));
+    }
+    differences
+}
+
+/// Whether a list, as JSON, lacks a value of another.
+fn is_gone(theirs: &str, ours: &str) -> bool {
+    let list = |text: &str| -> Option<Vec<Value>> { serde_json::from_str(text).ok() };
+    match (list(theirs), list(ours)) {
+        (Some(theirs), Some(ours)) => theirs.iter().any(|value| !ours.contains(value)),
+        _ => true,
+    }
+}
+
+/// The rows of a folder that are known by their digest beside its parts.
+pub(super) fn finished_rows(results: &Path, manifest: &Manifest) -> Vec<RowFile> {
+    let digest = manifest.tables.get(RESPONSES);
+    digest
+        .map(|digest| RowFile {
+            path: results.join(RESPONSES),
+            digest: digest.clone(),
+            from: 0,
+        })
+        .into_iter()
+        .collect()
 }
 
 /// Checks that the tables of a finished run are those that were written.
 ///
 /// # Errors
 /// A table is missing or has changed.
-pub(super) fn verify_tables(results: &Path, manifest: &Manifest) -> Result<(), TableError> {
-    let Some(name) = changed_tables(results, manifest)?.into_iter().next() else {
+pub(super) fn verify_tables(results: &Path, manifest: &Manifest) -> Result<(), PipelineError> {
+    let Some(name) = changed_tables(results, &manifest.tables)?
+        .into_iter()
+        .next()
+    else {
         return Ok(());
     };
+    if results.join("next").join("manifest.json").exists() {
+        return Err(PipelineError::Unfinished {
+            folder: results.to_owned(),
+        });
+    }
     let path = results.join(name);
-    let reason = if path.exists() {
-        "its content is not what was written; restore it, or remove the folder and run again"
+    let what = if path.exists() {
+        "its content is not what was written"
     } else {
-        "it is missing; restore it, or remove the folder and run again"
+        "it is missing"
     };
-    Err(TableError::Damaged {
-        path,
-        reason: reason.to_owned(),
-    })
+    let reason = format!("{what}; restore it, or {}", repair_of(results));
+    Err(TableError::Damaged { path, reason }.into())
 }
 
-/// Tables of a finished run that are missing or not as they were written.
+/// How to have the rows of damaged files solved again.
+fn repair_of(results: &Path) -> String {
+    format!(
+        "`blisk verify {} --repair` solves its rows again",
+        results.display()
+    )
+}
+
+/// Those of `tables`, with their digests, that are missing or not as they were written.
 ///
 /// # Errors
 /// A table cannot be read.
 pub(super) fn changed_tables(
     results: &Path,
-    manifest: &Manifest,
+    tables: &BTreeMap<String, String>,
 ) -> Result<Vec<String>, TableError> {
     let mut changed = Vec::new();
-    for (name, expected) in &manifest.tables {
+    for (name, expected) in tables {
         let path = results.join(name);
         match digest_file(&path) {
             Ok(found) if found == *expected => {}
@@ -153,15 +239,4 @@ pub(super) fn changed_tables(
         }
     }
     Ok(changed)
-}
-
-/// Name of this machine, for people; empty if it has none.
-pub(super) fn host_name() -> String {
-    std::fs::read_to_string("/proc/sys/kernel/hostname")
-        .ok()
-        .or_else(|| std::env::var("HOSTNAME").ok())
-        .or_else(|| std::env::var("COMPUTERNAME").ok())
-        .unwrap_or_default()
-        .trim()
-        .to_owned()
 }

@@ -5,7 +5,7 @@ use crate::model::cyclic::ring_free;
 use crate::model::sector::{ModelError, SectorModel, bundle, lumped, parametric};
 use crate::response::forced_response::ContactCondition;
 use crate::response::friction::{ContactOptions, Ring};
-use crate::response::mistuning::PatternSource;
+use crate::response::mistuning::{ContactSource, PatternSource};
 
 /// Loads and validates the sector model of `study`.
 ///
@@ -22,23 +22,36 @@ pub fn load_sector_model(study: &Study) -> Result<SectorModel, PipelineError> {
     Ok(model)
 }
 
-/// The patterns of `study` for a wheel of `sectors` blades.
+/// The patterns of `study` for wheels of `model`.
 ///
 /// # Errors
 /// The file of patterns does not fit to the wheel.
-pub fn pattern_source(study: &Study, sectors: usize) -> Result<PatternSource, StudyError> {
-    match &study.mistuning.source {
-        MistuningSource::Law(distribution) => Ok(PatternSource::Random {
+pub fn pattern_source(study: &Study, model: &SectorModel) -> Result<PatternSource, StudyError> {
+    let sectors = model.sectors;
+    let blades = match &study.mistuning.source {
+        MistuningSource::Law(distribution) => PatternSource::Random {
             seed: study.seed,
             count: study.patterns,
             sectors,
             distribution: *distribution,
-        }),
+        },
         MistuningSource::File { records, .. } => {
             let modes = study.mistuning.cantilever_mode_count.unwrap_or(0);
-            Ok(PatternSource::Table(records.for_wheel(sectors, modes)?))
+            PatternSource::Table(records.for_wheel(sectors, modes)?)
         }
+    };
+    if study.contact_variations.is_empty() {
+        return Ok(blades);
     }
+    Ok(PatternSource::WithContact {
+        blades: Box::new(blades),
+        contact: ContactSource {
+            seed: study.seed,
+            sectors,
+            pairs: model.contact_pairs.len(),
+            variations: study.contact_variations.clone(),
+        },
+    })
 }
 
 /// A refused option is a mistake of the study file, which has its line.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::results_folder::changed_tables;
+use super::results_folder::verify_tables;
 use super::{EngineSource, PipelineError, Study, StudyDigest, load_sector_model, pattern_source};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
@@ -37,7 +37,7 @@ impl StoredStudy {
     /// study file of the last run.
     ///
     /// # Errors
-    /// The folder holds no finished study, an input is missing or has changed since, or the study is
+    /// The folder holds no finished study, a table of it is damaged, an input is missing or has changed since, or the study is
     /// one of another version of the program.
     pub fn open(results: &Path, study_file: Option<&Path>) -> Result<Self, PipelineError> {
         let folder = results.to_owned();
@@ -47,8 +47,9 @@ impl StoredStudy {
         if manifest.state != RunState::Finished {
             return Err(PipelineError::Unfinished { folder });
         }
+        verify_tables(results, &manifest)?;
         let beside = study_file.map(Path::to_owned).or_else(|| {
-            let last = RunRecord::last(results)?;
+            let last = RunRecord::all(results).into_iter().next()?;
             (!last.study_file.as_os_str().is_empty()).then_some(last.study_file)
         });
         let beside = beside.unwrap_or_else(|| results.join("manifest.json"));
@@ -87,14 +88,6 @@ impl StoredStudy {
         Self::open(results, Some(study_file))
     }
 
-    /// Tables whose content is not what the run wrote.
-    ///
-    /// # Errors
-    /// A table cannot be read.
-    pub fn changed_tables(&self) -> Result<Vec<String>, TableError> {
-        changed_tables(&self.folder, &self.manifest)
-    }
-
     /// Sector model and patterns, from the inputs.
     ///
     /// # Errors
@@ -102,7 +95,7 @@ impl StoredStudy {
     pub fn model(&self) -> Result<StoredModel, PipelineError> {
         let sector = load_sector_model(&self.study)?;
         Ok(StoredModel {
-            patterns: pattern_source(&self.study, sector.sectors)?,
+            patterns: pattern_source(&self.study, &sector)?,
             sector,
         })
     }
@@ -188,7 +181,11 @@ impl StoredModel {
 }
 
 /// The resolved study of a manifest as if it were the file `beside`.
-fn study_of(resolved: &Value, beside: &Path, results: &Path) -> Result<Study, PipelineError> {
+pub(super) fn study_of(
+    resolved: &Value,
+    beside: &Path,
+    results: &Path,
+) -> Result<Study, PipelineError> {
     let damaged = |reason: String| TableError::Damaged {
         path: results.join("manifest.json"),
         reason,

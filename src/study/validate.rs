@@ -6,6 +6,7 @@ use super::raw::{
     RawDamping, RawExcitation, RawHead, RawLoad, RawModel, RawModelKind, RawStudy, RawSweep,
 };
 use super::source_map::SourceMap;
+use super::validate_contact::contact_variations;
 use super::validate_mistuning::mistuning;
 use super::validate_solver::solver;
 use super::{Finding, ModelSource, OutputOptions, Problem, Study, StudyError};
@@ -136,7 +137,7 @@ impl Study {
 }
 
 /// None where a study cannot even be put together; the findings then say why.
-fn resolve(check: &mut Check, path: &Path, raw: RawStudy) -> Result<Option<Study>, StudyError> {
+fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<Study>, StudyError> {
     match raw.schema {
         Some(SCHEMA) => {}
         Some(_) => check.refuse("schema", "1"),
@@ -151,6 +152,10 @@ fn resolve(check: &mut Check, path: &Path, raw: RawStudy) -> Result<Option<Study
     let sweep = raw.sweep.unwrap_or_default();
     let contacts = contacts(check, &sweep);
     let solver = solver(check, raw.solver);
+    let variation = raw
+        .contact
+        .as_mut()
+        .map(|raw| std::mem::take(&mut raw.variation));
     let contact = raw.contact.map(|raw| ContactOptions {
         law: raw.law.unwrap_or(ContactLaw::Simplified3d),
         friction_coefficient: check.required(
@@ -177,6 +182,10 @@ fn resolve(check: &mut Check, path: &Path, raw: RawStudy) -> Result<Option<Study
             );
         }
     }
+    let contact_variations = match (&variation, &contact) {
+        (Some(raw), Some(contact)) => contact_variations(check, raw, contact),
+        _ => Vec::new(),
+    };
     let mistuning = mistuning(check, path, raw.mistuning, &sweep, head.patterns)?;
     let (Some(model), Some(damping), Some(mistuning)) = (model, damping, mistuning) else {
         return Ok(None);
@@ -190,6 +199,7 @@ fn resolve(check: &mut Check, path: &Path, raw: RawStudy) -> Result<Option<Study
         model,
         reduction: raw.reduction,
         contact,
+        contact_variations,
         damping,
         engine_orders,
         amplitude_n,
@@ -289,7 +299,7 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
         ("reduction.slide_modes", options.slide_modes, 1),
         (
             "reduction.craig_bampton_modes",
-            Some(options.craig_bampton_modes),
+            options.craig_bampton_modes,
             1,
         ),
         (

@@ -71,7 +71,6 @@ fn verify_in(
     progress: &dyn Progress,
 ) -> Result<VerificationReport, PipelineError> {
     let seed = request.seed.unwrap_or(stored.manifest.seed);
-    let changed_tables = stored.changed_tables()?;
     let rows = stored.row_count()?;
     let drawn = stored.rows_at(&draw(rows, request.sample, seed))?;
     progress.stage(Stage::LoadModel);
@@ -99,7 +98,6 @@ fn verify_in(
         study_digest: stored.manifest.study_digest.clone(),
         seed,
         rows,
-        changed_tables,
         reference_coordinates: full.size(),
         reference_samples_per_period: full.samples_per_period(),
         stated_error,

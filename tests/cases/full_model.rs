@@ -30,7 +30,7 @@ impl Full {
         Self {
             wheel,
             model: FullModel::build(&study, &sector, &FullSettings::default()).unwrap(),
-            patterns: pattern_source(&study, sector.sectors).unwrap(),
+            patterns: pattern_source(&study, &sector).unwrap(),
             study,
         }
     }

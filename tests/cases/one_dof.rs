@@ -3,7 +3,7 @@
 use blisk::population::monte_carlo::ResponseRow;
 use blisk::population::statistics::SampleStatistics;
 use blisk::response::forced_response::ContactCondition;
-use blisk::response::mistuning::{Deviations, Pattern};
+use blisk::response::mistuning::{ContactFactors, Deviations, Pattern};
 use blisk::study::Study;
 use rayon::prelude::*;
 
@@ -38,6 +38,7 @@ pub fn given_pattern() -> Pattern {
     Pattern {
         id: 0,
         deviations: Deviations::PerBlade((0..24).map(|n| deviation(f64::from(n))).collect()),
+        contact: ContactFactors::default(),
     }
 }
 

@@ -94,6 +94,12 @@ impl Wheel {
             harmonics,
             ..
         } = self;
+        // One Craig-Bampton model for all bases of a table.
+        let modes = if reduction.contains("craig_bampton_modes") {
+            ""
+        } else {
+            "craig_bampton_modes = 25"
+        };
         let text = format!(
             r#"schema = 1
 study = {{ name = "reduction-error", seed = 20240917, patterns = 10 }}
@@ -106,6 +112,7 @@ sweep = {{ normal_load_n = {loads:?}, standard_deviation = [{STANDARD_DEVIATION}
 {model}
 
 [reduction]
+{modes}
 {reduction}
 
 [contact]

@@ -89,7 +89,7 @@ impl Case {
     pub fn new(study: Study) -> Self {
         let model = load_sector_model(&study).unwrap();
         Self {
-            patterns: pattern_source(&study, model.sectors).unwrap(),
+            patterns: pattern_source(&study, &model).unwrap(),
             engine: ReducedEngineSource.build(&study, &model, None).unwrap(),
             study,
         }

@@ -4,5 +4,8 @@ mod bad_studies;
 mod bad_study_table;
 mod blisk;
 mod commands;
+mod faults;
+mod interruption;
 mod runs;
+mod statistics;
 mod verification;

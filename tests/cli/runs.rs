@@ -15,6 +15,8 @@ fn run_writes_tables_and_summary_and_a_second_run_solves_nothing() {
     for file in [
         "responses.parquet",
         "scenarios.parquet",
+        "percentiles.parquet",
+        "distribution.parquet",
         "patterns.parquet",
         "manifest.json",
         "runs/1.json",
@@ -76,6 +78,8 @@ fn a_longer_study_continues_and_a_different_one_exits_with_9() {
     for file in [
         "responses.parquet",
         "scenarios.parquet",
+        "percentiles.parquet",
+        "distribution.parquet",
         "patterns.parquet",
         "manifest.json",
     ] {
@@ -197,6 +201,8 @@ fn tables_are_byte_identical_on_1_2_and_8_threads() {
         let files = [
             "responses.parquet",
             "scenarios.parquet",
+            "percentiles.parquet",
+            "distribution.parquet",
             "patterns.parquet",
             "manifest.json",
         ];

@@ -5,6 +5,7 @@
 mod bounds;
 mod calculix_sector;
 mod contact;
+mod contact_variation;
 mod continuation;
 mod error_columns;
 mod extremes;

@@ -10,7 +10,9 @@ use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{ContactCondition, SolverOptions};
 use blisk::response::friction::{ContactLaw, Ring};
 use blisk::response::harmonic_balance::{Damping, Status};
-use blisk::response::mistuning::{Deviations, Pattern, Projection, StructuralModes, WheelBasis};
+use blisk::response::mistuning::{
+    ContactFactors, Deviations, Pattern, Projection, StructuralModes, WheelBasis,
+};
 
 use super::contact::random::Random;
 use super::sector_sources::lumped::{lumped24, one_dof, wheel};
@@ -272,6 +274,7 @@ fn per_mode(modes: &[u32], deviation: impl Fn(usize, u32) -> f64) -> Pattern {
             modes: modes.to_vec(),
             values: values.map(|(blade, mode)| deviation(blade, mode)).collect(),
         },
+        contact: ContactFactors::default(),
     }
 }
 

@@ -8,7 +8,7 @@ use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{AmplitudeMeasure, ContactCondition, SolverOptions};
 use blisk::response::friction::{ContactLaw, Ring};
 use blisk::response::harmonic_balance::{Damping, HarmonicTransform, Status};
-use blisk::response::mistuning::{Deviations, Pattern, Projection};
+use blisk::response::mistuning::{ContactFactors, Deviations, PairFactors, Pattern, Projection};
 use blisk::response::reference::{ReferenceSettings, ReferenceSolver, reference_peak};
 
 use super::contact::random::Random;
@@ -181,6 +181,31 @@ fn two_codes_agree_on_slipping_wheels_under_every_damping() {
 }
 
 #[test]
+fn two_codes_agree_on_pairs_that_differ() {
+    let case = Case::wheel8(
+        Damping::StructuralLossFactor(0.002),
+        &[0, 1, 2],
+        Projection::Exact,
+    );
+    let count = 8 * case.model.contact.weights.len();
+    let draws = Random(23).vector(4 * count, 0.3);
+    let factors = draws.chunks(4).map(|draw| PairFactors {
+        friction_coefficient: draw[0].exp(),
+        tangential_stiffness: draw[1].exp(),
+        normal_stiffness: draw[2].exp(),
+        normal_load: draw[3].exp(),
+    });
+    let pattern = Pattern {
+        contact: ContactFactors::new(factors.collect()),
+        ..pattern(&deviations(8))
+    };
+    let (slipping, _) = case.assert_same(full(300.0), &pattern, &[611.0, 614.0, 617.0]);
+    assert!(slipping > 0.2, "{slipping}");
+    case.assert_same(ContactCondition::Stuck, &pattern, &[614.0]);
+    case.assert_same(ContactCondition::Slide, &pattern, &[612.0]);
+}
+
+#[test]
 fn two_codes_agree_on_the_friction_circle() {
     let case = Case::wheel8_under(
         ContactLaw::Coulomb3d,
@@ -217,6 +242,7 @@ fn two_codes_agree_on_cantilever_modes_linear_limits_and_time_maxima() {
             modes: vec![0, 1, 2],
             values: Random(17).vector(24, 0.05),
         },
+        contact: ContactFactors::default(),
     };
     for pattern in [pattern(&deviations(8)), per_mode] {
         for contact in [

@@ -252,3 +252,88 @@ fn verified(stored: &StoredStudy, rows: usize) {
             .is_some_and(largest)
     );
 }
+
+/// The sector of the battery, nothing reduced, with the default settings but for those given.
+fn light_study(folder: &Path, name: &str, load: f64, solver: &str) -> Study {
+    let text = format!(
+        r#"schema = 1
+study = {{ name = "{name}", seed = 3, patterns = 2 }}
+excitation = {{ engine_orders = [1], amplitude_n = 10.0 }}
+damping = {{ structural_loss_factor = 0.002 }}
+mistuning = {{ distribution = {{ kind = "normal" }} }}
+sweep = {{ normal_load_n = [{load}], standard_deviation = [0.03] }}
+model = {{ source = "bundle", bundle = {{ path = "spatial" }} }}
+solver = {{ {solver} }}
+
+[contact]
+law = "simplified_3d"
+friction_coefficient = 0.3
+tangential_stiffness_n_per_m = 8.0e5
+normal_stiffness_n_per_m = 1.6e6
+"#
+    );
+    Study::parse(&folder.join("study.toml"), &text).unwrap()
+}
+
+/// Under 35 N the tuned wheel has no peak with 0, 1, 2 and 4, the set that the largest effect asks for:
+/// another is chosen, so that its rows have an amplification factor.
+#[test]
+fn a_set_without_a_tuned_peak_is_not_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    bundle::write(&spatial_sector(5), &folder.join("spatial")).unwrap();
+    let rows_of = |name: &str, solver: &str| {
+        let study = light_study(folder, name, 35.0, solver);
+        solved(&study, &folder.join(name), 1).0
+    };
+    for row in rows_of("fixed", "harmonics = [0, 1, 2, 4]") {
+        assert_eq!(row.status, Status::Ok);
+        assert_eq!(row.amplification_factor, None);
+    }
+    for row in rows_of("automatic", "harmonics = \"auto\"") {
+        println!("{} {:?}", row.harmonics, row.amplification_factor);
+        assert_eq!(row.status, Status::Ok);
+        assert!(row.harmonics.starts_with("0-1-2"), "{}", row.harmonics);
+        assert!(row.amplification_factor.is_some());
+    }
+}
+
+/// Default settings on the reference wheels where every pair separates, against the full contact model
+/// with the harmonics of the row.
+#[test]
+#[ignore = "minutes: `cargo test --release --test physics light_loads -- --ignored --nocapture`"]
+fn light_loads_of_the_reference_wheels_agree_with_the_full_contact_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    for (wheel, kt, loads) in [("wheel24", 1e8, "40, 80"), ("wheel8", 4e8, "100")] {
+        let path = data.join(wheel);
+        let text = format!(
+            r#"schema = 1
+study = {{ name = "{wheel}", seed = 1 }}
+excitation = {{ engine_orders = [3], amplitude_n = 1.0 }}
+damping = {{ structural_loss_factor = 0.002 }}
+mistuning = {{ file = "{0}/reference/patterns.csv" }}
+sweep = {{ normal_load_n = [{loads}] }}
+model = {{ source = "bundle", bundle = {{ path = "{0}" }} }}
+
+[contact]
+law = "simplified_3d"
+friction_coefficient = 0.3
+tangential_stiffness_n_per_m = {kt:e}
+normal_stiffness_n_per_m = {1:e}
+"#,
+            path.display(),
+            2.0 * kt
+        );
+        let study = Study::parse(&folder.join(format!("{wheel}.toml")), &text).unwrap();
+        let results = folder.join(wheel);
+        let (rows, _) = solved(&study, &results, 2);
+        let stored =
+            StoredStudy::open(&results, Some(&folder.join(format!("{wheel}.toml")))).unwrap();
+        for row in rows {
+            assert!(row.separated_fraction > Some(0.5));
+            replayed(&stored, &row);
+        }
+    }
+}

@@ -14,7 +14,9 @@ use blisk::response::forced_response::{
 };
 use blisk::response::friction::{ContactLaw, PairParameters, Ring};
 use blisk::response::harmonic_balance::Damping;
-use blisk::response::mistuning::{Deviations, Pattern, Projection, StructuralModes, WheelBasis};
+use blisk::response::mistuning::{
+    ContactFactors, Deviations, Pattern, Projection, StructuralModes, WheelBasis,
+};
 
 use super::contact::random::Random;
 use super::sector_sources::lumped::lumped24;
@@ -149,6 +151,7 @@ impl Wheel {
     pub fn tuned(&self, harmonics: &[u32]) -> Excited {
         Excited::tuned(
             &self.model,
+            &ContactFactors::default(),
             ENGINE_ORDER,
             self.amplitude_n,
             self.damping,
@@ -163,7 +166,13 @@ impl Wheel {
         let change = basis.blade_stiffness_change(deviations);
         let modes = StructuralModes::of_wheel(&basis, &change).unwrap();
         let force = wheel_force(&basis, &modes, ENGINE_ORDER, self.amplitude_n);
-        let wheel = WheelModes::mistuned(modes, &self.model, self.damping, LimitsWanted::default());
+        let wheel = WheelModes::mistuned(
+            modes,
+            &self.model,
+            &ContactFactors::default(),
+            self.damping,
+            LimitsWanted::default(),
+        );
         Excited::wheel(&wheel, force, harmonics)
     }
 
@@ -190,6 +199,7 @@ pub fn pattern(deviations: &[f64]) -> Pattern {
     Pattern {
         id: 0,
         deviations: Deviations::PerBlade(deviations.to_vec()),
+        contact: ContactFactors::default(),
     }
 }
 

@@ -16,10 +16,10 @@ import pandas
 import polars
 import pyarrow.parquet
 
-INT32 = {"scenario", "engine_order", "pattern", "peak_blade", "planned", "ok", "failed", "blade", "mode", "beyond_tolerance"}
+INT32 = {"scenario", "engine_order", "pattern", "peak_blade", "planned", "ok", "failed", "blade", "mode", "beyond_tolerance", "rank_lower", "rank_upper"}
 INT64 = {"nonlinear_solves", "newton_iterations", "retries"}
-BOOLEAN = {"peak_bracketed", "error_within_tolerance"}
-STRING = {"contact", "status", "tuned_status", "harmonics", "shortcut", "basis"}
+BOOLEAN = {"peak_bracketed", "error_within_tolerance", "estimable"}
+STRING = {"contact", "status", "tuned_status", "harmonics", "shortcut", "basis", "quantity"}
 
 # Name of each type in pyarrow, Polars, DuckDB and (without nulls) pandas.
 TYPES = {
@@ -30,7 +30,10 @@ TYPES = {
     "String": ({"string", "large_string", "string_view"}, polars.String, "VARCHAR", None),
 }
 
-EXPECTED_FILES = {"responses.parquet", "scenarios.parquet", "patterns.parquet", "curve.parquet"}
+EXPECTED_FILES = {
+    f"{name}.parquet"
+    for name in ("responses", "scenarios", "percentiles", "distribution", "patterns", "curve")
+}
 
 
 def kind_of(column):

@@ -21,11 +21,14 @@ pub struct MockSource {
     pub solved: std::sync::Arc<AtomicU64>,
     /// Pattern in which it panics.
     pub panics_in: Option<u32>,
+    /// What its rows are made from.
+    pub model: String,
 }
 
 struct MockEngine {
     solved: std::sync::Arc<AtomicU64>,
     panics_in: Option<u32>,
+    model: String,
 }
 
 impl EngineSource for MockSource {
@@ -38,6 +41,7 @@ impl EngineSource for MockSource {
         Ok(Box::new(MockEngine {
             solved: self.solved.clone(),
             panics_in: self.panics_in,
+            model: self.model.clone(),
         }))
     }
 }
@@ -53,6 +57,10 @@ impl Engine for MockEngine {
 
     fn chosen_settings(&self) -> Value {
         json!({ "harmonics": [1] })
+    }
+
+    fn rows_made_from(&self, _scenario: &Scenario) -> String {
+        self.model.clone()
     }
 
     fn tuned(&self, scenario: &Scenario) -> TunedReference {
@@ -89,6 +97,7 @@ impl Engine for MockEngine {
                     scenario: scenario.index,
                     pattern: pattern.id,
                     status: if good { Status::Ok } else { Status::Stagnated },
+                    contact_factors: None,
                     peak_amplitude_m: amplitude.filter(|_| good),
                     peak_frequency_hz: good.then_some(500.0),
                     peak_blade: good.then_some(pattern.id % 24),
@@ -154,7 +163,12 @@ impl Engine for MockEngine {
 
 /// A study of the lumped chain of blades with two engine orders and two standard deviations.
 pub fn study(patterns: u32, edit: impl Fn(String) -> String) -> Study {
-    let text = format!(
+    Study::parse(Path::new("chain.toml"), &edit(study_text(patterns))).expect("a valid study")
+}
+
+/// Its file.
+pub fn study_text(patterns: u32) -> String {
+    format!(
         "schema = 1
 [study]
 name = \"chain\"
@@ -177,6 +191,5 @@ distribution = {{ kind = \"normal\" }}
 normal_load_n = [\"free\"]
 standard_deviation = [0.03, 0.01]
 "
-    );
-    Study::parse(Path::new("chain.toml"), &edit(text)).expect("a valid study")
+    )
 }

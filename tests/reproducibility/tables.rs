@@ -41,6 +41,7 @@ fn row(pattern: u32, scenario: usize) -> ResponseRow {
         scenario,
         pattern,
         status,
+        contact_factors: None,
         peak_amplitude_m: good.then_some(1.0 / f64::from(pattern + 3)),
         peak_frequency_hz: good.then_some(1e3),
         peak_blade: good.then_some(23),
@@ -73,7 +74,7 @@ fn rows_come_back_as_they_were_written_over_several_row_groups() {
             .flat_map(|pattern| [row(pattern, 0), row(pattern, 1)])
             .collect();
         let mut writer =
-            ResponseWriter::create(&path, &scenarios(), &header(compression)).expect("create");
+            ResponseWriter::create(&path, &scenarios(), &header(compression), &[]).expect("create");
         // Batches of odd sizes must not show in the file.
         for batch in rows.chunks(9_973) {
             writer.write(batch.to_vec()).expect("write");
@@ -102,8 +103,8 @@ fn rows_come_back_as_they_were_written_over_several_row_groups() {
 fn an_unfinished_table_leaves_nothing_behind() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("responses.parquet");
-    let mut writer =
-        ResponseWriter::create(&path, &scenarios(), &header(Compression::Zstd)).expect("create");
+    let mut writer = ResponseWriter::create(&path, &scenarios(), &header(Compression::Zstd), &[])
+        .expect("create");
     writer.write([row(0, 0)]).expect("write");
     drop(writer);
     assert_eq!(std::fs::read_dir(folder.path()).expect("read").count(), 0);
@@ -117,7 +118,8 @@ fn columns_are_the_documented_ones_in_order() {
                       peak_bracketed, harmonics, nonlinear_solves, newton_iterations, residual, \
                       slipping_fraction, separated_fraction, shortcut, retries, mean_friction_circumferential_n, \
                       mean_friction_axial_n, \
-                       sampling_error, harmonic_error, stated_error, error_within_tolerance, basis";
+                       sampling_error, harmonic_error, stated_error, error_within_tolerance, basis, \
+                      friction_coefficient_factor, tangential_stiffness_factor, normal_stiffness_factor, normal_load_factor";
     assert_eq!(names.join(", "), documented);
 }
 

@@ -1,5 +1,10 @@
-//! Statistics: random patterns, order statistics with their intervals, accounting.
+//! Statistics: random patterns, order statistics with their intervals, accounting, comparisons, tails.
 
+mod comparison;
+mod coverage;
+mod laws;
+mod main_effects;
 mod order_statistics;
 mod patterns;
 mod summary;
+mod tail_fits;

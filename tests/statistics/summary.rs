@@ -32,6 +32,7 @@ fn record(
         let good = i >= failed;
         let amplitude = scale * (1.0 + f64::from(i) / 1000.0);
         rows.add(&ResponseRow {
+            contact_factors: None,
             scenario: index,
             pattern: i,
             status: if good { Status::Ok } else { Status::Stagnated },
@@ -191,6 +192,7 @@ fn a_basis_less_accurate_than_asked_for_is_a_warning_and_an_accurate_one_is_not(
             tuned_peak_error: Some(error),
             contact_displacement_error: None,
             craig_bampton_reach: None,
+            craig_bampton_error: None,
             wanted_error: 0.005,
         };
         let context = SummaryContext {
@@ -218,6 +220,7 @@ fn a_basis_that_cannot_follow_the_contact_and_a_short_reach_of_modes_are_warning
             tuned_peak_error: Some(0.0),
             contact_displacement_error: Some(contact),
             craig_bampton_reach: Some(reach),
+            craig_bampton_error: None,
             wanted_error,
         };
         basis.warnings()

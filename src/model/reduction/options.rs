@@ -26,11 +26,18 @@ pub struct ReductionOptions {
     pub stick_modes: Option<usize>,
     /// Number of slide modes per nodal diameter (`stick_slide` only); fixes the size instead of `error`.
     pub slide_modes: Option<usize>,
-    /// Fixed-interface modes of the Craig-Bampton model per nodal diameter. Default 25.
-    pub craig_bampton_modes: usize,
+    /// Fixed-interface modes of the Craig-Bampton model per nodal diameter. Absent: so many, from
+    /// [`Self::FIRST_CRAIG_BAMPTON_MODES`] on, that more of them change no tuned peak by more than
+    /// [`Self::error`].
+    pub craig_bampton_modes: Option<usize>,
     /// Sensitivity vectors to blade stiffness per nodal diameter. Absent: 2 where a standard
     /// deviation of the study reaches 5 %, otherwise none.
     pub sensitivity_vectors: Option<usize>,
+}
+
+impl ReductionOptions {
+    /// Fixed-interface modes that are tried first.
+    pub const FIRST_CRAIG_BAMPTON_MODES: usize = 25;
 }
 
 impl Default for ReductionOptions {
@@ -40,7 +47,7 @@ impl Default for ReductionOptions {
             error: 1e-3,
             stick_modes: None,
             slide_modes: None,
-            craig_bampton_modes: 25,
+            craig_bampton_modes: None,
             sensitivity_vectors: None,
         }
     }

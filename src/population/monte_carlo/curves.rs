@@ -31,7 +31,8 @@ impl RowSolver {
                 self.wheel_excited(&modes, &wheel, engine_order, harmonics)
             }
         };
-        let mut solver = PointSolver::new(&excited, contact, self.points(engine_order, contact));
+        let points = self.points_of(pattern, engine_order, contact);
+        let mut solver = PointSolver::new(&excited, contact, &points);
         let sectors = self.basis().model().sectors;
         Ok(frequencies_hz
             .iter()
@@ -71,10 +72,10 @@ impl RowSolver {
         let (Some(&first), Some(&last)) = (frequencies_hz.first(), frequencies_hz.last()) else {
             return Err(Status::SweepIncomplete);
         };
+        let points = self.points_of(pattern, engine_order, contact);
         let sectors = self.basis().model().sectors;
         Ok([(first, last), (last, first)].map(|(start, stop)| {
-            let mut solver =
-                PointSolver::new(&excited, contact, self.points(engine_order, contact));
+            let mut solver = PointSolver::new(&excited, contact, &points);
             let mut trace = solver.trace(start, stop, frequencies_hz);
             for point in &mut trace.points {
                 if let [one] = point.point.amplitudes_m[..] {

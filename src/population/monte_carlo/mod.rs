@@ -11,10 +11,10 @@ mod scenario;
 mod sink;
 mod time_domain;
 
-pub use blocks::{PatternBlock, block_size, plan_blocks};
+pub use blocks::{PatternBlock, StoredRows, block_size, plan_blocks};
 pub use curves::CurveResult;
 pub use harmonic_choice::{ErrorTolerance, HarmonicChoice, ScenarioError, stated_error};
-pub use parallel::solve_blocks;
+pub use parallel::{Interruption, solve_blocks};
 pub use row::{ResponseRow, TunedReference};
 pub use row_solver::{RowSettings, RowSolver, amplification_factor, harmonics_name};
 pub use scenario::Scenario;

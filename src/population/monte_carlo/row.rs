@@ -2,6 +2,7 @@
 
 use crate::response::forced_response::ErrorEstimate;
 use crate::response::harmonic_balance::Status;
+use crate::response::mistuning::PairFactors;
 
 /// Result of one pattern under one scenario. Values of a failed row are `None`.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,6 +13,8 @@ pub struct ResponseRow {
     pub pattern: u32,
     /// How the solution ended.
     pub status: Status,
+    /// Means of the factors on its contact parameters; none where the contact does not vary.
+    pub contact_factors: Option<PairFactors>,
     /// Largest amplitude over blades and frequency, m.
     pub peak_amplitude_m: Option<f64>,
     /// Its frequency, Hz.

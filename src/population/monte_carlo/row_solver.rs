@@ -1,5 +1,6 @@
 //! One (scenario, pattern) -> one row, and the tuned reference of a scenario.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::beyond::Beyond;
@@ -16,7 +17,9 @@ use crate::response::forced_response::{
 };
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{Damping, Status, TransformError};
-use crate::response::mistuning::{Deviations, Pattern, Projection, StructuralModes, WheelBasis};
+use crate::response::mistuning::{
+    ContactFactors, Deviations, Pattern, Projection, StructuralModes, WheelBasis,
+};
 
 /// Tolerance of the sampling error, unless that of the peak is larger.
 const SAMPLING_TOLERANCE: f64 = 1e-3;
@@ -222,6 +225,20 @@ impl RowSolver {
         }
     }
 
+    /// The settings of a point of the wheel with `pattern`; none means the tuned wheel.
+    pub(super) fn points_of<'a>(
+        &'a self,
+        pattern: impl Into<Option<&'a Pattern>>,
+        engine_order: u32,
+        contact: ContactCondition,
+    ) -> Cow<'a, PointSettings> {
+        let points = self.points(engine_order, contact);
+        match pattern.into().map(|pattern| &pattern.contact) {
+            Some(factors) if !factors.is_nominal() => Cow::Owned(points.with_factors(factors)),
+            _ => Cow::Borrowed(points),
+        }
+    }
+
     /// Errors that the rows of a scenario take over from it; a linear limit has no harmonics.
     fn scenario_error(&self, scenario: &Scenario) -> ScenarioError {
         let choice = self.chosen(scenario.engine_order, scenario.contact);
@@ -250,8 +267,20 @@ impl RowSolver {
         contact: ContactCondition,
         harmonics: &[u32],
     ) -> Excited {
+        self.tuned_waves_with(&ContactFactors::default(), engine_order, contact, harmonics)
+    }
+
+    /// The tuned wheel with the contact of every sector multiplied by `factors`.
+    fn tuned_waves_with(
+        &self,
+        factors: &ContactFactors,
+        engine_order: u32,
+        contact: ContactCondition,
+        harmonics: &[u32],
+    ) -> Excited {
         Excited::tuned(
             self.basis.model(),
+            factors,
             engine_order,
             self.settings.amplitude_n,
             self.settings.damping,
@@ -284,6 +313,7 @@ impl RowSolver {
         let wheel = Wheel::mistuned(
             modes.clone(),
             self.basis.model(),
+            &pattern.contact,
             self.settings.damping,
             wanted,
         );
@@ -297,7 +327,7 @@ impl RowSolver {
             .entries()
             .iter()
             .all(|&(_, _, deviation)| deviation > -1.0 && deviation.is_finite());
-        if !physical {
+        if !(physical && pattern.contact.are_possible()) {
             return None;
         }
         match (&pattern.deviations, self.settings.projection) {
@@ -328,7 +358,20 @@ impl RowSolver {
             FrequencyBand::Auto => {
                 let waves = self.tuned_excited(scenario.engine_order, scenario.contact);
                 let span = tuned_span(&waves, scenario.contact, tuned_hz);
-                let span = span.ok_or(Status::NotBracketed)?;
+                let mut span = span.ok_or(Status::NotBracketed)?;
+                if let Some(means) = pattern.contact.means() {
+                    // Other contact springs move the resonances of all blades alike.
+                    let pairs = self.basis.model().contact.weights.len();
+                    let varied = self.tuned_waves_with(
+                        &ContactFactors::new(vec![means; pairs]),
+                        scenario.engine_order,
+                        scenario.contact,
+                        &[1],
+                    );
+                    let own = tuned_span(&varied, scenario.contact, None);
+                    let own = own.ok_or(Status::NotBracketed)?;
+                    span = (span.0.min(own.0), span.1.max(own.1));
+                }
                 mistuned_window(span, pattern.largest_deviation(), band)
             }
             FrequencyBand::Fixed { .. } => Window {
@@ -348,19 +391,19 @@ impl RowSolver {
     ) -> Result<(Peak, Option<ErrorEstimate>), Status> {
         let window = self.window(pattern, scenario, tuned.frequency_hz)?;
         let engine_order = scenario.engine_order;
-        let points = self.points(engine_order, scenario.contact);
+        let points = self.points_of(pattern, engine_order, scenario.contact);
         let excited = self.wheel_excited(modes, wheel, engine_order, points.harmonics());
         let found = peak(
             &excited,
             scenario.contact,
-            points,
+            &points,
             window,
             self.settings.solver.peak_tolerance,
         );
         let errors = found.point.as_ref().and_then(|point| {
             let enlarged =
                 self.wheel_excited(modes, wheel, engine_order, points.errors().harmonics());
-            estimate_errors(&excited, scenario.contact, points, point, &enlarged.blocks)
+            estimate_errors(&excited, scenario.contact, &points, point, &enlarged.blocks)
         });
         Ok((found, errors))
     }
@@ -388,6 +431,7 @@ impl RowSolver {
             scenario: scenario.index,
             pattern: pattern.id,
             status,
+            contact_factors: pattern.contact.means(),
             peak_amplitude_m: amplitude,
             peak_frequency_hz: good.map(|(_, point)| point.frequency_hz),
             peak_blade: good.map(|(found, _)| found.blade as u32),

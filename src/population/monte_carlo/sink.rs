@@ -1,43 +1,44 @@
-//! Where rows go: the driver hands over blocks of finished rows and knows no file format.
+//! Where rows go: the driver hands over finished rows and knows no file format.
 
-use std::collections::BTreeMap;
 use std::convert::Infallible;
 
-use super::ResponseRow;
+use super::{PatternBlock, ResponseRow};
 
 /// Receiver of finished rows.
 pub trait RowSink {
     /// What can go wrong while rows are received.
     type Error;
 
-    /// Receives every row of a block of patterns, ordered by pattern, then scenario.
+    /// Receives rows of `block`, ordered by pattern, then scenario: those of all its patterns, or of
+    /// some where the solution was interrupted.
     ///
-    /// Each block arrives once; blocks may arrive in any order.
+    /// Blocks may arrive in any order.
     ///
     /// # Errors
     /// The rows could not be kept.
-    fn block(&mut self, block: usize, rows: Vec<ResponseRow>) -> Result<(), Self::Error>;
+    fn rows(&mut self, block: &PatternBlock, rows: Vec<ResponseRow>) -> Result<(), Self::Error>;
 }
 
 /// Keeps all rows in memory.
 #[derive(Debug, Default)]
 pub struct MemorySink {
-    blocks: BTreeMap<usize, Vec<ResponseRow>>,
+    rows: Vec<ResponseRow>,
 }
 
 impl MemorySink {
-    /// All rows in the order of the blocks.
+    /// All rows, ordered by pattern, then scenario.
     #[must_use]
-    pub fn into_rows(self) -> Vec<ResponseRow> {
-        self.blocks.into_values().flatten().collect()
+    pub fn into_rows(mut self) -> Vec<ResponseRow> {
+        self.rows.sort_by_key(|row| (row.pattern, row.scenario));
+        self.rows
     }
 }
 
 impl RowSink for MemorySink {
     type Error = Infallible;
 
-    fn block(&mut self, block: usize, rows: Vec<ResponseRow>) -> Result<(), Infallible> {
-        self.blocks.insert(block, rows);
+    fn rows(&mut self, _block: &PatternBlock, rows: Vec<ResponseRow>) -> Result<(), Infallible> {
+        self.rows.extend(rows);
         Ok(())
     }
 }

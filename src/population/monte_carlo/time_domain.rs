@@ -42,6 +42,7 @@ impl RowSolver {
                 normal_load_n,
                 ..sector
             },
+            factors: &pattern.contact,
             harmonics: solver
                 .points(scenario.engine_order, scenario.contact)
                 .harmonics(),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::proportion_upper_bound;
 use crate::response::harmonic_balance::Status;
 
 /// Rows by status; `planned = ok + failed` by construction.
@@ -54,6 +55,13 @@ impl Accounting {
         self.planned() - self.ok()
     }
 
+    /// Upper bound on the share of failed rows in the population, one-sided 95 %, exact (Clopper &
+    /// Pearson 1934); none without rows.
+    #[must_use]
+    pub fn failed_share_upper_bound(&self) -> Option<f64> {
+        (self.planned() > 0).then(|| proportion_upper_bound(self.failed(), self.planned()))
+    }
+
     /// Counts by name of the status, those that are not zero.
     #[must_use]
     pub fn by_status(&self) -> BTreeMap<&'static str, u64> {
@@ -79,11 +87,12 @@ impl FromIterator<Status> for Accounting {
 impl Serialize for Accounting {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         use serde::ser::SerializeStruct;
-        let mut fields = serializer.serialize_struct("Accounting", 4)?;
+        let mut fields = serializer.serialize_struct("Accounting", 5)?;
         fields.serialize_field("planned", &self.planned())?;
         fields.serialize_field("ok", &self.ok())?;
         fields.serialize_field("failed", &self.failed())?;
         fields.serialize_field("by_status", &self.by_status())?;
+        fields.serialize_field("failed_share_upper_bound", &self.failed_share_upper_bound())?;
         fields.end()
     }
 }

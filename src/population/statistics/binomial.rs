@@ -33,6 +33,21 @@ pub fn upper_tail(n: u64, p: f64, k: u64) -> f64 {
 /// & Pearson 1934): the largest p with `P(B <= k) >= 1 - CONFIDENCE`.
 #[must_use]
 pub fn proportion_upper_bound(k: u64, n: u64) -> f64 {
+    upper_bound_at(k, n, CONFIDENCE)
+}
+
+/// Two-sided bounds on a proportion of which between `least` and `most` of `n` trials show an
+/// instance, each exact with half of the rest (Clopper & Pearson 1934).
+#[must_use]
+pub fn proportion_interval(least: u64, most: u64, n: u64) -> [f64; 2] {
+    let one_sided = 0.5 * (1.0 + CONFIDENCE);
+    [
+        1.0 - upper_bound_at(n.saturating_sub(least), n, one_sided),
+        upper_bound_at(most, n, one_sided),
+    ]
+}
+
+fn upper_bound_at(k: u64, n: u64, confidence: f64) -> f64 {
     if k >= n {
         return 1.0;
     }
@@ -43,7 +58,7 @@ pub fn proportion_upper_bound(k: u64, n: u64) -> f64 {
         if middle <= low || middle >= high {
             return high;
         }
-        if lower_tail(n, middle, k) >= 1.0 - CONFIDENCE {
+        if lower_tail(n, middle, k) >= 1.0 - confidence {
             low = middle;
         } else {
             high = middle;

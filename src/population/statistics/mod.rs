@@ -1,16 +1,42 @@
-//! Accounting by status, moments and order statistics with distribution-free intervals.
+//! Accounting by status, moments, order statistics with distribution-free intervals, tail fits.
 
 mod accounting;
 mod binomial;
+mod comparison;
+mod distribution_band;
+mod extreme_value;
+mod extreme_value_fit;
+mod main_effects;
+mod multiplicity;
 mod order_statistics;
+mod pairs;
+mod percentile_resamples;
+mod quantity;
+mod resampling;
 mod sample;
 mod scenario;
+mod stopping;
+mod tail_fit;
 
 pub use accounting::Accounting;
-pub use binomial::proportion_upper_bound;
+pub use binomial::{proportion_interval, proportion_upper_bound};
+pub use comparison::{IntervalEstimate, PercentileComparison, compare_independent, compare_paired};
+pub use distribution_band::{BandPoint, DistributionBand, dkw_half_width};
+pub use extreme_value::{ExtremeValueLaw, anderson_darling};
+pub use extreme_value_fit::{FEWEST_VALUES, FitStatus, SHAPE_RANGE, fit_extreme_value, fit_gumbel};
+pub use main_effects::{FEWEST_ROWS, MainEffects, VarianceShare, main_effects};
+pub use multiplicity::{best_set, best_set_at, holm};
 pub use order_statistics::{
-    CONFIDENCE, Percentile, PercentileRanks, PointStatus, failure_gate, percentile,
-    percentile_ranks,
+    CONFIDENCE, Percentile, PercentileRanks, PointStatus, failure_gate, percentile, percentile_at,
+    percentile_ranks, percentile_ranks_at, point_rank, smallest_sample, wilks_sample,
 };
-pub use sample::{PERCENTILES, SampleStatistics};
+pub use pairs::{Deterioration, PairFacts};
+pub use percentile_resamples::{PercentileEstimator, PercentileResamples, resample_percentile};
+pub use quantity::Quantity;
+pub use resampling::{RESAMPLES, resampling_stream};
+pub use sample::{PERCENTILE_LEVELS, PERCENTILES, SampleStatistics};
 pub use scenario::{ScenarioAccumulator, ScenarioStatistics};
+pub use stopping::{Look, MOST_LOOKS, StoppingRule};
+pub use tail_fit::{
+    Estimate, TAIL_PERCENTILES, TailFit, TailLaw, TailParameters, TailPercentile, fit_tails,
+};

@@ -38,25 +38,51 @@ pub enum PointStatus {
     TooManyFailures,
 }
 
+impl PointStatus {
+    /// Name in tables, `snake_case`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Estimated => "estimated",
+            Self::TooFewPatterns { .. } => "too_few_patterns",
+            Self::TooManyFailures => "too_many_failures",
+        }
+    }
+}
+
 /// A percentile of one quantity over the patterns of a scenario.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Percentile {
     /// The percentile in percent.
-    pub percent: u32,
+    pub percent: f64,
     /// Order statistic `x_(ceil(p n))` of the good values.
     pub value: Option<f64>,
-    /// Lower 95 % bound.
+    /// Lower bound.
     pub lower: Option<f64>,
-    /// Upper 95 % bound.
+    /// Upper bound.
     pub upper: Option<f64>,
+    /// Rank of the lower bound among the planned patterns, from 1.
+    pub rank_lower: Option<u64>,
+    /// Rank of the upper bound among the planned patterns, from 1.
+    pub rank_upper: Option<u64>,
+    /// Probability that the interval of these ranks holds the percentile, whatever the law is; at
+    /// least that wanted.
+    pub achieved_coverage: Option<f64>,
     /// Why `value` is there or not.
     pub status: PointStatus,
 }
 
-/// Ranks of the equal-tailed interval of the `p`-quantile, `0 < p < 1`, among `n` values.
+/// Ranks of the equal-tailed interval of the `p`-quantile, `0 < p < 1`, among `n` values, at
+/// [`CONFIDENCE`].
 #[must_use]
 pub fn percentile_ranks(n: u64, p: f64) -> PercentileRanks {
-    let tail = 0.5 * (1.0 - CONFIDENCE);
+    percentile_ranks_at(n, p, CONFIDENCE)
+}
+
+/// The same at the two-sided `confidence`.
+#[must_use]
+pub fn percentile_ranks_at(n: u64, p: f64, confidence: f64) -> PercentileRanks {
+    let tail = 0.5 * (1.0 - confidence);
     // Largest l in 1..=n with P(B <= l - 1) <= tail; the tail grows with l.
     let lower = partition_point(n, |l| lower_tail(n, p, l - 1) <= tail);
     // Smallest u in 1..=n with P(B >= u) <= tail; the tail falls with u.
@@ -92,26 +118,47 @@ pub fn failure_gate(p: f64) -> f64 {
     p.min(1.0 - p) / 10.0
 }
 
-/// Smallest n with a two-sided interval: `max(p, 1 - p)^n <= (1 - CONFIDENCE) / 2`.
-fn smallest_sample(p: f64) -> u64 {
-    let tail = 0.5 * (1.0 - CONFIDENCE);
+/// Smallest n with a two-sided interval: `max(p, 1 - p)^n <= (1 - confidence) / 2`.
+#[must_use]
+pub fn smallest_sample(p: f64, confidence: f64) -> u64 {
+    let tail = 0.5 * (1.0 - confidence);
     (tail.ln() / p.max(1.0 - p).ln()).ceil() as u64
 }
 
-/// The percentile of `sorted` good values (ascending) beside `failed` rows without value.
+/// Smallest n for which the `order`-th largest of n values bounds the `p`-quantile from above with
+/// `confidence`, one-sided (Wilks 1941): `P(B <= n - order) >= confidence`, `B ~ Binomial(n, p)`.
 #[must_use]
-pub fn percentile(sorted: &[f64], failed: u64, percent: u32) -> Percentile {
-    let p = f64::from(percent) / 100.0;
+pub fn wilks_sample(p: f64, confidence: f64, order: u64) -> u64 {
+    let bounds = |n: u64| n >= order && lower_tail(n, p, n - order) >= confidence;
+    let mut enough = order.max(1);
+    while !bounds(enough) {
+        enough *= 2;
+    }
+    // The probability grows with n.
+    partition_point(enough, |n| !bounds(n)) + 1
+}
+
+/// The percentile of `sorted` good values (ascending) beside `failed` rows without value, `percent`
+/// between 0 and 100, at [`CONFIDENCE`].
+#[must_use]
+pub fn percentile(sorted: &[f64], failed: u64, percent: impl Into<f64>) -> Percentile {
+    percentile_at(sorted, failed, percent.into(), CONFIDENCE)
+}
+
+/// The same at the two-sided `confidence`.
+#[must_use]
+pub fn percentile_at(sorted: &[f64], failed: u64, percent: f64, confidence: f64) -> Percentile {
+    let p = percent / 100.0;
     let good = sorted.len() as u64;
     let planned = good + failed;
-    let ranks = percentile_ranks(planned, p);
+    let ranks = percentile_ranks_at(planned, p, confidence);
     let at = |rank: u64| -> Option<f64> {
         let place = usize::try_from(rank.checked_sub(1)?).ok()?;
         sorted.get(place).copied()
     };
     let status = if ranks.lower.is_none() || ranks.upper.is_none() {
         PointStatus::TooFewPatterns {
-            needed: smallest_sample(p),
+            needed: smallest_sample(p, confidence),
         }
     } else if failed as f64 > failure_gate(p) * planned as f64 * (1.0 + 1e-12) {
         PointStatus::TooManyFailures
@@ -126,11 +173,17 @@ pub fn percentile(sorted: &[f64], failed: u64, percent: u32) -> Percentile {
         },
         lower: ranks.lower.and_then(|l| at(l.saturating_sub(failed))),
         upper: ranks.upper.and_then(at),
+        rank_lower: ranks.lower,
+        rank_upper: ranks.upper,
+        achieved_coverage: ranks.coverage,
         status,
     }
 }
 
-/// `ceil(percent n / 100)`, at least 1, in whole numbers so that no rounding shifts a rank.
-fn point_rank(n: u64, percent: u32) -> u64 {
-    (n * u64::from(percent)).div_ceil(100).max(1)
+/// Rank `ceil(percent n / 100)` of the point value among `n` values, from 1.
+#[must_use]
+pub fn point_rank(n: u64, percent: f64) -> u64 {
+    // Rounding must not lift a whole number to the next rank.
+    let rank = percent * n as f64 / 100.0 * (1.0 - 1e-12);
+    (rank.ceil() as u64).max(1)
 }

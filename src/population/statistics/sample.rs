@@ -4,8 +4,11 @@ use serde::Serialize;
 
 use super::{Percentile, percentile};
 
-/// Percentiles that every table and summary gives, in percent.
+/// Percentiles that `scenarios.parquet` and every summary give, in percent.
 pub const PERCENTILES: [u32; 4] = [5, 50, 95, 99];
+
+/// Percentiles of `percentiles.parquet`, in percent; those of [`PERCENTILES`] among them.
+pub const PERCENTILE_LEVELS: [f64; 10] = [1.0, 5.0, 10.0, 25.0, 50.0, 75.0, 90.0, 95.0, 99.0, 99.9];
 
 /// Statistics of one quantity; moments are over the rows that have a value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -14,8 +17,8 @@ pub struct SampleStatistics {
     pub mean: Option<f64>,
     /// Standard deviation with divisor n - 1.
     pub standard_deviation: Option<f64>,
-    /// Percentiles in the order of [`PERCENTILES`].
-    pub percentiles: [Percentile; PERCENTILES.len()],
+    /// Percentiles in the order of [`PERCENTILE_LEVELS`].
+    pub percentiles: Vec<Percentile>,
 }
 
 impl SampleStatistics {
@@ -23,11 +26,20 @@ impl SampleStatistics {
     #[must_use]
     pub fn new(mut values: Vec<f64>, failed: u64) -> Self {
         values.sort_unstable_by(f64::total_cmp);
-        let (mean, standard_deviation) = moments(&values);
+        Self::of_sorted(&values, failed)
+    }
+
+    /// Statistics of `sorted` values (ascending) beside `failed` rows without value.
+    #[must_use]
+    pub fn of_sorted(sorted: &[f64], failed: u64) -> Self {
+        let (mean, standard_deviation) = moments(sorted);
         Self {
             mean,
             standard_deviation,
-            percentiles: PERCENTILES.map(|percent| percentile(&values, failed, percent)),
+            percentiles: PERCENTILE_LEVELS
+                .iter()
+                .map(|&percent| percentile(sorted, failed, percent))
+                .collect(),
         }
     }
 
@@ -36,7 +48,7 @@ impl SampleStatistics {
     pub fn percentile(&self, percent: u32) -> Option<&Percentile> {
         self.percentiles
             .iter()
-            .find(|found| found.percent == percent)
+            .find(|found| found.percent.total_cmp(&f64::from(percent)).is_eq())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Accounting, SampleStatistics};
+use super::{Accounting, DistributionBand, Quantity, SampleStatistics};
 use crate::population::monte_carlo::ResponseRow;
 use crate::response::harmonic_balance::Status;
 
@@ -15,6 +15,12 @@ pub struct ScenarioStatistics {
     pub amplification_factor: SampleStatistics,
     /// Peak amplitude, m.
     pub peak_amplitude_m: SampleStatistics,
+    /// Distribution of the amplification factor.
+    #[serde(skip)]
+    pub amplification_factor_band: DistributionBand,
+    /// Distribution of the peak amplitude, m.
+    #[serde(skip)]
+    pub peak_amplitude_m_band: DistributionBand,
     /// Largest share of separated pairs of an `ok` row.
     pub largest_separated_fraction: Option<f64>,
     /// Share of `ok` rows in which a pair separates.
@@ -48,8 +54,10 @@ impl ScenarioAccumulator {
         if row.status != Status::Ok {
             return;
         }
-        self.amplification_factor.extend(row.amplification_factor);
-        self.peak_amplitude_m.extend(row.peak_amplitude_m);
+        self.amplification_factor
+            .extend(Quantity::AmplificationFactor.of(row));
+        self.peak_amplitude_m
+            .extend(Quantity::PeakAmplitudeM.of(row));
         if let Some(stated) = row.stated_error {
             let largest = self.largest_stated_error.unwrap_or(0.0);
             self.largest_stated_error = Some(largest.max(stated));
@@ -71,14 +79,23 @@ impl ScenarioAccumulator {
     pub fn finish(self) -> ScenarioStatistics {
         let planned = self.accounting.planned();
         let ok = self.accounting.ok();
-        let statistics = |values: Vec<f64>| {
+        let statistics = |mut values: Vec<f64>| {
+            values.sort_unstable_by(f64::total_cmp);
             let failed = planned - values.len() as u64;
-            SampleStatistics::new(values, failed)
+            (
+                SampleStatistics::of_sorted(&values, failed),
+                DistributionBand::new(&values, failed),
+            )
         };
+        let (amplification_factor, amplification_factor_band) =
+            statistics(self.amplification_factor);
+        let (peak_amplitude_m, peak_amplitude_m_band) = statistics(self.peak_amplitude_m);
         ScenarioStatistics {
             accounting: self.accounting,
-            amplification_factor: statistics(self.amplification_factor),
-            peak_amplitude_m: statistics(self.peak_amplitude_m),
+            amplification_factor,
+            peak_amplitude_m,
+            amplification_factor_band,
+            peak_amplitude_m_band,
             largest_separated_fraction: self.largest_separated_fraction,
             separated_rows: self
                 .largest_separated_fraction

@@ -1,10 +1,28 @@
-//! Files that appear whole or not at all: written beside their place, synced, then renamed.
+//! The file layer: files that appear whole or not at all, and are known by their BLAKE3 digest.
+//!
+//! A file is written beside its place, synced, renamed, and its folder synced. Whoever is
+//! interrupted leaves a hidden `.*.tmp`, which [`remove_leftovers`] takes away.
 
+use std::fmt::Display;
 use std::fs::File;
-use std::io::Write;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 
 use super::TableError;
+
+/// Bytes that are gathered before they are written.
+const BUFFER: usize = 1 << 16;
+
+/// BLAKE3 digest of a file, hexadecimal.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn digest_file(path: &Path) -> io::Result<String> {
+    let mut hasher = blake3::Hasher::new();
+    io::copy(&mut File::open(path)?, &mut hasher)?;
+    Ok(hasher.finalize().to_hex().to_string())
+}
 
 /// A file under construction; without [`AtomicFile::commit`] it vanishes.
 #[derive(Debug)]
@@ -12,7 +30,44 @@ pub(super) struct AtomicFile {
     target: PathBuf,
     temporary: PathBuf,
     file: File,
+    failure: Failure,
     committed: bool,
+}
+
+/// The first error of the file system while a file was written.
+type Failure = Arc<Mutex<Option<io::Error>>>;
+
+/// An open file under construction; keeps the error of the file system, which encoders turn into words.
+#[derive(Debug)]
+pub(super) struct BufferedFile {
+    file: BufWriter<File>,
+    failure: Failure,
+}
+
+impl BufferedFile {
+    fn keep<T>(&self, written: io::Result<T>) -> io::Result<T> {
+        written.inspect_err(|error| {
+            let same = match error.raw_os_error() {
+                Some(code) => io::Error::from_raw_os_error(code),
+                None => io::Error::from(error.kind()),
+            };
+            if let Ok(mut kept) = self.failure.lock() {
+                kept.get_or_insert(same);
+            }
+        })
+    }
+}
+
+impl Write for BufferedFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes);
+        self.keep(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let flushed = self.file.flush();
+        self.keep(flushed)
+    }
 }
 
 impl AtomicFile {
@@ -30,32 +85,54 @@ impl AtomicFile {
             target: target.to_owned(),
             temporary,
             file,
+            failure: Failure::default(),
             committed: false,
         })
     }
 
-    /// A second handle to the open file.
-    pub(super) fn handle(&self) -> Result<File, TableError> {
-        self.file
+    /// The open file, to be written to from its beginning and flushed before the commit.
+    pub(super) fn writer(&self) -> Result<BufferedFile, TableError> {
+        let file = self
+            .file
             .try_clone()
-            .map_err(TableError::io("open", &self.temporary))
+            .map_err(TableError::io("open", &self.temporary))?;
+        Ok(BufferedFile {
+            file: BufWriter::with_capacity(BUFFER, file),
+            failure: Arc::clone(&self.failure),
+        })
+    }
+
+    /// Why writing failed: what the file system said, or else `reason`.
+    pub(super) fn failed(&self, reason: impl Display) -> TableError {
+        let failure = self.failure.lock().ok().and_then(|mut kept| kept.take());
+        match failure {
+            Some(source) => TableError::io("write", &self.target)(source),
+            None => TableError::encoding(&self.target, reason.to_string()),
+        }
     }
 
     /// Syncs the content and puts the file in its place.
-    pub(super) fn commit(mut self) -> Result<(), TableError> {
+    pub(super) fn commit(self) -> Result<(), TableError> {
+        let target = self.target.clone();
+        self.commit_to(&target)
+    }
+
+    /// Syncs the content and puts the file in its folder under a name made from its digest.
+    pub(super) fn commit_as(self, name: impl FnOnce(&str) -> String) -> Result<(), TableError> {
+        let digest =
+            digest_file(&self.temporary).map_err(TableError::io("read", &self.temporary))?;
+        let target = self.target.with_file_name(name(&digest));
+        self.commit_to(&target)
+    }
+
+    fn commit_to(mut self, target: &Path) -> Result<(), TableError> {
         self.file
             .sync_all()
             .map_err(TableError::io("sync", &self.temporary))?;
-        std::fs::rename(&self.temporary, &self.target)
-            .map_err(TableError::io("rename a finished file to", &self.target))?;
+        std::fs::rename(&self.temporary, target)
+            .map_err(TableError::io("rename a finished file to", target))?;
         self.committed = true;
-        // The rename itself is durable once the folder is synced, where a folder can be opened.
-        if let Some(Ok(folder)) = folder_of(&self.target).map(File::open) {
-            folder
-                .sync_all()
-                .map_err(TableError::io("sync the folder of", &self.target))?;
-        }
-        Ok(())
+        sync_folder_of(target)
     }
 }
 
@@ -65,6 +142,50 @@ impl Drop for AtomicFile {
             // Nothing more can be done about a leftover than to try to remove it.
             let _ = std::fs::remove_file(&self.temporary);
         }
+    }
+}
+
+/// Moves a finished file to another place on the same file system, durably.
+pub(super) fn move_file(from: &Path, to: &Path) -> Result<(), TableError> {
+    if let Some(folder) = folder_of(to) {
+        std::fs::create_dir_all(folder).map_err(TableError::io("create the folder", folder))?;
+    }
+    std::fs::rename(from, to).map_err(TableError::io("rename a finished file to", to))?;
+    sync_folder_of(to)
+}
+
+/// Removes what interrupted writes of processes that have ended left in `folder`.
+///
+/// # Errors
+/// The folder cannot be read or changed.
+pub fn remove_leftovers(folder: &Path) -> Result<(), TableError> {
+    let entries = match std::fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(TableError::io("read", folder)(error)),
+    };
+    for entry in entries {
+        let path = entry.map_err(TableError::io("read", folder))?.path();
+        let name = path.file_name().map(|name| name.to_string_lossy());
+        let writer = name
+            .as_deref()
+            .and_then(|name| name.strip_prefix('.')?.strip_suffix(".tmp"))
+            .and_then(|name| name.rsplit_once('.')?.1.parse::<u32>().ok());
+        let ended = |process: u32| !Path::new("/proc").join(process.to_string()).exists();
+        if writer.is_some_and(ended) {
+            std::fs::remove_file(&path).map_err(TableError::io("remove", &path))?;
+        }
+    }
+    Ok(())
+}
+
+/// A rename is durable once the folder is synced, where a folder can be opened.
+fn sync_folder_of(target: &Path) -> Result<(), TableError> {
+    match folder_of(target).map(File::open) {
+        Some(Ok(folder)) => folder
+            .sync_all()
+            .map_err(TableError::io("sync the folder of", target)),
+        _ => Ok(()),
     }
 }
 
@@ -84,8 +205,8 @@ fn folder_of(target: &Path) -> Option<&Path> {
 /// The file system refused.
 pub fn write_atomically(target: &Path, content: &[u8]) -> Result<(), TableError> {
     let file = AtomicFile::create(target)?;
-    file.handle()?
-        .write_all(content)
-        .map_err(TableError::io("write", target))?;
+    let mut writer = file.writer()?;
+    let written = writer.write_all(content).and_then(|()| writer.flush());
+    written.map_err(|error| file.failed(error))?;
     file.commit()
 }

@@ -6,11 +6,15 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{TableError, write_atomically};
+use super::TableError;
+use super::checked_json::{read_checked_json, write_checked_json};
 use crate::population::monte_carlo::{Scenario, TunedReference};
 use crate::population::statistics::Accounting;
 use crate::response::forced_response::{ContactCondition, ErrorEstimate};
 use crate::response::harmonic_balance::Status;
+
+/// Name of the manifest in its folder.
+pub const MANIFEST: &str = "manifest.json";
 
 /// Whether a results folder is complete.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -75,6 +79,8 @@ pub struct ScenarioEntry {
     pub harmonics: String,
     /// Errors of the tuned solution at its peak.
     pub tuned_errors: Option<ErrorEstimate>,
+    /// Digest of what the rows are made from.
+    pub row_digest: String,
     /// Rows by status.
     pub counts: StatusCounts,
 }
@@ -82,7 +88,12 @@ pub struct ScenarioEntry {
 impl ScenarioEntry {
     /// The entry of a scenario.
     #[must_use]
-    pub fn new(scenario: &Scenario, tuned: &TunedReference, accounting: &Accounting) -> Self {
+    pub fn new(
+        scenario: &Scenario,
+        tuned: &TunedReference,
+        row_digest: &str,
+        accounting: &Accounting,
+    ) -> Self {
         Self {
             scenario: scenario.index,
             engine_order: scenario.engine_order,
@@ -95,6 +106,7 @@ impl ScenarioEntry {
             tuned_separated_fraction: tuned.separated_fraction,
             harmonics: tuned.harmonics.clone(),
             tuned_errors: tuned.errors,
+            row_digest: row_digest.to_owned(),
             counts: accounting.into(),
         }
     }
@@ -126,6 +138,56 @@ impl ScenarioEntry {
     }
 }
 
+/// One of `count` shares of the patterns of a study, cut by their order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shard {
+    /// Which one, from 1.
+    pub number: u32,
+    /// How many there are.
+    pub count: u32,
+}
+
+impl Shard {
+    /// The patterns of this shard among all `ids`.
+    #[must_use]
+    pub fn of(self, ids: &[u32]) -> &[u32] {
+        &ids[self.cut(self.number - 1, ids.len())..self.cut(self.number, ids.len())]
+    }
+
+    /// Number of its patterns of `patterns` in all.
+    #[must_use]
+    pub fn size(self, patterns: usize) -> usize {
+        self.cut(self.number, patterns) - self.cut(self.number - 1, patterns)
+    }
+
+    fn cut(self, number: u32, patterns: usize) -> usize {
+        (patterns as u64 * u64::from(number) / u64::from(self.count)) as usize
+    }
+
+    /// The shard whose folder this is by its name.
+    #[must_use]
+    pub fn of_folder(folder: &Path) -> Option<Self> {
+        let (number, count) = folder.file_name()?.to_str()?.split_once("-of-")?;
+        let shard = Self {
+            number: number.parse().ok()?,
+            count: count.parse().ok()?,
+        };
+        (1..=shard.count).contains(&shard.number).then_some(shard)
+    }
+
+    /// Name of its folder.
+    #[must_use]
+    pub fn folder_name(self) -> String {
+        format!("{}-of-{}", self.number, self.count)
+    }
+}
+
+impl std::fmt::Display for Shard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.number, self.count)
+    }
+}
+
 /// Content of `manifest.json`. The same study gives the same bytes on every machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
@@ -145,6 +207,9 @@ pub struct Manifest {
     pub generator: String,
     /// Number of patterns.
     pub patterns: u64,
+    /// The share of the patterns that the folder is about; absent: all of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<Shard>,
     /// What the digest is made from, key by key.
     pub number_keys: BTreeMap<String, String>,
     /// Digests of the input files, by path as written in the study.
@@ -169,14 +234,7 @@ impl Manifest {
     /// # Errors
     /// The file cannot be read or is damaged.
     pub fn read(results: &Path) -> Result<Option<Self>, TableError> {
-        let path = results.join("manifest.json");
-        if !path.exists() {
-            return Ok(None);
-        }
-        let text = std::fs::read_to_string(&path).map_err(TableError::io("read", &path))?;
-        serde_json::from_str(&text)
-            .map(Some)
-            .map_err(|error| TableError::damaged(&path, error.to_string()))
+        read_checked_json(&results.join(MANIFEST))
     }
 
     /// Writes `manifest.json` into the folder `results`.
@@ -184,7 +242,7 @@ impl Manifest {
     /// # Errors
     /// The file cannot be written.
     pub fn write(&self, results: &Path) -> Result<(), TableError> {
-        write_json(&results.join("manifest.json"), self)
+        write_checked_json(&results.join(MANIFEST), self)
     }
 }
 
@@ -208,18 +266,22 @@ pub struct RunRecord {
     /// The study file, beside which its inputs lie.
     #[serde(default)]
     pub study_file: PathBuf,
+    /// BLAKE3 digests of the tables when the run ended, by file name; none if it was interrupted.
+    #[serde(default)]
+    pub tables: BTreeMap<String, String>,
 }
 
 impl RunRecord {
-    /// The last record of the folder `results`; none if there is none that can be read.
+    /// The intact records of the folder `results`, the last one first.
     #[must_use]
-    pub fn last(results: &Path) -> Option<Self> {
-        let folder = results.join("runs");
-        let last = (1..=u32::MAX)
-            .map(|number| folder.join(format!("{number}.json")))
+    pub fn all(results: &Path) -> Vec<Self> {
+        let mut records: Vec<Self> = (1..=u32::MAX)
+            .map(|number| place(results, number))
             .take_while(|path| path.exists())
-            .last()?;
-        serde_json::from_str(&std::fs::read_to_string(last).ok()?).ok()
+            .filter_map(|path| read_checked_json(&path).ok().flatten())
+            .collect();
+        records.reverse();
+        records
     }
 
     /// Writes the record under the next free number of `runs/` in the folder `results`.
@@ -227,20 +289,16 @@ impl RunRecord {
     /// # Errors
     /// The file cannot be written.
     pub fn write(&self, results: &Path) -> Result<(), TableError> {
-        let folder = results.join("runs");
         let free = (1..=u32::MAX)
-            .map(|number| folder.join(format!("{number}.json")))
+            .map(|number| place(results, number))
             .find(|path| !path.exists());
         match free {
-            Some(path) => write_json(&path, self),
+            Some(path) => write_checked_json(&path, self),
             None => Ok(()),
         }
     }
 }
 
-fn write_json(path: &Path, content: &impl Serialize) -> Result<(), TableError> {
-    let mut text = serde_json::to_string_pretty(content)
-        .map_err(|error| TableError::encoding(path, error.to_string()))?;
-    text.push('\n');
-    write_atomically(path, text.as_bytes())
+fn place(results: &Path, number: u32) -> PathBuf {
+    results.join("runs").join(format!("{number}.json"))
 }

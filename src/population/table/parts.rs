@@ -1,199 +1,276 @@
-//! Parts: one finished file per block of patterns, so that an interrupted run loses little.
+//! Stored rows: parts, one finished file per block of patterns, and finished tables of rows.
+//!
+//! A part is named `part-<first pattern>-<digest>.parquet`: its name is its checksum, and no part is
+//! ever written over. Every file of rows says in its metadata what the rows of each of its scenarios
+//! are made from; a study takes the rows that are made from the same as its own, whatever else it
+//! has besides.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::responses::{ResponseReader, ResponseWriter};
+use super::responses::ResponseWriter;
+use super::row_file::{RowCursor, RowFile};
 use super::{TableError, TableHeader};
-use crate::population::monte_carlo::{PatternBlock, ResponseRow, RowSink, Scenario};
+use crate::population::monte_carlo::{PatternBlock, ResponseRow, RowSink, Scenario, StoredRows};
 
-/// The rows of a results folder while it is worked on: a finished table of an earlier, shorter run
-/// (if any) and the parts `parts/part-XXXXXX.parquet`.
-#[derive(Debug)]
-pub struct PartStore {
-    responses: PathBuf,
-    folder: PathBuf,
-    scenarios: Vec<Scenario>,
-    header: TableHeader,
+/// What the rows of a study are, for its files.
+#[derive(Debug, Clone)]
+pub struct RowSchema {
+    /// The scenarios.
+    pub scenarios: Vec<Scenario>,
+    /// What the rows of each are made from.
+    pub row_digests: Vec<String>,
+    /// What each file says about the study.
+    pub header: TableHeader,
 }
 
-impl PartStore {
-    /// The store of the results folder `results`.
-    #[must_use]
-    pub fn new(results: &Path, scenarios: &[Scenario], header: TableHeader) -> Self {
-        Self {
-            responses: results.join("responses.parquet"),
-            folder: results.join("parts"),
-            scenarios: scenarios.to_vec(),
-            header,
-        }
-    }
+/// The stored rows of a study.
+#[derive(Debug)]
+pub struct RowStore {
+    schema: RowSchema,
+    files: Vec<RowFile>,
+}
 
-    /// The finished table.
-    #[must_use]
-    pub fn responses(&self) -> &Path {
-        &self.responses
-    }
-
-    /// Patterns whose rows are stored, in the finished table or in a part of this study.
+impl RowStore {
+    /// The rows in the parts of the results folder `results` and in the finished tables `tables`.
     ///
     /// # Errors
-    /// A file cannot be read, is damaged, or the table belongs to another study.
-    pub fn done(&self) -> Result<BTreeSet<u32>, TableError> {
-        let mut done = BTreeSet::new();
-        if self.responses.exists() {
-            done.extend(self.patterns_of(&self.responses)?.ok_or_else(|| {
-                TableError::damaged(&self.responses, "it belongs to another study")
-            })?);
-        }
-        for part in self.parts()? {
-            done.extend(self.patterns_of(&part)?.into_iter().flatten());
-        }
-        Ok(done)
+    /// The folder of the parts cannot be read.
+    pub fn open(
+        results: &Path,
+        schema: RowSchema,
+        tables: Vec<RowFile>,
+    ) -> Result<Self, TableError> {
+        let mut files = tables;
+        files.extend(part_files(results)?);
+        Ok(Self::of_files(schema, files))
     }
 
-    /// A sink that stores each of `blocks` as a part.
+    /// The rows in the finished tables `files`.
     #[must_use]
-    pub fn sink<'a>(&'a self, blocks: &'a [PatternBlock]) -> PartSink<'a> {
-        PartSink {
-            store: self,
-            blocks,
-        }
+    pub fn of_files(schema: RowSchema, mut files: Vec<RowFile>) -> Self {
+        files.sort_by(|a, b| (a.from, &a.path).cmp(&(b.from, &b.path)));
+        Self { schema, files }
     }
 
-    /// Joins table and parts to a `responses.parquet` that holds the patterns of `ids` (ascending)
-    /// in order, hands every row to `visit` on the way, and removes the parts.
+    /// Which rows are stored.
     ///
     /// # Errors
-    /// A file cannot be read or written, or a pattern is missing.
+    /// A file cannot be read or is damaged.
+    pub fn stored(&self) -> Result<StoredRows, TableError> {
+        let mut stored = StoredRows::default();
+        for file in &self.files {
+            let Some(mut cursor) = self.cursor(file)? else {
+                continue;
+            };
+            let mut patterns = Vec::new();
+            while let Some(pattern) = cursor.pattern()? {
+                cursor.take()?;
+                patterns.push(pattern);
+            }
+            stored.add(patterns, &cursor.scenarios());
+        }
+        Ok(stored)
+    }
+
+    /// Hands every stored row to `visit`, ordered by pattern, then scenario, each once.
+    ///
+    /// # Errors
+    /// A file cannot be read or is damaged, two files hold different values of a row, or `visit` fails.
+    pub fn visit(
+        &self,
+        mut visit: impl FnMut(ResponseRow) -> Result<(), TableError>,
+    ) -> Result<(), TableError> {
+        let mut unopened = self.files.iter().peekable();
+        let mut open: Vec<OpenFile> = Vec::new();
+        let earliest = |open: &[OpenFile]| open.iter().map(|file| file.pattern).min();
+        loop {
+            // Files are opened when the patterns come to them, so that few are in memory.
+            while let Some(file) = unopened
+                .next_if(|file| earliest(&open).is_none_or(|earliest| file.from <= earliest))
+            {
+                if let Some(mut cursor) = self.cursor(file)?
+                    && let Some(pattern) = cursor.pattern()?
+                {
+                    let path = &file.path;
+                    open.push(OpenFile {
+                        path,
+                        cursor,
+                        pattern,
+                    });
+                }
+            }
+            let Some(pattern) = earliest(&open) else {
+                return Ok(());
+            };
+            let mut rows: BTreeMap<usize, ResponseRow> = BTreeMap::new();
+            for mut file in std::mem::take(&mut open) {
+                if file.pattern == pattern {
+                    for row in file.cursor.take()? {
+                        agrees(rows.get(&row.scenario), &row, file.path)?;
+                        rows.insert(row.scenario, row);
+                    }
+                    let Some(next) = file.cursor.pattern()? else {
+                        continue;
+                    };
+                    file.pattern = next;
+                }
+                open.push(file);
+            }
+            for row in rows.into_values() {
+                visit(row)?;
+            }
+        }
+    }
+
+    /// Joins all rows to a `responses.parquet` at `path` that holds those of the patterns `ids`
+    /// (ascending) in order, and hands every row to `visit` on the way.
+    ///
+    /// # Errors
+    /// A file cannot be read or written, or a row is missing.
     pub fn assemble(
         &self,
+        path: &Path,
         ids: &[u32],
         mut visit: impl FnMut(&ResponseRow),
     ) -> Result<(), TableError> {
-        let mut sources = BTreeMap::new();
-        let mut files = self.parts()?;
-        if self.responses.exists() {
-            files.push(self.responses.clone());
-        }
-        for file in files {
-            if let Some(first) = self
-                .patterns_of(&file)?
-                .and_then(|ids| ids.first().copied())
-            {
-                sources.insert(first, file);
-            }
-        }
-        let mut writer = ResponseWriter::create(&self.responses, &self.scenarios, &self.header)?;
+        let RowSchema {
+            scenarios,
+            row_digests,
+            header,
+        } = &self.schema;
+        let mut writer = ResponseWriter::create(path, scenarios, header, row_digests)?;
         let mut expected = ids
             .iter()
-            .flat_map(|&id| (0..self.scenarios.len()).map(move |scenario| (id, scenario)));
-        for file in sources.into_values() {
-            let mut reader = ResponseReader::open(&file)?;
-            loop {
-                let rows = reader.next_batch()?;
-                if rows.is_empty() {
-                    break;
-                }
-                for row in &rows {
-                    if expected.next() != Some((row.pattern, row.scenario)) {
-                        let reason = format!("its pattern {} is out of order", row.pattern);
-                        return Err(TableError::damaged(&file, reason));
-                    }
-                    visit(row);
-                }
-                writer.write(rows)?;
+            .flat_map(|&id| (0..scenarios.len()).map(move |scenario| (id, scenario)))
+            .peekable();
+        self.visit(|row| {
+            // A longer study that was broken off may have left rows of more patterns.
+            if ids.binary_search(&row.pattern).is_err() {
+                return Ok(());
             }
-        }
+            if expected.next_if_eq(&(row.pattern, row.scenario)).is_none() {
+                let missing = expected.peek().map_or(row.pattern, |(pattern, _)| *pattern);
+                let reason = format!("no file holds all rows of pattern {missing}");
+                return Err(TableError::damaged(path, reason));
+            }
+            visit(&row);
+            writer.write([row])
+        })?;
         if let Some((pattern, _)) = expected.next() {
-            let reason = format!("no part holds pattern {pattern}");
-            return Err(TableError::damaged(&self.folder, reason));
+            let reason = format!("no file holds all rows of pattern {pattern}");
+            return Err(TableError::damaged(path, reason));
         }
-        writer.finish()?;
-        self.remove_parts()
+        writer.finish()
     }
 
-    fn remove_parts(&self) -> Result<(), TableError> {
-        if self.folder.exists() {
-            std::fs::remove_dir_all(&self.folder)
-                .map_err(TableError::io("remove", &self.folder))?;
-        }
-        Ok(())
-    }
-
-    fn parts(&self) -> Result<Vec<PathBuf>, TableError> {
-        if !self.folder.exists() {
-            return Ok(Vec::new());
-        }
-        let entries =
-            std::fs::read_dir(&self.folder).map_err(TableError::io("read", &self.folder))?;
-        let mut parts = Vec::new();
-        for entry in entries {
-            let path = entry.map_err(TableError::io("read", &self.folder))?.path();
-            let name = path
-                .file_name()
-                .map(|name| name.to_string_lossy().into_owned());
-            if name.is_some_and(|name| name.starts_with("part-") && name.ends_with(".parquet")) {
-                parts.push(path);
-            }
-        }
-        parts.sort();
-        Ok(parts)
-    }
-
-    /// Ids of the patterns of a file, ascending; none if it belongs to another study.
-    fn patterns_of(&self, path: &Path) -> Result<Option<Vec<u32>>, TableError> {
-        let mut reader = ResponseReader::open(path)?;
-        if reader.study_digest() != Some(&self.header.study_digest) {
-            return Ok(None);
-        }
-        let mut ids: Vec<u32> = Vec::new();
-        let mut place = 0;
-        loop {
-            let rows = reader.next_batch()?;
-            if rows.is_empty() {
-                break;
-            }
-            for row in rows {
-                let in_order = match ids.last() {
-                    _ if place == 0 => ids.last().is_none_or(|&last| last < row.pattern),
-                    last => last == Some(&row.pattern),
-                };
-                if !in_order || row.scenario != place {
-                    let reason = format!("the rows of pattern {} are out of order", row.pattern);
-                    return Err(TableError::damaged(path, reason));
-                }
-                if place == 0 {
-                    ids.push(row.pattern);
-                }
-                place = (place + 1) % self.scenarios.len();
-            }
-        }
-        if place != 0 {
-            return Err(TableError::damaged(
-                path,
-                "the rows of its last pattern are incomplete",
-            ));
-        }
-        Ok(Some(ids))
+    fn cursor(&self, file: &RowFile) -> Result<Option<RowCursor>, TableError> {
+        RowCursor::open(file, &self.schema.row_digests)
     }
 }
 
-/// Stores each block of rows as a part.
+/// A file whose next rows are those of `pattern`.
+struct OpenFile<'a> {
+    path: &'a Path,
+    cursor: RowCursor,
+    pattern: u32,
+}
+
+/// A row that two files hold has to be the same in both.
+fn agrees(known: Option<&ResponseRow>, row: &ResponseRow, path: &Path) -> Result<(), TableError> {
+    match known {
+        Some(known) if format!("{known:?}") != format!("{row:?}") => {
+            let pattern = row.pattern;
+            let reason = format!("another file has other values of pattern {pattern}");
+            Err(TableError::damaged(path, reason))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The parts of the results folder `results`, by the digests in their names.
+///
+/// # Errors
+/// The folder cannot be read.
+pub fn part_files(results: &Path) -> Result<Vec<RowFile>, TableError> {
+    let folder = results.join("parts");
+    let entries = match std::fs::read_dir(&folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(TableError::io("read", &folder)(error)),
+    };
+    let mut files = Vec::new();
+    for entry in entries {
+        let path = entry.map_err(TableError::io("read", &folder))?.path();
+        let name = path.file_name().map(|name| name.to_string_lossy());
+        let Some(name) = name
+            .as_deref()
+            .and_then(|name| name.strip_prefix("part-")?.strip_suffix(".parquet"))
+        else {
+            continue;
+        };
+        let (from, digest) = name.split_once('-').unwrap_or((name, ""));
+        files.push(RowFile {
+            digest: digest.to_owned(),
+            from: from.parse().unwrap_or(0),
+            path,
+        });
+    }
+    files.sort_by(|a, b| a.path.cmp(&b.path));
+    Ok(files)
+}
+
+/// Removes the parts of the results folder `results`.
+///
+/// # Errors
+/// The folder cannot be removed.
+pub fn remove_parts(results: &Path) -> Result<(), TableError> {
+    let folder = results.join("parts");
+    match std::fs::remove_dir_all(&folder) {
+        Ok(()) => Ok(()),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(TableError::io("remove", &folder)(error)),
+    }
+}
+
+/// Stores the rows of each block as a part.
 #[derive(Debug)]
 pub struct PartSink<'a> {
-    store: &'a PartStore,
-    blocks: &'a [PatternBlock],
+    schema: &'a RowSchema,
+    folder: PathBuf,
+}
+
+impl<'a> PartSink<'a> {
+    /// Stores into the results folder `results`.
+    #[must_use]
+    pub fn new(results: &Path, schema: &'a RowSchema) -> Self {
+        Self {
+            schema,
+            folder: results.join("parts"),
+        }
+    }
 }
 
 impl RowSink for PartSink<'_> {
     type Error = TableError;
 
-    fn block(&mut self, block: usize, rows: Vec<ResponseRow>) -> Result<(), TableError> {
-        let name = format!("part-{:06}.parquet", self.blocks[block].index);
-        let path = self.store.folder.join(name);
-        let mut writer = ResponseWriter::create(&path, &self.store.scenarios, &self.store.header)?;
+    fn rows(&mut self, block: &PatternBlock, rows: Vec<ResponseRow>) -> Result<(), TableError> {
+        let Some(first) = rows.first().map(|row| row.pattern) else {
+            return Ok(());
+        };
+        let RowSchema {
+            scenarios,
+            row_digests,
+            header,
+        } = self.schema;
+        let digests: Vec<String> = block
+            .scenarios
+            .iter()
+            .map(|&scenario| row_digests[scenario].clone())
+            .collect();
+        let path = self.folder.join(format!("part-{first:010}.parquet"));
+        let mut writer = ResponseWriter::create(&path, scenarios, header, &digests)?;
         writer.write(rows)?;
-        writer.finish()
+        writer.finish_as(|digest| format!("part-{first:010}-{digest}.parquet"))
     }
 }

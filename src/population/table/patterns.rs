@@ -1,8 +1,10 @@
 //! `patterns.parquet`: the deviation of every blade of every pattern.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::column::{ColumnKind, ColumnSpec, Values, key};
+use super::reader::TableReader;
 use super::writer::TableWriter;
 use super::{TableError, TableHeader};
 use crate::response::mistuning::PatternSource;
@@ -75,6 +77,40 @@ pub fn write_patterns(
         writer.write(columns_of(&rows))?;
     }
     writer.finish()
+}
+
+/// Patterns as `patterns.parquet` holds them: `(blade, mode, bits of the deviation)` of every entry, by
+/// the bits of the standard deviation and the id.
+pub type StoredPatterns = BTreeMap<(Option<u64>, u32), Vec<(u32, Option<u32>, u64)>>;
+
+/// Reads `patterns.parquet`.
+///
+/// # Errors
+/// The file cannot be read or is damaged.
+pub fn read_patterns(path: &Path) -> Result<StoredPatterns, TableError> {
+    let reader = TableReader::open(path, PATTERN_COLUMNS)?;
+    let mut patterns = StoredPatterns::new();
+    let mut first = 0;
+    while first < reader.rows() {
+        let slice = reader.read(first, ROW_GROUP.min(reader.rows() - first))?;
+        let standard_deviations = slice.float64("standard_deviation")?;
+        let ids = slice.int32("pattern")?;
+        let blades = slice.int32("blade")?;
+        let modes = slice.int32("mode")?;
+        let deviations = slice.float64("deviation")?;
+        first += ids.len();
+        for (place, id) in ids.into_iter().enumerate() {
+            let (Some(id), Some(blade), Some(deviation)) = (id, blades[place], deviations[place])
+            else {
+                return Err(TableError::damaged(path, "an entry is null"));
+            };
+            let key = (standard_deviations[place].map(f64::to_bits), id as u32);
+            let mode = modes[place].map(|mode| mode as u32);
+            let entry = (blade as u32, mode, deviation.to_bits());
+            patterns.entry(key).or_default().push(entry);
+        }
+    }
+    Ok(patterns)
 }
 
 fn columns_of(rows: &[Row]) -> Vec<Values> {

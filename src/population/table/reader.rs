@@ -9,7 +9,7 @@ use polars::prelude::{
 };
 
 use super::column::polars_type;
-use super::writer::STUDY_DIGEST_KEY;
+use super::writer::{ROW_DIGESTS_KEY, STUDY_DIGEST_KEY};
 use super::{ColumnSpec, TableError};
 
 /// An open Parquet file whose columns have been checked.
@@ -19,6 +19,7 @@ pub(super) struct TableReader {
     columns: &'static [ColumnSpec],
     rows: usize,
     study_digest: Option<String>,
+    row_digests: Vec<String>,
 }
 
 impl TableReader {
@@ -46,17 +47,21 @@ impl TableReader {
                 ));
             }
         }
-        let study_digest = metadata
-            .key_value_metadata()
-            .iter()
-            .flatten()
-            .find(|pair| pair.key == STUDY_DIGEST_KEY)
-            .and_then(|pair| pair.value.clone());
+        let value_of = |key: &str| {
+            metadata
+                .key_value_metadata()
+                .iter()
+                .flatten()
+                .find(|pair| pair.key == key)
+                .and_then(|pair| pair.value.clone())
+        };
+        let row_digests = value_of(ROW_DIGESTS_KEY).unwrap_or_default();
         Ok(Self {
             path: path.to_owned(),
             columns,
             rows: metadata.num_rows,
-            study_digest,
+            study_digest: value_of(STUDY_DIGEST_KEY),
+            row_digests: row_digests.split(',').map(str::to_owned).collect(),
         })
     }
 
@@ -66,6 +71,11 @@ impl TableReader {
 
     pub(super) fn study_digest(&self) -> Option<&str> {
         self.study_digest.as_deref()
+    }
+
+    /// Digests of what the rows of each scenario are made from; one empty text where there are none.
+    pub(super) fn row_digests(&self) -> &[String] {
+        &self.row_digests
     }
 
     /// `count` rows from row `first` on.

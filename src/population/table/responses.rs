@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use super::column::{ColumnKind, ColumnSpec, Values, key};
 use super::reader::TableReader;
-use super::writer::TableWriter;
+use super::writer::{ROW_DIGESTS_KEY, TableWriter};
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;
+use crate::response::mistuning::{ContactQuantity, PairFactors};
 
 use ColumnKind::{Boolean, Float64, Int32, Int64, String as Text};
 
@@ -130,6 +131,30 @@ pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
         "",
         "Basis of the reduced model that the row was solved on",
     ),
+    ColumnSpec::new(
+        "friction_coefficient_factor",
+        Float64,
+        "1",
+        "Factor on the coefficient of friction of this wheel, mean over its pairs; null where the contact does not vary",
+    ),
+    ColumnSpec::new(
+        "tangential_stiffness_factor",
+        Float64,
+        "1",
+        "Factor on the tangential contact stiffness of this wheel, mean over its pairs; null where the contact does not vary",
+    ),
+    ColumnSpec::new(
+        "normal_stiffness_factor",
+        Float64,
+        "1",
+        "Factor on the normal contact stiffness of this wheel, mean over its pairs; null where the contact does not vary",
+    ),
+    ColumnSpec::new(
+        "normal_load_factor",
+        Float64,
+        "1",
+        "Factor on the normal load of this wheel, mean over its pairs; null where the contact does not vary",
+    ),
 ];
 
 /// Rows per row group and per batch in memory.
@@ -145,7 +170,8 @@ pub struct ResponseWriter {
 }
 
 impl ResponseWriter {
-    /// Begins the file `path`; `scenarios` are those of the study, in order.
+    /// Begins the file `path`; `scenarios` are those of the study, in order. `row_digests` says what
+    /// the rows are made from, a digest for each scenario that has rows in the file.
     ///
     /// # Errors
     /// The file cannot be created.
@@ -153,10 +179,12 @@ impl ResponseWriter {
         path: &Path,
         scenarios: &[Scenario],
         header: &TableHeader,
+        row_digests: &[String],
     ) -> Result<Self, TableError> {
+        let digests = [(ROW_DIGESTS_KEY, row_digests.join(","))];
         Ok(Self {
             scenarios: scenarios.to_vec(),
-            writer: TableWriter::create(path, RESPONSE_COLUMNS, header)?,
+            writer: TableWriter::create_with(path, RESPONSE_COLUMNS, header, &digests)?,
             waiting: Vec::new(),
         })
     }
@@ -182,6 +210,12 @@ impl ResponseWriter {
     pub fn finish(mut self) -> Result<(), TableError> {
         self.flush()?;
         self.writer.finish()
+    }
+
+    /// The same under a name made from the digest of the file.
+    pub(super) fn finish_as(mut self, name: impl FnOnce(&str) -> String) -> Result<(), TableError> {
+        self.flush()?;
+        self.writer.finish_as(name)
     }
 
     fn flush(&mut self) -> Result<(), TableError> {
@@ -255,6 +289,16 @@ fn columns_of(rows: &[ResponseRow], scenarios: &[Scenario]) -> Result<Vec<Values
         floats(&|row| row.stated_error),
         Values::Boolean(rows.iter().map(|row| row.error_within_tolerance).collect()),
         names(&|row| row.basis.clone()),
+        floats(&|row| {
+            row.contact_factors
+                .map(|factors| factors.friction_coefficient)
+        }),
+        floats(&|row| {
+            row.contact_factors
+                .map(|factors| factors.tangential_stiffness)
+        }),
+        floats(&|row| row.contact_factors.map(|factors| factors.normal_stiffness)),
+        floats(&|row| row.contact_factors.map(|factors| factors.normal_load)),
     ])
 }
 
@@ -289,6 +333,12 @@ impl ResponseReader {
     #[must_use]
     pub fn study_digest(&self) -> Option<&str> {
         self.table.study_digest()
+    }
+
+    /// Digests of what the rows of each scenario of the file are made from.
+    #[must_use]
+    pub fn row_digests(&self) -> &[String] {
+        self.table.row_digests()
     }
 
     /// The next rows, at most one row group; empty at the end.
@@ -362,6 +412,11 @@ impl ResponseReader {
         let stated_errors = slice.float64("stated_error")?;
         let within = slice.boolean("error_within_tolerance")?;
         let mut bases = slice.string("basis")?;
+        let factors_of = ContactQuantity::ALL.map(|quantity| format!("{}_factor", quantity.name()));
+        let mut contact_factors = Vec::new();
+        for column in &factors_of {
+            contact_factors.push(slice.float64(column)?);
+        }
         (0..scenarios.len())
             .map(|i| {
                 let status = statuses[i]
@@ -390,6 +445,22 @@ impl ResponseReader {
                     harmonic_error: harmonic_errors[i],
                     stated_error: stated_errors[i],
                     error_within_tolerance: within[i],
+                    contact_factors: match [0, 1, 2, 3]
+                        .map(|column: usize| contact_factors[column][i])
+                    {
+                        [
+                            Some(friction_coefficient),
+                            Some(tangential_stiffness),
+                            Some(normal_stiffness),
+                            Some(normal_load),
+                        ] => Some(PairFactors {
+                            friction_coefficient,
+                            tangential_stiffness,
+                            normal_stiffness,
+                            normal_load,
+                        }),
+                        _ => None,
+                    },
                     basis: bases[i].take().ok_or_else(|| gap(i, "basis"))?,
                 })
             })

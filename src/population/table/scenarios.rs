@@ -297,10 +297,11 @@ pub fn write_scenarios(
     for quantity in quantities {
         values.push(floats(&|record| quantity(record).mean));
         values.push(floats(&|record| quantity(record).standard_deviation));
-        for place in 0..PERCENTILES.len() {
-            values.push(floats(&|record| quantity(record).percentiles[place].value));
-            values.push(floats(&|record| quantity(record).percentiles[place].lower));
-            values.push(floats(&|record| quantity(record).percentiles[place].upper));
+        for percent in PERCENTILES {
+            let of = |record: &ScenarioRecord| quantity(record).percentile(percent).copied();
+            values.push(floats(&|record| of(record)?.value));
+            values.push(floats(&|record| of(record)?.lower));
+            values.push(floats(&|record| of(record)?.upper));
         }
     }
     values.push(Values::String(

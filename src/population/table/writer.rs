@@ -1,12 +1,11 @@
 //! Writer of one Parquet file, row group by row group, atomically, with described columns.
 
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use polars::prelude::{BatchedWriter, KeyValueMetadata, ParquetCompression, ParquetWriter};
 use serde::{Deserialize, Serialize};
 
-use super::atomic::AtomicFile;
+use super::atomic::{AtomicFile, BufferedFile};
 use super::column::{Values, frame, polars_schema};
 use super::{ColumnSpec, TableError};
 
@@ -15,6 +14,8 @@ pub const SCHEMA_VERSION: u32 = 1;
 
 /// Key of the study digest in the metadata of a file.
 pub(super) const STUDY_DIGEST_KEY: &str = "blisk.study_digest";
+/// Key of the digests of what the rows of each scenario are made from, separated by commas.
+pub(super) const ROW_DIGESTS_KEY: &str = "blisk.row_digests";
 
 /// Compression of the pages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -68,7 +69,7 @@ pub(super) struct TableWriter {
     path: PathBuf,
     columns: &'static [ColumnSpec],
     file: AtomicFile,
-    writer: BatchedWriter<File>,
+    writer: BatchedWriter<BufferedFile>,
 }
 
 impl TableWriter {
@@ -93,12 +94,12 @@ impl TableWriter {
             Compression::Snappy => ParquetCompression::Snappy,
         };
         // One thread, so that the writer neither needs a pool of its own nor depends on its size.
-        let writer = ParquetWriter::new(file.handle()?)
+        let writer = ParquetWriter::new(file.writer()?)
             .with_compression(compression)
             .set_parallel(false)
             .with_key_value_metadata(Some(header.metadata(columns, more)))
             .batched(&polars_schema(columns))
-            .map_err(|error| TableError::encoding(path, error.to_string()))?;
+            .map_err(|error| file.failed(error))?;
         Ok(Self {
             path: path.to_owned(),
             columns,
@@ -113,14 +114,22 @@ impl TableWriter {
             frame(self.columns, values).map_err(|error| TableError::encoding(&self.path, error))?;
         self.writer
             .write_batch(&frame)
-            .map_err(|error| TableError::encoding(&self.path, error.to_string()))
+            .map_err(|error| self.file.failed(error))
     }
 
     /// Writes the footer and puts the file in its place.
     pub(super) fn finish(self) -> Result<(), TableError> {
         self.writer
             .finish()
-            .map_err(|error| TableError::encoding(&self.path, error.to_string()))?;
+            .map_err(|error| self.file.failed(error))?;
         self.file.commit()
+    }
+
+    /// The same under a name made from the digest of the file.
+    pub(super) fn finish_as(self, name: impl FnOnce(&str) -> String) -> Result<(), TableError> {
+        self.writer
+            .finish()
+            .map_err(|error| self.file.failed(error))?;
+        self.file.commit_as(name)
     }
 }

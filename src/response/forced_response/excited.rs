@@ -10,7 +10,7 @@ use crate::model::cyclic::nodal_diameter_of;
 use crate::response::harmonic_balance::{
     ContactStiffnessMatrix, Damping, HarmonicBlock, Structure,
 };
-use crate::response::mistuning::{StructuralModes, WheelBasis};
+use crate::response::mistuning::{ContactFactors, StructuralModes, WheelBasis};
 
 /// One linear structure with both linear contact stiffnesses.
 #[derive(Debug, Clone)]
@@ -24,11 +24,20 @@ pub struct LinearStructure {
 }
 
 impl LinearStructure {
-    fn new(modes: StructuralModes, model: &ReducedModel, damping: Damping) -> Self {
+    fn new(
+        modes: StructuralModes,
+        model: &ReducedModel,
+        factors: &ContactFactors,
+        damping: Damping,
+    ) -> Self {
         let structure = Structure::new(modes, damping);
+        let stiffness = |sector: &[f64]| {
+            let springs = factors.springs(sector, &model.contact.rows);
+            Arc::new(structure.contact_stiffness(&springs))
+        };
         Self {
-            stuck: Arc::new(structure.contact_stiffness(&model.springs.stick)),
-            slide: Arc::new(structure.contact_stiffness(&model.springs.slide)),
+            stuck: stiffness(&model.springs.stick),
+            slide: stiffness(&model.springs.slide),
             structure: Arc::new(structure),
         }
     }
@@ -130,15 +139,17 @@ impl LimitModes {
 }
 
 impl Wheel {
-    /// A mistuned wheel with the modes of the limits that are wanted.
+    /// A mistuned wheel with the modes of the limits that are wanted; `factors` are those of its
+    /// contact.
     #[must_use]
     pub fn mistuned(
         modes: StructuralModes,
         model: &ReducedModel,
+        factors: &ContactFactors,
         damping: Damping,
         wanted: LimitsWanted,
     ) -> Self {
-        let linear = LinearStructure::new(modes, model, damping);
+        let linear = LinearStructure::new(modes, model, factors, damping);
         Self {
             modes: LimitModes::new(&linear, wanted),
             linear,
@@ -179,9 +190,11 @@ impl Excited {
     }
 
     /// The tuned wheel as one sector: temporal harmonic k in nodal diameter `k EO mod N` alone.
+    /// `factors` are those of the pairs of one sector, alike in all.
     #[must_use]
     pub fn tuned(
         model: &ReducedModel,
+        factors: &ContactFactors,
         engine_order: u32,
         amplitude_n: f64,
         damping: Damping,
@@ -193,6 +206,7 @@ impl Excited {
             LinearStructure::new(
                 StructuralModes::of_wave(model, wave(harmonic)),
                 model,
+                factors,
                 damping,
             )
         };

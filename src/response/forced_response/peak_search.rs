@@ -208,8 +208,17 @@ impl Search {
         let good: Vec<usize> = (0..self.samples.0.len())
             .filter(|&i| !self.samples.0[i].amplitudes.is_empty())
             .collect();
+        // Distance at which a peak of this height and width would read what was seen.
+        let reach = |a: f64| gamma * ((height / a).powi(2) - 1.0).max(0.0).sqrt();
         let mut widest: Option<(f64, f64)> = None;
         let mut hole = false;
+        if let (Some(&first), Some(&last)) = (good.first(), good.last()) {
+            // Out to the ends of the band all points failed.
+            let all = &self.samples.0;
+            let (start, stop) = (&all[0], &all[all.len() - 1]);
+            hole |= all[first].frequency_hz - reach(all[first].largest) > start.frequency_hz;
+            hole |= all[last].frequency_hz + reach(all[last].largest) < stop.frequency_hz;
+        }
         for pair in good.windows(2) {
             let (left, right) = (&self.samples.0[pair[0]], &self.samples.0[pair[1]]);
             if pair[0] == best || pair[1] == best {
@@ -219,8 +228,6 @@ impl Search {
                     continue;
                 }
             }
-            // Distance at which a peak of this height and width would read what was seen.
-            let reach = |a: f64| gamma * ((height / a).powi(2) - 1.0).max(0.0).sqrt();
             let from = left.frequency_hz + reach(left.largest);
             let to = right.frequency_hz - reach(right.largest);
             if to <= from {

@@ -8,6 +8,7 @@ use super::options::{Harmonics, SolverOptions};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{HarmonicTransform, NewtonBounds, TransformError};
+use crate::response::mistuning::ContactFactors;
 
 /// Samples per period of the highest harmonic of an automatic set at least.
 const SAMPLES_OF_HIGHEST: usize = 16;
@@ -23,6 +24,7 @@ pub struct PointSettings {
     pub(super) contact: Option<(ContactLaw, PairParameters)>,
     pub(super) ring: Ring,
     pub(super) geometry: ContactGeometry,
+    pub(super) factors: ContactFactors,
 }
 
 impl PointSettings {
@@ -49,6 +51,7 @@ impl PointSettings {
             contact,
             ring: Ring::Locked,
             geometry,
+            factors: ContactFactors::default(),
         })
     }
 
@@ -56,6 +59,15 @@ impl PointSettings {
     #[must_use]
     pub fn with_ring(self, ring: Ring) -> Self {
         Self { ring, ..self }
+    }
+
+    /// The same for a wheel whose contact differs from the nominal one by `factors`.
+    #[must_use]
+    pub fn with_factors(&self, factors: &ContactFactors) -> Self {
+        Self {
+            factors: factors.clone(),
+            ..self.clone()
+        }
     }
 
     /// Harmonic set of the nonlinear solution.

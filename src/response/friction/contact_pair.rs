@@ -5,6 +5,7 @@ use super::{
     ContactLaw, ContactOptions, CoupledSlider, PeriodicSlider, coulomb_3d, macro_slip_1d,
     simplified_3d,
 };
+use crate::response::mistuning::{ContactFactors, PairFactors};
 
 impl ContactLaw {
     /// Whether the normal load follows the normal displacement.
@@ -54,16 +55,37 @@ impl PairParameters {
         }
     }
 
-    /// The pairs of a sector of these parameters under another normal load; `weights` are their
-    /// shares.
+    /// The pairs of a sector of these parameters under another normal load, or those of the whole
+    /// wheel where they vary; `weights` are the shares of a sector's pairs.
     #[must_use]
-    pub fn pairs_under(self, normal_load_n: f64, weights: &[f64]) -> Vec<Self> {
+    pub fn pairs_under(
+        self,
+        normal_load_n: f64,
+        weights: &[f64],
+        factors: &ContactFactors,
+    ) -> Vec<Self> {
         let sector = Self {
             normal_load_n,
             ..self
         };
-        let shares = weights.iter().map(|&weight| sector.share(weight));
-        shares.collect()
+        let nominal = weights.iter().map(|&weight| sector.share(weight));
+        if factors.is_nominal() {
+            return nominal.collect();
+        }
+        let varied = factors.pairs().iter().zip(nominal.cycle());
+        varied.map(|(factors, pair)| pair.varied(factors)).collect()
+    }
+
+    /// The same pair with each parameter multiplied by its factor.
+    #[must_use]
+    pub fn varied(self, factors: &PairFactors) -> Self {
+        Self {
+            normal_load_n: factors.normal_load * self.normal_load_n,
+            normal_stiffness_n_per_m: factors.normal_stiffness * self.normal_stiffness_n_per_m,
+            tangential_stiffness_n_per_m: factors.tangential_stiffness
+                * self.tangential_stiffness_n_per_m,
+            friction_coefficient: factors.friction_coefficient * self.friction_coefficient,
+        }
     }
 
     /// Whether the pair certainly sticks throughout, in contact and with zero offset, if its

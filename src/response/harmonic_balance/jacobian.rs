@@ -53,7 +53,7 @@ impl HarmonicSystem {
 
     /// Contact rows of the active pairs, packed; returns their number.
     fn gather_active(&self, active: &[usize], rows: &Matrix<f64>, packed: &mut [f64]) -> usize {
-        let per_sector = self.interface.pairs.len();
+        let per_sector = self.interface.per_sector();
         let sector_rows = self.interface.geometry.row_count();
         let mut at = 0;
         for column in 0..rows.columns() {
@@ -91,7 +91,7 @@ impl HarmonicSystem {
     ) {
         let coefficients = self.transform.n_coefficients();
         let entry = c * coefficients + other;
-        let per_sector = self.interface.pairs.len();
+        let per_sector = self.interface.per_sector();
         let packed = workspace.active_rows[..n_rows * columns].chunks_exact(n_rows);
         let loaded = workspace.loaded_rows[..n_rows * columns].chunks_exact_mut(n_rows);
         for (source, target) in packed.zip(loaded) {

@@ -1,6 +1,7 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
 mod anderson;
+mod contact_interface;
 mod continuation;
 mod convergence;
 mod coupled_derivative;
@@ -18,6 +19,7 @@ mod structure;
 mod system;
 mod transform;
 
+pub use contact_interface::ContactInterface;
 pub use continuation::{Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint};
 pub use convergence::NewtonBounds;
 pub use damping::Damping;
@@ -28,5 +30,5 @@ pub use pair_harmonics::{PairHarmonics, PairJacobian};
 pub use ring_drift::solve_creeping;
 pub use status::Status;
 pub use structure::{ContactStiffnessMatrix, Structure};
-pub use system::{ContactInterface, ContactShares, HarmonicBlock, HarmonicSystem, SystemWorkspace};
+pub use system::{ContactShares, HarmonicBlock, HarmonicSystem, SystemWorkspace};
 pub use transform::{HarmonicTransform, TransformError, TransformScratch};

@@ -236,3 +236,49 @@ pub(super) fn iterate(
 pub(super) fn norm_of(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `u = 0`, under contact of which a share has no periodic state.
+    struct Contact {
+        unclosed: f64,
+    }
+
+    impl Equation for Contact {
+        fn residual(&mut self, u: &[f64], residual: &mut [f64]) -> (f64, ContactShares) {
+            residual.copy_from_slice(u);
+            let shares = ContactShares {
+                unclosed: self.unclosed,
+                ..ContactShares::default()
+            };
+            (norm_of(u), shares)
+        }
+
+        fn linearise(&mut self, u: &[f64], residual: &mut [f64]) -> bool {
+            residual.copy_from_slice(u);
+            true
+        }
+
+        fn is_linearised(&self) -> bool {
+            false
+        }
+
+        fn step(&mut self, _residual: &mut [f64]) {}
+    }
+
+    #[test]
+    fn a_solution_with_a_pair_that_does_not_close_is_none() {
+        for (unclosed, status) in [(0.0, Status::Ok), (0.1, Status::Stagnated)] {
+            let bounds = NewtonBounds::with_tolerance(1e-8);
+            for start in [1.0, 0.0] {
+                let mut u = vec![start];
+                let mut buffers = NewtonBuffers::new(1);
+                let outcome = iterate(&mut Contact { unclosed }, &mut u, bounds, &mut buffers);
+                assert_eq!(outcome.status, status, "{unclosed} from {start}");
+                assert!(outcome.residual <= bounds.residual_tolerance);
+            }
+        }
+    }
+}

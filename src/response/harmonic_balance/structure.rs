@@ -207,7 +207,8 @@ impl Structure {
         }
     }
 
-    /// `C^H diag(springs) C`; `springs` are those of one sector, N/m, repeated over the sectors.
+    /// `C^H diag(springs) C`; `springs` are those of one sector, N/m, repeated over the sectors, or
+    /// those of all.
     #[must_use]
     pub fn contact_stiffness(&self, springs: &[f64]) -> ContactStiffnessMatrix {
         let scale = |rows: &Matrix<f64>| {

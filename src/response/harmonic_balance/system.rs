@@ -14,10 +14,9 @@
 use std::sync::Arc;
 
 use super::structure::{ContactStiffnessMatrix, Structure};
-use super::{HarmonicTransform, PairHarmonics, PairJacobian};
+use super::{ContactInterface, HarmonicTransform, PairHarmonics, PairJacobian};
 use crate::linalg::{Complex64, Matrix, add_times_vector, add_transpose_times_vector};
-use crate::model::cyclic::ContactGeometry;
-use crate::response::friction::{ContactLaw, PairParameters};
+use crate::response::friction::PairParameters;
 
 /// One harmonic of the set: its number, and the structure it lives in.
 #[derive(Debug, Clone)]
@@ -28,39 +27,6 @@ pub struct HarmonicBlock {
     pub structure: Arc<Structure>,
     /// Linear stuck contact stiffness of that structure.
     pub stuck: Arc<ContactStiffnessMatrix>,
-}
-
-/// Contact law and pair parameters of one sector.
-#[derive(Debug, Clone)]
-pub struct ContactInterface {
-    /// Law of every pair.
-    pub law: ContactLaw,
-    /// Rows and weights of the pairs of one sector.
-    pub geometry: ContactGeometry,
-    /// Parameters of each pair of one sector.
-    pub pairs: Vec<PairParameters>,
-}
-
-impl ContactInterface {
-    /// Springs of the contact rows of a sector where every pair sticks, N/m, the tangential ones
-    /// multiplied by `factor`.
-    fn stuck_springs(&self, factor: f64) -> Vec<f64> {
-        let mut springs = vec![0.0; self.geometry.row_count()];
-        for (pair, rows) in self.pairs.iter().zip(&self.geometry.rows) {
-            let tangential = factor * pair.tangential_stiffness_n_per_m;
-            let second = match self.law {
-                ContactLaw::MacroSlip1d => 0.0,
-                ContactLaw::Simplified3d | ContactLaw::Coulomb3d => tangential,
-            };
-            let own = [pair.normal_stiffness_n_per_m, tangential, second];
-            for (row, spring) in rows.iter().zip(own) {
-                if let Some(row) = *row {
-                    springs[row] = spring;
-                }
-            }
-        }
-        springs
-    }
 }
 
 /// The nonlinear equation at any frequency.
@@ -221,7 +187,7 @@ impl HarmonicSystem {
         system
     }
 
-    /// Pair parameters of one sector.
+    /// Pair parameters of one sector, or of the whole wheel where sectors differ.
     #[must_use]
     pub fn pairs(&self) -> &[PairParameters] {
         &self.interface.pairs
@@ -249,7 +215,7 @@ impl HarmonicSystem {
     pub fn workspace(&self) -> SystemWorkspace {
         let coefficients = self.transform.n_coefficients();
         let sector_rows = self.interface.geometry.row_count().max(1);
-        let pairs = self.interface.pairs.len() * (self.rows / sector_rows);
+        let pairs = self.interface.per_sector() * (self.rows / sector_rows);
         let largest = self
             .blocks
             .iter()
@@ -364,7 +330,7 @@ impl HarmonicSystem {
     /// against rotation and axial motion hands it on to what locks it.
     #[must_use]
     pub fn mean_friction_n(&self, x: &[f64], workspace: &mut SystemWorkspace) -> [f64; 2] {
-        let per_sector = self.interface.pairs.len();
+        let per_sector = self.interface.per_sector();
         let count = workspace.active.len();
         let mut sum = [0.0; 2];
         if count == 0 {
@@ -374,7 +340,7 @@ impl HarmonicSystem {
         for pair in 0..count {
             self.gather_pair(pair, workspace);
             workspace.pairs.evaluate(
-                &self.interface.pairs[pair % per_sector],
+                self.interface.pair(pair),
                 &workspace.pair_input,
                 &mut workspace.pair_output,
                 None,
@@ -392,7 +358,7 @@ impl HarmonicSystem {
     /// Coefficients of the displacement of one pair into `pair_input`, and its drift.
     fn gather_pair(&self, pair: usize, workspace: &mut SystemWorkspace) {
         let coefficients = self.transform.n_coefficients();
-        let per_sector = self.interface.pairs.len();
+        let per_sector = self.interface.per_sector();
         let base = pair / per_sector * self.interface.geometry.row_count();
         // The relative displacement is that of the blisk less that of the ring.
         let [rotation, axial] = self.interface.geometry.ring_motion[pair % per_sector];
@@ -418,7 +384,7 @@ impl HarmonicSystem {
         workspace: &mut SystemWorkspace,
     ) -> ContactShares {
         let coefficients = self.transform.n_coefficients();
-        let per_sector = self.interface.pairs.len();
+        let per_sector = self.interface.per_sector();
         let sector_rows = self.interface.geometry.row_count();
         let (mut slipping, mut separated, mut unclosed) = (0_usize, 0_usize, 0_usize);
         workspace.correction.fill(0.0);
@@ -428,7 +394,7 @@ impl HarmonicSystem {
             let places = self.interface.geometry.rows[pair % per_sector];
             self.gather_pair(pair, workspace);
             let state = workspace.pairs.evaluate(
-                &self.interface.pairs[pair % per_sector],
+                self.interface.pair(pair),
                 &workspace.pair_input,
                 &mut workspace.pair_output,
                 derivative.then_some(&mut workspace.jacobians[pair]),

@@ -1,5 +1,7 @@
 //! Patterns of blade deviations: distributions, random streams, tables, and their application.
 
+mod contact_factors;
+mod contact_variation;
 mod distribution;
 mod modes;
 mod options;
@@ -10,6 +12,10 @@ mod source;
 mod stream;
 mod wheel_basis;
 
+pub use contact_factors::{ContactFactors, PairFactors};
+pub use contact_variation::{
+    ContactQuantity, ContactSource, ContactVariation, FactorLaw, VariesPer,
+};
 pub use distribution::{DistributionError, TRUNCATION_RANGE};
 pub use modes::{ModalRows, StructuralModes};
 pub use options::{Distribution, Projection};

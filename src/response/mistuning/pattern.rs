@@ -1,4 +1,6 @@
-//! One mistuning pattern: the deviation of every blade of a wheel.
+//! One mistuning pattern: the deviation of every blade of a wheel, and its contact.
+
+use super::ContactFactors;
 
 /// Relative deviations of the blades of one wheel, in blade order.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +23,8 @@ pub struct Pattern {
     pub id: u32,
     /// Deviations of its blades.
     pub deviations: Deviations,
+    /// Its contact relative to the nominal one.
+    pub contact: ContactFactors,
 }
 
 impl Pattern {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::{Deviations, Pattern};
+use super::{ContactFactors, Deviations, Pattern};
 
 /// A file of patterns that cannot be used.
 #[derive(Debug, Error)]
@@ -254,7 +254,11 @@ impl PatternRecords {
                 values,
             }
         };
-        Ok(Pattern { id, deviations })
+        Ok(Pattern {
+            id,
+            deviations,
+            contact: ContactFactors::default(),
+        })
     }
 }
 

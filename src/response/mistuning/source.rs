@@ -1,6 +1,8 @@
 //! Where the patterns of a study come from: a law and a seed, or a table.
 
-use super::{Deviations, Distribution, Pattern, PatternTable, pattern_stream};
+use super::{
+    ContactFactors, ContactSource, Deviations, Distribution, Pattern, PatternTable, pattern_stream,
+};
 
 /// Source of the patterns of a study.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +21,13 @@ pub enum PatternSource {
     },
     /// Read from a file.
     Table(PatternTable),
+    /// The blades of another source, with random contact.
+    WithContact {
+        /// Source of the blades.
+        blades: Box<PatternSource>,
+        /// Source of the contact.
+        contact: ContactSource,
+    },
 }
 
 impl PatternSource {
@@ -28,6 +37,7 @@ impl PatternSource {
         match self {
             Self::Random { count, .. } => (0..*count).collect(),
             Self::Table(table) => table.ids(),
+            Self::WithContact { blades, .. } => blades.ids(),
         }
     }
 
@@ -52,9 +62,17 @@ impl PatternSource {
                     deviations: Deviations::PerBlade(
                         unit.into_iter().map(|draw| scale * draw).collect(),
                     ),
+                    contact: ContactFactors::default(),
                 }
             }),
             Self::Table(table) => table.pattern(id),
+            Self::WithContact { blades, contact } => {
+                let pattern = blades.pattern(id, standard_deviation)?;
+                Some(Pattern {
+                    contact: contact.factors(id),
+                    ..pattern
+                })
+            }
         }
     }
 }

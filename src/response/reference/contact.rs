@@ -7,8 +7,9 @@ use crate::response::friction::{ContactLaw, PairParameters};
 use crate::response::harmonic_balance::{
     ContactShares, HarmonicTransform, PairHarmonics, PairJacobian,
 };
+use crate::response::mistuning::ContactFactors;
 
-/// The pairs of every sector under one normal load.
+/// The pairs of every sector under one normal load, sector after sector.
 ///
 /// Vectors over the contact have `n_coefficients * n_rows` entries, coefficient after coefficient:
 /// `Re`, `Im` of each harmonic (one for harmonic 0), each over the rows of all sectors.
@@ -32,13 +33,20 @@ impl ContactForces {
     pub(super) fn new(
         law: ContactLaw,
         sector: PairParameters,
+        factors: &ContactFactors,
         geometry: ContactGeometry,
         sectors: usize,
         transform: Arc<HarmonicTransform>,
     ) -> Self {
+        let nominal: Vec<PairParameters> =
+            geometry.weights.iter().map(|&w| sector.share(w)).collect();
+        let pair = |index: usize| {
+            let own = nominal[index % nominal.len()];
+            factors.pairs().get(index).map_or(own, |by| own.varied(by))
+        };
         Self {
             law,
-            pairs: geometry.weights.iter().map(|&w| sector.share(w)).collect(),
+            pairs: (0..sectors * nominal.len()).map(pair).collect(),
             geometry,
             sectors,
             transform,
@@ -80,7 +88,8 @@ impl ContactForces {
             derivatives.clear();
         }
         for sector in 0..self.sectors {
-            for (pair, directions) in self.pairs.iter().zip(&self.geometry.rows) {
+            let own = &self.pairs[sector * self.geometry.rows.len()..];
+            for (pair, directions) in own.iter().zip(&self.geometry.rows) {
                 // (unknown of the pair, its place) of every direction that the pair moves in.
                 let places: Vec<(usize, usize)> = directions
                     .iter()
@@ -113,7 +122,7 @@ impl ContactForces {
                 }
             }
         }
-        let count = f64::from((self.sectors * self.pairs.len()).max(1) as u32);
+        let count = f64::from(self.pairs.len().max(1) as u32);
         ContactShares {
             slipping: f64::from(slipping) / count,
             separated: f64::from(separated) / count,

@@ -14,7 +14,7 @@ use crate::model::cyclic::nodal_diameter_of;
 use crate::response::forced_response::{AmplitudeMeasure, ContactCondition};
 use crate::response::friction::PairParameters;
 use crate::response::harmonic_balance::{ContactShares, Status};
-use crate::response::mistuning::Pattern;
+use crate::response::mistuning::{ContactFactors, Pattern};
 
 /// Work done on a row.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -71,9 +71,17 @@ impl ReferenceSolver {
             ContactCondition::Slide => Some(&model.springs.slide),
             ContactCondition::Free => None,
         };
+        let nominal = ContactFactors::default();
+        let factors = pattern.map_or(&nominal, |pattern| &pattern.contact);
+        if !factors.are_possible() {
+            return Err(Status::InvalidPattern);
+        }
+        let springs = springs.map(|sector| factors.springs(sector, &model.contact.rows));
         let sprung = |structure| {
-            let springs = springs.map(Vec::as_slice);
-            Arc::new(SprungStructure::new(Arc::new(structure), springs))
+            Arc::new(SprungStructure::new(
+                Arc::new(structure),
+                springs.as_deref(),
+            ))
         };
         let nonlinear = match (condition, settings.contact) {
             (ContactCondition::Full { normal_load_n }, Some((law, sector))) => Some((
@@ -112,7 +120,8 @@ impl ReferenceSolver {
         let sectors = if pattern.is_some() { model.sectors } else { 1 };
         let contact = nonlinear.map(|(law, sector)| {
             let transform = Arc::clone(&settings.transform);
-            ContactForces::new(law, sector, model.contact.clone(), sectors, transform)
+            let geometry = model.contact.clone();
+            ContactForces::new(law, sector, factors, geometry, sectors, transform)
         });
         Ok(Self {
             structures,

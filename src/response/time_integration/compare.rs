@@ -2,9 +2,12 @@
 
 use std::f64::consts::TAU;
 
+use serde::Serialize;
+
 use super::motion::Motion;
 use super::options::TimeOptions;
 use super::settle::{Settled, settle};
+use super::stability::{PeriodicMotion, periodic_motion};
 use super::state::WheelState;
 use super::stepper::MarchedWheel;
 use crate::linalg::Matrix;
@@ -14,7 +17,7 @@ use crate::response::forced_response::{
 };
 use crate::response::friction::{ContactLaw, PairParameters};
 use crate::response::harmonic_balance::{ContactInterface, Damping, Status};
-use crate::response::mistuning::{StructuralModes, WheelBasis};
+use crate::response::mistuning::{ContactFactors, StructuralModes, WheelBasis};
 
 /// A point of a row: everything that both paths start from.
 #[derive(Debug, Clone, Copy)]
@@ -35,6 +38,8 @@ pub struct PointCase<'a> {
     pub law: ContactLaw,
     /// Contact parameters of a sector, its normal load included.
     pub sector: PairParameters,
+    /// Contact of the wheel relative to that.
+    pub factors: &'a ContactFactors,
     /// Harmonics of the harmonic balance, ascending, with 1.
     pub harmonics: &'a [u32],
     /// Settings of the harmonic balance; its measure of amplitude is that of the comparison.
@@ -71,6 +76,21 @@ pub struct PointComparison {
     pub steps: Vec<StepStudy>,
     /// The last march.
     pub settled: Settled,
+    /// Where the march is not periodic within its budget: the periodic motion next to harmonic
+    /// balance, and whether it is stable.
+    pub motion: Option<PeriodicMotion>,
+}
+
+/// What is known of the stability of a periodic motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stability {
+    /// The march from harmonic balance ends in it, or no Floquet multiplier exceeds 1.
+    Stable,
+    /// A Floquet multiplier of the periodic motion next to harmonic balance exceeds 1.
+    Unstable,
+    /// The march did not become periodic, and no periodic motion was found that would say why.
+    NotSettled,
 }
 
 impl PointComparison {
@@ -86,6 +106,19 @@ impl PointComparison {
         let blades = self.time_m.iter().zip(&self.harmonic_balance_m);
         let worst = blades.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         worst / largest(&self.harmonic_balance_m)
+    }
+
+    /// Whether the wheel stays on the motion that harmonic balance has found.
+    #[must_use]
+    pub fn stability(&self) -> Stability {
+        if self.settled.status == Status::Ok {
+            return Stability::Stable;
+        }
+        match self.motion.as_ref().and_then(PeriodicMotion::is_stable) {
+            Some(true) => Stability::Stable,
+            Some(false) => Stability::Unstable,
+            None => Stability::NotSettled,
+        }
     }
 
     /// Whether the dynamics reach the harmonic-balance solution: a periodic motion whose largest
@@ -118,7 +151,9 @@ pub fn compare_point(
     };
     let (harmonic_balance_m, motion) = case.harmonic_balance(&modes, &wheel)?;
     let start = motion.start(&marched, options.steps_per_period);
-    let (steps, settled, status) = case.march(&marched, start, options);
+    let (steps, settled, status) = case.march(&marched, start.clone(), options);
+    let motion = (settled.status == Status::WorkBudget)
+        .then(|| periodic_motion(&marched, &start, options.steps_per_period));
     Ok(PointComparison {
         frequency_hz: case.frequency_hz,
         harmonic_balance_m,
@@ -126,7 +161,33 @@ pub fn compare_point(
         status,
         steps,
         settled,
+        motion,
     })
+}
+
+/// The periodic motion next to the harmonic balance solution of a point, and the amplitude of every
+/// blade by harmonic balance, m.
+///
+/// # Errors
+/// As [`compare_point`].
+pub fn periodic_point(
+    case: &PointCase<'_>,
+    steps_per_period: usize,
+) -> Result<(Vec<f64>, PeriodicMotion), Status> {
+    let omega = TAU * case.frequency_hz;
+    let modes = case.modes()?;
+    let wheel = case.wheel(&modes, omega);
+    let interface = case.interface();
+    let marched = MarchedWheel {
+        structure: &wheel.linear.structure,
+        interface: &interface,
+        force: &wheel.force,
+        omega,
+    };
+    let (harmonic_balance_m, motion) = case.harmonic_balance(&modes, &wheel)?;
+    let start = motion.start(&marched, steps_per_period);
+    let found = periodic_motion(&marched, &start, steps_per_period);
+    Ok((harmonic_balance_m, found))
 }
 
 impl PointCase<'_> {
@@ -143,6 +204,7 @@ impl PointCase<'_> {
         let wheel = Wheel::mistuned(
             modes.clone(),
             self.basis.model(),
+            self.factors,
             self.damping,
             LimitsWanted::default(),
         );
@@ -154,7 +216,9 @@ impl PointCase<'_> {
         let weights = &geometry.weights;
         ContactInterface {
             law: self.law,
-            pairs: weights.iter().map(|&w| self.sector.share(w)).collect(),
+            pairs: self
+                .sector
+                .pairs_under(self.sector.normal_load_n, weights, self.factors),
             geometry,
         }
     }
@@ -172,6 +236,7 @@ impl PointCase<'_> {
         let model = self.basis.model();
         let waves = Excited::tuned(
             model,
+            &ContactFactors::default(),
             self.engine_order,
             self.amplitude_n,
             self.damping,
@@ -191,7 +256,8 @@ impl PointCase<'_> {
             Some((self.law, self.sector)),
             self.basis.model().contact.clone(),
         )
-        .map_err(|_| Status::IterationLimit)?;
+        .map_err(|_| Status::IterationLimit)?
+        .with_factors(self.factors);
         let condition = ContactCondition::Full {
             normal_load_n: self.sector.normal_load_n,
         };

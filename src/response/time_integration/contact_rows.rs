@@ -24,8 +24,9 @@ impl ContactRows {
         let sector_rows = interface.geometry.row_count().max(1);
         let mut springs = vec![0.0; n_rows];
         let mut pairs = Vec::new();
-        for first in (0..n_rows).step_by(sector_rows) {
-            for (places, parameters) in interface.geometry.rows.iter().zip(&interface.pairs) {
+        for (sector, first) in (0..n_rows).step_by(sector_rows).enumerate() {
+            for (place, places) in interface.geometry.rows.iter().enumerate() {
+                let parameters = interface.pair(sector * interface.per_sector() + place);
                 let rows = places.map(|place| place.map(|row| first + row));
                 let kt = parameters.tangential_stiffness_n_per_m;
                 let second = match interface.law {
@@ -62,6 +63,11 @@ impl ContactRows {
         pairs
             .map(|pair| PairMemory::at_rest(&pair.parameters))
             .collect()
+    }
+
+    /// Parameters of every pair.
+    pub(super) fn parameters(&self) -> impl Iterator<Item = &PairParameters> {
+        self.pairs.iter().map(|pair| &pair.parameters)
     }
 
     /// Tangential rows of every pair.

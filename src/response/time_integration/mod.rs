@@ -10,13 +10,17 @@ mod options;
 mod periods;
 mod propagator;
 mod settle;
+mod stability;
 mod state;
 mod stepper;
 
-pub use compare::{PointCase, PointComparison, StepStudy, compare_point};
+pub use compare::{
+    PointCase, PointComparison, Stability, StepStudy, compare_point, periodic_point,
+};
 pub use contact_march::{PairMemory, march};
 pub use motion::Motion;
 pub use options::TimeOptions;
 pub use settle::{Settled, settle};
+pub use stability::{PeriodicMotion, periodic_motion};
 pub use state::WheelState;
 pub use stepper::{MarchedWheel, TimeStepper};

@@ -111,6 +111,17 @@ impl<'a> TimeStepper<'a> {
         Some(stepper)
     }
 
+    /// Goes on from `state`, at phase zero of the excitation.
+    pub fn restart(&mut self, state: &WheelState) {
+        self.step = 0;
+        self.state = self.propagator.pack(&state.position, &state.velocity);
+        self.position.clone_from(&state.position);
+        self.pairs.clone_from(&state.pairs);
+        self.balance.clone_from(&state.balance_n);
+        self.displacement = self.rows.times_vector(&state.position);
+        self.meet_the_law();
+    }
+
     /// Steps per period.
     #[must_use]
     pub fn steps_per_period(&self) -> usize {

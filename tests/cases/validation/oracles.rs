@@ -16,7 +16,7 @@ use blisk::response::harmonic_balance::{
     ContactInterface, Damping, HarmonicBlock, HarmonicSystem, HarmonicTransform, NewtonBounds,
     NewtonWorkspace, Status, Structure, solve,
 };
-use blisk::response::mistuning::{Deviations, ModalRows, Pattern, StructuralModes};
+use blisk::response::mistuning::{ContactFactors, Deviations, ModalRows, Pattern, StructuralModes};
 use rayon::prelude::*;
 
 use super::super::one_dof::{EXPECTED, case, given_pattern, share_of_the_bound};
@@ -441,6 +441,7 @@ fn symmetries() -> Vec<Oracle> {
     let of_blades = |blades: Vec<f64>| Pattern {
         id: 1,
         deviations: Deviations::PerBlade(blades),
+        contact: ContactFactors::default(),
     };
     let mut turned = blades.clone();
     turned.rotate_right(3);

@@ -92,7 +92,7 @@ impl Point {
             .unwrap();
         let basis = WheelBasis::new(Arc::new(reduced));
         let change = self.pattern.map(|id| {
-            let source = pattern_source(&study, model.sectors).unwrap();
+            let source = pattern_source(&study, &model).unwrap();
             match source.pattern(id, None).unwrap().deviations {
                 Deviations::PerBlade(blades) => basis.blade_stiffness_change(&blades),
                 Deviations::PerMode { .. } => panic!("deviations per blade are compared"),
@@ -111,6 +111,7 @@ impl Point {
                 tangential_stiffness_n_per_m: kt,
                 friction_coefficient: contact.friction_coefficient,
             },
+            factors: &blisk::response::mistuning::ContactFactors::default(),
             harmonics: &self.harmonics,
             solver: &self.solver,
             frequency_hz: self.frequency_hz,

@@ -448,3 +448,32 @@ fn values_that_are_not_finite_pass_without_a_panic() {
         }
     }
 }
+
+/// Under a load far above what the motion needs, offsets round by more than closing allows: dragged
+/// along the rim of such disks by a drift, the state does not close, and the pair says so.
+#[test]
+fn a_pair_that_does_not_close_is_marked_after_its_periods() {
+    const N_SAMPLES: usize = 64;
+    let (mut closed, mut unclosed) = (0, 0);
+    for seed in 0..20 {
+        let mut random = Random(seed);
+        let transform = HarmonicTransform::new(&[1], N_SAMPLES).unwrap();
+        let mut x = [vec![0.0; N_SAMPLES], vec![0.0; N_SAMPLES]];
+        for history in &mut x {
+            transform.synthesize_by_sums(&random.vector(2, 1.0), history);
+        }
+        let mut slider = CoupledSlider::new(N_SAMPLES);
+        let load = vec![random.magnitude(1e2, 1e8); N_SAMPLES];
+        let drift = [random.magnitude(1e-8, 1.0), 0.0];
+        let slips = slider.solve_drifting(1.0, 0.3, [&x[0], &x[1]], &load, drift);
+        if slider.is_closed() {
+            closed += 1;
+        } else {
+            assert!(slips);
+            assert_eq!(slider.periods(), 200, "seed {seed}");
+            unclosed += 1;
+        }
+    }
+    println!("{closed} closed, {unclosed} not");
+    assert!(unclosed > 0);
+}

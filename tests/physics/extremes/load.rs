@@ -1,6 +1,9 @@
 //! Normal load, friction and excitation over twelve orders of magnitude.
 
-use blisk::response::forced_response::{ContactCondition, SolverOptions};
+use blisk::linalg::Complex64;
+use blisk::response::forced_response::{
+    ContactCondition, Envelope, SearchEnd, SearchSettings, SolverOptions, find_peak,
+};
 use blisk::response::friction::PairParameters;
 use blisk::response::harmonic_balance::Status;
 
@@ -190,5 +193,37 @@ fn clapping_ends_in_a_number_or_a_status_long() {
         let good = claps(&loads, harmonics);
         println!("{harmonics:?}: {good} of {}", loads.len());
         assert!(good >= wanted, "{harmonics:?}: {good} of {}", loads.len());
+    }
+}
+
+/// Where all points failed out to an end of the band, a peak seen from all sides is not known to be the
+/// highest: a clapping row once ended well with the lower one of two.
+#[test]
+fn failed_points_out_to_an_end_of_the_band_leave_the_search_incomplete() {
+    let amplitude = |hz: f64| {
+        let high = Complex64::new(95.0 - hz, 0.5).finv();
+        (high + 0.4 * Complex64::new(105.0 - hz, 0.5).finv()).norm()
+    };
+    let envelope = Envelope {
+        strength: 1.0,
+        linear_half_bandwidth_hz: 0.5,
+    };
+    let settings = SearchSettings {
+        tolerance: 1e-4,
+        evaluations: 100,
+        extensions: 5,
+    };
+    for (failed_below, end, peak) in [
+        (98.0, SearchEnd::Incomplete, 105.0),
+        (0.0, SearchEnd::Found, 95.0),
+    ] {
+        let starts = [95.0, 100.0, 105.0];
+        let result = find_peak((90.0, 110.0), &starts, envelope, settings, |hz| {
+            (hz > failed_below).then(|| vec![amplitude(hz)])
+        });
+        assert_eq!(result.end, end, "failed below {failed_below} Hz");
+        assert!(result.bracketed);
+        let best = &result.samples[result.best.unwrap()];
+        assert!((best.frequency_hz - peak).abs() < 0.2);
     }
 }

@@ -4,7 +4,7 @@ use blisk::model::reduction::BasisChoice;
 use blisk::model::sector::{LumpedOptions, lumped};
 use blisk::response::forced_response::{ContactCondition, SolverOptions};
 use blisk::response::harmonic_balance::{Damping, Status};
-use blisk::response::mistuning::{Deviations, Pattern};
+use blisk::response::mistuning::{ContactFactors, Deviations, Pattern};
 
 use super::wheels::{
     CHAIN_LOADS, ORDER, SECTORS, amplitude, chain, one_dimensional, solved, solved_pattern,
@@ -255,6 +255,7 @@ fn modes_of_a_single_mass_blade_are_the_blade() {
                 modes: vec![0],
                 values: deviations.clone(),
             },
+            contact: ContactFactors::default(),
         };
         let blade = solved(&solver, ORDER, &deviations, full(20.0)).1;
         let mode = solved_pattern(&solver, ORDER, &of_mode, full(20.0)).1;

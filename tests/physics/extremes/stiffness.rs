@@ -74,18 +74,21 @@ fn a_stiff_contact_ties_the_ring_to_the_disk() {
 
 /// Under friction the peak settles as the slider becomes rigid: the elastic travel mu N0 / kt vanishes.
 /// Sampled in time, a slider with so little travel is a jump, at which Newton's method may fail: beyond
-/// 2e9 N/m, where it is 1e-5 of the motion, a row has the same peak or a status.
+/// 2e9 N/m, where it is 1e-5 of the motion, a row has the same peak or a status. The jump lies at a
+/// sample, not between two: where that counts (60 N, 160 samples: up to 1.1 %) the rows state it as their
+/// sampling error (0.2 to 2 %), and agree within it.
 fn settles(stiffnesses: &[f64]) {
     const A_JUMP: f64 = 2e9;
     for load in CHAIN_LOADS {
-        let mut peaks: Vec<(f64, f64)> = Vec::new();
+        let mut peaks: Vec<(f64, f64, f64)> = Vec::new();
         for &kt in stiffnesses {
             let solver = with_stiffness(kt).solver(&[1], stiff());
             let row = solved(&solver, ORDER, &pattern(), full(load)).1;
             println!(
-                "{load} N, kt = {kt:.0e}: {} {:?} m, slipping {:?}, {} solves, {} iterations",
+                "{load} N, kt = {kt:.0e}: {} {:?} m, sampling {:?}, slipping {:?}, {} solves, {} iterations",
                 row.status.name(),
                 row.peak_amplitude_m,
+                row.sampling_error,
                 row.slipping_fraction,
                 row.nonlinear_solves,
                 row.newton_iterations
@@ -96,12 +99,14 @@ fn settles(stiffnesses: &[f64]) {
             );
             // The band holds the peak: a row without one has failed points, and says how they failed.
             assert_ne!(row.status, Status::NotBracketed, "{load} N, {kt:e}");
-            peaks.extend(row.peak_amplitude_m.map(|peak| (kt, peak)));
+            let stated = row.sampling_error.map_or(0.0, f64::abs);
+            peaks.extend(row.peak_amplitude_m.map(|peak| (kt, peak, stated)));
         }
-        let rigid = peaks[peaks.len() - 1].1;
-        for (kt, found) in peaks.into_iter().filter(|(kt, _)| *kt >= 1e8) {
+        let (_, rigid, of_rigid) = peaks[peaks.len() - 1];
+        for (kt, found, stated) in peaks.into_iter().filter(|(kt, ..)| *kt >= 1e8) {
             let error = relative(found, rigid);
-            assert!(error < 1e7 / kt + 1e-3, "{load} N, {kt:e} N/m: {error:e}");
+            let bound = 1e7 / kt + 1e-3 + stated + of_rigid;
+            assert!(error < bound, "{load} N, {kt:e} N/m: {error:e}, {bound:e}");
         }
     }
 }

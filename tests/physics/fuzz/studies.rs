@@ -101,7 +101,7 @@ fn assert_within_limits(study: &Study) {
         match load_sector_model(study) {
             Ok(model) => {
                 assert!((1..=10_000).contains(&model.sectors));
-                if let Err(error) = pattern_source(study, model.sectors) {
+                if let Err(error) = pattern_source(study, &model) {
                     assert_clear(&error.to_string());
                 }
             }

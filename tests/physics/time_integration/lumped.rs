@@ -39,6 +39,7 @@ fn compare(mistuned: bool, frequency_hz: f64, options: &TimeOptions) -> PointCom
             normal_load_n: 50.0,
             ..wheel.sector
         },
+        factors: &blisk::response::mistuning::ContactFactors::default(),
         harmonics: &ODD,
         solver: &solver,
         frequency_hz,

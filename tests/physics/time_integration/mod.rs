@@ -9,6 +9,7 @@
 mod lumped;
 mod march;
 mod one_dof;
+mod stability;
 mod wheel8;
 
 use std::path::Path;

@@ -1,0 +1,133 @@
+//! Finished tables take the place of older ones all together, whatever happens in between.
+//!
+//! They are written into `next/`, the manifest with their digests last. Once that manifest stands,
+//! the change is decided: the files are moved into their places, the manifest last, and whoever is
+//! interrupted leaves a `next/` from which [`complete_publication`] goes on.
+
+use std::path::{Path, PathBuf};
+
+use super::atomic::move_file;
+use super::{MANIFEST, Manifest, TableError, digest_file, remove_parts};
+
+/// The folder that finished tables wait in.
+const NEXT: &str = "next";
+/// The folder that damaged files are moved to.
+const DAMAGED: &str = "damaged";
+
+/// Tables on their way into the results folder.
+#[derive(Debug)]
+pub struct Staging {
+    results: PathBuf,
+    tables: Vec<String>,
+}
+
+impl Staging {
+    /// Begins in the results folder `results`.
+    ///
+    /// # Errors
+    /// What an earlier attempt left cannot be removed.
+    pub fn begin(results: &Path) -> Result<Self, TableError> {
+        discard(results)?;
+        Ok(Self {
+            results: results.to_owned(),
+            tables: Vec::new(),
+        })
+    }
+
+    /// Where to write the table `name`.
+    pub fn table(&mut self, name: &str) -> PathBuf {
+        self.tables.push(name.to_owned());
+        self.results.join(NEXT).join(name)
+    }
+
+    /// Puts all tables and `manifest`, which gets their digests, into their places, and removes the
+    /// parts, whose rows the tables hold.
+    ///
+    /// # Errors
+    /// A file cannot be read or moved.
+    pub fn publish(self, mut manifest: Manifest) -> Result<Manifest, TableError> {
+        let next = self.results.join(NEXT);
+        for name in self.tables {
+            let path = next.join(&name);
+            let digest = digest_file(&path).map_err(TableError::io("read", &path))?;
+            manifest.tables.insert(name, digest);
+        }
+        manifest.write(&next)?;
+        complete_publication(&self.results)?;
+        Ok(manifest)
+    }
+}
+
+/// Completes a change that was decided on and interrupted; discards one that was not. True if there
+/// was one to complete.
+///
+/// # Errors
+/// A file cannot be moved, or is damaged.
+pub fn complete_publication(results: &Path) -> Result<bool, TableError> {
+    let next = results.join(NEXT);
+    let Some(manifest) = Manifest::read(&next)? else {
+        discard(results)?;
+        return Ok(false);
+    };
+    // Tables that the study no longer has go first: the manifest in place may still name them.
+    if let Ok(Some(before)) = Manifest::read(results) {
+        for name in before.tables.keys() {
+            let path = results.join(name);
+            if !manifest.tables.contains_key(name) && path.exists() {
+                std::fs::remove_file(&path).map_err(TableError::io("remove", &path))?;
+            }
+        }
+    }
+    for name in manifest.tables.keys() {
+        let staged = next.join(name);
+        if staged.exists() {
+            move_file(&staged, &results.join(name))?;
+        }
+    }
+    remove_parts(results)?;
+    move_file(&next.join(MANIFEST), &results.join(MANIFEST))?;
+    discard(results)?;
+    Ok(true)
+}
+
+/// Removes what waits in `next/`.
+fn discard(results: &Path) -> Result<(), TableError> {
+    let next = results.join(NEXT);
+    match std::fs::remove_dir_all(&next) {
+        Ok(()) => Ok(()),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(TableError::io("remove", &next)(error)),
+    }
+}
+
+/// Makes the file of rows `path` of the results folder `results`, if it is there, a part of it.
+///
+/// # Errors
+/// The file cannot be moved.
+pub fn keep_as_part(results: &Path, path: &Path, digest: &str) -> Result<(), TableError> {
+    if !path.exists() {
+        return Ok(());
+    }
+    let name = format!("part-{:010}-{digest}.parquet", 0);
+    move_file(path, &results.join("parts").join(name))
+}
+
+/// Moves a damaged file of the results folder `results` to `damaged/`, under a free name; its new place.
+///
+/// # Errors
+/// The file cannot be moved.
+pub fn set_aside(results: &Path, path: &Path) -> Result<PathBuf, TableError> {
+    let name = path
+        .file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let folder = results.join(DAMAGED);
+    let mut place = folder.join(&name);
+    for number in 1.. {
+        if !place.exists() {
+            break;
+        }
+        place = folder.join(format!("{name}.{number}"));
+    }
+    move_file(path, &place)?;
+    Ok(place)
+}

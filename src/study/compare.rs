@@ -1,0 +1,258 @@
+//! Comparison of the scenarios of one or several results folders.
+
+use std::path::PathBuf;
+
+use super::pairing::{PairedPlaces, Pairing, PatternMatcher};
+use super::{PipelineError, ResultColumns, ScenarioColumns};
+use crate::population::statistics::{
+    PairFacts, PercentileEstimator, Quantity, RESAMPLES, best_set, best_set_at,
+    compare_independent, compare_paired, holm, percentile, percentile_at, resample_percentile,
+};
+use crate::report::{
+    BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet, QuantityComparison,
+    ScenarioComparison,
+};
+
+/// Streams of the resamples of comparisons, apart from those of tail fits; the same for all of them,
+/// so that all loads see the same resamples.
+const TOPIC: u32 = 1 << 30;
+
+/// Confidence of both the set and the intervals in it that together bound the lowest percentile with
+/// 95 % (Bonferroni).
+const HALF_ERROR: f64 = 0.975;
+
+/// What to compare.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompareRequest {
+    /// Results folders; the baseline is in the first.
+    pub folders: Vec<PathBuf>,
+    /// Scenario of the first folder that all others are compared with. Absent: in one folder the
+    /// first scenario of each engine order and standard deviation; of several, the scenario of the
+    /// first folder with the same keys.
+    pub baseline: Option<usize>,
+    /// The percentile in percent.
+    pub percent: f64,
+}
+
+/// A scenario by folder and index.
+type Place = (usize, usize);
+
+/// Baselines and candidates.
+type Pairs = Vec<(Place, Place)>;
+
+/// Compares as `request` says.
+///
+/// # Errors
+/// A folder holds no finished study or is damaged, or there is no such baseline.
+pub fn compare(request: &CompareRequest) -> Result<ComparisonReport, PipelineError> {
+    let folders: Vec<ResultColumns> = request
+        .folders
+        .iter()
+        .map(|folder| ResultColumns::read(folder))
+        .collect::<Result<_, _>>()?;
+    let work = Comparison {
+        folders: &folders,
+        matcher: PatternMatcher::new(&folders)?,
+        percent: request.percent,
+        seed: folders.first().map_or(0, |first| first.manifest.seed),
+    };
+    let (pairs, unmatched) = work.pairs(request.baseline)?;
+    let quantities = Quantity::ALL
+        .iter()
+        .map(|&quantity| work.of_quantity(quantity, &pairs))
+        .collect();
+    Ok(ComparisonReport {
+        percent: request.percent,
+        resamples: RESAMPLES,
+        seed: work.seed,
+        folders: folders.iter().map(facts).collect(),
+        unmatched: unmatched
+            .into_iter()
+            .map(|place| work.name(place))
+            .collect(),
+        quantities,
+    })
+}
+
+fn facts(columns: &ResultColumns) -> ComparedFolder {
+    ComparedFolder {
+        folder: columns.folder.clone(),
+        name: columns.manifest.name.clone(),
+        study_digest: columns.manifest.study_digest.clone(),
+        patterns: columns.patterns.len() as u64,
+    }
+}
+
+struct Comparison<'a> {
+    folders: &'a [ResultColumns],
+    matcher: PatternMatcher<'a>,
+    percent: f64,
+    seed: u64,
+}
+
+impl Comparison<'_> {
+    /// Pairs of baseline and candidate, and candidates without baseline.
+    fn pairs(&self, baseline: Option<usize>) -> Result<(Pairs, Vec<Place>), PipelineError> {
+        let first = &self.folders[0];
+        if let Some(index) = baseline.filter(|&index| index >= first.scenarios.len()) {
+            return Err(PipelineError::NoScenario {
+                scenario: index,
+                scenarios: first.scenarios.len(),
+            });
+        }
+        let (mut pairs, mut unmatched) = (Pairs::new(), Vec::new());
+        for (folder, columns) in self.folders.iter().enumerate() {
+            for (index, candidate) in columns.scenarios.iter().enumerate() {
+                let of_candidate = match baseline {
+                    Some(index) => Some(index),
+                    None if self.folders.len() == 1 => first
+                        .scenarios
+                        .iter()
+                        .position(|other| same_group(other, candidate)),
+                    None if folder == 0 => Some(index),
+                    None => first
+                        .scenarios
+                        .iter()
+                        .position(|other| same_keys(other, candidate)),
+                };
+                match of_candidate {
+                    Some(own) if folder == 0 && own == index => {}
+                    Some(own) => pairs.push(((0, own), (folder, index))),
+                    None => unmatched.push((folder, index)),
+                }
+            }
+        }
+        Ok((pairs, unmatched))
+    }
+
+    fn columns(&self, (folder, index): Place) -> &ScenarioColumns {
+        &self.folders[folder].scenarios[index]
+    }
+
+    fn name(&self, place: Place) -> ComparedScenario {
+        ComparedScenario::new(place.0, &self.columns(place).scenario)
+    }
+
+    fn of_quantity(&self, quantity: Quantity, pairs: &[(Place, Place)]) -> QuantityComparison {
+        let mut comparisons: Vec<ScenarioComparison> = pairs
+            .iter()
+            .map(|&(baseline, candidate)| self.compare(quantity, baseline, candidate))
+            .collect();
+        let p_values: Vec<Option<f64>> = comparisons
+            .iter()
+            .map(|comparison| comparison.percentile.p_value)
+            .collect();
+        for (comparison, adjusted) in comparisons.iter_mut().zip(holm(&p_values)) {
+            comparison.adjusted_p_value = adjusted;
+        }
+        QuantityComparison {
+            quantity,
+            comparisons,
+            best: self.best(quantity),
+        }
+    }
+
+    fn compare(&self, quantity: Quantity, baseline: Place, candidate: Place) -> ScenarioComparison {
+        let (left, right) = (self.columns(baseline), self.columns(candidate));
+        let places: PairedPlaces = self
+            .matcher
+            .pair((baseline.0, &left.scenario), (candidate.0, &right.scenario));
+        let take = |columns: &ScenarioColumns, places: &[usize]| -> Vec<Option<f64>> {
+            let values = columns.values(quantity);
+            places.iter().map(|&place| values[place]).collect()
+        };
+        let x = take(left, &places.baseline);
+        let y = take(right, &places.candidate);
+        let streams = (self.seed, TOPIC);
+        let independent = places.pairing == Pairing::Independent;
+        let percentile = if independent {
+            compare_independent(&x, &y, self.percent, RESAMPLES, streams)
+        } else {
+            compare_paired(&x, &y, self.percent, RESAMPLES, streams)
+        };
+        let ids: Vec<u32> = places
+            .baseline
+            .iter()
+            .map(|&place| self.folders[baseline.0].patterns[place])
+            .collect();
+        let left_out = [(baseline.0, x.len()), (candidate.0, y.len())]
+            .map(|(folder, used)| (self.folders[folder].patterns.len() - used) as u64);
+        ScenarioComparison {
+            baseline: self.name(baseline),
+            candidate: self.name(candidate),
+            pairing: match places.pairing {
+                Pairing::SamePatterns => "same_patterns",
+                Pairing::SameUnitDraws => "same_unit_draws",
+                Pairing::Independent => "independent",
+            },
+            patterns: [x.len() as u64, y.len() as u64],
+            patterns_left_out: left_out,
+            percentile,
+            adjusted_p_value: None,
+            pairs: (!independent).then(|| PairFacts::new(&ids, &x, &y, self.percent)),
+        }
+    }
+
+    /// Of each folder, engine order and standard deviation with several loads, which could be best.
+    fn best(&self, quantity: Quantity) -> Vec<BestLoads> {
+        let mut best = Vec::new();
+        for (folder, columns) in self.folders.iter().enumerate() {
+            let groups = columns.scenarios.chunk_by(same_group);
+            for group in groups.filter(|group| group.len() > 1) {
+                best.extend(self.best_of(quantity, folder, group));
+            }
+        }
+        best
+    }
+
+    /// None where a percentile is not estimable for lack of patterns.
+    fn best_of(
+        &self,
+        quantity: Quantity,
+        folder: usize,
+        group: &[ScenarioColumns],
+    ) -> Option<BestLoads> {
+        let values: Vec<&[Option<f64>]> = group.iter().map(|load| load.values(quantity)).collect();
+        let samples: Vec<(Vec<f64>, u64)> =
+            group.iter().map(|load| load.sorted(quantity)).collect();
+        percentile(&samples[0].0, samples[0].1, self.percent).achieved_coverage?;
+        let estimator = PercentileEstimator::of(&values);
+        let streams = (self.seed, TOPIC);
+        let resamples = resample_percentile(&values, self.percent, estimator, RESAMPLES, streams);
+        let wide = best_set_at(&resamples, HALF_ERROR);
+        let bounds = samples.iter().zip(&wide).filter(|(_, possible)| **possible);
+        let bounds: Vec<_> = bounds
+            .map(|((sorted, failed), _)| percentile_at(sorted, *failed, self.percent, HALF_ERROR))
+            .collect();
+        // A bound that one of the loads does not have is infinite.
+        let lower: Option<Vec<f64>> = bounds.iter().map(|found| found.lower).collect();
+        let upper: Option<Vec<f64>> = bounds.iter().map(|found| found.upper).collect();
+        let loads = group.iter().zip(&samples).zip(best_set(&resamples));
+        let loads: Vec<LoadOfSet> = loads
+            .map(|((load, (sorted, failed)), possible)| LoadOfSet {
+                scenario: ComparedScenario::new(folder, &load.scenario),
+                percentile: percentile(sorted, *failed, self.percent),
+                could_be_best: possible,
+            })
+            .collect();
+        Some(BestLoads {
+            lowest: loads
+                .iter()
+                .filter_map(|load| Some((load.scenario.scenario, load.percentile.value?)))
+                .min_by(|a, b| a.1.total_cmp(&b.1))
+                .map(|(scenario, _)| scenario),
+            lower: lower.map(|all| all.into_iter().fold(f64::INFINITY, f64::min)),
+            upper: upper.map(|all| all.into_iter().fold(f64::NEG_INFINITY, f64::max)),
+            loads,
+        })
+    }
+}
+
+fn same_group(a: &ScenarioColumns, b: &ScenarioColumns) -> bool {
+    a.scenario.engine_order == b.scenario.engine_order
+        && a.scenario.standard_deviation == b.scenario.standard_deviation
+}
+
+fn same_keys(a: &ScenarioColumns, b: &ScenarioColumns) -> bool {
+    same_group(a, b) && a.scenario.contact == b.scenario.contact
+}

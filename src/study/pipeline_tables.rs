@@ -1,0 +1,274 @@
+//! From stored rows to finished tables and their manifest.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::results_folder::RESPONSES;
+use super::summary::{context_of, records_of};
+use super::{Engine, PipelineError, Study, StudyDigest};
+use crate::population::monte_carlo::{Scenario, TunedReference};
+use crate::population::statistics::{Accounting, ScenarioAccumulator};
+use crate::population::table::{
+    EffectRows, Manifest, RowSchema, RowStore, RunState, SCHEMA_VERSION, ScenarioEntry,
+    ScenarioRecord, Shard, Staging, StatusCounts, TableError, TableHeader, write_atomically,
+    write_distribution, write_main_effects, write_patterns, write_percentiles, write_scenarios,
+};
+use crate::report::StudySummary;
+use crate::response::mistuning::{GENERATOR, PatternSource};
+
+/// Patterns up to which `patterns.parquet` is written without being asked for.
+const PATTERNS_WRITTEN: u32 = 10_000;
+
+/// What a solved model says about a study beside its rows.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Facts {
+    /// Tuned reference of each scenario.
+    pub(super) tuned: Vec<TunedReference>,
+    /// What the rows of each scenario are made from.
+    pub(super) row_digests: Vec<String>,
+    /// Settings chosen where the study says `auto`.
+    pub(super) chosen: Value,
+    /// Facts about the reduction.
+    pub(super) reduction: Value,
+}
+
+impl Facts {
+    /// Asks the engine; the tuned wheel, which knows no standard deviation, is solved once per
+    /// engine order and contact condition.
+    pub(super) fn solve(engine: &dyn Engine, study: &Study, digest: &StudyDigest) -> Self {
+        let scenarios = study.scenarios();
+        let mut tuned: Vec<TunedReference> = Vec::new();
+        for scenario in &scenarios {
+            let same = scenarios[..tuned.len()].iter().position(|other| {
+                other.engine_order == scenario.engine_order && other.contact == scenario.contact
+            });
+            tuned.push(match same {
+                Some(same) => TunedReference {
+                    scenario: scenario.index,
+                    ..tuned[same].clone()
+                },
+                None => engine.tuned(scenario),
+            });
+        }
+        Self {
+            tuned,
+            row_digests: scenarios
+                .iter()
+                .map(|scenario| digest.of_rows(scenario, &engine.rows_made_from(scenario)))
+                .collect(),
+            chosen: engine.chosen_settings(),
+            reduction: engine.reduction_facts(),
+        }
+    }
+
+    /// Takes them from the manifest of a finished run; none if it lacks a pattern or scenario of
+    /// `study`.
+    pub(super) fn stored(manifest: &Manifest, study: &Study) -> Option<Self> {
+        let scenarios = study.scenarios();
+        let entries: Option<Vec<&ScenarioEntry>> = scenarios
+            .iter()
+            .map(|scenario| {
+                manifest.scenarios.iter().find(|entry| {
+                    Scenario {
+                        index: scenario.index,
+                        ..entry.keys()
+                    } == *scenario
+                })
+            })
+            .collect();
+        let entries = entries.filter(|_| manifest.patterns == u64::from(study.patterns))?;
+        Some(Self {
+            tuned: scenarios
+                .iter()
+                .zip(&entries)
+                .map(|(scenario, entry)| TunedReference {
+                    scenario: scenario.index,
+                    ..entry.tuned()
+                })
+                .collect(),
+            row_digests: entries
+                .iter()
+                .map(|entry| entry.row_digest.clone())
+                .collect(),
+            chosen: manifest.chosen.clone(),
+            reduction: manifest.reduction.clone(),
+        })
+    }
+}
+
+/// All that the tables need beside the rows.
+pub(super) struct TableWork<'a> {
+    study: &'a Study,
+    digest: &'a StudyDigest,
+    patterns: &'a PatternSource,
+    shard: Option<Shard>,
+    ids: Vec<u32>,
+    schema: RowSchema,
+    facts: Facts,
+}
+
+impl<'a> TableWork<'a> {
+    pub(super) fn new(
+        study: &'a Study,
+        digest: &'a StudyDigest,
+        patterns: &'a PatternSource,
+        shard: Option<Shard>,
+        facts: Facts,
+    ) -> Self {
+        let all = patterns.ids();
+        Self {
+            ids: shard.map_or(&all[..], |shard| shard.of(&all)).to_vec(),
+            schema: RowSchema {
+                scenarios: study.scenarios(),
+                row_digests: facts.row_digests.clone(),
+                header: TableHeader {
+                    study_digest: digest.hex(),
+                    compression: study.output.compression,
+                },
+            },
+            study,
+            digest,
+            patterns,
+            shard,
+            facts,
+        }
+    }
+
+    /// Ids of the patterns, ascending.
+    pub(super) fn ids(&self) -> &[u32] {
+        &self.ids
+    }
+
+    /// Number of rows.
+    pub(super) fn planned(&self) -> u64 {
+        self.ids.len() as u64 * self.schema.scenarios.len() as u64
+    }
+
+    pub(super) fn schema(&self) -> &RowSchema {
+        &self.schema
+    }
+
+    pub(super) fn tuned(&self) -> &[TunedReference] {
+        &self.facts.tuned
+    }
+
+    /// Manifest of a run that is not finished; tables of rows that an earlier one vouches for stay.
+    pub(super) fn unfinished(&self, stored: Option<&Manifest>) -> Manifest {
+        let none = vec![Accounting::default(); self.schema.scenarios.len()];
+        let tables = stored.map_or_else(BTreeMap::new, |stored| stored.tables.clone());
+        Manifest {
+            tables,
+            ..self.manifest(RunState::Running, &none)
+        }
+    }
+
+    /// Joins the rows of `store` to the tables of the folder `results`, which appear all together.
+    pub(super) fn publish(
+        &self,
+        store: &RowStore,
+        results: &Path,
+    ) -> Result<(Manifest, StudySummary), PipelineError> {
+        let mut staging = Staging::begin(results)?;
+        let mut accumulators = vec![ScenarioAccumulator::default(); self.schema.scenarios.len()];
+        let varies = self.shard.is_none() && !self.study.contact_variations.is_empty();
+        let mut effects = vec![EffectRows::default(); self.schema.scenarios.len()];
+        store.assemble(&staging.table(RESPONSES), &self.ids, |row| {
+            accumulators[row.scenario].add(row);
+            if varies {
+                effects[row.scenario].add(row);
+            }
+        })?;
+        let records = records_of(&self.schema.scenarios, &self.facts.tuned, accumulators);
+        let counts: Vec<Accounting> = records
+            .iter()
+            .map(|record| record.statistics.accounting)
+            .collect();
+        let manifest = self.manifest(RunState::Finished, &counts);
+        let summary = StudySummary::new(&context_of(&manifest), &records);
+        if self.shard.is_none() {
+            self.of_population(&mut staging, &records, &summary)?;
+        }
+        if varies {
+            let variations = self.study.contact_variations.iter();
+            let inputs: Vec<_> = variations.map(|variation| variation.quantity).collect();
+            write_main_effects(
+                &staging.table("main_effects.parquet"),
+                &self.schema.scenarios,
+                &effects,
+                &inputs,
+                &self.schema.header,
+            )?;
+        }
+        Ok((staging.publish(manifest)?, summary))
+    }
+
+    /// The tables that need all patterns.
+    fn of_population(
+        &self,
+        staging: &mut Staging,
+        records: &[ScenarioRecord],
+        summary: &StudySummary,
+    ) -> Result<(), TableError> {
+        let header = &self.schema.header;
+        write_scenarios(&staging.table("scenarios.parquet"), records, header)?;
+        write_percentiles(&staging.table("percentiles.parquet"), records, header)?;
+        write_distribution(&staging.table("distribution.parquet"), records, header)?;
+        if self.writes_patterns() {
+            write_patterns(
+                &staging.table("patterns.parquet"),
+                self.patterns,
+                &self.study.standard_deviations,
+                header,
+            )?;
+        }
+        write_atomically(
+            &staging.table("summary.txt"),
+            summary.to_string().as_bytes(),
+        )
+    }
+
+    /// Whether `patterns.parquet` is part of the results.
+    fn writes_patterns(&self) -> bool {
+        let few = self.study.patterns <= PATTERNS_WRITTEN;
+        self.study.output.patterns.unwrap_or(few)
+    }
+
+    fn manifest(&self, state: RunState, counts: &[Accounting]) -> Manifest {
+        let mut total = Accounting::default();
+        for count in counts {
+            total.merge(count);
+        }
+        let scenarios = self
+            .schema
+            .scenarios
+            .iter()
+            .zip(&self.facts.tuned)
+            .zip(&self.facts.row_digests)
+            .zip(counts)
+            .map(|(((scenario, tuned), row_digest), count)| {
+                ScenarioEntry::new(scenario, tuned, row_digest, count)
+            })
+            .collect();
+        Manifest {
+            schema: SCHEMA_VERSION,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            state,
+            name: self.study.name.clone(),
+            study_digest: self.schema.header.study_digest.clone(),
+            seed: self.study.seed,
+            generator: GENERATOR.to_owned(),
+            patterns: u64::from(self.study.patterns),
+            shard: self.shard,
+            number_keys: self.digest.number_keys.clone(),
+            inputs: self.digest.inputs.clone(),
+            study: self.study.resolved(),
+            chosen: self.facts.chosen.clone(),
+            reduction: self.facts.reduction.clone(),
+            counts: StatusCounts::from(&total),
+            tables: BTreeMap::new(),
+            scenarios,
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Every write, sync, rename and the like of a run made to fail in turn, by `strace`: the run ends with
+//! 7 and says where, and the next one comes to the bytes of an undisturbed one.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::blisk::{GOOD, Place};
+
+const TABLES: [&str; 4] = [
+    "responses.parquet",
+    "scenarios.parquet",
+    "patterns.parquet",
+    "manifest.json",
+];
+
+/// System calls that change files, and the error of each.
+/// Where there are no locks, the run goes on without.
+const CALLS: [(&str, &str); 7] = [
+    ("write", "ENOSPC"),
+    ("fsync", "EIO"),
+    ("rename", "ENOSPC"),
+    ("mkdir", "EROFS"),
+    ("unlink,unlinkat,rmdir", "EROFS"),
+    ("ftruncate", "EDQUOT"),
+    ("flock", "ENOLCK"),
+];
+
+fn bytes(place: &Place, results: &str) -> Vec<Vec<u8>> {
+    let read = |table: &str| std::fs::read(place.path(results).join(table)).expect(table);
+    TABLES.map(read).to_vec()
+}
+
+/// Whether programs can be traced here; says so if not.
+#[expect(clippy::print_stderr, reason = "a test that is skipped has to be told")]
+fn can_trace() -> bool {
+    let traced = Command::new("strace")
+        .args(["-o", "/dev/null", "true"])
+        .status();
+    let can = traced.is_ok_and(|status| status.success());
+    if !can {
+        eprintln!("skipped: no strace, or no permission to trace");
+    }
+    can
+}
+
+/// Runs the study into `results` with the call `number` of `calls` of every thread failing, after
+/// `ready` undisturbed patterns; false if there was no such call.
+fn run_with_fault(place: &Place, results: &str, calls: (&str, &str), number: usize) -> bool {
+    let (calls, error) = calls;
+    let log = place.path("strace.log");
+    let output = Command::new("strace")
+        .args(["-f", "--seccomp-bpf", "-o"])
+        .arg(&log)
+        .arg(format!("--trace={calls}"))
+        .arg(format!("--inject={calls}:error={error}:when={number}"))
+        .arg(env!("CARGO_BIN_EXE_blisk"))
+        .args(["run", "study.toml", "--threads", "1", "--out", results])
+        .current_dir(place.path("."))
+        .output()
+        .expect("strace starts");
+    let words = String::from_utf8_lossy(&output.stderr);
+    let traced = std::fs::read_to_string(&log).expect("a log");
+    let hit: Vec<&str> = traced
+        .lines()
+        .filter(|line| line.contains("(INJECTED)"))
+        .collect();
+    if hit.is_empty() {
+        assert!(output.status.success(), "{words}");
+        return false;
+    }
+    // What is printed may be lost, and what is only tidied up may stay, without an error.
+    match output.status.code() {
+        Some(0) => {}
+        Some(7) => assert!(
+            words.contains(results) && words.contains(": "),
+            "{hit:?}: {words}"
+        ),
+        code => panic!("{calls} {number}: {code:?}: {words}{hit:?}"),
+    }
+    true
+}
+
+/// Fails every `stride`-th call of each kind.
+fn fail_in_turn(stride: usize) -> usize {
+    let place = Place::with(GOOD);
+    let run = place.run(&["run", "study.toml", "--out", "undisturbed"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let expected = bytes(&place, "undisturbed");
+    let mut faults = 0;
+    for calls in CALLS {
+        for number in (1..).step_by(stride) {
+            let hit = run_with_fault(&place, "out", calls, number);
+            let run = place.run(&["run", "study.toml", "--out", "out"]);
+            assert_eq!(run.code, 0, "{calls:?} {number}: {}", run.stderr);
+            assert!(bytes(&place, "out") == expected, "{calls:?} {number}");
+            assert!(!leftovers(&place.path("out")), "{calls:?} {number}");
+            std::fs::remove_dir_all(place.path("out")).expect("removed");
+            if !hit {
+                break;
+            }
+            faults += 1;
+        }
+    }
+    faults
+}
+
+/// Whether the folder holds anything of an interrupted write.
+fn leftovers(folder: &Path) -> bool {
+    let mut names = std::fs::read_dir(folder)
+        .expect("a folder")
+        .flatten()
+        .map(|entry| entry.file_name().to_string_lossy().into_owned());
+    names.any(|name| name.contains(".tmp") || name == "next" || name == "parts")
+}
+
+#[test]
+fn failing_writes_end_with_7_and_lose_nothing() {
+    if can_trace() {
+        assert!(fail_in_turn(7) >= 8);
+    }
+}
+
+/// `cargo test --release --test cli -- --ignored --nocapture every_failing_write`
+#[test]
+#[ignore = "some minutes"]
+#[expect(clippy::print_stderr, reason = "a measurement has to be told")]
+fn every_failing_write_ends_with_7_and_loses_nothing() {
+    if can_trace() {
+        eprintln!("{} faults", fail_in_turn(1));
+    }
+}

@@ -1,0 +1,274 @@
+//! What the commands say about populations: the same counts everywhere, comparisons.
+
+use crate::blisk::{GOOD, Place};
+
+/// A wheel whose blades lose their stiffness in some patterns.
+fn with_failures() -> String {
+    GOOD.replace("patterns = 10", "patterns = 80")
+        .replace(
+            "standard_deviation = [0.03]",
+            "standard_deviation = [0.05, 0.5]",
+        )
+        .replace("[\"slide\", 50, \"stuck\"]", "[\"slide\", 50]")
+}
+
+#[test]
+fn rows_are_counted_the_same_in_table_manifest_summary_json_and_exit_code() {
+    let place = Place::with(&with_failures());
+    let run = place.run(&["run", "study.toml", "--json"]);
+    let summary: serde_json::Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let manifest = std::fs::read_to_string(place.path("results/small/manifest.json"));
+    let manifest: serde_json::Value =
+        serde_json::from_str(&manifest.expect("manifest")).expect("JSON");
+    let mut total = [0_u64; 3];
+    for (place, scenario) in summary["scenarios"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .enumerate()
+    {
+        let counts = &manifest["scenarios"][place]["counts"];
+        let keys = ["planned", "ok", "failed"];
+        for (sum, key) in total.iter_mut().zip(keys) {
+            assert_eq!(
+                scenario["rows"][key], counts[key],
+                "scenario {place}, {key}"
+            );
+            *sum += counts[key].as_u64().expect("a count");
+        }
+        let by_status = counts["by_status"].as_object().expect("a table");
+        assert_eq!(&scenario["rows"]["by_status"], &counts["by_status"]);
+        let all: u64 = by_status
+            .values()
+            .filter_map(serde_json::Value::as_u64)
+            .sum();
+        assert_eq!(all, 80);
+        let failed = all - by_status["ok"].as_u64().expect("a count");
+        assert_eq!(counts["failed"], failed);
+        let bound = scenario["rows"]["failed_share_upper_bound"]
+            .as_f64()
+            .expect("a share");
+        assert!(bound > failed as f64 / 80.0 && bound <= 1.0);
+    }
+    assert_eq!(total[0], 320);
+    assert_eq!(total[0], total[1] + total[2]);
+    assert!(
+        total[2] > 10,
+        "this study is meant to fail in many patterns"
+    );
+    for (sum, key) in total.iter().zip(["planned", "ok", "failed"]) {
+        assert_eq!(summary["rows"][key], *sum);
+        assert_eq!(manifest["counts"][key], *sum);
+    }
+    let text = std::fs::read_to_string(place.path("results/small/summary.txt")).expect("summary");
+    let line = format!("{} rows ok, {} failed", total[1], total[2]);
+    assert!(text.contains(&line), "{text}");
+    // Failures beyond the gate of P95 cost its value, in both commands.
+    assert_eq!(run.code, 5);
+    assert_eq!(place.run(&["stats", "results/small"]).code, 5);
+}
+
+fn json(place: &Place, arguments: &[&str]) -> serde_json::Value {
+    let ended = place.run(arguments);
+    assert_eq!(ended.code, 0, "{arguments:?}: {}", ended.stderr);
+    serde_json::from_str(&ended.stdout).expect("JSON")
+}
+
+/// Two loads, 100 patterns.
+fn two_loads() -> String {
+    GOOD.replace("patterns = 10", "patterns = 100")
+        .replace("[\"slide\", 50, \"stuck\"]", "[\"slide\", 50]")
+}
+
+fn comparisons(value: &serde_json::Value) -> &Vec<serde_json::Value> {
+    value["quantities"][0]["comparisons"]
+        .as_array()
+        .expect("a list")
+}
+
+#[test]
+fn loads_of_one_folder_are_compared_on_common_patterns() {
+    let place = Place::with(&two_loads());
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+    let report = json(&place, &["compare", "results/small", "--json"]);
+    let found = comparisons(&report);
+    assert_eq!(found.len(), 1);
+    assert_eq!(
+        (&found[0]["pairing"], &found[0]["pairs"]["pairs"]),
+        (&"same_patterns".into(), &100.into())
+    );
+    // The same percentiles as everywhere else.
+    let stats = json(&place, &["stats", "results/small", "--json"]);
+    let p95 = |scenario: usize| {
+        let percentiles = &stats["scenarios"][scenario]["peak_amplitude_m"]["percentiles"];
+        let found = percentiles
+            .as_array()
+            .expect("a list")
+            .iter()
+            .find(|p| p["percent"] == 95.0);
+        found.expect("P95")["value"].as_f64().expect("estimable")
+    };
+    let of = |side: &str| {
+        found[0]["percentile"][side]["value"]
+            .as_f64()
+            .expect("a number")
+    };
+    assert!(
+        of("baseline").total_cmp(&p95(0)).is_eq() && of("candidate").total_cmp(&p95(1)).is_eq()
+    );
+    let difference = &found[0]["percentile"]["difference"];
+    let bounds = ["lower", "upper"].map(|bound| difference[bound].as_f64().expect("a bound"));
+    let value = difference["value"].as_f64().expect("a value");
+    assert!(bounds[0] <= value && value <= bounds[1]);
+    // Friction lowers the peak in this wheel: the set of possible bests is the one load.
+    let best = &report["quantities"][0]["best"][0];
+    assert_eq!(best["lowest"], 1);
+    assert_eq!(best["loads"][0]["could_be_best"], false);
+    assert_eq!(best["loads"][1]["could_be_best"], true);
+    // The other way round the signs change.
+    let turned = json(
+        &place,
+        &["compare", "results/small", "--baseline", "1", "--json"],
+    );
+    let back = comparisons(&turned)[0]["percentile"]["difference"]["value"].as_f64();
+    assert!((back.expect("a value") + value).abs() < 1e-12 * value.abs());
+    let text = place.run(&["compare", "results/small", "--percentile", "90"]);
+    assert_eq!(text.code, 0, "{}", text.stderr);
+    for fragment in [
+        "P90 of the peak amplitude",
+        "slide (EO 2, 3 %)",
+        "100 common",
+        "lowest P90",
+    ] {
+        assert!(
+            text.stdout.contains(fragment),
+            "{fragment} in\n{}",
+            text.stdout
+        );
+    }
+}
+
+#[test]
+fn folders_are_paired_on_equal_patterns_and_independent_otherwise_and_say_which() {
+    let place = Place::with(&two_loads());
+    let variants = [
+        ("a", two_loads()),
+        (
+            "friction",
+            two_loads().replace("coefficient = 0.3", "coefficient = 0.5"),
+        ),
+        (
+            "longer",
+            two_loads().replace("patterns = 100", "patterns = 120"),
+        ),
+        ("seed", two_loads().replace("seed = 7", "seed = 8")),
+        ("wider", two_loads().replace("[0.03]", "[0.06]")),
+        ("load", two_loads().replace("50]", "60]")),
+    ];
+    for (name, study) in &variants {
+        place.write("study.toml", study);
+        let run = place.run(&["run", "study.toml", "--out", name]);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+    }
+    let pairing = |other: &str, baseline: &[&str]| {
+        let report = json(
+            &place,
+            &[&["compare", "a", other, "--json"], baseline].concat(),
+        );
+        let found = comparisons(&report).last().cloned().expect("a comparison");
+        let unmatched = report["unmatched"].as_array().expect("a list").len();
+        (found, unmatched)
+    };
+    let (friction, unmatched) = pairing("friction", &[]);
+    assert_eq!(
+        (&friction["pairing"], unmatched),
+        (&"same_patterns".into(), 0)
+    );
+    let (longer, _) = pairing("longer", &[]);
+    assert_eq!(longer["pairing"], "same_patterns");
+    assert_eq!(longer["patterns"], serde_json::json!([100, 100]));
+    assert_eq!(longer["patterns_left_out"], serde_json::json!([0, 20]));
+    // The same rows twice differ by nothing.
+    assert_eq!(longer["percentile"]["difference"]["upper"], 0.0);
+    let (seed, _) = pairing("seed", &[]);
+    assert_eq!(seed["pairing"], "independent");
+    assert!(seed["pairs"].is_null() && seed["percentile"]["difference"]["lower"].is_number());
+    let (wider, _) = pairing("wider", &["--baseline", "1"]);
+    assert_eq!(wider["pairing"], "same_unit_draws");
+    let (load, unmatched) = pairing("load", &[]);
+    assert_eq!(
+        (&load["candidate"]["contact"], unmatched),
+        (&"slide".into(), 1)
+    );
+    let text = place.run(&["compare", "a", "seed", "load"]).stdout;
+    assert!(
+        text.contains("independent") && text.contains("no counterpart in A: C 60 N"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_comparison_that_cannot_be_made_is_refused_or_says_what_is_missing() {
+    let place = Place::with(GOOD);
+    assert_eq!(place.run(&["compare", "nowhere"]).code, 7);
+    assert_eq!(place.run(&["compare"]).code, 2);
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+    let refused = place.run(&["compare", "results/small", "--percentile", "100"]);
+    assert_eq!(refused.code, 2);
+    assert!(
+        refused.stderr.contains("above 0 and below 100"),
+        "{}",
+        refused.stderr
+    );
+    let absent = place.run(&["compare", "results/small", "--baseline", "3"]);
+    assert_eq!(absent.code, 2);
+    assert!(
+        absent.stderr.contains("accepted: a number below 3"),
+        "{}",
+        absent.stderr
+    );
+    // Ten patterns support no P95: null, and no failure.
+    let report = json(&place, &["compare", "results/small", "--json"]);
+    assert!(comparisons(&report)[0]["percentile"]["difference"].is_null());
+    assert_eq!(report["quantities"][0]["best"], serde_json::json!([]));
+    // Failed rows that leave a comparison without a value are a breached gate.
+    place.write("study.toml", &with_failures());
+    assert_eq!(
+        place.run(&["run", "study.toml", "--out", "failing"]).code,
+        5
+    );
+    let gate = place.run(&["compare", "failing"]);
+    assert_eq!(gate.code, 5, "{}", gate.stderr);
+}
+
+#[test]
+fn tail_fits_stand_beside_the_percentiles_of_the_sample_and_are_the_same_each_time() {
+    let place = Place::with(&two_loads());
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+    let plain = json(&place, &["stats", "results/small", "--json"]);
+    assert!(plain.get("tails").is_none());
+    let first = place.run(&["stats", "results/small", "--tails", "--json"]);
+    assert_eq!(first.code, 0, "{}", first.stderr);
+    let table = std::fs::read(place.path("results/small/tail_fits.parquet")).expect("a table");
+    let again = place.run(&["stats", "results/small", "--tails", "--json"]);
+    assert_eq!(first.stdout, again.stdout);
+    let rewritten = std::fs::read(place.path("results/small/tail_fits.parquet"));
+    assert!(table == rewritten.expect("a table"));
+    let report: serde_json::Value = serde_json::from_str(&first.stdout).expect("JSON");
+    let tails = report["tails"].as_array().expect("a list");
+    assert_eq!(tails.len(), 4);
+    for tail in tails {
+        for fit in tail["fits"].as_array().expect("two laws") {
+            let p95 = &fit["percentiles"][0];
+            assert!(p95["empirical"]["value"].is_number() && p95["empirical"]["upper"].is_number());
+            let converged = fit["status"] == "converged";
+            assert_eq!(converged, p95["model"].is_object(), "{fit}");
+            assert_eq!(converged, fit["p_value"].is_number(), "{fit}");
+        }
+    }
+    let text = place.run(&["stats", "results/small", "--tails"]).stdout;
+    assert!(
+        text.contains("tail of peak_amplitude_m at load 50") && text.contains("sample"),
+        "{text}"
+    );
+}
