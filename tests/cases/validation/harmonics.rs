@@ -141,7 +141,7 @@ fn of_tuned(wheel: &str, loads: &[f64], all: &[u32]) -> Vec<Compared> {
     let study = study_of(wheel, loads);
     let both = Both::new(study.clone());
     let mut more = study;
-    more.reduction.craig_bampton_modes = CONVERGED_MODES;
+    more.reduction.craig_bampton_modes = Some(CONVERGED_MODES);
     let fine = Both::full_model(&more);
     let case = &both.fast;
     let facts = case.reduction();
