@@ -248,7 +248,7 @@ impl Job<'_> {
     ) -> Result<RowCounts, PipelineError> {
         let results = self.request.results;
         if !matches!(self.found, Found::Finished(_)) {
-            tables.unfinished(self.stored()).write(results)?;
+            tables.unfinished().write(results)?;
         }
         self.progress.stage(Stage::Rows);
         let ids = tables.ids();

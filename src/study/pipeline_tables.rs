@@ -154,14 +154,10 @@ impl<'a> TableWork<'a> {
         &self.facts.tuned
     }
 
-    /// Manifest of a run that is not finished; tables of rows that an earlier one vouches for stay.
-    pub(super) fn unfinished(&self, stored: Option<&Manifest>) -> Manifest {
+    /// Manifest of a run that is not finished.
+    pub(super) fn unfinished(&self) -> Manifest {
         let none = vec![Accounting::default(); self.schema.scenarios.len()];
-        let tables = stored.map_or_else(BTreeMap::new, |stored| stored.tables.clone());
-        Manifest {
-            tables,
-            ..self.manifest(RunState::Running, &none)
-        }
+        self.manifest(RunState::Running, &none)
     }
 
     /// Joins the rows of `store` to the tables of the folder `results`, which appear all together.

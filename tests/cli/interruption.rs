@@ -363,3 +363,30 @@ fn a_damaged_table_exits_with_8_and_is_repaired() {
         again.stdout
     );
 }
+
+#[test]
+fn the_script_for_slurm_is_sound_and_writes_over_nothing() {
+    let place = Place::with(&study(10));
+    let arguments = ["slurm", "study.toml", "--tasks", "4", "--time", "00:10:00"];
+    let wrote = place.run(&arguments);
+    assert_eq!(wrote.code, 0, "{}", wrote.stderr);
+    let script = place.path("small-slurm.sh");
+    let text = std::fs::read_to_string(&script).expect("written");
+    for line in [
+        "--array=\"${1:-1-4}\"",
+        "#SBATCH --time=00:10:00\n",
+        "#SBATCH --requeue\n",
+        "#SBATCH --signal=B:USR1@120\n",
+        "--shard \"$SLURM_ARRAY_TASK_ID/4\"",
+        "scontrol requeue \"${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\"",
+        "--dependency=\"afterok:${array%%;*}\"",
+        "merge \"$results\"/shards/*-of-4 --out \"$results\"",
+    ] {
+        assert!(text.contains(line), "{line} in {text}");
+    }
+    let parsed = Command::new("bash").arg("-n").arg(&script).status();
+    assert!(parsed.expect("a shell").success());
+    let again = place.run(&arguments);
+    assert_eq!(again.code, 7, "{}", again.stderr);
+    assert!(again.stderr.contains("exists already"), "{}", again.stderr);
+}

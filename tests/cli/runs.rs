@@ -100,6 +100,31 @@ fn a_longer_study_continues_and_a_different_one_exits_with_9() {
 }
 
 #[test]
+fn an_added_load_is_solved_alone_and_a_removed_one_exits_with_9() {
+    let loads = |list: &str| GOOD.replace("[\"slide\", 50, \"stuck\"]", list);
+    let place = Place::with(GOOD);
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+    let grown = loads("[\"slide\", 25.5, 50, \"stuck\"]");
+    place.write("study.toml", &grown);
+    let more = place.run(&["run", "study.toml"]);
+    assert_eq!(more.code, 0, "{}", more.stderr);
+    let words = "solved 10 rows, reused 30";
+    assert!(more.stderr.contains(words), "{}", more.stderr);
+    let fresh = Place::with(&grown);
+    assert_eq!(fresh.run(&["run", "study.toml"]).code, 0);
+    for file in ["responses.parquet", "scenarios.parquet", "summary.txt"] {
+        let read =
+            |place: &Place| std::fs::read(place.path("results/small").join(file)).expect(file);
+        assert!(read(&place) == read(&fresh), "{file}");
+    }
+    place.write("study.toml", &loads("[\"slide\", 25.5, \"stuck\"]"));
+    let fewer = place.run(&["run", "study.toml"]);
+    assert_eq!(fewer.code, 9, "{}", fewer.stderr);
+    let words = "sweep.normal_load_n: [\"slide\",25.5,50.0,\"stuck\"] in the folder";
+    assert!(fewer.stderr.contains(words), "{}", fewer.stderr);
+}
+
+#[test]
 fn response_writes_every_blade_at_every_frequency_both_ends_included() {
     let place = Place::with(GOOD);
     for (pattern, load, out) in [

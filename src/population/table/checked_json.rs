@@ -30,7 +30,11 @@ pub(super) fn read_checked_json<T: DeserializeOwned>(path: &Path) -> Result<Opti
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(TableError::io("read", path)(error)),
     };
-    let damaged = |reason: &str| TableError::damaged(path, reason);
+    let damaged = |reason: &str| {
+        let advice =
+            "`blisk verify DIR --repair` sets it aside and solves again what is lost with it";
+        TableError::damaged(path, format!("{reason}; {advice}"))
+    };
     let text = String::from_utf8(bytes).map_err(|_| damaged("it is no text"))?;
     let (body, rest) = text
         .rsplit_once(BEFORE)
