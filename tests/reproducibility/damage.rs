@@ -71,6 +71,7 @@ fn folder_of(finished: bool) -> tempfile::TempDir {
         let half = study(PATTERNS / 2, |text| text);
         run_in(folder.path(), &half, 2, &MockSource::default()).expect("run");
         interrupt_in(folder.path(), &whole, 20);
+        interrupt_in(folder.path(), &whole, 20);
     }
     folder
 }
