@@ -7,6 +7,7 @@ mod exit;
 mod fidelity;
 mod init;
 mod model;
+mod optimum;
 mod output;
 mod progress;
 mod replay;

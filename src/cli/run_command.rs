@@ -5,8 +5,8 @@ use std::ffi::OsString;
 use clap::Parser;
 
 use super::{
-    Arguments, Command, ExitStatus, check, compare, init, model, output, replay, response, run,
-    stats, verify,
+    Arguments, Command, ExitStatus, check, compare, init, model, optimum, output, replay, response,
+    run, stats, verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).
@@ -96,6 +96,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             json,
         }),
         Command::Compare(arguments) => compare::command(&arguments),
+        Command::Optimum(arguments) => optimum::command(&arguments),
         Command::Stats(arguments) => stats::command(&arguments),
     };
     match ended {
