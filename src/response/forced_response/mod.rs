@@ -13,6 +13,8 @@ mod peak;
 mod peak_search;
 mod point_settings;
 mod point_solver;
+mod samples;
+mod summit;
 
 pub use a_posteriori::{ErrorEstimate, ErrorSettings, Screening, estimate_errors, screen};
 pub use branch::{BranchPlace, BranchPoint, ResponseTrace};

@@ -4,9 +4,10 @@ use super::excited::Excited;
 use super::folded_peak::falls_off;
 use super::linear_peaks::LinearPeak;
 use super::options::{ContactCondition, FrequencyBand};
-use super::peak_search::{Envelope, Sample, SearchEnd, SearchSettings, find_peak};
+use super::peak_search::{Envelope, SearchEnd, SearchSettings, find_peak};
 use super::point_settings::PointSettings;
 use super::point_solver::{Point, PointSolver, Work};
+use super::samples::Sample;
 use crate::response::harmonic_balance::Status;
 
 /// Tolerance of peaks of linear limits, which cost almost nothing.

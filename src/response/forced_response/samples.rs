@@ -1,0 +1,110 @@
+//! The samples of a search in order of frequency, and what neighbours say of each.
+
+use super::summit::{self, CurvePoint, Summit};
+
+/// Amplitude of every blade at one frequency; none where the solution failed.
+pub type Evaluation = Option<Vec<f64>>;
+
+/// One evaluated frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Amplitude of every blade; empty where the solution failed.
+    pub amplitudes: Vec<f64>,
+    /// Largest amplitude over the blades.
+    pub largest: f64,
+    /// Blade of the largest amplitude.
+    pub blade: usize,
+}
+
+/// Samples, ascending in frequency.
+#[derive(Debug, Clone, Default)]
+pub struct Samples(pub Vec<Sample>);
+
+impl Samples {
+    pub fn insert(&mut self, frequency_hz: f64, evaluation: Evaluation) {
+        let amplitudes = evaluation.unwrap_or_default();
+        let (blade, largest) = amplitudes.iter().copied().enumerate().fold(
+            (0, f64::NEG_INFINITY),
+            |best, (blade, amplitude)| {
+                if amplitude > best.1 {
+                    (blade, amplitude)
+                } else {
+                    best
+                }
+            },
+        );
+        let place = self
+            .0
+            .partition_point(|sample| sample.frequency_hz < frequency_hz);
+        self.0.insert(
+            place,
+            Sample {
+                frequency_hz,
+                amplitudes,
+                largest,
+                blade,
+            },
+        );
+    }
+
+    pub fn best(&self) -> Option<usize> {
+        (0..self.0.len())
+            .filter(|&i| !self.0[i].amplitudes.is_empty())
+            .reduce(|best, i| {
+                if self.0[i].largest > self.0[best].largest {
+                    i
+                } else {
+                    best
+                }
+            })
+    }
+
+    /// Nearest evaluated neighbours of a sample, failed ones passed over.
+    pub fn neighbours(&self, at: usize) -> Option<(usize, usize)> {
+        let good = |i: &usize| !self.0[*i].amplitudes.is_empty();
+        let left = (0..at).rev().find(good)?;
+        let right = (at + 1..self.0.len()).find(good)?;
+        Some((left, right))
+    }
+
+    pub fn bracketed(&self, best: usize) -> bool {
+        self.neighbours(best).is_some_and(|(left, right)| {
+            self.0[left].largest < self.0[best].largest
+                && self.0[right].largest < self.0[best].largest
+        })
+    }
+
+    /// Summits near a sample by cubics, of every blade that is the largest there or beside it.
+    pub fn skewed_summits(&self, at: usize) -> Vec<Summit> {
+        let Some((left, right)) = self.neighbours(at) else {
+            return Vec::new();
+        };
+        let beyond = [
+            self.neighbours(left).map(|(beyond, _)| beyond),
+            self.neighbours(right).map(|(_, beyond)| beyond),
+        ];
+        let mut blades = [left, at, right].map(|i| self.0[i].blade).to_vec();
+        blades.dedup();
+        blades
+            .iter()
+            .flat_map(|&blade| {
+                let points = self.points([left, at, right], blade);
+                beyond
+                    .iter()
+                    .flatten()
+                    .filter_map(move |&i| summit::of_cubic(points, self.point(i, blade)))
+            })
+            .collect()
+    }
+
+    pub fn points(&self, at: [usize; 3], blade: usize) -> [CurvePoint; 3] {
+        at.map(|i| self.point(i, blade))
+    }
+
+    pub fn point(&self, at: usize, blade: usize) -> CurvePoint {
+        let sample = &self.0[at];
+        (sample.frequency_hz, sample.amplitudes[blade].powi(-2))
+    }
+}
