@@ -7,6 +7,7 @@ use clap::{Parser, Subcommand};
 use super::compare::CompareArguments;
 use super::fidelity::FidelityArguments;
 use super::merge::MergeArguments;
+use super::optimum::OptimumArguments;
 use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
 use super::run::RunArguments;
 use super::slurm::SlurmArguments;
@@ -163,6 +164,8 @@ pub enum Command {
     /// standard deviation; between folders, with the scenario of the first folder that has the same
     /// engine order, standard deviation and load.
     Compare(CompareArguments),
+    /// Search for the normal load with the lowest percentile, on the same patterns at every load.
+    Optimum(OptimumArguments),
     /// Show the statistics of a results folder again, from its tables.
     Stats(StatsArguments),
 }

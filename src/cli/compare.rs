@@ -40,7 +40,7 @@ pub(super) fn command(arguments: &CompareArguments) -> Result<ExitStatus, Failur
 }
 
 /// A percentile on the command line: between 0 and 100, both excluded.
-fn percent(text: &str) -> Result<f64, String> {
+pub(super) fn percent(text: &str) -> Result<f64, String> {
     text.parse::<f64>()
         .ok()
         .filter(|percent| *percent > 0.0 && *percent < 100.0)

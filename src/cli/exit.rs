@@ -66,6 +66,7 @@ impl From<&PipelineError> for ExitStatus {
             | PipelineError::NoPattern { .. }
             | PipelineError::NoRow { .. }
             | PipelineError::NoScenario { .. }
+            | PipelineError::NoOptimum { .. }
             | PipelineError::NoTimeDomain { .. }
             | PipelineError::NoContact { .. } => Self::Usage,
             PipelineError::Threads { .. } => Self::InternalError,

@@ -9,6 +9,7 @@ mod init;
 mod interrupt;
 mod merge;
 mod model;
+mod optimum;
 mod output;
 mod progress;
 mod replay;

@@ -3,6 +3,7 @@
 mod comparison;
 mod comparison_text;
 mod model_report;
+mod optimum;
 mod peak_audit;
 mod summary;
 mod summary_text;
@@ -17,6 +18,7 @@ pub use comparison::{
     ScenarioComparison,
 };
 pub use model_report::{ModelReport, NodalDiameterFacts};
+pub use optimum::OptimumReport;
 pub use peak_audit::PeakAuditReport;
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use tail_report::StatisticsReport;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::pairing::{PairedPlaces, Pairing, PatternMatcher};
+use super::pairing::{PairedPlaces, Pairing, PatternMatcher, follow_from_the_same};
 use super::{PipelineError, ResultColumns, ScenarioColumns};
 use crate::population::statistics::{
     PairFacts, PercentileEstimator, Quantity, RESAMPLES, best_set, best_set_at,
@@ -199,53 +199,74 @@ impl Comparison<'_> {
         for (folder, columns) in self.folders.iter().enumerate() {
             let groups = columns.scenarios.chunk_by(same_group);
             for group in groups.filter(|group| group.len() > 1) {
-                best.extend(self.best_of(quantity, folder, group));
+                let loads: Vec<_> = group
+                    .iter()
+                    .map(|load| {
+                        let name = ComparedScenario::new(folder, &load.scenario);
+                        (name, load.values(quantity))
+                    })
+                    .collect();
+                best.extend(best_loads(&loads, self.percent, self.seed));
             }
         }
         best
     }
+}
 
-    /// None where a percentile is not estimable for lack of patterns.
-    fn best_of(
-        &self,
-        quantity: Quantity,
-        folder: usize,
-        group: &[ScenarioColumns],
-    ) -> Option<BestLoads> {
-        let values: Vec<&[Option<f64>]> = group.iter().map(|load| load.values(quantity)).collect();
-        let samples: Vec<(Vec<f64>, u64)> =
-            group.iter().map(|load| load.sorted(quantity)).collect();
-        percentile(&samples[0].0, samples[0].1, self.percent).achieved_coverage?;
-        let estimator = PercentileEstimator::of(&values);
-        let streams = (self.seed, TOPIC);
-        let resamples = resample_percentile(&values, self.percent, estimator, RESAMPLES, streams);
-        let wide = best_set_at(&resamples, HALF_ERROR);
-        let bounds = samples.iter().zip(&wide).filter(|(_, possible)| **possible);
-        let bounds: Vec<_> = bounds
-            .map(|((sorted, failed), _)| percentile_at(sorted, *failed, self.percent, HALF_ERROR))
-            .collect();
-        // A bound that one of the loads does not have is infinite.
-        let lower: Option<Vec<f64>> = bounds.iter().map(|found| found.lower).collect();
-        let upper: Option<Vec<f64>> = bounds.iter().map(|found| found.upper).collect();
-        let loads = group.iter().zip(&samples).zip(best_set(&resamples));
-        let loads: Vec<LoadOfSet> = loads
-            .map(|((load, (sorted, failed)), possible)| LoadOfSet {
-                scenario: ComparedScenario::new(folder, &load.scenario),
-                percentile: percentile(sorted, *failed, self.percent),
-                could_be_best: possible,
-            })
-            .collect();
-        Some(BestLoads {
-            lowest: loads
-                .iter()
-                .filter_map(|load| Some((load.scenario.scenario, load.percentile.value?)))
-                .min_by(|a, b| a.1.total_cmp(&b.1))
-                .map(|(scenario, _)| scenario),
-            lower: lower.map(|all| all.into_iter().fold(f64::INFINITY, f64::min)),
-            upper: upper.map(|all| all.into_iter().fold(f64::NEG_INFINITY, f64::max)),
-            loads,
+/// Which of `loads`, values over the same patterns, could be the best; none where the percentile is not
+/// estimable for lack of patterns.
+pub(super) fn best_loads(
+    loads: &[(ComparedScenario, &[Option<f64>])],
+    percent: f64,
+    seed: u64,
+) -> Option<BestLoads> {
+    let values: Vec<&[Option<f64>]> = loads.iter().map(|(_, values)| *values).collect();
+    let sample = |values: &&[Option<f64>]| {
+        let mut good: Vec<f64> = values.iter().flatten().copied().collect();
+        good.sort_unstable_by(f64::total_cmp);
+        let failed = (values.len() - good.len()) as u64;
+        (good, failed)
+    };
+    let samples: Vec<(Vec<f64>, u64)> = values.iter().map(sample).collect();
+    let (first, failed) = samples.first()?;
+    percentile(first, *failed, percent).achieved_coverage?;
+    let estimator = PercentileEstimator::of(&values);
+    let resamples = resample_percentile(&values, percent, estimator, RESAMPLES, (seed, TOPIC));
+    let wide = best_set_at(&resamples, HALF_ERROR);
+    let bounds: Vec<_> = samples
+        .iter()
+        .zip(&wide)
+        .filter(|(_, possible)| **possible)
+        .map(|((sorted, failed), _)| percentile_at(sorted, *failed, percent, HALF_ERROR))
+        .collect();
+    // A bound that one of the loads does not have is infinite.
+    let lower: Option<Vec<f64>> = bounds.iter().map(|found| found.lower).collect();
+    let upper: Option<Vec<f64>> = bounds.iter().map(|found| found.upper).collect();
+    let loads: Vec<LoadOfSet> = loads
+        .iter()
+        .zip(&samples)
+        .zip(best_set(&resamples))
+        .map(|(((scenario, _), (sorted, failed)), possible)| LoadOfSet {
+            scenario: scenario.clone(),
+            percentile: percentile(sorted, *failed, percent),
+            could_be_best: possible,
         })
-    }
+        .collect();
+    Some(BestLoads {
+        lowest: loads
+            .iter()
+            .filter_map(|load| Some((load.scenario.scenario, load.percentile.value?)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(scenario, _)| scenario),
+        lower: lower.map(|all| all.into_iter().fold(f64::INFINITY, f64::min)),
+        upper: upper.map(|all| all.into_iter().fold(f64::NEG_INFINITY, f64::max)),
+        loads,
+    })
+}
+
+/// Whether both folders have the same patterns, by what these follow from.
+pub(super) fn same_patterns(a: &ResultColumns, b: &ResultColumns) -> bool {
+    a.patterns == b.patterns && follow_from_the_same(a, b)
 }
 
 fn same_group(a: &ScenarioColumns, b: &ScenarioColumns) -> bool {

@@ -107,7 +107,7 @@ impl<'a> PatternMatcher<'a> {
 }
 
 /// Whether the patterns of two folders follow from the same seed, law or file, and wheel.
-fn follow_from_the_same(a: &ResultColumns, b: &ResultColumns) -> bool {
+pub(super) fn follow_from_the_same(a: &ResultColumns, b: &ResultColumns) -> bool {
     let decisive = |columns: &ResultColumns| -> BTreeMap<String, String> {
         let prefixes = [
             "study.seed",

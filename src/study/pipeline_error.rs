@@ -128,6 +128,12 @@ pub enum PipelineError {
         /// Number of scenarios.
         scenarios: usize,
     },
+    /// There is nothing to search a best load of.
+    #[error("{reason}")]
+    NoOptimum {
+        /// Why, and what is accepted.
+        reason: String,
+    },
     /// A results folder has no such row.
     #[error(
         "there is no row of scenario {scenario} and pattern {pattern}; accepted: a scenario below {scenarios}, and a pattern of the study"

@@ -272,3 +272,101 @@ fn tail_fits_stand_beside_the_percentiles_of_the_sample_and_are_the_same_each_ti
         "{text}"
     );
 }
+
+#[test]
+fn the_best_load_is_searched_on_the_same_patterns_and_a_second_search_solves_nothing() {
+    let place = Place::with(&two_loads().replace("patterns = 100", "patterns = 80"));
+    let arguments = [
+        "optimum",
+        "study.toml",
+        "--between",
+        "40:4000",
+        "--resolution",
+        "0.5",
+        "--json",
+    ];
+    let first = place.run(&arguments);
+    assert_eq!(first.code, 0, "{}", first.stderr);
+    let report: serde_json::Value = serde_json::from_str(&first.stdout).expect("JSON");
+    let loads = report["best"]["loads"].as_array().expect("a list");
+    assert!(loads.len() >= 5, "{}", loads.len());
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    let values: Vec<(f64, f64)> = loads
+        .iter()
+        .map(|load| {
+            (
+                number(&load["normal_load_n"]),
+                number(&load["percentile"]["value"]),
+            )
+        })
+        .collect();
+    assert!(values.windows(2).all(|pair| pair[0].0 < pair[1].0));
+    let lowest = values
+        .iter()
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .expect("loads");
+    assert!(
+        number(&report["normal_load_n"])
+            .total_cmp(&lowest.0)
+            .is_eq()
+    );
+    // Inside, enclosed by loads that are significantly worse, and those are close.
+    assert!(lowest.0 > 40.0 && lowest.0 < 4000.0, "{values:?}");
+    assert_eq!(report["resolved"], true);
+    let bounds = ["normal_load_lower_n", "normal_load_upper_n"].map(|key| number(&report[key]));
+    assert!(bounds[0] < lowest.0 && lowest.0 < bounds[1], "{bounds:?}");
+    let (lower, upper) = (&report["best"]["lower"], &report["best"]["upper"]);
+    assert!(number(lower) <= lowest.1 && lowest.1 <= number(upper));
+    // Every load is a results folder with the same patterns.
+    let folders: Vec<String> = values
+        .iter()
+        .map(|(load, _)| format!("results/small-optimum/load-{load}"))
+        .collect();
+    let compared = place.run(&[
+        "compare",
+        &folders[0],
+        &folders[1],
+        "--baseline",
+        "0",
+        "--json",
+    ]);
+    assert_eq!(compared.code, 0, "{}", compared.stderr);
+    let compared: serde_json::Value = serde_json::from_str(&compared.stdout).expect("JSON");
+    assert_eq!(comparisons(&compared)[0]["pairing"], "same_patterns");
+    let record = |folder: &str| place.path(folder).join("runs/2.json").exists();
+    let again = place.run(&arguments);
+    assert_eq!(again.stdout, first.stdout);
+    assert!(!record(&folders[0]), "a finished load was run again");
+    let text = place.run(&arguments[..arguments.len() - 1]);
+    assert!(text.stdout.contains("could be best"), "{}", text.stdout);
+}
+
+#[test]
+fn a_search_that_cannot_be_made_is_refused() {
+    let place = Place::with(&two_loads().replace("[0.03]", "[0.03, 0.05]"));
+    let search = |more: &[&str]| {
+        place.run(&[&["optimum", "study.toml", "--between", "40:400"], more].concat())
+    };
+    let several = search(&[]);
+    assert_eq!(several.code, 2, "{}", several.stderr);
+    assert!(
+        several.stderr.contains("one standard deviation"),
+        "{}",
+        several.stderr
+    );
+    place.write("study.toml", &two_loads());
+    let few = search(&["--percentile", "99"]);
+    assert_eq!(few.code, 2);
+    assert!(
+        few.stderr.contains("study.patterns from 368 on"),
+        "{}",
+        few.stderr
+    );
+    let turned = place.run(&["optimum", "study.toml", "--between", "400:40"]);
+    assert_eq!(turned.code, 2);
+    assert!(
+        turned.stderr.contains("the lower first"),
+        "{}",
+        turned.stderr
+    );
+}

@@ -65,12 +65,19 @@ impl ErrorTolerance {
 
 /// Bound on the relative error of a peak amplitude that is stated with it: sampling, harmonics
 /// outside of the set (by the solution itself or by the tuned full contact model, whichever is
-/// larger), basis, and the tolerance of the peak search.
+/// larger), basis, and the tolerance of the peak search. Each is a change of the delivered amplitude;
+/// where all take `e` of it away, the delivered amplitude is wrong by `e / (1 - e)` of the true one.
+/// Infinite where nothing of the amplitude is certain.
 #[must_use]
 pub fn stated_error(errors: &ErrorEstimate, scenario: &ScenarioError, peak_tolerance: f64) -> f64 {
     let harmonics = f64::max(
         errors.harmonics.abs() + errors.unsettled,
         scenario.harmonics,
     );
-    errors.sampling.abs() + harmonics + scenario.basis + peak_tolerance
+    let change = errors.sampling.abs() + harmonics + scenario.basis + peak_tolerance;
+    if change < 1.0 {
+        change / (1.0 - change)
+    } else {
+        f64::INFINITY
+    }
 }

@@ -1,0 +1,200 @@
+//! Search for the normal load with the lowest percentile: the same patterns at every load.
+//!
+//! Golden-section search (Kiefer 1953) over the logarithm of the load. Each load is a run of the study in
+//! a folder of its own, so that a search that was interrupted continues and nothing is solved twice.
+//! All loads see the same patterns (common random numbers), which takes most of the sampling error out
+//! of their differences.
+
+use std::path::{Path, PathBuf};
+
+use super::compare::{best_loads, same_patterns};
+use super::{EngineSource, PipelineError, Progress, ResultColumns, RunRequest, Study, run};
+use crate::population::statistics::CONFIDENCE;
+use crate::population::statistics::{Quantity, percentile, smallest_sample};
+use crate::report::{ComparedScenario, OptimumReport};
+use crate::response::forced_response::ContactCondition;
+
+/// Golden ratio less 1.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// Loads solved at most.
+const MOST_LOADS: usize = 24;
+
+/// What to search.
+#[derive(Debug, Clone, Copy)]
+pub struct OptimumRequest<'a> {
+    /// The study; its loads are not used.
+    pub study: &'a Study,
+    /// Folder of the search: one results folder per load.
+    pub results: &'a Path,
+    /// Lowest and highest normal load per sector, N.
+    pub between_n: [f64; 2],
+    /// The percentile in percent.
+    pub percent: f64,
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Ratio of the loads that enclose the best one, less 1, at which the search ends.
+    pub resolution: f64,
+    /// Number of threads.
+    pub threads: usize,
+}
+
+/// Searches as `request` says.
+///
+/// # Errors
+/// The study has several engine orders or standard deviations, no contact, or too few patterns for the
+/// percentile; or a run failed.
+pub fn find_optimum(
+    request: OptimumRequest<'_>,
+    source: &dyn EngineSource,
+    progress: &dyn Progress,
+) -> Result<OptimumReport, PipelineError> {
+    refuse(&request)?;
+    let mut search = Search {
+        request,
+        source,
+        progress,
+        loads: Vec::new(),
+    };
+    let [low, high] = request.between_n;
+    let ended = search.golden_section(low, high)?;
+    search.report(ended)
+}
+
+/// What a search cannot be made of.
+fn refuse(request: &OptimumRequest<'_>) -> Result<(), PipelineError> {
+    let study = request.study;
+    let needed = smallest_sample(request.percent / 100.0, CONFIDENCE);
+    let reason = if study.engine_orders.len() != 1 || study.standard_deviations.len() != 1 {
+        "a search takes a study with one engine order and one standard deviation".to_owned()
+    } else if study.contact.is_none() {
+        "the study has no [contact], so there is no normal load to search".to_owned()
+    } else if u64::from(study.patterns) < needed {
+        format!(
+            "P{} of {} patterns has no interval; accepted: study.patterns from {needed} on",
+            request.percent, study.patterns
+        )
+    } else {
+        return Ok(());
+    };
+    Err(PipelineError::NoOptimum { reason })
+}
+
+/// A load that was solved.
+struct Load {
+    normal_load_n: f64,
+    columns: ResultColumns,
+    /// The percentile; infinite where failures leave it without a value.
+    value: f64,
+}
+
+struct Search<'a> {
+    request: OptimumRequest<'a>,
+    source: &'a dyn EngineSource,
+    progress: &'a dyn Progress,
+    loads: Vec<Load>,
+}
+
+impl Search<'_> {
+    /// Whether the loads that enclose the best one are as close as wanted.
+    fn golden_section(&mut self, low: f64, high: f64) -> Result<bool, PipelineError> {
+        let (mut a, mut b) = (low.ln(), high.ln());
+        self.value(low)?;
+        self.value(high)?;
+        while self.loads.len() < MOST_LOADS {
+            if (b - a).exp() - 1.0 <= self.request.resolution {
+                return Ok(true);
+            }
+            let (left, right) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
+            if self.value(left.exp())? <= self.value(right.exp())? {
+                b = right;
+            } else {
+                a = left;
+            }
+        }
+        Ok(false)
+    }
+
+    /// The percentile at a load, solved if it has not been.
+    fn value(&mut self, normal_load_n: f64) -> Result<f64, PipelineError> {
+        let normal_load_n = four_digits(normal_load_n);
+        let known = |load: &&Load| load.normal_load_n.total_cmp(&normal_load_n).is_eq();
+        if let Some(load) = self.loads.iter().find(known) {
+            return Ok(load.value);
+        }
+        let folder = self.folder(normal_load_n);
+        let mut study = self.request.study.clone();
+        study.contacts = vec![ContactCondition::Full { normal_load_n }];
+        let run_request = RunRequest {
+            study: &study,
+            results: &folder,
+            threads: self.request.threads,
+        };
+        run(run_request, self.source, self.progress)?;
+        let columns = ResultColumns::read(&folder)?;
+        let (sorted, failed) = columns.scenarios[0].sorted(self.request.quantity);
+        let found = percentile(&sorted, failed, self.request.percent);
+        let value = found.value.unwrap_or(f64::INFINITY);
+        self.loads.push(Load {
+            normal_load_n,
+            columns,
+            value,
+        });
+        Ok(value)
+    }
+
+    fn folder(&self, normal_load_n: f64) -> PathBuf {
+        self.request.results.join(format!("load-{normal_load_n}"))
+    }
+
+    fn report(mut self, resolved: bool) -> Result<OptimumReport, PipelineError> {
+        self.loads
+            .sort_by(|a, b| a.normal_load_n.total_cmp(&b.normal_load_n));
+        let request = &self.request;
+        let columns: Vec<_> = self
+            .loads
+            .iter()
+            .enumerate()
+            .map(|(place, load)| {
+                let scenario = &load.columns.scenarios[0];
+                let name = ComparedScenario {
+                    scenario: place,
+                    ..ComparedScenario::new(place, &scenario.scenario)
+                };
+                (name, scenario.values(request.quantity))
+            })
+            .collect();
+        let alike = self
+            .loads
+            .windows(2)
+            .all(|pair| same_patterns(&pair[0].columns, &pair[1].columns));
+        let best = best_loads(&columns, request.percent, request.study.seed)
+            .filter(|_| alike)
+            .ok_or_else(|| PipelineError::NoOptimum {
+                reason: "the loads have no patterns in common".to_owned(),
+            })?;
+        let possible: Vec<usize> = (0..best.loads.len())
+            .filter(|&place| best.loads[place].could_be_best)
+            .collect();
+        let load = |place: usize| self.loads[place].normal_load_n;
+        let below = possible.first().and_then(|first| first.checked_sub(1));
+        let above = possible.last().map(|last| last + 1);
+        Ok(OptimumReport {
+            name: request.study.name.clone(),
+            seed: request.study.seed,
+            patterns: u64::from(request.study.patterns),
+            percent: request.percent,
+            quantity: request.quantity,
+            normal_load_n: best.lowest.map(load),
+            normal_load_lower_n: below.map(load),
+            normal_load_upper_n: above.filter(|&place| place < self.loads.len()).map(load),
+            resolved,
+            best,
+        })
+    }
+}
+
+/// A load with four significant digits: what a folder is named by, and close enough.
+fn four_digits(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
