@@ -6,7 +6,7 @@ use std::sync::Arc;
 use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction};
 use blisk::response::forced_response::{AmplitudeMeasure, SolverOptions};
 use blisk::response::friction::{ContactLaw, PairParameters};
-use blisk::response::harmonic_balance::Status;
+use blisk::response::harmonic_balance::{Damping, Status};
 use blisk::response::mistuning::{Deviations, WheelBasis};
 use blisk::response::time_integration::{PointCase, PointComparison, TimeOptions, compare_point};
 use blisk::study::{Study, load_sector_model, pattern_source};
@@ -18,6 +18,8 @@ use super::report::{Section, Verdict, percent, set_name, signed_percent, table};
 /// A point: wheel, pattern of its file (none: tuned), load, frequency, harmonics of the harmonic balance.
 struct Point {
     study: &'static str,
+    /// Loss factor where it is not that of the study.
+    loss_factor: Option<f64>,
     pattern: Option<u32>,
     normal_load_n: f64,
     frequency_hz: f64,
@@ -36,6 +38,7 @@ impl Point {
     ) -> Self {
         Self {
             study: "validation/wheel8",
+            loss_factor: None,
             pattern,
             normal_load_n,
             frequency_hz,
@@ -51,9 +54,18 @@ impl Point {
         }
     }
 
+    /// With ten times its damping, under loads at which it has no stable periodic motion without.
+    fn damped_wheel8(normal_load_n: f64, pattern: Option<u32>, frequency_hz: f64) -> Self {
+        Self {
+            loss_factor: Some(0.02),
+            ..Self::wheel8(normal_load_n, pattern, frequency_hz, 0..=9, 3000)
+        }
+    }
+
     fn lumped24(pattern: Option<u32>, frequency_hz: f64) -> Self {
         Self {
             study: "lumped24",
+            loss_factor: None,
             pattern,
             normal_load_n: 50.0,
             frequency_hz,
@@ -101,7 +113,9 @@ impl Point {
         let case = PointCase {
             basis: &basis,
             stiffness_change: change.as_ref(),
-            damping: study.damping,
+            damping: self
+                .loss_factor
+                .map_or(study.damping, Damping::StructuralLossFactor),
             engine_order: study.engine_orders[0],
             amplitude_n: study.amplitude_n,
             law: contact.law,
@@ -168,6 +182,10 @@ fn points() -> Vec<Point> {
         Point::wheel8(400.0, None, 615.08, 1..=15, 300),
         Point::wheel8(100.0, None, 612.88, 0..=15, 300),
         Point::wheel8(100.0, Some(1), 612.0, 0..=5, 300),
+        Point::damped_wheel8(60.0, None, 613.96),
+        Point::damped_wheel8(60.0, Some(1), 612.5),
+        Point::damped_wheel8(30.0, None, 613.36),
+        Point::damped_wheel8(30.0, Some(1), 612.0),
     ];
     for pattern in [None, Some(0)] {
         for frequency_hz in [347.5, 350.5, 354.5] {
@@ -220,8 +238,11 @@ pub fn section() -> Section {
 
 fn row(point: &Point, found: &Result<PointComparison, Status>) -> Vec<String> {
     let wheel = point.study.rsplit('/').next().unwrap();
+    let damped = point
+        .loss_factor
+        .map_or(String::new(), |factor| format!(", loss factor {factor}"));
     let mut cells = vec![
-        wheel.to_owned(),
+        format!("{wheel}{damped}"),
         point.who(),
         format!("{}", point.normal_load_n),
         format!("{}", point.frequency_hz),

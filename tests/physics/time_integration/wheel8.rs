@@ -17,18 +17,22 @@ use blisk::response::time_integration::{
 use super::super::wheels::{ENGINE_ORDER, Wheel, wheel8_contact, wheel8_sector};
 use super::deviations;
 
-fn wheel() -> Wheel {
+fn wheel(loss_factor: f64) -> Wheel {
     Wheel::of(
         &wheel8_sector(),
         ContactLaw::Simplified3d,
         wheel8_contact(),
-        Damping::StructuralLossFactor(0.002),
+        Damping::StructuralLossFactor(loss_factor),
         BasisChoice::StickAttachment { stick: 4 },
     )
 }
 
+/// Loss factor of the reference case.
+const LOSS_FACTOR: f64 = 0.002;
+
 /// A point of the wheel; pattern 1 of the reference where mistuned.
 struct Point {
+    loss_factor: f64,
     normal_load_n: f64,
     friction_coefficient: f64,
     mistuned: bool,
@@ -39,7 +43,7 @@ struct Point {
 impl Point {
     /// What `solve` makes of the point.
     fn solved<T>(&self, solve: impl FnOnce(&PointCase<'_>) -> T) -> T {
-        let wheel = wheel();
+        let wheel = wheel(self.loss_factor);
         let basis = WheelBasis::new(Arc::clone(&wheel.model));
         let change: Option<Matrix<f64>> = self.mistuned.then(|| {
             let pattern = deviations("wheel8/reference", "patterns.csv", 1, 8);
@@ -117,6 +121,7 @@ impl Point {
 #[test]
 fn in_micro_slip_the_dynamics_reach_the_harmonic_balance_solution() {
     let point = Point {
+        loss_factor: LOSS_FACTOR,
         normal_load_n: 1600.0,
         friction_coefficient: 0.3,
         mistuned: false,
@@ -133,6 +138,48 @@ fn in_micro_slip_the_dynamics_reach_the_harmonic_balance_solution() {
     assert!(found.reached(5e-3));
 }
 
+/// With ten times the damping of the reference case the periodic motion is stable under light loads,
+/// too: half of the pairs open.
+#[test]
+fn in_separation_the_dynamics_reach_the_harmonic_balance_solution() {
+    let point = Point {
+        loss_factor: 0.02,
+        normal_load_n: 30.0,
+        friction_coefficient: 0.3,
+        mistuned: false,
+        frequency_hz: 613.36,
+        harmonics: 0..=9,
+    };
+    let found = point.compare(&TimeOptions::default());
+    assert!(found.settled.shares.separated > 0.0);
+    assert!(found.reached(5e-3));
+}
+
+/// `cargo test --release --test physics gross_slip -- --ignored --nocapture`
+#[test]
+#[ignore = "a minute: marched periods of a mistuned wheel"]
+fn in_gross_slip_and_separation_so_do_those_of_a_mistuned_wheel() {
+    for (normal_load_n, mistuned, frequency_hz, separates) in [
+        (60.0, false, 613.96, false),
+        (60.0, true, 612.5, false),
+        (30.0, true, 612.0, true),
+    ] {
+        let point = Point {
+            loss_factor: 0.02,
+            normal_load_n,
+            friction_coefficient: 0.3,
+            mistuned,
+            frequency_hz,
+            harmonics: 0..=9,
+        };
+        let found = point.compare(&TimeOptions::default());
+        let shares = found.settled.shares;
+        assert_eq!(shares.slipping, 1.0, "{normal_load_n} N");
+        assert_eq!(shares.separated > 0.0, separates, "{normal_load_n} N");
+        assert!(found.reached(5e-3), "{normal_load_n} N");
+    }
+}
+
 #[test]
 #[ignore = "minutes: points whose periodic motion is stable"]
 fn where_the_motion_repeats_itself_harmonic_balance_has_found_it() {
@@ -143,6 +190,7 @@ fn where_the_motion_repeats_itself_harmonic_balance_has_found_it() {
         (400.0, true, 614.25, 1..=15),
     ] {
         let point = Point {
+            loss_factor: LOSS_FACTOR,
             normal_load_n,
             friction_coefficient: 0.3,
             mistuned,
@@ -170,6 +218,7 @@ fn floquet_multipliers_tell_the_stable_point_from_the_unstable_one() {
         (400.0, 615.08, 1..=15, 1024, false),
     ] {
         let point = Point {
+            loss_factor: LOSS_FACTOR,
             normal_load_n,
             friction_coefficient: 0.3,
             mistuned: false,
@@ -200,6 +249,7 @@ fn where_the_motion_does_not_repeat_itself_the_march_reports_it() {
         (100.0, true, 612.0, 0..=5),
     ] {
         let point = Point {
+            loss_factor: LOSS_FACTOR,
             normal_load_n,
             friction_coefficient: 0.3,
             mistuned,
