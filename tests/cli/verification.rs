@@ -369,7 +369,9 @@ fn response_on_the_full_model_agrees_where_nothing_is_reduced() {
 
 #[test]
 fn a_dense_sweep_of_delivered_rows_counts_the_peaks_that_were_missed() {
-    let place = solved();
+    // With 128 samples the amplitude of such a small wheel is rough by 0.1 % over frequency.
+    let place = Place::with(&format!("{GOOD}samples_per_period = 512\n"));
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
     let sweep = [
         "verify",
         RESULTS,
