@@ -275,7 +275,7 @@ fn tail_fits_stand_beside_the_percentiles_of_the_sample_and_are_the_same_each_ti
 
 #[test]
 fn the_best_load_is_searched_on_the_same_patterns_and_a_second_search_solves_nothing() {
-    let place = Place::with(&two_loads().replace("patterns = 100", "patterns = 80"));
+    let place = Place::with(&two_loads());
     let arguments = [
         "optimum",
         "study.toml",
