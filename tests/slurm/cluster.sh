@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A Slurm of one controller and two node daemons on this machine, from Debian's packages slurm-wlm and
-# munge, as root; it ends with this script. Runs the command in its arguments with SLURM_CONF set.
+# munge, as root; it ends with this script. Runs the command in its arguments with SLURM_CONF set and ends as it
+# does, or with 75 if no Slurm comes up here.
 set -euo pipefail
 
 folder=$(mktemp -d)
@@ -72,4 +73,4 @@ for _ in $(seq 120); do
 done
 echo "Slurm does not come up:" >&2
 tail -n 20 "$folder"/*.out "$folder"/*.log >&2
-exit 1
+exit 75
