@@ -32,7 +32,6 @@ fn effects_are_found_with_the_coverage_of_their_bounds() {
             inside[k] += u32::from(effect.lower <= expected[k] && expected[k] <= effect.upper);
         }
     }
-    println!("{means:?} {inside:?}");
     for k in 0..5 {
         // What classes of 100 rows cannot resolve of a cubic tail is a bias of 0.02.
         assert!((means[k] - expected[k]).abs() < 0.03, "{k}: {}", means[k]);

@@ -324,7 +324,8 @@ impl HarmonicSystem {
     }
 
     /// Mean friction force on the ring at `x` per sector, N, averaged over the sectors: along theta
-    /// (the torque over the mean contact radius) and along z, see [`ContactGeometry::ring_motion`].
+    /// (the torque over the mean contact radius) and along z, see
+    /// [`crate::model::cyclic::ContactGeometry::ring_motion`].
     ///
     /// It is caused by the displacements without their tangential means; a ring that is locked
     /// against rotation and axial motion hands it on to what locks it.
