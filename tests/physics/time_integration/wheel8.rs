@@ -174,7 +174,7 @@ fn in_gross_slip_and_separation_so_do_those_of_a_mistuned_wheel() {
         };
         let found = point.compare(&TimeOptions::default());
         let shares = found.settled.shares;
-        assert_eq!(shares.slipping, 1.0, "{normal_load_n} N");
+        assert!(shares.slipping > 0.999, "{normal_load_n} N");
         assert_eq!(shares.separated > 0.0, separates, "{normal_load_n} N");
         assert!(found.reached(5e-3), "{normal_load_n} N");
     }
