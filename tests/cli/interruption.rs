@@ -33,8 +33,11 @@ fn undisturbed(place: &Place) -> (Vec<Vec<u8>>, Duration) {
     (bytes(place, "undisturbed"), began.elapsed())
 }
 
+/// Whoever runs the tests may ignore signals, which a child would inherit.
 fn start(place: &Place, arguments: &[&str]) -> Child {
-    Command::new(env!("CARGO_BIN_EXE_blisk"))
+    Command::new("env")
+        .arg("--default-signal=INT,TERM,HUP,USR1")
+        .arg(env!("CARGO_BIN_EXE_blisk"))
         .args(arguments)
         .current_dir(place.path("."))
         .stdout(Stdio::null())
