@@ -11,7 +11,7 @@ use super::samples::Sample;
 use crate::response::harmonic_balance::Status;
 
 /// Tolerance of peaks of linear limits, which cost almost nothing.
-const LINEAR_PEAK_TOLERANCE: f64 = 1e-11;
+const LINEAR_PEAK_TOLERANCE: f64 = 4e-11;
 /// Largest number of points of one row.
 const EVALUATIONS: usize = 1500;
 /// Starting points between the dominant stuck and slide peaks.

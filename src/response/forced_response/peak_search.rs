@@ -152,6 +152,8 @@ pub fn find_peak(
 /// Share of the tolerance that the summit may lie above the best: what a polynomial predicts is an
 /// estimate, no bound, and must leave room within the tolerance.
 const VERTEX_SHARE: f64 = 0.125;
+/// Share of the trusted distance below which cubics tell nothing but rounding errors.
+const NEAR: f64 = 0.1;
 /// A summit nearer to its sample than this share of the samples' span is the sample.
 const RESOLVED: f64 = 1e-3;
 
@@ -276,18 +278,17 @@ impl Search {
         let (vertex, gamma) = (summit.frequency_hz, summit.half_bandwidth_hz);
         let gain = summit.amplitude / self.samples.0[best].largest - 1.0;
         let tolerance = VERTEX_SHARE * self.settings.tolerance;
-        // The vertex is trusted where the cubic term it neglects, about 0.1 (d/gamma)^3 at a
-        // distance d of the neighbours, is below the tolerance.
-        let trusted = gamma * (10.0 * self.settings.tolerance).cbrt();
+        let trusted = self.trusted(gamma);
         let (left_gap, right_gap) = (x1 - x0, x2 - x1);
         let between = |frequency: f64| frequency.clamp(x0 + 0.1 * left_gap, x2 - 0.1 * right_gap);
         if gain <= tolerance && left_gap.max(right_gap) <= trusted {
+            let told = left_gap.max(right_gap) > NEAR * trusted;
             let skewed = self
                 .samples
                 .skewed_summits(best)
                 .into_iter()
                 .reduce(higher)?;
-            return (skewed.amplitude > (1.0 + tolerance) * self.samples.0[best].largest)
+            return (told && skewed.amplitude > (1.0 + tolerance) * self.samples.0[best].largest)
                 .then(|| between(skewed.frequency_hz));
         }
         // A neighbour far away spoils the parabola, and the vertex would only creep: fetch a nearer one.
@@ -316,6 +317,12 @@ impl Search {
         })
     }
 
+    /// Distance d of neighbours within which their parabola is trusted: the cubic term it neglects,
+    /// about `0.1 (d/gamma)^3`, is below the tolerance.
+    fn trusted(&self, gamma: f64) -> f64 {
+        gamma * (10.0 * self.settings.tolerance).cbrt()
+    }
+
     /// The summit of another local maximum that may be higher than the best.
     fn rival(&self, best: usize) -> Option<f64> {
         let height = (1.0 + VERTEX_SHARE * self.settings.tolerance) * self.samples.0[best].largest;
@@ -341,12 +348,18 @@ impl Search {
             let Some(summit) = summits().reduce(higher) else {
                 continue;
             };
+            let trusted = self.trusted(summit.half_bandwidth_hz);
+            let gap = (points[2].0 - points[1].0).max(points[1].0 - points[0].0);
             // Where parabola and cubics differ, the truth may lie as far on the other side.
             let lowest = summits().fold(f64::INFINITY, |low, other| low.min(other.amplitude));
             let reach = 2.0 * summit.amplitude - lowest;
             let resolved = (points[2].0 - points[0].0) * RESOLVED;
             let away = (summit.frequency_hz - points[1].0).abs();
-            if reach > height && away > resolved && highest.is_none_or(|(_, top)| reach > top) {
+            if reach > height
+                && away > resolved
+                && gap > NEAR * trusted
+                && highest.is_none_or(|(_, top)| reach > top)
+            {
                 highest = Some((summit.frequency_hz, reach));
             }
         }
