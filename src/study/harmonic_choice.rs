@@ -177,6 +177,7 @@ impl TunedWheel<'_> {
     ) -> Result<(HarmonicChoice, Verdict), PipelineError> {
         let mut settings = self.settings.clone();
         settings.harmonics.clone_from(&choice.harmonics);
+        let as_delivered = RowSolver::new(Arc::clone(self.model), settings.clone())?;
         settings.solver.peak_tolerance = PEAK_TOLERANCE;
         let solver = RowSolver::new(Arc::clone(self.model), settings)?;
         let (peak, screening) = solver.tuned_screening(self.engine_order, self.contact);
@@ -185,8 +186,13 @@ impl TunedWheel<'_> {
             .as_ref()
             .is_some_and(|point| point.shares.separated > 0.0);
         choice.remainder = screening.as_ref().map(remainder);
+        // Where contacts open, the search of the study may end otherwise than the finer one here.
+        let is_delivered = || {
+            let found = as_delivered.tuned_peak(self.engine_order, self.contact);
+            found.status == Status::Ok
+        };
         let verdict = Verdict {
-            has_peak: peak.status == Status::Ok,
+            has_peak: peak.status == Status::Ok && (!separated || is_delivered()),
             lacks_separation: separated && !choice.admits_separation(),
             screening,
         };
