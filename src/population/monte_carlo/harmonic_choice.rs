@@ -63,6 +63,11 @@ impl ErrorTolerance {
     }
 }
 
+/// Factor on the estimate of the harmonics in the stated error. The estimate is made at the frequency
+/// of the delivered peak and can be too small; a factor of safety on estimates of discretisation
+/// errors follows Roache (1994), its size what was measured (section 8 of docs/formulation.md).
+const HARMONIC_SAFETY: f64 = 1.5;
+
 /// Bound on the relative error of a peak amplitude that is stated with it: sampling, harmonics
 /// outside of the set (by the solution itself or by the tuned full contact model, whichever is
 /// larger), basis, and the tolerance of the peak search. Each is a change of the delivered amplitude;
@@ -74,7 +79,8 @@ pub fn stated_error(errors: &ErrorEstimate, scenario: &ScenarioError, peak_toler
         errors.harmonics.abs() + errors.unsettled,
         scenario.harmonics,
     );
-    let change = errors.sampling.abs() + harmonics + scenario.basis + peak_tolerance;
+    let change =
+        errors.sampling.abs() + HARMONIC_SAFETY * harmonics + scenario.basis + peak_tolerance;
     if change < 1.0 {
         change / (1.0 - change)
     } else {
