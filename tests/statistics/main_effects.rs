@@ -33,7 +33,7 @@ fn effects_are_found_with_the_coverage_of_their_bounds() {
         }
     }
     for k in 0..5 {
-        // What classes of 100 rows cannot resolve of a cubic tail is a bias of 0.02.
+        // Classes of 10 rows do not resolve the end of a cubic tail.
         assert!((means[k] - expected[k]).abs() < 0.03, "{k}: {}", means[k]);
         assert!(
             f64::from(inside[k]) > 0.85 * f64::from(REPLICAS),

@@ -13,8 +13,8 @@
 
 /// Fewest rows of which main effects are given.
 pub const FEWEST_ROWS: usize = 100;
-/// Classes of an input: the cube root of the number of rows, at most.
-const MOST_CLASSES: usize = 20;
+/// Rows of a class: few, so that a class holds a small part of an input's tail.
+const ROWS_OF_CLASS: usize = 10;
 /// Groups of rows that are left out in turn.
 const GROUPS: usize = 20;
 /// Standard errors to either bound.
@@ -48,7 +48,7 @@ pub fn main_effects(inputs: &[Vec<f64>], result: &[f64]) -> Option<MainEffects> 
     if all.len() < FEWEST_ROWS {
         return None;
     }
-    let classes = ((all.len() as f64).cbrt() as usize).min(MOST_CLASSES);
+    let classes = all.len() / ROWS_OF_CLASS;
     let shares = |rows: &[usize]| -> Option<Vec<f64>> {
         let mut shares: Vec<f64> = inputs
             .iter()
