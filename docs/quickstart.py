@@ -138,7 +138,7 @@ def table(rows, manifest):
         "## Quickstart",
         "",
         f"`studies/quickstart.toml`, version {manifest['version']}, seed {manifest['seed']}, "
-        f"{manifest['patterns']} patterns, harmonics {manifest['chosen'].get('harmonics')}, "
+        f"{manifest['patterns']} patterns, harmonics {manifest['study']['solver']['harmonics']}, "
         f"basis {manifest['chosen'].get('basis')}; "
         f"{manifest['counts']['ok']} rows ok, {manifest['counts']['failed']} failed.",
         "Amplitudes in um, 95 % bounds in brackets.",
