@@ -36,7 +36,9 @@ pub use quantity::Quantity;
 pub use resampling::{RESAMPLES, resampling_stream};
 pub use sample::{PERCENTILE_LEVELS, PERCENTILES, SampleStatistics};
 pub use scenario::{ScenarioAccumulator, ScenarioStatistics};
-pub use stopping::{Look, MOST_LOOKS, StoppingRule};
+pub use stopping::{
+    Look, MOST_LOOKS, ScenarioLook, StopOptions, StopOutcome, StoppingRule, StudyLook,
+};
 pub use tail_fit::{
     Estimate, TAIL_PERCENTILES, TailFit, TailLaw, TailParameters, TailPercentile, fit_tails,
 };
