@@ -8,6 +8,7 @@ use super::compare::CompareArguments;
 use super::fidelity::FidelityArguments;
 use super::merge::MergeArguments;
 use super::optimum::OptimumArguments;
+use super::plan::PlanArguments;
 use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
 use super::run::RunArguments;
 use super::slurm::SlurmArguments;
@@ -54,6 +55,10 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Solve a few patterns, and say what the study will take and what its percentiles will be worth.
+    ///
+    /// Nothing is written. Times are those of this machine at the time.
+    Plan(PlanArguments),
     /// Solve a study, or continue it; a finished study is shown, not solved again.
     Run(RunArguments),
     /// Join the shards of a study to its results.

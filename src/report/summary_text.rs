@@ -89,17 +89,16 @@ impl fmt::Display for StudySummary {
 fn stop_line(stop: &StopOutcome) -> String {
     let made = stop.made.len();
     let last = stop.made.last();
-    let widest = last
-        .iter()
-        .flat_map(|look| &look.scenarios)
-        .max_by(|a, b| {
-            let width = |scenario: &ScenarioLook| scenario.relative_width.unwrap_or(f64::INFINITY);
-            width(a).total_cmp(&width(b))
-        });
+    let widest = last.iter().flat_map(|look| &look.scenarios).max_by(|a, b| {
+        let width = |scenario: &ScenarioLook| scenario.relative_width.unwrap_or(f64::INFINITY);
+        width(a).total_cmp(&width(b))
+    });
     let width = widest.map_or_else(String::new, |widest| {
         let width = widest
             .relative_width
-            .map_or("no interval".to_owned(), |width| format!("{:.2} %", 100.0 * width));
+            .map_or("no interval".to_owned(), |width| {
+                format!("{:.2} %", 100.0 * width)
+            });
         format!("; widest {width} (scenario {})", widest.scenario)
     });
     format!(

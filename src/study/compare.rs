@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::pairing::{PairedPlaces, Pairing, PatternMatcher, follow_from_the_same};
+use super::pairing::{
+    PairedPlaces, Pairing, PatternMatcher, follow_from_the_same, same_contact_factors,
+};
 use super::{PipelineError, ResultColumns, ScenarioColumns};
 use crate::population::statistics::{
     PairFacts, PercentileEstimator, Quantity, RESAMPLES, best_set, best_set_at,
@@ -182,6 +184,7 @@ impl Comparison<'_> {
             candidate: self.name(candidate),
             pairing: match places.pairing {
                 Pairing::SamePatterns => "same_patterns",
+                Pairing::SameBlades => "same_blades",
                 Pairing::SameUnitDraws => "same_unit_draws",
                 Pairing::Independent => "independent",
             },
@@ -266,7 +269,7 @@ pub(super) fn best_loads(
 
 /// Whether both folders have the same patterns, by what these follow from.
 pub(super) fn same_patterns(a: &ResultColumns, b: &ResultColumns) -> bool {
-    a.patterns == b.patterns && follow_from_the_same(a, b)
+    a.patterns == b.patterns && follow_from_the_same(a, b) && same_contact_factors(a, b)
 }
 
 fn same_group(a: &ScenarioColumns, b: &ScenarioColumns) -> bool {

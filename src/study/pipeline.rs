@@ -11,9 +11,9 @@ use super::pipeline_goal::{Goal, can_be_cut};
 use super::pipeline_rows::RowWork;
 use super::pipeline_tables::{Facts, TableWork};
 use super::results_folder::{Found, ResultsFolder, finished_rows, is_complete};
+use super::summary::summary_of_rows;
 use super::{
     Engine, EngineSource, PipelineError, Study, StudyDigest, load_sector_model, pattern_source,
-    summarise,
 };
 use crate::population::monte_carlo::{Interruption, block_size, plan_blocks, solve_blocks};
 use crate::population::table::{Manifest, PartSink, RowStore, RunRecord, Shard};
@@ -155,7 +155,8 @@ pub(super) fn run_in(
         return Ok(RunOutcome {
             rows_reused: manifest.counts.planned,
             rows_solved: 0,
-            summary: summarise(results)?,
+            // Its files have just been checked.
+            summary: summary_of_rows(results, manifest)?,
         });
     }
     progress.stage(Stage::LoadModel);
@@ -230,7 +231,7 @@ pub(super) fn run_in(
 }
 
 /// Threads of a run.
-fn pool_of(threads: usize) -> Result<ThreadPool, PipelineError> {
+pub(super) fn pool_of(threads: usize) -> Result<ThreadPool, PipelineError> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
@@ -339,19 +340,12 @@ impl Job<'_> {
     ) -> Result<Option<(RunOutcome, Manifest)>, PipelineError> {
         let store = self.store(tables)?;
         let scenarios = tables.schema().scenarios.len();
-        let stop = match tables.shard() {
-            // A shard has no rule to stop.
-            Some(_) => None,
-            None => {
-                let verdict = self.goal.look(&store, tables.ids(), scenarios)?;
-                if !verdict.ends {
-                    return Ok(None);
-                }
-                verdict.outcome
-            }
-        };
+        let verdict = self.goal.look(&store, tables.ids(), scenarios)?;
+        if !verdict.ends {
+            return Ok(None);
+        }
         self.progress.stage(Stage::Tables);
-        let (manifest, summary) = tables.publish(&store, self.request.results, stop)?;
+        let (manifest, summary) = tables.publish(&store, self.request.results, verdict.outcome)?;
         let outcome = RunOutcome {
             summary,
             rows_solved: solved,

@@ -45,10 +45,9 @@ impl Goal {
         ids: &[u32],
         scenarios: usize,
     ) -> Result<Verdict, PipelineError> {
-        let all = ids.len() as u64 >= self.most;
         let Some(stop) = self.stop else {
             return Ok(Verdict {
-                ends: all,
+                ends: true,
                 outcome: None,
             });
         };
@@ -77,7 +76,7 @@ impl Goal {
             }
         }
         Ok(Verdict {
-            ends: all || outcome.met,
+            ends: outcome.met || ids.len() as u64 >= self.most,
             outcome: Some(outcome),
         })
     }

@@ -140,10 +140,6 @@ impl<'a> TableWork<'a> {
         &self.ids
     }
 
-    pub(super) fn shard(&self) -> Option<Shard> {
-        self.shard
-    }
-
     /// Number of rows.
     pub(super) fn planned(&self) -> u64 {
         self.ids.len() as u64 * self.schema.scenarios.len() as u64
@@ -218,7 +214,7 @@ impl<'a> TableWork<'a> {
         write_scenarios(&staging.table("scenarios.parquet"), records, header)?;
         write_percentiles(&staging.table("percentiles.parquet"), records, header)?;
         write_distribution(&staging.table("distribution.parquet"), records, header)?;
-        if self.writes_patterns() {
+        if Self::writes_patterns_of(self.study, self.ids.len()) {
             write_patterns(
                 &staging.table("patterns.parquet"),
                 (self.patterns, &self.ids),
@@ -232,10 +228,10 @@ impl<'a> TableWork<'a> {
         )
     }
 
-    /// Whether `patterns.parquet` is part of the results.
-    fn writes_patterns(&self) -> bool {
-        let few = self.ids.len() <= PATTERNS_WRITTEN;
-        self.study.output.patterns.unwrap_or(few)
+    /// Whether `patterns.parquet` is part of the results of `study` with that many patterns.
+    pub(super) fn writes_patterns_of(study: &Study, patterns: usize) -> bool {
+        let few = patterns <= PATTERNS_WRITTEN;
+        study.output.patterns.unwrap_or(few)
     }
 
     fn manifest(

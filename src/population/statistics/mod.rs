@@ -11,6 +11,7 @@ mod multiplicity;
 mod order_statistics;
 mod pairs;
 mod percentile_resamples;
+mod pilot;
 mod quantity;
 mod resampling;
 mod sample;
@@ -32,6 +33,7 @@ pub use order_statistics::{
 };
 pub use pairs::{Deterioration, PairFacts};
 pub use percentile_resamples::{PercentileEstimator, PercentileResamples, resample_percentile};
+pub use pilot::{ExpectedSum, expected_relative_width, expected_sum};
 pub use quantity::Quantity;
 pub use resampling::{RESAMPLES, resampling_stream};
 pub use sample::{PERCENTILE_LEVELS, PERCENTILES, SampleStatistics};
