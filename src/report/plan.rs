@@ -28,8 +28,10 @@ pub struct StudyPlan {
     /// Time to load, reduce and solve the tuned wheel, s; a later run takes the reduced model from its
     /// folder.
     pub set_up_s: f64,
-    /// Mean time of a pattern, all scenarios, on one thread, s.
-    pub seconds_per_pattern: f64,
+    /// Mean time of a pattern, all scenarios, on a processor, s.
+    pub cpu_s_per_pattern: f64,
+    /// Share of a processor that a thread had; less than 1 on a machine that is busy with other things.
+    pub processor_share: f64,
     /// Time of all patterns.
     pub time: PlannedTime,
     /// Time of the patterns after which the rule is expected to stop; null without one, or where the
@@ -51,9 +53,9 @@ pub struct StudyPlan {
 pub struct PlannedTime {
     /// Patterns.
     pub patterns: u64,
-    /// Time on all threads together, set-up left out, s.
+    /// Time on processors, all threads together, set-up left out, s.
     pub cpu_s: ExpectedSum,
-    /// Time on the clock, s.
+    /// Time on the clock, set-up included, on a machine as busy as in the pilot, s.
     pub wall_s: f64,
     /// Its lower bound, s.
     pub wall_lower_s: f64,
@@ -128,9 +130,10 @@ impl fmt::Display for StudyPlan {
         )?;
         writeln!(
             f,
-            "set-up {}; {} a pattern on one thread",
+            "set-up {}; {} of CPU a pattern; a thread had {:.0} % of a processor",
             time(self.set_up_s),
-            time(self.seconds_per_pattern)
+            time(self.cpu_s_per_pattern),
+            100.0 * self.processor_share
         )?;
         self.line_of(f, "all patterns", &self.time)?;
         if let Some(expected) = &self.expected_time {

@@ -46,8 +46,10 @@ struct Pilot {
     ids: Vec<u32>,
     /// Rows, ordered by pattern, then scenario.
     rows: Vec<ResponseRow>,
-    /// Time of each pattern on its thread, s.
-    seconds: Vec<f64>,
+    /// Time of each pattern on the clock, s.
+    wall_s: Vec<f64>,
+    /// Time of each pattern on a processor, s; that on the clock where the system does not say.
+    cpu_s: Vec<f64>,
 }
 
 /// Solves the pilot and plans the study from it.
@@ -85,20 +87,26 @@ pub fn plan(
         progress,
     };
     let wanted: Vec<usize> = (0..scenarios.len()).collect();
-    let solved: Vec<(Vec<ResponseRow>, f64)> = pool.install(|| {
+    let solve = |&id: &u32| {
+        let (began, cpu) = (Instant::now(), thread_cpu_s());
+        let rows = work.of_pattern(id, &wanted);
+        let wall = began.elapsed().as_secs_f64();
+        let cpu = cpu
+            .zip(thread_cpu_s())
+            .map(|(before, after)| after - before);
+        (rows, (wall, cpu.unwrap_or(wall)))
+    };
+    let solved: Vec<(Vec<ResponseRow>, (f64, f64))> = pool.install(|| {
         let ids = tables.ids().par_iter().with_max_len(1);
-        ids.map(|&id| {
-            let began = Instant::now();
-            let rows = work.of_pattern(id, &wanted);
-            (rows, began.elapsed().as_secs_f64())
-        })
-        .collect()
+        ids.map(solve).collect()
     });
     let (rows, seconds): (Vec<_>, Vec<_>) = solved.into_iter().unzip();
+    let (wall_s, cpu_s) = seconds.into_iter().unzip();
     let pilot = Pilot {
         ids: tables.ids().to_vec(),
         rows: rows.into_iter().flatten().collect(),
-        seconds,
+        wall_s,
+        cpu_s,
     };
     let disk = pilot.disk(study, &patterns, tables.schema())?;
     Ok(pilot.plan(&request, scenarios.len(), set_up_s, disk))
@@ -121,6 +129,7 @@ impl Pilot {
         };
         let stop = study.stop.map(|stop| self.stop(&stop, patterns, scenarios));
         let expected = stop.as_ref().and_then(|stop| stop.expected_patterns);
+        let cpu_s: f64 = self.cpu_s.iter().sum();
         let time = |patterns: u64| self.time(patterns, request.threads, set_up_s);
         StudyPlan {
             name: study.name.clone(),
@@ -135,7 +144,8 @@ impl Pilot {
                 .map(|row| row.status)
                 .collect::<Accounting>(),
             set_up_s,
-            seconds_per_pattern: self.seconds.iter().sum::<f64>() / self.seconds.len() as f64,
+            cpu_s_per_pattern: cpu_s / self.ids.len() as f64,
+            processor_share: (cpu_s / self.wall_s.iter().sum::<f64>()).min(1.0),
             time: time(patterns),
             expected_time: expected.map(time),
             memory_bytes: peak_memory_bytes().map(|peak| peak + statistics * rows),
@@ -147,14 +157,15 @@ impl Pilot {
 
     /// Time of `patterns` patterns on `threads` threads.
     fn time(&self, patterns: u64, threads: usize, set_up_s: f64) -> PlannedTime {
-        let cpu_s = expected_sum(&self.seconds, patterns);
-        let wall = |cpu: f64| set_up_s + cpu / threads.min(patterns as usize).max(1) as f64;
+        let on_clock = expected_sum(&self.wall_s, patterns);
+        let side_by_side = threads.min(patterns as usize).max(1) as f64;
+        let wall = |on_clock: f64| set_up_s + on_clock / side_by_side;
         PlannedTime {
             patterns,
-            cpu_s,
-            wall_s: wall(cpu_s.value),
-            wall_lower_s: wall(cpu_s.lower),
-            wall_upper_s: cpu_s.upper.map(wall),
+            cpu_s: expected_sum(&self.cpu_s, patterns),
+            wall_s: wall(on_clock.value),
+            wall_lower_s: wall(on_clock.lower),
+            wall_upper_s: on_clock.upper.map(wall),
         }
     }
 
@@ -313,6 +324,13 @@ impl Drop for Scratch {
         // Two small files among the temporary ones, at worst.
         let _ = std::fs::remove_dir_all(&self.0);
     }
+}
+
+/// Time that this thread has had on a processor; none where the system does not say.
+fn thread_cpu_s() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: u64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds as f64)
 }
 
 /// Largest memory of this process so far; none where the system does not say.

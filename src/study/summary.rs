@@ -72,7 +72,10 @@ fn manifest_of(results: &Path) -> Result<Manifest, PipelineError> {
 }
 
 /// The summary of the rows stored, whose files are checked as they are read.
-pub(super) fn summary_of_rows(results: &Path, manifest: &Manifest) -> Result<StudySummary, PipelineError> {
+pub(super) fn summary_of_rows(
+    results: &Path,
+    manifest: &Manifest,
+) -> Result<StudySummary, PipelineError> {
     let entries = &manifest.scenarios;
     let keys: Vec<Scenario> = entries.iter().map(ScenarioEntry::keys).collect();
     let tuned: Vec<TunedReference> = entries.iter().map(ScenarioEntry::tuned).collect();

@@ -343,8 +343,10 @@ fn a_plan_says_what_a_study_takes_and_what_its_percentiles_are_worth_and_writes_
     let cpu = &plan["time"]["cpu_s"];
     assert!(number(&cpu["lower"]) <= number(&cpu["value"]));
     assert!(number(&cpu["value"]) <= number(&cpu["upper"]));
-    let mean = number(&plan["seconds_per_pattern"]);
+    let mean = number(&plan["cpu_s_per_pattern"]);
     assert!((number(&cpu["value"]) / (400.0 * mean) - 1.0).abs() < 1e-12);
+    assert!(number(&plan["processor_share"]) <= 1.0);
+    assert!(number(&plan["time"]["wall_s"]) >= number(&plan["set_up_s"]));
     assert!(number(&plan["memory_bytes"]) > 1e6);
     // P50 of 40 patterns has an interval, P95 has none; P99 needs 368 patterns.
     let percentiles = plan["percentiles"].as_array().expect("a list");

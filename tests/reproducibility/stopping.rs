@@ -122,7 +122,7 @@ fn threads_and_interruptions_leave_the_bytes_as_they_are() {
     }
     let rows = 4 * patterns as i64;
     let folder = tempfile::tempdir().expect("a temporary folder");
-    for stored in [10, 390, 430, rows / 2 + 3] {
+    for stored in [10, 350, 60, rows / 4] {
         interrupt_in(folder.path(), &study, stored);
     }
     let outcome = run_in(folder.path(), &study, 3, &MockSource::default()).expect("continued");
