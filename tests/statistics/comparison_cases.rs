@@ -45,7 +45,7 @@ impl Null {
 /// `cargo test --release --test statistics -- --ignored --nocapture other_laws`
 #[test]
 #[allow(clippy::print_stdout)]
-#[ignore = "10 null cases, 10,000 samples of 1000 resamples each: some minutes"]
+#[ignore = "12 null cases, 10,000 samples of 1000 resamples each: some minutes"]
 fn the_paired_test_has_its_size_on_other_laws_and_dependences() {
     let clayton = Copula::Clayton(2.0);
     let survival = Copula::SurvivalClayton(2.0);
@@ -61,6 +61,8 @@ fn the_paired_test_has_its_size_on_other_laws_and_dependences() {
         (Law::Weibull, clayton, 600, 97.5, 1.0),
         (Law::Lognormal, survival, 600, 97.5, 1.0),
         (Law::Lognormal, survival, 600, 97.5, 2.0),
+        (Law::Bounded, clayton, 120, 95.0, 1.0),
+        (Law::Bounded, student, 450, 99.0, 1.0),
     ];
     let mut outside = Vec::new();
     for (law, copula, n, percent, spread) in cases {

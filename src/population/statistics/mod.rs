@@ -21,7 +21,9 @@ mod tail_fit;
 
 pub use accounting::Accounting;
 pub use binomial::{proportion_interval, proportion_upper_bound};
-pub use comparison::{IntervalEstimate, PercentileComparison, compare_independent, compare_paired};
+pub use comparison::{
+    Expansion, IntervalEstimate, PercentileComparison, compare_independent, compare_paired,
+};
 pub use distribution_band::{BandPoint, DistributionBand, dkw_half_width};
 pub use extreme_value::{ExtremeValueLaw, anderson_darling};
 pub use extreme_value_fit::{FEWEST_VALUES, FitStatus, SHAPE_RANGE, fit_extreme_value, fit_gumbel};
