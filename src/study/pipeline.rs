@@ -29,6 +29,8 @@ pub enum Stage {
     Reduce,
     /// Solving the tuned wheel of every scenario.
     Tuned,
+    /// Finding the surrogate of every pattern.
+    Surrogates,
     /// Solving the patterns.
     Rows,
     /// Joining parts and writing tables.
@@ -180,7 +182,7 @@ pub(super) fn run_in(
 }
 
 /// Threads of a run.
-fn pool_of(threads: usize) -> Result<ThreadPool, PipelineError> {
+pub(super) fn pool_of(threads: usize) -> Result<ThreadPool, PipelineError> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
@@ -295,7 +297,7 @@ impl Job<'_> {
 }
 
 /// The listener as the one that stops the solution of rows.
-struct Stop<'a>(&'a dyn Progress);
+pub(super) struct Stop<'a>(pub(super) &'a dyn Progress);
 
 impl Interruption for Stop<'_> {
     fn requested(&self) -> bool {
