@@ -4,6 +4,7 @@ mod comparison;
 mod coverage;
 mod laws;
 mod main_effects;
+mod multi_fidelity;
 mod order_statistics;
 mod patterns;
 mod summary;

@@ -2,15 +2,16 @@
 //!
 //! The contact of the tuned wheel at its peak, linearised harmonically, gives every row of contact an
 //! equivalent spring. With these springs a mistuned wheel has modes close to the shapes in which it
-//! vibrates under friction; those near the tuned peak span the space in which harmonic balance with
-//! the fundamental alone, few samples and a loose tolerance finds the peak. The friction is that of
+//! vibrates under friction; those near the tuned peak, with those of sticking and sliding contact, span
+//! the space in which harmonic balance with the fundamental alone, few samples and a loose tolerance
+//! finds the peak. The friction is that of
 //! the wheel at its own amplitude, pair by pair; what is lost are higher harmonics and the modes far
 //! away. It ranks patterns; it is no answer.
 
 use std::f64::consts::TAU;
 
 use super::{RowSolver, Scenario, TunedReference};
-use crate::linalg::{Matrix, hermitian_eigen};
+use crate::linalg::{Matrix, hermitian_eigen, orthonormal_basis};
 use crate::response::forced_response::{
     ContactCondition, LimitsWanted, PointSettings, PointSolver, SolverOptions, Wheel, peak,
 };
@@ -19,6 +20,8 @@ use crate::response::mistuning::{Pattern, StructuralModes};
 
 /// Modes within this share of the frequency of the tuned peak, besides what mistuning moves them.
 const REACH: f64 = 0.3;
+/// Singular value below which a direction of the space counts as one that is in it already.
+const DEPENDENT: f64 = 1e-4;
 /// Samples per period.
 const SAMPLES: usize = 32;
 /// Tolerance of the residual of harmonic balance.
@@ -32,8 +35,8 @@ pub struct Surrogate<'a> {
     solver: &'a RowSolver,
     scenario: Scenario,
     tuned_hz: f64,
-    /// Equivalent springs of the contact in the coordinates of the wheel, `size x size`.
-    contact_stiffness: Matrix<f64>,
+    /// Linear springs of the contact in the coordinates of the wheel, each `size x size`.
+    contact_stiffness: Vec<Matrix<f64>>,
     points: PointSettings,
 }
 
@@ -42,11 +45,14 @@ impl RowSolver {
     #[must_use]
     pub fn surrogate(&self, scenario: &Scenario, tuned: &TunedReference) -> Option<Surrogate<'_>> {
         let tuned_hz = tuned.frequency_hz.filter(|_| tuned.status == Status::Ok)?;
-        let springs = self.equivalent_springs(scenario)?;
         let rows = self.basis().contact();
-        let scaled = Matrix::from_fn(rows.rows(), rows.columns(), |i, j| {
-            springs[i % springs.len()] * rows[(i, j)]
-        });
+        let stiffness = |springs: Vec<f64>| {
+            let scaled = Matrix::from_fn(rows.rows(), rows.columns(), |i, j| {
+                springs[i % springs.len()] * rows[(i, j)]
+            });
+            rows.adjoint_times(&scaled)
+        };
+        let springs = self.linear_springs(scenario)?;
         let options = SolverOptions {
             samples_per_period: SAMPLES,
             residual_tolerance: RESIDUAL_TOLERANCE,
@@ -62,18 +68,19 @@ impl RowSolver {
             solver: self,
             scenario: *scenario,
             tuned_hz,
-            contact_stiffness: rows.adjoint_times(&scaled),
+            contact_stiffness: springs.into_iter().map(stiffness).collect(),
             points: points.ok()?,
         })
     }
 
-    /// Stiffness of the equivalent springs of a sector at the tuned peak, N/m.
-    fn equivalent_springs(&self, scenario: &Scenario) -> Option<Vec<f64>> {
-        let model = self.basis().model();
+    /// Springs of a sector, N/m, whose modes the wheel vibrates in: those equivalent to the contact
+    /// of the tuned wheel at its peak, and its two limits; of a linear limit its own.
+    fn linear_springs(&self, scenario: &Scenario) -> Option<Vec<Vec<f64>>> {
+        let springs = &self.basis().model().springs;
         match scenario.contact {
-            ContactCondition::Stuck => return Some(model.springs.stick.clone()),
-            ContactCondition::Slide => return Some(model.springs.slide.clone()),
-            ContactCondition::Free => return Some(vec![0.0; model.springs.slide.len()]),
+            ContactCondition::Stuck => return Some(vec![springs.stick.clone()]),
+            ContactCondition::Slide => return Some(vec![springs.slide.clone()]),
+            ContactCondition::Free => return Some(vec![vec![0.0; springs.slide.len()]]),
             ContactCondition::Full { .. } => {}
         }
         let point = self
@@ -81,9 +88,13 @@ impl RowSolver {
             .point?;
         let excited = self.tuned_excited(scenario.engine_order, scenario.contact);
         let points = self.points(scenario.engine_order, scenario.contact);
-        let springs =
+        let equivalent =
             PointSolver::new(&excited, scenario.contact, points).equivalent_springs(&point)?;
-        Some(springs.iter().map(|spring| spring.re).collect())
+        Some(vec![
+            equivalent.iter().map(|spring| spring.re).collect(),
+            springs.stick.clone(),
+            springs.slide.clone(),
+        ])
     }
 }
 
@@ -117,27 +128,41 @@ impl Surrogate<'_> {
             .filter(|amplitude| amplitude.is_finite())
     }
 
-    /// Modes of the wheel with the equivalent springs near the tuned peak.
+    /// Orthonormal basis of the modes near the tuned peak, of all linear springs together.
     fn shapes(&self, change: &Matrix<f64>, largest_deviation: f64) -> Option<Matrix<f64>> {
+        let reach = REACH + 0.6 * largest_deviation;
+        let mut found: Option<Matrix<f64>> = None;
+        for springs in &self.contact_stiffness {
+            let near = self.near_modes(change, springs, reach)?;
+            found = Some(found.map_or_else(|| near.clone(), |found| found.beside(&near)));
+        }
+        let found = found.filter(|found| found.columns() > 0)?;
+        if self.contact_stiffness.len() == 1 {
+            return Some(found);
+        }
+        let identity = Matrix::identity(found.rows());
+        let basis = orthonormal_basis(&found, &identity, DEPENDENT).ok()?;
+        Some(basis.vectors)
+    }
+
+    /// Modes with linear springs whose frequencies are within the share `reach` of the tuned peak.
+    fn near_modes(
+        &self,
+        change: &Matrix<f64>,
+        springs: &Matrix<f64>,
+        reach: f64,
+    ) -> Option<Matrix<f64>> {
         let mut stiffness = change.clone();
-        let springs = self.contact_stiffness.as_slice();
-        for (sum, &spring) in stiffness.as_mut_slice().iter_mut().zip(springs) {
+        for (sum, &spring) in stiffness.as_mut_slice().iter_mut().zip(springs.as_slice()) {
             *sum += spring;
         }
         for (i, &eigenvalue) in self.solver.basis().eigenvalues().iter().enumerate() {
             stiffness[(i, i)] += eigenvalue;
         }
         let (eigenvalues, shapes) = hermitian_eigen(&stiffness).ok()?;
-        let reach = REACH + 0.6 * largest_deviation;
-        let near = |&eigenvalue: &f64| {
-            let share = eigenvalue.max(0.0).sqrt() / TAU / self.tuned_hz;
-            (share - 1.0).abs() < reach
-        };
-        let first = eigenvalues.iter().position(|own| near(own))?;
-        let count = eigenvalues[first..]
-            .iter()
-            .take_while(|own| near(own))
-            .count();
-        Some(shapes.column_range(first, first + count))
+        let share = |eigenvalue: f64| eigenvalue.max(0.0).sqrt() / TAU / self.tuned_hz - 1.0;
+        let first = eigenvalues.partition_point(|&own| share(own) <= -reach);
+        let end = eigenvalues.partition_point(|&own| share(own) < reach);
+        Some(shapes.column_range(first, end.max(first)))
     }
 }
