@@ -376,8 +376,17 @@ fn an_estimate_solves_few_rows_is_the_same_for_any_threads_and_continues() {
     let place = Place::with(&two_loads().replace("patterns = 100", "patterns = 400"));
     let estimate = |out: &str, threads: &str, solves: &str| {
         place.run(&[
-            "estimate", "study.toml", "--target", "90", "--solves", solves, "--out", out, "--threads",
-            threads, "--json",
+            "estimate",
+            "study.toml",
+            "--target",
+            "90",
+            "--solves",
+            solves,
+            "--out",
+            out,
+            "--threads",
+            threads,
+            "--json",
         ])
     };
     let first = estimate("results/one", "1", "100");
@@ -398,9 +407,8 @@ fn an_estimate_solves_few_rows_is_the_same_for_any_threads_and_continues() {
     }
     let second = estimate("results/two", "3", "100");
     assert_eq!(second.stdout, first.stdout);
-    let bytes = |folder: &str| {
-        std::fs::read(place.path(folder).join("sample.parquet")).expect("a table")
-    };
+    let bytes =
+        |folder: &str| std::fs::read(place.path(folder).join("sample.parquet")).expect("a table");
     assert_eq!(bytes("results/one"), bytes("results/two"));
     // More solves take the rows that are there, and come to what they would have alone.
     let more = estimate("results/one", "2", "160");
@@ -410,7 +418,18 @@ fn an_estimate_solves_few_rows_is_the_same_for_any_threads_and_continues() {
     assert_eq!(refused.code, 2);
     assert!(refused.stderr.contains("at least 60"), "{}", refused.stderr);
     let text = place.run(&[
-        "estimate", "study.toml", "--target", "mean", "--solves", "100", "--out", "results/one",
+        "estimate",
+        "study.toml",
+        "--target",
+        "mean",
+        "--solves",
+        "100",
+        "--out",
+        "results/one",
     ]);
-    assert!(text.stdout.contains("simple random sample"), "{}", text.stdout);
+    assert!(
+        text.stdout.contains("simple random sample"),
+        "{}",
+        text.stdout
+    );
 }

@@ -111,7 +111,13 @@ fn under_sticking_contact_the_surrogate_is_the_linear_peak() {
         let deviations = wheel.deviations(&mut random, 0.03);
         let found = surrogate.peak_amplitude_m(&pattern(&deviations)).unwrap();
         let excited = wheel.mistuned(&deviations, &[1]);
-        let springs: Vec<Complex64> = wheel.model.springs.stick.iter().map(|&k| k.into()).collect();
+        let springs: Vec<Complex64> = wheel
+            .model
+            .springs
+            .stick
+            .iter()
+            .map(|&k| k.into())
+            .collect();
         let (_, row) = solve_row(&solver, &pattern(&deviations), ContactCondition::Stuck);
         // A dense solve at and beside the peak of the row.
         let at = row.peak_frequency_hz.unwrap();
@@ -128,7 +134,9 @@ fn under_friction_the_surrogate_ranks_as_the_rows_do() {
     let wheel = Wheel::lumped24();
     let solver = wheel.solver(&[1, 3], SolverOptions::default());
     let friction = scenario(full(7.5));
-    let surrogate = solver.surrogate(&friction, &solver.tuned(&friction)).unwrap();
+    let surrogate = solver
+        .surrogate(&friction, &solver.tuned(&friction))
+        .unwrap();
     let mut random = Random(7);
     let pairs: Vec<(f64, f64)> = (0..24)
         .map(|_| {
@@ -143,7 +151,8 @@ fn under_friction_the_surrogate_ranks_as_the_rows_do() {
     let product = |f: fn(f64, f64) -> f64| -> f64 {
         pairs.iter().map(|pair| f(pair.0 - x, pair.1 - y)).sum()
     };
-    let correlation = product(|a, b| a * b) / (product(|a, _| a * a) * product(|_, b| b * b)).sqrt();
+    let correlation =
+        product(|a, b| a * b) / (product(|a, _| a * a) * product(|_, b| b * b)).sqrt();
     println!("correlation {correlation}");
     assert!(correlation > 0.8, "{correlation}");
 }

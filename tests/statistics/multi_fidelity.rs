@@ -1,4 +1,6 @@
 //! Two-phase estimates: coverage and bias on known laws, and what they save on a solved population.
+// Measured figures are printed for `--nocapture`.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
 
@@ -132,11 +134,11 @@ fn coverage(joint: Joint, n: usize, solves: usize, percent: f64, replicas: u64) 
 #[test]
 fn two_phase_bounds_hold_the_percentile_and_the_mean() {
     for (joint, percent) in [(Joint::Normal(0.9), 95.0), (Joint::Bounded(0.97), 99.0)] {
-        let [held, mean, two_phase] = coverage(joint, 3000, 300, percent, 1500);
+        let [held, mean, two_phase] = coverage(joint, 3000, 300, percent, 600);
         println!("{joint:?} P{percent}: {held} mean {mean} two-phase {two_phase}");
-        // Three standard errors of 1500 replicas.
-        assert!(held >= LEAST - 0.017, "{joint:?}, P{percent}: {held}");
-        assert!(mean >= LEAST - 0.017, "{joint:?}, mean: {mean}");
+        // Three standard errors of 600 replicas.
+        assert!(held >= LEAST - 0.027, "{joint:?}, P{percent}: {held}");
+        assert!(mean >= LEAST - 0.027, "{joint:?}, mean: {mean}");
         assert!(two_phase > 0.9);
     }
 }
@@ -175,8 +177,8 @@ fn the_distribution_is_estimated_without_bias_and_a_useless_surrogate_is_not_use
     let mut sorted = values.clone();
     sorted.sort_unstable_by(f64::total_cmp);
     // The value of the sample at P95, over selections of the same population.
-    let replicas = 2000;
-    let (mut sum, mut square, mut failed_mean) = (0.0, 0.0, 0.0);
+    let replicas = 1000;
+    let (mut sum, mut square, mut off) = (0.0, 0.0, 0.0);
     let truth = values.iter().sum::<f64>() / 2000.0;
     for seed in 0..replicas {
         let (_, found, mean) = estimated(seed, &surrogates, &values, 250, 95.0);
@@ -184,15 +186,16 @@ fn the_distribution_is_estimated_without_bias_and_a_useless_surrogate_is_not_use
         let rank = sorted.partition_point(|&x| x < value) as f64 / 2000.0;
         sum += rank;
         square += rank * rank;
-        failed_mean += mean.value - truth;
+        off += mean.value - truth;
     }
     let count = replicas as f64;
     let (rank, spread) = (sum / count, (square / count - (sum / count).powi(2)).sqrt());
     println!(
         "mean rank {rank}, spread {spread}, mean off by {}",
-        failed_mean / count
+        off / count
     );
     assert!((rank - 0.95).abs() < 0.25 * spread, "{rank} +- {spread}");
+    assert!((off / count).abs() < 0.005, "{}", off / count);
     let (surrogates, values) = Joint::Normal(0.0).draw(2, 2000);
     let (method, ..) = estimated(5, &surrogates, &values, 250, 95.0);
     assert_eq!(method, SamplingMethod::Crude);
@@ -279,7 +282,7 @@ fn gains(pairs: &(Vec<f64>, Vec<f64>), n: usize, solves: usize, replicas: u64) -
         let (width, _) = widths(percent);
         (crude(percent) / width).powi(2) / solves as f64
     });
-    let (_, of_mean) = {
+    let of_mean = {
         let ids: Vec<u32> = (0..n as u32).collect();
         let mut total = 0.0;
         for replica in 0..replicas {
@@ -295,7 +298,7 @@ fn gains(pairs: &(Vec<f64>, Vec<f64>), n: usize, solves: usize, replicas: u64) -
             let found = sample.mean().unwrap();
             total += found.upper - found.lower;
         }
-        ((), total / replicas as f64)
+        total / replicas as f64
     };
     let mean_gain = (2.0 * 1.96 * spread / of_mean).powi(2) / solves as f64;
     [ninety_five, ninety_nine, mean_gain]

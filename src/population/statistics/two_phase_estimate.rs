@@ -1,6 +1,6 @@
 //! Mean and percentiles from a two-phase sample, with intervals.
 //!
-//! With W_h the share of stratum h in the N patterns and p_h the share of its n_h solved rows that
+//! With `W_h` the share of stratum h in the N patterns and `p_h` the share of its `n_h` solved rows that
 //! exceed x, `E(x) = sum_h W_h p_h` estimates the exceedance of x without bias, whatever the
 //! surrogate is worth. Its variance has a part of each phase (Cochran 1977, equation 12.3 ff.):
 //!
