@@ -22,9 +22,9 @@ fn solve_dense(mut a: Vec<Vec<Complex64>>, mut b: Vec<Complex64>) -> Vec<Complex
         b.swap(column, pivot);
         for row in column + 1..n {
             let factor = a[row][column] / a[column][column];
-            for k in column..n {
-                let above = a[column][k];
-                a[row][k] -= factor * above;
+            let pivot_row = a[column].clone();
+            for (own, above) in a[row].iter_mut().zip(pivot_row).skip(column) {
+                *own -= factor * above;
             }
             let above = b[column];
             b[row] -= factor * above;
