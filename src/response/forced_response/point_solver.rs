@@ -147,6 +147,14 @@ impl<'a> PointSolver<'a> {
         Some(system.mean_friction_n(&point.solution, workspace.system_mut()))
     }
 
+    /// Equivalent linear spring of every contact row at a point of this solver, N/m, see
+    /// [`HarmonicSystem::equivalent_springs`]; none for a linear limit.
+    pub fn equivalent_springs(&mut self, point: &Point) -> Option<Vec<Complex64>> {
+        let (system, workspace) = self.nonlinear.as_mut()?;
+        system.set_ring_drift(point.ring_drift_m);
+        Some(system.equivalent_springs(&point.solution, workspace.system_mut()))
+    }
+
     /// The nonlinear equation that `point` solves, with its buffers; none for a linear limit.
     pub(super) fn nonlinear_at(
         &mut self,

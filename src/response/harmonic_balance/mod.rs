@@ -8,6 +8,7 @@ mod coupled_derivative;
 mod curve;
 mod damping;
 mod enlarged;
+mod equivalent_contact;
 mod frequency_derivative;
 mod jacobian;
 mod linear;

@@ -68,8 +68,8 @@ pub struct ContactShares {
 pub struct SystemWorkspace {
     pairs: PairHarmonics,
     /// Displacement and correction at the contact rows, coefficient after coefficient (`n_coefficients x rows`).
-    displacement: Vec<f64>,
-    correction: Vec<f64>,
+    pub(super) displacement: Vec<f64>,
+    pub(super) correction: Vec<f64>,
     pair_input: Vec<f64>,
     pair_output: Vec<f64>,
     pub(super) jacobians: Vec<PairJacobian>,
@@ -337,7 +337,7 @@ impl HarmonicSystem {
     }
 
     /// Coefficients of `C x`.
-    fn contact_displacement(&self, x: &[f64], displacement: &mut [f64]) {
+    pub(super) fn contact_displacement(&self, x: &[f64], displacement: &mut [f64]) {
         displacement.fill(0.0);
         if self.shared {
             let rows = &self.blocks[0].structure.contact().real;
@@ -424,7 +424,7 @@ impl HarmonicSystem {
     }
 
     /// The laws, pair by pair: displacement coefficients to correction coefficients.
-    fn contact_correction(
+    pub(super) fn contact_correction(
         &self,
         derivative: bool,
         workspace: &mut SystemWorkspace,
