@@ -13,6 +13,7 @@ mod frequency_derivative;
 mod jacobian;
 mod linear;
 mod newton;
+mod other_contact;
 mod pair_harmonics;
 mod ring_drift;
 mod status;
