@@ -233,6 +233,9 @@ impl<'a> PointSolver<'a> {
         self.work.nonlinear_solves += 1;
         let mut last = Status::IterationLimit;
         for (rung, attempt) in Attempt::LADDER.into_iter().enumerate() {
+            if let Some((_, workspace)) = &mut self.nonlinear {
+                workspace.set_accelerated(rung == 0);
+            }
             match self.attempt(attempt, frequency_hz) {
                 Ok(point) => {
                     self.work.retries += u64::from(rung > 0);
@@ -251,6 +254,11 @@ impl<'a> PointSolver<'a> {
                 let start = self.expected(frequency_hz)?;
                 self.newton(frequency_hz, start, None)
             }
+            Attempt::Line => {
+                let mut starts = self.between(frequency_hz);
+                starts.push(self.stuck_start(frequency_hz)?);
+                self.newton(frequency_hz, starts.swap_remove(0), None)
+            }
             Attempt::Stuck => {
                 let start = self.stuck_start(frequency_hz)?;
                 self.newton(frequency_hz, start, None)
@@ -268,13 +276,16 @@ impl<'a> PointSolver<'a> {
     /// The start with the smallest residual: what the converged points beside the frequency lead one to expect,
     /// or the stuck solution, which is the answer itself where nothing slips.
     fn expected(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
+        let nearest = self.nearest(frequency_hz).map(|point| {
+            let distance = (point.frequency_hz - frequency_hz).abs();
+            (distance <= NEAR * frequency_hz, point.shares)
+        });
         let mut starts = self.between(frequency_hz);
-        let near = |point: &Point| {
-            (point.frequency_hz - frequency_hz).abs() <= NEAR * frequency_hz
-                && point.shares.slipping > 0.5
-        };
-        if !self.nearest(frequency_hz).is_some_and(near) {
-            starts.push(self.stuck_start(frequency_hz)?);
+        match nearest {
+            // Contact that opens folds the curve: the straight line stays on its branch most often.
+            Some((_, shares)) if shares.separated > 0.0 => starts.truncate(1),
+            Some((true, shares)) if shares.slipping > 0.5 => {}
+            _ => starts.push(self.stuck_start(frequency_hz)?),
         }
         if let [_] = starts[..] {
             return Ok(starts.remove(0));
@@ -385,8 +396,11 @@ const NEAR: f64 = 0.002;
 /// Attempts at one point, in order.
 #[derive(Debug, Clone, Copy)]
 enum Attempt {
-    /// From the converged points beside it, or from the stuck solution if there is none.
+    /// From what the converged points beside it lead one to expect, or from the stuck solution, with
+    /// accelerated steps; those of all others are plain.
     Neighbours,
+    /// From the line between the points beside it, or from the stuck solution if there is none.
+    Line,
     /// From the stuck solution.
     Stuck,
     /// Arc-length continuation in frequency from the nearest converged point.
@@ -398,8 +412,9 @@ enum Attempt {
 }
 
 impl Attempt {
-    const LADDER: [Self; 5] = [
+    const LADDER: [Self; 6] = [
         Self::Neighbours,
+        Self::Line,
         Self::Stuck,
         Self::Continuation,
         Self::StiffnessHomotopy,

@@ -70,6 +70,8 @@ pub(super) struct NewtonBuffers {
     trial: Vec<f64>,
     trial_step: Vec<f64>,
     acceleration: Option<Anderson>,
+    /// Whether there is to be acceleration where there is room for it.
+    accelerated: bool,
 }
 
 impl NewtonBuffers {
@@ -81,6 +83,7 @@ impl NewtonBuffers {
             trial: vec![0.0; n],
             trial_step: vec![0.0; n],
             acceleration: None,
+            accelerated: true,
         }
     }
 
@@ -118,6 +121,11 @@ impl NewtonWorkspace {
     /// Buffers of the system itself, whose residual was last taken anywhere.
     pub fn system_mut(&mut self) -> &mut SystemWorkspace {
         &mut self.system
+    }
+
+    /// Whether simplified steps are accelerated from now on; at first they are.
+    pub fn set_accelerated(&mut self, accelerated: bool) {
+        self.buffers.accelerated = accelerated;
     }
 
     /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
@@ -193,7 +201,8 @@ pub fn solve(
 /// step `-J^-1 R(u + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual
 /// itself this does not depend on how the equations are scaled, and contact forces are far from
 /// well scaled. While the simplified steps become shorter the Jacobian is kept. With room for it they are
-/// combined by Anderson's acceleration: they tend to what a renewed Jacobian would say, at a fraction of its cost.
+/// combined by Anderson's acceleration, unless contact opens: they tend to what a renewed Jacobian would say, at a
+/// fraction of its cost.
 pub(super) fn iterate(
     equation: &mut impl Equation,
     u: &mut Vec<f64>,
@@ -206,11 +215,11 @@ pub(super) fn iterate(
         trial,
         trial_step,
         acceleration,
+        accelerated,
     } = buffers;
-    let serves = acceleration.as_mut().map_or(PLAIN, |acceleration| {
+    if let Some(acceleration) = acceleration {
         acceleration.begin();
-        ACCELERATED
-    });
+    }
     let (first, shares) = equation.residual(u, residual);
     let mut state = NewtonOutcome {
         status: Status::IterationLimit,
@@ -246,10 +255,17 @@ pub(super) fn iterate(
         }
         state.iterations += 1;
         let length = norm_of(step);
-        match acceleration {
-            Some(acceleration) => acceleration.next(u, step, trial),
-            None => add_scaled(trial, u, 1.0, step),
-        }
+        // Contact that opens folds the curve, and a step that is too long ends on another branch of it.
+        let serves = match acceleration {
+            Some(acceleration) if *accelerated && state.shares.separated == 0.0 => {
+                acceleration.next(u, step, trial);
+                ACCELERATED
+            }
+            _ => {
+                add_scaled(trial, u, 1.0, step);
+                PLAIN
+            }
+        };
         let halvings = if kept { 0 } else { bounds.halvings };
         let accepted = (0..=halvings).find_map(|halving| {
             let factor = 0.5_f64.powi(halving as i32);
