@@ -6,6 +6,7 @@ use clap::{Parser, Subcommand};
 
 use super::compare::CompareArguments;
 use super::fidelity::FidelityArguments;
+use super::import::ImportArguments;
 use super::merge::MergeArguments;
 use super::optimum::OptimumArguments;
 use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
@@ -54,6 +55,11 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Make a sector bundle from the files of a finite-element code.
+    ///
+    /// The import file names meshes, matrices and sets; docs/import.md has the commands that write
+    /// them with CalculiX, Ansys and Nastran.
+    Import(ImportArguments),
     /// Solve a study, or continue it; a finished study is shown, not solved again.
     Run(RunArguments),
     /// Join the shards of a study to its results.

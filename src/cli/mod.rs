@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod exit;
 mod fidelity;
+mod import;
 mod init;
 mod interrupt;
 mod merge;

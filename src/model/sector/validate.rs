@@ -410,9 +410,13 @@ fn in_range(place: Place, dof: usize, dofs: usize) -> Result<(), ModelError> {
 }
 
 fn position_tolerance_m(dofs: &[Dof]) -> f64 {
-    let largest = dofs
-        .iter()
-        .map(|dof| distance(dof.position_m, [0.0; 3]))
+    position_tolerance_of(dofs.iter().map(|dof| dof.position_m))
+}
+
+/// The tolerance on the positions of a model, m.
+pub(super) fn position_tolerance_of(positions_m: impl Iterator<Item = [f64; 3]>) -> f64 {
+    let largest = positions_m
+        .map(|position| distance(position, [0.0; 3]))
         .fold(0.0, f64::max);
     POSITION_TOLERANCE * largest
 }
