@@ -42,6 +42,8 @@ struct Reader<'a> {
     /// Where each element ends.
     element_places: Vec<(usize, Place)>,
     material: Option<String>,
+    /// Steps begun so far, and static ones among them.
+    steps: usize,
     static_steps: usize,
 }
 

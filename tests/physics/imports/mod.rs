@@ -1,0 +1,7 @@
+//! Sectors from finite-element codes: every format, the frequencies of `CalculiX`, and what is refused.
+
+mod calculix;
+mod cartesian;
+mod formats;
+mod refused;
+pub mod writers;
