@@ -4,4 +4,5 @@ mod calculix;
 mod cartesian;
 mod formats;
 mod refused;
-pub mod writers;
+pub mod small;
+mod writers;

@@ -253,8 +253,9 @@ impl ImportFile {
             let offset = error.span().map_or(0, |span| span.start);
             let before = source.text.get(..offset).unwrap_or("");
             let message = error.message().replace('\n', " ");
+            let last = source.text.lines().count().max(1);
             source.refuse(
-                1 + before.matches('\n').count(),
+                (1 + before.matches('\n').count()).min(last),
                 LineProblem::Toml { message },
             )
         })?;

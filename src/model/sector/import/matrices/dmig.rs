@@ -24,6 +24,7 @@ pub(super) struct PointMatrix {
 /// Reads the matrix `name`.
 pub(super) fn matrix(path: &Path, name: &str) -> Result<PointMatrix, ModelError> {
     let source = Source::read(path)?;
+    source.require_last_line_end()?;
     let mut matrix: Option<PointMatrix> = None;
     let mut names: Vec<String> = Vec::new();
     for entry in bulk::entries(&source) {

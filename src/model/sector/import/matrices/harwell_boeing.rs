@@ -98,6 +98,7 @@ impl<'a> Lines<'a> {
 /// The matrix whose rows are `rows`.
 pub(super) fn matrix(path: &Path, rows: &Rows) -> Result<SymmetricSparse, ModelError> {
     let source = Source::read(path)?;
+    source.require_last_line_end()?;
     let mut lines = Lines {
         source: &source,
         lines: source.text.lines().collect(),

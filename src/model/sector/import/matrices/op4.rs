@@ -38,6 +38,7 @@ pub(super) fn matrix(
     rows: &Rows,
 ) -> Result<SymmetricSparse, ModelError> {
     let source = Source::read(path)?;
+    source.require_last_line_end()?;
     let mut reader = Reader {
         source: &source,
         lines: source.text.lines().collect(),
