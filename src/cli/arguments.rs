@@ -58,7 +58,7 @@ pub enum Command {
     /// Make a sector bundle from the files of a finite-element code.
     ///
     /// The import file names meshes, matrices and sets; docs/import.md has the commands that write
-    /// them with CalculiX, Ansys and Nastran.
+    /// them with `CalculiX`, Ansys and Nastran.
     Import(ImportArguments),
     /// Solve a study, or continue it; a finished study is shown, not solved again.
     Run(RunArguments),

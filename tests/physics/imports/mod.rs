@@ -3,6 +3,7 @@
 mod calculix;
 mod cartesian;
 mod formats;
+mod other_writers;
 mod refused;
 pub mod small;
 mod writers;

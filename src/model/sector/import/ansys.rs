@@ -124,8 +124,7 @@ impl<'a> Reader<'a> {
                     *value = real(["x", "y", "z"][axis], word).map_err(|p| self.refuse(p))?;
                 }
             }
-            let old = self.mesh.nodes.insert(number, position);
-            if old.is_some_and(|old| old != position) {
+            if !self.mesh.add_node(number, position) {
                 let what = "node";
                 let problem = ImportProblem::Redefined { what, number };
                 return Err(self.source.refuse(self.at, problem));

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::cylindrical::Frames;
 use super::import_file::ImportFile;
-use super::matrices;
+use super::matrices::{self, Triplets};
 use super::mesh::{ElementKind, Mesh};
 use super::problem::ImportProblem;
 use super::report::BladeSource;
@@ -20,7 +20,7 @@ pub(super) fn stiffness(
     file: &ImportFile,
     run: &Run,
     frames: &Frames,
-) -> Result<(Vec<(usize, usize, f64)>, BladeSource), ModelError> {
+) -> Result<(Triplets, BladeSource), ModelError> {
     if let Some(files) = file.blade_files()? {
         let (mut rows, matrix) = matrices::read_stiffness(&files)?;
         let path = files.stiffness;

@@ -165,8 +165,8 @@ fn surface(
         let low = sector.low_of_high.get(&node).copied().unwrap_or(node);
         let sum = folded.entry(low).or_default();
         sum.area_m2 += nodal.area_m2;
-        for i in 0..3 {
-            sum.normal_m2[i] += normal[i];
+        for (total, part) in sum.normal_m2.iter_mut().zip(normal) {
+            *total += part;
         }
     }
     Ok(folded)

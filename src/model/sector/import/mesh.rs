@@ -176,6 +176,16 @@ pub(super) struct Mesh {
 }
 
 impl Mesh {
+    /// Adds a node; false if it is there already, elsewhere.
+    #[expect(
+        clippy::float_cmp,
+        reason = "the same node is written with the same digits"
+    )]
+    pub fn add_node(&mut self, number: usize, position: [f64; 3]) -> bool {
+        let old = self.nodes.insert(number, position);
+        old.is_none_or(|old| old == position)
+    }
+
     /// Nodes of a node set, of an element set or of a surface of that name.
     pub fn nodes_of(&self, name: &str) -> Option<BTreeSet<usize>> {
         let name = name.to_ascii_uppercase();

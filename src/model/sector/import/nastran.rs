@@ -11,23 +11,35 @@ use crate::model::sector::error::ModelError;
 use crate::model::sector::line_problem::LineProblem;
 use crate::model::sector::matrix_market::integer;
 
+/// A `SET1` entry: its line, its id, and the ranges of nodes in it.
+struct Set {
+    line: usize,
+    name: String,
+    ranges: Vec<(usize, usize)>,
+}
+
 /// Reads bulk data. Other entries than those above, and elements that are no such solids, are passed over.
 pub(super) fn read(path: &Path) -> Result<Mesh, ModelError> {
     let source = Source::read(path)?;
     let mut mesh = Mesh::default();
-    let mut sets: Vec<(usize, String, Vec<(usize, usize)>)> = Vec::new();
+    let mut sets: Vec<Set> = Vec::new();
     for entry in bulk::entries(&source) {
         match entry.name.as_str() {
             "GRID" => grid(&source, &entry, &mut mesh)?,
             "CTETRA" | "CPENTA" | "CHEXA" => element(&source, &entry, &mut mesh)?,
             "SET1" => {
                 let ranges = ranges(&source, &entry)?;
-                sets.push((entry.line, entry.field(0).to_owned(), ranges));
+                let name = entry.field(0).to_owned();
+                sets.push(Set {
+                    line: entry.line,
+                    name,
+                    ranges,
+                });
             }
             _ => {}
         }
     }
-    for (line, name, ranges) in sets {
+    for Set { line, name, ranges } in sets {
         let mut nodes = BTreeSet::new();
         for (first, last) in ranges {
             let what = "node";
@@ -79,8 +91,7 @@ fn grid(source: &Source, entry: &Entry<'_>, mesh: &mut Mesh) -> Result<(), Model
             *value = real(["x", "y", "z"][axis], word).map_err(refuse)?;
         }
     }
-    let old = mesh.nodes.insert(number, position);
-    if old.is_some_and(|old| old != position) {
+    if !mesh.add_node(number, position) {
         let what = "node";
         return Err(source.refuse(entry.line, ImportProblem::Redefined { what, number }));
     }

@@ -106,20 +106,12 @@ impl Run {
             .iter()
             .map(|(&number, &position)| {
                 let node = Node {
-                    position_m: self.position_m(file, position),
+                    position_m: position_m(file, position),
                     body: self.body_of(number),
                 };
                 (number + self.offset, node)
             })
             .collect()
-    }
-
-    fn position_m(&self, file: &ImportFile, position: [f64; 3]) -> [f64; 3] {
-        let mut placed = [0.0; 3];
-        for (value, place) in position.into_iter().zip(file.axis.places()) {
-            placed[place] = value * file.units.length();
-        }
-        placed
     }
 
     /// Matrices with rows by the numbers and directions of the wheel; scaled to SI by the caller.
@@ -165,6 +157,15 @@ impl Run {
         }
         Ok(())
     }
+}
+
+/// A position in m, with the axis of rotation along z.
+fn position_m(file: &ImportFile, position: [f64; 3]) -> [f64; 3] {
+    let mut placed = [0.0; 3];
+    for (value, place) in position.into_iter().zip(file.axis.places()) {
+        placed[place] = value * file.units.length();
+    }
+    placed
 }
 
 /// The next power of ten above `number`: node numbers of the second file stay readable.

@@ -70,8 +70,8 @@ pub(super) fn add_face(
                 .sum::<f64>();
         for a in 0..count {
             share[a] += weight * value[a] * value[a] * jacobian;
-            for i in 0..3 {
-                normal[a][i] += weight * value[a] * value[a] * cross[i];
+            for (total, part) in normal[a].iter_mut().zip(cross) {
+                *total += weight * value[a] * value[a] * part;
             }
         }
     }
@@ -268,8 +268,8 @@ mod tests {
             (4, places[1]),
             (8, places[1]),
         ] {
-            for a in 0..count {
-                let (value, _) = shape_functions(count, places[a]);
+            for (a, &place) in places.iter().take(count).enumerate() {
+                let (value, _) = shape_functions(count, place);
                 for (b, &v) in value.iter().enumerate() {
                     assert!(
                         (v - f64::from(u8::from(a == b))).abs() < 1e-14,

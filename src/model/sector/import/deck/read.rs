@@ -76,7 +76,10 @@ impl Reader<'_> {
             "*ELSET" => self.set(card, false),
             "*SURFACE" => self.surface(card),
             // A condition of a step may be gone when the matrices are stored.
-            "*BOUNDARY" if self.steps == 0 => self.boundary(card),
+            "*BOUNDARY" if self.steps == 0 => {
+                self.boundary(card);
+                Ok(())
+            }
             "*MATERIAL" => {
                 self.material = card.name("NAME");
                 Ok(())
@@ -163,8 +166,7 @@ impl Reader<'_> {
                     position[axis] = real(["x", "y", "z"][axis], word).map_err(refuse)?;
                 }
             }
-            let old = self.mesh.nodes.insert(number, position);
-            if old.is_some_and(|old| old != position) {
+            if !self.mesh.add_node(number, position) {
                 let what = "node";
                 let problem = ImportProblem::Redefined { what, number };
                 return Err(self.cards.refuse(place, problem));
@@ -341,13 +343,12 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn boundary(&mut self, card: &Card) -> Result<(), ModelError> {
+    fn boundary(&mut self, card: &Card) {
         for &place in &card.data {
             let words = self.cards.words(place);
             self.held
                 .extend(words.first().map(|word| (place, member(word))));
         }
-        Ok(())
     }
 
     fn property(&mut self, card: &Card) -> Result<(), ModelError> {

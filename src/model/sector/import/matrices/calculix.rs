@@ -23,17 +23,15 @@ pub(super) fn rows(path: &Path) -> Result<Rows, ModelError> {
             let direction: usize = direction.parse().ok()?;
             Some((node.parse().ok()?, direction))
         });
-        match words {
-            Some((node, direction @ 1..=3)) => rows.push((node, direction - 1)),
-            _ => {
-                let problem = ImportProblem::Line {
-                    what: "row of a dof table",
-                    found: line.to_owned(),
-                    accepted: "node.direction with direction 1, 2 or 3",
-                };
-                return Err(source.refuse(number, problem));
-            }
-        }
+        let Some((node, direction @ 1..=3)) = words else {
+            let problem = ImportProblem::Line {
+                what: "row of a dof table",
+                found: line.to_owned(),
+                accepted: "node.direction with direction 1, 2 or 3",
+            };
+            return Err(source.refuse(number, problem));
+        };
+        rows.push((node, direction - 1));
     }
     Ok(rows)
 }

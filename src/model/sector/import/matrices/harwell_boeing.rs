@@ -9,7 +9,7 @@ use super::symmetric::{from_full, from_triangle};
 use crate::linalg::SymmetricSparse;
 use crate::model::sector::error::ModelError;
 use crate::model::sector::import::problem::ImportProblem;
-use crate::model::sector::import::source::{Source, real};
+use crate::model::sector::import::source::{Problem, Source, real};
 use crate::model::sector::line_problem::LineProblem;
 use crate::model::sector::matrix_market::integer;
 
@@ -57,21 +57,37 @@ impl Fields {
     }
 }
 
-/// A position in the lines of a file.
+/// The lines of a file as they are read.
 struct Lines<'a> {
     source: &'a Source,
-    lines: Vec<&'a str>,
+    all: Vec<&'a str>,
     at: usize,
 }
 
+/// What the header says of the matrix.
+struct Header {
+    /// Both triangles are given.
+    full: bool,
+    dimension: usize,
+    stored: usize,
+    pointers: Fields,
+    indices: Fields,
+    values: Fields,
+}
+
 impl<'a> Lines<'a> {
-    fn next(&mut self, what: &str) -> Result<(usize, &'a str), ModelError> {
-        let line = self.lines.get(self.at).copied();
+    fn next(&mut self, what: &str) -> Result<&'a str, ModelError> {
+        let line = self.all.get(self.at).copied();
         self.at += 1;
-        line.map(|line| (self.at, line)).ok_or_else(|| {
+        line.ok_or_else(|| {
             let what = what.to_owned();
             self.source.refuse_whole(ImportProblem::CutOff { what })
         })
+    }
+
+    /// Refuses the line read last.
+    fn refuse(&self, problem: impl Into<Problem>) -> ModelError {
+        self.source.refuse(self.at, problem)
     }
 
     /// `count` values in `fields`.
@@ -84,14 +100,85 @@ impl<'a> Lines<'a> {
     ) -> Result<Vec<T>, ModelError> {
         let mut values = Vec::new();
         while values.len() < count {
-            let (number, line) = self.next(&format!("{} of {count} {what}", values.len()))?;
-            for index in 0..fields.per_line.min(count - values.len()) {
-                let value = parse(fields.field(line, index))
-                    .map_err(|problem| self.source.refuse(number, problem))?;
-                values.push(value);
+            let line = self.next(&format!("{} of {count} {what}", values.len()))?;
+            let expected = fields.per_line.min(count - values.len());
+            // Some writers (SciPy) keep to the number of fields but not to their width; where blanks
+            // separate as many words as there are fields, the two ways of reading are one.
+            let words: Vec<&str> = line.split_whitespace().collect();
+            for index in 0..expected {
+                let word = if words.len() == expected {
+                    words[index]
+                } else {
+                    fields.field(line, index)
+                };
+                values.push(parse(word).map_err(|problem| self.refuse(problem))?);
             }
         }
         Ok(values)
+    }
+
+    /// Title, counts of lines, type and size, formats, and a line on the right-hand side if there is one.
+    fn header(&mut self) -> Result<Header, ModelError> {
+        const COUNTS: Fields = Fields {
+            per_line: 5,
+            width: 14,
+        };
+        self.next("there is no title")?;
+        let right_hand_side = COUNTS.field(self.next("there are no counts of lines")?, 4);
+        let has_right_hand_side = !right_hand_side.is_empty()
+            && integer(
+                "the number of lines of the right-hand side",
+                right_hand_side,
+            )
+            .map_err(|problem| self.refuse(problem))?
+                > 0;
+        let kind = self.next("there is no type of the matrix")?;
+        let name = kind.get(..3).unwrap_or("").to_ascii_uppercase();
+        let full = match name.as_str() {
+            "RSA" => false,
+            "RUA" => true,
+            _ => {
+                return Err(self.refuse(ImportProblem::MatrixKind {
+                    what: "the type of the matrix",
+                    found: name,
+                    accepted: "RSA (real, symmetric, assembled) or RUA, in ASCII form",
+                }));
+            }
+        };
+        let size = |index: usize, field: &'static str| {
+            integer(field, COUNTS.field(kind, index)).map_err(|problem| self.refuse(problem))
+        };
+        let dimension = size(1, "the number of rows")?;
+        let columns = size(2, "the number of columns")?;
+        let stored = size(3, "the number of entries")?;
+        if dimension != columns {
+            let rows = dimension;
+            return Err(self.refuse(LineProblem::NotSquare { rows, columns }));
+        }
+        let formats = self.next("there are no formats")?;
+        let format = |start: usize, width: usize| {
+            let rest = formats.get(start..).unwrap_or("");
+            let text = rest.get(..width).unwrap_or(rest);
+            Fields::of_format(text).ok_or_else(|| {
+                self.refuse(ImportProblem::MatrixKind {
+                    what: "a Fortran format",
+                    found: text.trim().to_owned(),
+                    accepted: "one like (8I10) or (4E20.12)",
+                })
+            })
+        };
+        let header = Header {
+            full,
+            dimension,
+            stored,
+            pointers: format(0, 16)?,
+            indices: format(16, 16)?,
+            values: format(32, 20)?,
+        };
+        if has_right_hand_side {
+            self.next("there is no description of the right-hand side")?;
+        }
+        Ok(header)
     }
 }
 
@@ -101,77 +188,23 @@ pub(super) fn matrix(path: &Path, rows: &Rows) -> Result<SymmetricSparse, ModelE
     source.require_last_line_end()?;
     let mut lines = Lines {
         source: &source,
-        lines: source.text.lines().collect(),
+        all: source.text.lines().collect(),
         at: 0,
     };
-    lines.next("there is no title")?;
-    let (number, counts) = lines.next("there are no counts of lines")?;
-    let header = Fields {
-        per_line: 5,
-        width: 14,
-    };
-    let right_hand_side = header.field(counts, 4);
-    let has_right_hand_side = !right_hand_side.is_empty()
-        && integer(
-            "the number of lines of the right-hand side",
-            right_hand_side,
-        )
-        .map_err(|problem| source.refuse(number, problem))?
-            > 0;
-    let (number, kind) = lines.next("there is no type of the matrix")?;
-    let refuse = |problem: LineProblem| source.refuse(number, problem);
-    let name = kind.get(..3).unwrap_or("").to_ascii_uppercase();
-    let full = match name.as_str() {
-        "RSA" => false,
-        "RUA" => true,
-        _ => {
-            let problem = ImportProblem::MatrixKind {
-                what: "the type of the matrix",
-                found: name,
-                accepted: "RSA (real, symmetric, assembled) or RUA, in ASCII form",
-            };
-            return Err(source.refuse(number, problem));
-        }
-    };
-    let size = |index: usize, field: &'static str| integer(field, header.field(kind, index));
-    let n = size(1, "the number of rows").map_err(refuse)?;
-    let columns = size(2, "the number of columns").map_err(refuse)?;
-    let stored = size(3, "the number of entries").map_err(refuse)?;
-    if n != columns {
-        return Err(refuse(LineProblem::NotSquare { rows: n, columns }));
-    }
+    let header = lines.header()?;
+    let (n, stored) = (header.dimension, header.stored);
     if n != rows.len() {
         let (found, rows) = (n, rows.len());
-        return Err(source.refuse(number, ImportProblem::RowOutside { found, rows }));
+        return Err(source.refuse(3, ImportProblem::RowOutside { found, rows }));
     }
-    let (number, formats) = lines.next("there are no formats")?;
-    let format = |start: usize, end: usize| {
-        let text = formats
-            .get(start..)
-            .map_or("", |rest| rest.get(..end - start).unwrap_or(rest));
-        Fields::of_format(text).ok_or_else(|| {
-            let problem = ImportProblem::MatrixKind {
-                what: "a Fortran format",
-                found: text.trim().to_owned(),
-                accepted: "one like (8I10) or (4E20.12)",
-            };
-            source.refuse(number, problem)
-        })
-    };
-    let (pointer_format, index_format, value_format) =
-        (format(0, 16)?, format(16, 32)?, format(32, 52)?);
-    if has_right_hand_side {
-        lines.next("there is no description of the right-hand side")?;
-    }
-    let pointers = lines.values("column pointers", pointer_format, n + 1, |word| {
+    let pointers = lines.values("column pointers", header.pointers, n + 1, |word| {
         integer("a column pointer", word)
     })?;
-    let first_line = lines.at;
     if pointers.first() != Some(&1)
         || pointers.last() != Some(&(stored + 1))
         || pointers.windows(2).any(|pair| pair[0] > pair[1])
     {
-        let problem = ImportProblem::MatrixKind {
+        return Err(lines.refuse(ImportProblem::MatrixKind {
             what: "the list of column pointers",
             found: format!(
                 "from {} to {}",
@@ -179,37 +212,39 @@ pub(super) fn matrix(path: &Path, rows: &Rows) -> Result<SymmetricSparse, ModelE
                 pointers.last().unwrap_or(&0)
             ),
             accepted: "ascending from 1 to the number of entries plus 1",
-        };
-        return Err(source.refuse(first_line, problem));
+        }));
     }
-    let indices = lines.values("row indices", index_format, stored, |word| {
-        integer("a row index", word)
+    let indices = lines.values("row indices", header.indices, stored, |word| {
+        integer("a row index", word).and_then(|row| {
+            if (1..=n).contains(&row) {
+                Ok(row)
+            } else {
+                let (column, dimension) = (0, n);
+                Err(LineProblem::EntryOutside {
+                    row,
+                    column,
+                    dimension,
+                })
+            }
+        })
     })?;
-    let last_index_line = lines.at;
-    let values = lines.values("values", value_format, stored, |word| real("a value", word))?;
+    let values = lines.values("values", header.values, stored, |word| {
+        real("a value", word)
+    })?;
     let mut entries = Vec::with_capacity(stored);
     for column in 0..n {
         for at in pointers[column] - 1..pointers[column + 1] - 1 {
-            let row = indices[at];
-            if row == 0 || row > n {
-                let problem = LineProblem::EntryOutside {
-                    row,
-                    column: column + 1,
-                    dimension: n,
-                };
-                return Err(source.refuse(last_index_line, problem));
-            }
-            entries.push((row - 1, column, values[at]));
+            entries.push((indices[at] - 1, column, values[at]));
         }
     }
-    let checked = require_diagonal(&entries, rows).and_then(|()| {
-        if full {
-            from_full(n, &entries)
-        } else {
-            from_triangle(n, &entries)
-        }
-    });
-    checked.map_err(|problem| source.refuse_whole(problem))
+    let build = if header.full {
+        from_full
+    } else {
+        from_triangle
+    };
+    require_diagonal(&entries, rows)
+        .and_then(|()| build(n, &entries))
+        .map_err(|problem| source.refuse_whole(problem))
 }
 
 #[cfg(test)]

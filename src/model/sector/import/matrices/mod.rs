@@ -15,6 +15,9 @@ use crate::linalg::SymmetricSparse;
 /// Node and Cartesian direction (0, 1, 2) of each row of a matrix.
 pub(super) type Rows = Vec<(usize, usize)>;
 
+/// Entries `(row, column, value)` of a matrix, from 0.
+pub(super) type Triplets = Vec<(usize, usize, f64)>;
+
 /// Stiffness and mass with their rows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Matrices {

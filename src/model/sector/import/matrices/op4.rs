@@ -3,10 +3,10 @@
 
 use std::path::Path;
 
-use super::Rows;
 use super::calculix::require_diagonal;
 use super::harwell_boeing::Fields;
 use super::symmetric::from_full;
+use super::{Rows, Triplets};
 use crate::linalg::SymmetricSparse;
 use crate::model::sector::error::ModelError;
 use crate::model::sector::import::problem::ImportProblem;
@@ -44,7 +44,7 @@ pub(super) fn matrix(
         lines: source.text.lines().collect(),
         at: 0,
     };
-    let mut found: Vec<(String, Vec<(usize, usize, f64)>)> = Vec::new();
+    let mut found: Vec<(String, Triplets)> = Vec::new();
     while let Some(header) = reader.header()? {
         let wanted = name.is_none_or(|name| name.eq_ignore_ascii_case(&header.name));
         let start = reader.at;
@@ -73,7 +73,7 @@ pub(super) fn matrix(
         let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
         names.join(", ")
     };
-    let chosen: Vec<&(String, Vec<(usize, usize, f64)>)> = found
+    let chosen: Vec<&(String, Triplets)> = found
         .iter()
         .filter(|(own, _)| name.is_none_or(|name| name.eq_ignore_ascii_case(own)))
         .collect();
@@ -169,7 +169,7 @@ impl<'a> Reader<'a> {
     }
 
     /// All columns of a matrix, and the record after the last one.
-    fn columns(&mut self, header: &Header) -> Result<Vec<(usize, usize, f64)>, ModelError> {
+    fn columns(&mut self, header: &Header) -> Result<Triplets, ModelError> {
         let mut entries = Vec::new();
         let words_of_value = if header.kind % 2 == 1 { 1 } else { 2 };
         let width = header.width;
@@ -219,7 +219,7 @@ impl<'a> Reader<'a> {
         row: usize,
         column: usize,
         count: usize,
-        entries: &mut Vec<(usize, usize, f64)>,
+        entries: &mut Triplets,
     ) -> Result<(), ModelError> {
         let end = row
             .checked_add(count)
