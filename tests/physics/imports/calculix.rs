@@ -4,22 +4,29 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use blisk::model::cyclic::contact_free_frequencies_hz;
-use blisk::model::sector::Body;
 use blisk::model::sector::import::{BladeSource, Imported, calculix_equations, import};
+use blisk::model::sector::{Body, ModelError};
 
 pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/calculix_wheel")
 }
 
 /// Imports the wheel of `state` after a change of its import file; paths in it are made absolute.
-fn import_changed(state: &str, change: impl Fn(String) -> String) -> Imported {
+pub fn import_changed(state: &str, change: impl Fn(String) -> String) -> Imported {
+    try_import_changed(state, change).unwrap()
+}
+
+pub fn try_import_changed(
+    state: &str,
+    change: impl Fn(String) -> String,
+) -> Result<Imported, ModelError> {
     let text = fs::read_to_string(folder().join(format!("wheel_{state}.toml"))).unwrap();
     let absolute = format!("job = \"{}/", folder().display());
     let text = change(text.replace("job = \"", &absolute));
     let temporary = tempfile::tempdir().unwrap();
     let path = temporary.path().join("import.toml");
     fs::write(&path, text).unwrap();
-    import(&path).unwrap()
+    import(&path)
 }
 
 /// Frequencies by `CalculiX`, Hz, of one nodal diameter, both bodies, ascending; seven digits. Each

@@ -1,6 +1,7 @@
 //! The reference wheel written in each format and imported again is the same wheel.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -90,20 +91,24 @@ impl Wheel {
         );
         for (dof, force) in &self.model.force {
             let own = &self.model.dofs[*dof];
-            text += &format!(
+            write!(
+                text,
                 "\n[[force]]\nnode = {}\ncomponent = \"{}\"\nre = {:e}\nim = {:e}\n",
                 own.node + 1,
                 own.component,
                 force.re,
                 force.im
-            );
+            )
+            .unwrap();
         }
         for observed in &self.model.observed {
-            text += &format!(
+            write!(
+                text,
                 "\n[[observe]]\nname = \"{}\"\nnode = {}\n",
                 observed.name,
                 observed.node + 1
-            );
+            )
+            .unwrap();
         }
         text
     }
@@ -169,12 +174,12 @@ impl Wheel {
         assert_eq!(model.observed.len(), original.observed.len());
         assert_eq!(model.observed[0].node, original.observed[0].node + 1);
     }
+}
 
-    /// Mesh and import file of a format.
-    fn write(&self, folder: &Path, mesh: &str, import_file: &str) {
-        fs::write(folder.join("mesh"), mesh).unwrap();
-        fs::write(folder.join("import.toml"), import_file).unwrap();
-    }
+/// Mesh and import file of a format.
+fn write_mesh(folder: &Path, mesh: &str, import_file: &str) {
+    fs::write(folder.join("mesh"), mesh).unwrap();
+    fs::write(folder.join("import.toml"), import_file).unwrap();
 }
 
 /// Entries equal to `tolerance` of the geometric mean of the diagonal.
@@ -213,7 +218,7 @@ fn calculix_files_give_the_wheel_back() {
     write("blade.dof", writers::calculix_dofs(&wheel.blade));
     let deck = writers::calculix_deck(&nodes(&wheel.model), &wheel.sets(false));
     let keys = "mesh = \"mesh\"\njob = \"wheel\"\nblade_job = \"blade\"";
-    wheel.write(
+    write_mesh(
         folder.path(),
         &deck,
         &wheel.import_file("code = \"calculix\"", keys, false),
@@ -243,7 +248,7 @@ fn ansys_files_give_the_wheel_back() {
         write("blade", matrix(&wheel.blade));
         write("K.mapping", writers::dof_table(&wheel.stiffness, false));
         write("blade.mapping", writers::dof_table(&wheel.blade, true));
-        wheel.write(folder.path(), &mesh, &wheel.import_file(code, keys, false));
+        write_mesh(folder.path(), &mesh, &wheel.import_file(code, keys, false));
         wheel.assert_imported(folder.path(), 1e-13);
     }
 }
@@ -263,7 +268,7 @@ fn nastran_files_give_the_wheel_back() {
         let keys = "mesh = \"mesh\"\nstiffness = \"wheel.pch\"\nblade_stiffness = \"wheel.pch\"\n\
                     blade_stiffness_name = \"KBLADE\"";
         let code = "code = \"nastran\"\nposition_tolerance_m = 1e-6";
-        wheel.write(folder.path(), &mesh, &wheel.import_file(code, keys, true));
+        write_mesh(folder.path(), &mesh, &wheel.import_file(code, keys, true));
         wheel.assert_imported(folder.path(), tolerance);
     }
     for form in [
@@ -282,7 +287,7 @@ fn nastran_files_give_the_wheel_back() {
         let keys = "mesh = \"mesh\"\nstiffness = \"wheel.op4\"\nstiffness_name = \"KAA\"\nmass_name = \"maa\"\n\
                     dofs = \"dofs.csv\"\nblade_stiffness = \"blade.op4\"\nblade_dofs = \"blade.csv\"";
         let code = "code = \"nastran\"\nmatrix_format = \"op4\"\nposition_tolerance_m = 1e-6";
-        wheel.write(folder.path(), &mesh, &wheel.import_file(code, keys, true));
+        write_mesh(folder.path(), &mesh, &wheel.import_file(code, keys, true));
         wheel.assert_imported(folder.path(), tolerance);
     }
 }
@@ -326,6 +331,6 @@ fn millimetres_and_another_axis_give_the_same_wheel() {
     let deck = writers::calculix_deck(&placed, &wheel.sets(false));
     let keys = "mesh = \"mesh\"\njob = \"wheel\"\nblade_job = \"blade\"";
     let code = "code = \"calculix\"\nunits = \"mm-t-s\"\naxis = \"x\"";
-    wheel.write(folder.path(), &deck, &wheel.import_file(code, keys, false));
+    write_mesh(folder.path(), &deck, &wheel.import_file(code, keys, false));
     wheel.assert_imported(folder.path(), 1e-12);
 }

@@ -4,6 +4,7 @@ mod calculix;
 mod cartesian;
 mod formats;
 mod other_writers;
+mod projection;
 mod refused;
 pub mod small;
 mod writers;

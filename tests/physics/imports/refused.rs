@@ -151,7 +151,7 @@ fn import_files_are_refused_with_key_and_value() {
 }
 
 #[test]
-fn decks_and_matrices_of_calculix_are_refused_with_file_line_and_value() {
+fn decks_are_refused_with_file_line_and_value() {
     let cases: &[Case] = &[
         (
             "mesh",
@@ -207,6 +207,13 @@ fn decks_and_matrices_of_calculix_are_refused_with_file_line_and_value() {
             "*NSET,NSET=LOW\nNOWHERE",
             &["mesh:", "NOWHERE"],
         ),
+    ];
+    assert_refused(&Small::calculix(), cases);
+}
+
+#[test]
+fn matrices_of_calculix_are_refused_with_file_line_and_value() {
+    let cases: &[Case] = &[
         (
             "job.dof",
             "1.1\n",

@@ -129,12 +129,12 @@ impl Small {
         let mut mesh = writers::ansys_cdb(&Self::all_nodes(), &sets);
         let element = |number: usize, nodes: [usize; 8]| {
             let head = [1, 1, 1, 1, 0, 0, 0, 0, 8, 0, number];
-            let words: String = head
+            let words = head
                 .iter()
                 .chain(&nodes)
                 .map(|n| format!("{n:9}"))
-                .collect();
-            words + "\n"
+                .collect::<Vec<_>>();
+            words.concat() + "\n"
         };
         mesh += "EBLOCK,19,SOLID,         2,         2\n(19i9)\n";
         mesh += &element(1, [1, 2, 6, 5, 3, 4, 8, 7]);

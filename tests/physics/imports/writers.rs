@@ -147,10 +147,11 @@ pub fn harwell_boeing(matrix: &CartesianMatrix, symmetric: bool) -> String {
     let indices: Vec<usize> = entries.iter().map(|entry| entry.0 + 1).collect();
     for list in [pointers, indices] {
         for line in list.chunks(integers) {
-            let words: String = line
+            let words = line
                 .iter()
                 .map(|number| format!("{number:width$}"))
-                .collect();
+                .collect::<Vec<_>>()
+                .concat();
             writeln!(text, "{words}").unwrap();
         }
     }
@@ -300,7 +301,11 @@ pub fn nastran_bulk(nodes: &BTreeMap<usize, [f64; 3]>, sets: &[(&str, Vec<usize>
         let mut fields: Vec<String> = vec![(*name).to_owned()];
         fields.extend(members.iter().map(ToString::to_string));
         for (index, line) in fields.chunks(8).enumerate() {
-            let words: String = line.iter().map(|word| format!("{word:>8}")).collect();
+            let words = line
+                .iter()
+                .map(|word| format!("{word:>8}"))
+                .collect::<Vec<_>>()
+                .concat();
             writeln!(text, "{:8}{words}", if index == 0 { "SET1" } else { "+" }).unwrap();
         }
     }
@@ -353,7 +358,11 @@ pub fn ansys_cdb(nodes: &BTreeMap<usize, [f64; 3]>, sets: &[(&str, Vec<usize>)])
         )
         .unwrap();
         for line in items.chunks(8) {
-            let words: String = line.iter().map(|item| format!("{item:10}")).collect();
+            let words = line
+                .iter()
+                .map(|item| format!("{item:10}"))
+                .collect::<Vec<_>>()
+                .concat();
             writeln!(text, "{words}").unwrap();
         }
     }

@@ -6,9 +6,10 @@ use std::path::Path;
 
 use super::cyclic_faces::{FacePairs, match_faces, turned_by};
 use super::cylindrical::{Frames, Node};
-use super::import_file::{ForceDirection, ImportFile};
+use super::import_file::{ForceDirection, ImportFile, Pairing};
 use super::matrices::Matrices;
 use super::problem::{ImportProblem, body_name};
+use super::projection::{Projected, project};
 use super::report::{BodyReport, ImportReport};
 use super::run::Run;
 use super::source::refuse;
@@ -36,21 +37,18 @@ pub fn import(path: &Path) -> Result<Imported, ModelError> {
     let file = ImportFile::read(path)?;
     let runs = Run::read_meshes(&file)?;
     let mut nodes: BTreeMap<usize, Node> = runs.iter().flat_map(|run| run.nodes(&file)).collect();
-    let matrices: Vec<Matrices> = runs
+    let mut matrices: Vec<Matrices> = runs
         .iter()
         .map(|run| run.matrices(&file))
         .collect::<Result<_, _>>()?;
-    let rows = || {
-        matrices
-            .iter()
-            .flat_map(|matrices| matrices.rows.iter().copied())
-    };
-    let faces = cyclic_faces(
-        &file,
-        &runs,
-        &nodes,
-        &rows().map(|(node, _)| node).collect(),
-    )?;
+    let free = matrices
+        .iter()
+        .flat_map(|run| &run.rows)
+        .map(|&(node, _)| node)
+        .collect();
+    let mut faces = cyclic_faces(&file, &runs, &nodes, &free)?;
+    let projected = project_ring(&file, &runs, &mut nodes, &mut matrices, &mut faces)?;
+    let rows = || matrices.iter().flat_map(|run| run.rows.iter().copied());
     let high_face_moved = place_high_face(&mut nodes, &faces, file.sectors);
     let frames = Frames::new(rows(), &nodes, path)?;
     let n = frames.dofs.len();
@@ -84,15 +82,14 @@ pub fn import(path: &Path) -> Result<Imported, ModelError> {
         nodes: &nodes,
         frames: &frames,
         low_of_high: &low_of_high,
+        projected,
         tolerance_m: tolerance_m(&file, &nodes),
     };
-    let (contact_pairs, contact) = match &file.contact {
-        Some(table) => {
-            let (pairs, report) = contact::pairs(&file, table, &runs, &sector)?;
-            (pairs, Some(report))
-        }
-        None => (Vec::new(), None),
-    };
+    let contact = file
+        .contact
+        .as_ref()
+        .map(|table| contact::pairs(&file, table, &runs, &sector));
+    let (contact_pairs, contact) = contact.transpose()?.unzip();
     let force = force(&file, &runs, &frames, &low_of_high)?;
     let observed = observed(&file, &runs)?;
     let blade_dofs: BTreeSet<usize> = blade
@@ -123,12 +120,30 @@ pub fn import(path: &Path) -> Result<Imported, ModelError> {
         blade_stiffness: SymmetricSparse::from_lower_triplets(n, &blade),
         cyclic_pairs: cyclic_dofs(&file, &frames, &faces)?,
         dofs: frames.dofs,
-        contact_pairs,
+        contact_pairs: contact_pairs.unwrap_or_default(),
         force,
         observed,
     };
     validate(&model)?;
     Ok(Imported { model, report })
+}
+
+/// Makes the ring's contact nodes follow the blisk's, if the import file asks for it.
+fn project_ring(
+    file: &ImportFile,
+    runs: &[Run],
+    nodes: &mut BTreeMap<usize, Node>,
+    matrices: &mut [Matrices],
+    faces: &mut BTreeMap<&'static str, FacePairs>,
+) -> Result<Option<Projected>, ModelError> {
+    let (Some(table), Some(ring)) = (&file.contact, matrices.last_mut()) else {
+        return Ok(None);
+    };
+    if table.pairing == Pairing::Nodes {
+        return Ok(None);
+    }
+    let tolerance_m = table.tolerance_m.unwrap_or(tolerance_m(file, nodes));
+    project(file, table, runs, tolerance_m, nodes, ring, faces).map(Some)
 }
 
 /// Tolerance on positions: the import file's, or what a bundle accepts.

@@ -6,6 +6,7 @@ use super::cyclic_faces::nearest;
 use super::cylindrical::{Frames, Node};
 use super::import_file::{ContactTable, ImportFile, Weights};
 use super::problem::ImportProblem;
+use super::projection::Projected;
 use super::report::ContactReport;
 use super::run::Run;
 use super::source::refuse;
@@ -18,6 +19,8 @@ pub(super) struct Sector<'a> {
     pub nodes: &'a BTreeMap<usize, Node>,
     pub frames: &'a Frames,
     pub low_of_high: &'a BTreeMap<usize, usize>,
+    /// What was projected, where the ring's nodes do not match.
+    pub projected: Option<Projected>,
     /// Largest distance between the nodes of a pair where the import file gives none, m.
     pub tolerance_m: f64,
 }
@@ -29,8 +32,25 @@ pub(super) fn pairs(
     runs: &[Run],
     sector: &Sector<'_>,
 ) -> Result<(Vec<ContactPair>, ContactReport), ModelError> {
-    let blisk = surface(file, table, runs, sector, Body::Blisk)?;
-    let ring = surface(file, table, runs, sector, Body::Ring)?;
+    let mut blisk = surface(file, table, runs, sector, Body::Blisk)?;
+    let ring = match sector.projected {
+        None => surface(file, table, runs, sector, Body::Ring)?,
+        Some(Projected { offset, .. }) => {
+            // The ring has a node at each node of the blisk's surface that it covers.
+            blisk.retain(|node, _| sector.frames.is_free(node + offset));
+            let facing = blisk.iter().map(|(node, nodal)| {
+                let normal_m2 = nodal.normal_m2.map(|part| -part);
+                (
+                    node + offset,
+                    NodalArea {
+                        normal_m2,
+                        ..*nodal
+                    },
+                )
+            });
+            facing.collect()
+        }
+    };
     let tolerance_m = table.tolerance_m.unwrap_or(sector.tolerance_m);
     let positions: BTreeMap<usize, [f64; 3]> = ring
         .keys()
@@ -86,6 +106,11 @@ pub(super) fn pairs(
     }
     report.pairs = pairs.len();
     report.ring_nodes_without_pair = ring.len() - owner.len();
+    if let Some(projected) = sector.projected {
+        report.projected_ring_nodes = Some(projected.nodes);
+        report.worst_distance_m = projected.worst_distance_m;
+        report.ring_nodes_without_pair = projected.left_out;
+    }
     Ok((pairs, report))
 }
 

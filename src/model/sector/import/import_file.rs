@@ -173,6 +173,17 @@ pub(super) struct RingTable {
 /// How the contact surfaces are paired.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
+pub(super) enum Pairing {
+    /// Node to node.
+    #[default]
+    Nodes,
+    /// The ring's nodes projected on the blisk's faces.
+    Projection,
+}
+
+/// How much each contact pair counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub(super) enum Weights {
     /// By the area that each node stands for.
     #[default]
@@ -187,6 +198,8 @@ pub(super) struct ContactTable {
     pub blisk: String,
     pub ring: String,
     pub tolerance_m: Option<f64>,
+    #[serde(default)]
+    pub pairing: Pairing,
     #[serde(default)]
     pub weights: Weights,
     /// Outward normal of the blisk's surface (r, theta, z), where the mesh has no elements.

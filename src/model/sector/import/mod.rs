@@ -16,6 +16,7 @@ mod matrices;
 mod mesh;
 mod nastran;
 mod problem;
+mod projection;
 mod report;
 mod run;
 mod source;

@@ -317,6 +317,28 @@ pub enum ImportProblem {
         /// Node of the ring.
         ring: usize,
     },
+    /// No node of the ring lies on the blisk's contact surface.
+    #[error(
+        "no node of the ring's contact surface is within {tolerance_m:e} m of the blisk's (nearest: node {nearest}, {distance_m:e} m); accepted: surfaces that touch, or a larger `contact.tolerance_m`"
+    )]
+    NothingProjected {
+        /// Nearest node of the ring.
+        nearest: usize,
+        /// Its distance, m.
+        distance_m: f64,
+        /// Largest distance accepted, m.
+        tolerance_m: f64,
+    },
+    /// The ring's mesh cannot follow that of the blisk.
+    #[error(
+        "the {ring} nodes of the ring do not determine the motion at the {blisk} nodes of the blisk's contact surface; accepted: a ring meshed as finely as the blisk there, or finer"
+    )]
+    RingTooCoarse {
+        /// Nodes of the ring that lie on the surface.
+        ring: usize,
+        /// Nodes of the blisk that they follow.
+        blisk: usize,
+    },
     /// A set that must hold one node.
     #[error("`{key}` names {found} nodes; accepted: one node")]
     OneNode {

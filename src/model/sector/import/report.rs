@@ -53,6 +53,8 @@ pub struct ContactReport {
     pub worst_normal_angle_deg: f64,
     /// Area of a sector's contact, m^2 (the number of nodes where normals were given).
     pub area_m2: f64,
+    /// Nodes of the ring that were projected on the blisk's faces, where the meshes do not match.
+    pub projected_ring_nodes: Option<usize>,
     /// Nodes of the ring's surface that no node of the blisk meets.
     pub ring_nodes_without_pair: usize,
 }
@@ -140,6 +142,12 @@ impl fmt::Display for ImportReport {
                 contact.worst_normal_angle_deg,
                 contact.area_m2
             )?;
+            if let Some(nodes) = contact.projected_ring_nodes {
+                writeln!(
+                    f,
+                    "  {nodes} nodes of the ring follow the nodes of the blisk's faces"
+                )?;
+            }
             if contact.ring_nodes_without_pair > 0 {
                 let count = contact.ring_nodes_without_pair;
                 writeln!(

@@ -13,6 +13,9 @@ use super::{ansys, deck, nastran};
 use crate::model::sector::error::ModelError;
 use crate::model::sector::sector_model::Body;
 
+/// Largest node number accepted: numbers of a second file are raised above it.
+const MOST_NODE_NUMBER: usize = 999_999_999;
+
 /// A mesh read for one body, or for both.
 #[derive(Debug)]
 pub(super) struct Run {
@@ -40,6 +43,16 @@ impl Run {
                 MeshFormat::Ansys => ansys::read(&mesh_path),
                 MeshFormat::Nastran => nastran::read(&mesh_path),
             }?;
+            if let Some(&largest) = mesh.nodes.keys().next_back()
+                && largest > MOST_NODE_NUMBER
+            {
+                let problem = ImportProblem::Value {
+                    key: "the largest node number".to_owned(),
+                    found: largest.to_string(),
+                    accepted: format!("at most {MOST_NODE_NUMBER}"),
+                };
+                return Err(refuse(&mesh_path, problem));
+            }
             let largest = |run: &Self| run.mesh.nodes.keys().next_back().copied().unwrap_or(0);
             let ring_nodes = match body {
                 Body::Ring => mesh.nodes.keys().copied().collect(),
@@ -169,13 +182,10 @@ fn position_m(file: &ImportFile, position: [f64; 3]) -> [f64; 3] {
 }
 
 /// The next power of ten above `number`: node numbers of the second file stay readable.
-fn round_up(number: usize) -> usize {
+pub(super) fn round_up(number: usize) -> usize {
     let mut power: usize = 10;
     while power <= number {
-        power = power.saturating_mul(10);
-        if power == usize::MAX {
-            break;
-        }
+        power *= 10;
     }
     power
 }

@@ -83,8 +83,8 @@ pub(super) fn add_face(
     for (a, &node) in nodes.iter().enumerate() {
         let nodal = areas.entry(node).or_default();
         nodal.area_m2 += area * share[a] / total;
-        for i in 0..3 {
-            nodal.normal_m2[i] += sign * area * normal[a][i] / total;
+        for (sum, part) in nodal.normal_m2.iter_mut().zip(normal[a]) {
+            *sum += sign * area * part / total;
         }
     }
 }
@@ -115,7 +115,7 @@ fn rule(count: usize) -> Vec<([f64; 2], f64)> {
 const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
 /// Shape functions of a face and their derivatives.
-fn shape_functions(count: usize, [x, y]: [f64; 2]) -> (Vec<f64>, Vec<[f64; 2]>) {
+pub(super) fn shape_functions(count: usize, [x, y]: [f64; 2]) -> (Vec<f64>, Vec<[f64; 2]>) {
     let mut value = Vec::with_capacity(count);
     let mut slope = Vec::with_capacity(count);
     if count.is_multiple_of(3) {
