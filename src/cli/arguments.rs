@@ -9,6 +9,7 @@ use super::fidelity::FidelityArguments;
 use super::import::ImportArguments;
 use super::merge::MergeArguments;
 use super::optimum::OptimumArguments;
+use super::plan::PlanArguments;
 use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
 use super::run::RunArguments;
 use super::slurm::SlurmArguments;
@@ -19,7 +20,7 @@ use super::status::StatusArguments;
 #[derive(Debug, Parser)]
 #[command(name = "blisk", version, about, disable_help_subcommand = true)]
 #[command(
-    after_help = "Exit codes: 0 done, 1 internal error, 2 usage, 3 study invalid, 4 model invalid,\n5 failures leave a statistic without a value, 7 input/output, 8 store damaged,\n9 different study, 10 locked by another process,\n11 a verification failed, 130/143 interrupted, what is solved is stored."
+    after_help = "Exit codes: 0 done, 1 internal error, 2 usage, 3 study invalid, 4 model invalid,\n5 failures leave a statistic without a value,\n6 all patterns are solved and the target of [stop] is not reached, 7 input/output, 8 store damaged,\n9 different study, 10 locked by another process,\n11 a verification failed, 130/143 interrupted, what is solved is stored."
 )]
 pub struct Arguments {
     /// What to do.
@@ -60,6 +61,10 @@ pub enum Command {
     /// The import file names meshes, matrices and sets; docs/import.md has the commands that write
     /// them with `CalculiX`, Ansys and Nastran.
     Import(ImportArguments),
+    /// Solve a few patterns, and say what the study will take and what its percentiles will be worth.
+    ///
+    /// Nothing is written. Times are those of this machine at the time.
+    Plan(PlanArguments),
     /// Solve a study, or continue it; a finished study is shown, not solved again.
     Run(RunArguments),
     /// Join the shards of a study to its results.

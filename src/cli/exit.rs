@@ -23,6 +23,8 @@ pub enum ExitStatus {
     ModelInvalid = 4,
     /// Failures leave a wanted statistic without a value.
     FailureGate = 5,
+    /// All patterns are solved, and an interval is wider than the study asks for.
+    TargetUnmet = 6,
     /// A file or folder cannot be read or written.
     InputOutput = 7,
     /// Stored results are damaged.

@@ -12,6 +12,7 @@ mod merge;
 mod model;
 mod optimum;
 mod output;
+mod plan;
 mod progress;
 mod replay;
 mod response;

@@ -113,6 +113,7 @@ impl Progress for RunProgress {
             plain.began = Instant::now();
             plain.planned = planned;
             plain.reused = done;
+            plain.solved = 0;
         }
     }
 

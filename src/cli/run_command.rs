@@ -7,7 +7,7 @@ use clap::Parser;
 
 use super::{
     Arguments, Command, ExitStatus, check, compare, import, init, merge, model, optimum, output,
-    replay, response, run, slurm, stats, status, verify,
+    plan, replay, response, run, slurm, stats, status, verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).
@@ -33,6 +33,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             json,
         } => model::command(&study, export.as_deref(), json),
         Command::Import(arguments) => import::command(&arguments),
+        Command::Plan(arguments) => plan::command(&arguments),
         Command::Run(arguments) => run::command(arguments),
         Command::Merge(arguments) => merge::command(&arguments),
         Command::Slurm(arguments) => slurm::command(&arguments),

@@ -7,7 +7,7 @@ use clap::Args;
 use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::population::table::write_atomically;
-use crate::study::Study;
+use crate::study::{Study, can_be_cut};
 
 /// Arguments of the command.
 #[derive(Debug, Args)]
@@ -33,6 +33,7 @@ pub struct SlurmArguments {
 
 pub(super) fn command(arguments: &SlurmArguments) -> Result<ExitStatus, Failure> {
     let study = Study::read(&arguments.study)?;
+    can_be_cut(&study)?;
     let default = || PathBuf::from(format!("{}-slurm.sh", study.name));
     let script = arguments.script.clone().unwrap_or_else(default);
     if script.exists() {

@@ -75,6 +75,8 @@ struct PartialJson<'a> {
 pub(super) fn status_of(summary: &StudySummary) -> ExitStatus {
     if summary.failures_cost_a_statistic() {
         ExitStatus::FailureGate
+    } else if summary.misses_its_target() {
+        ExitStatus::TargetUnmet
     } else {
         ExitStatus::Done
     }

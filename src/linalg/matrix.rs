@@ -360,6 +360,24 @@ fn multiply<T: Scalar>(product: MatMut<'_, T>, left: MatRef<'_, T>, right: MatRe
     );
 }
 
+/// `product += left right`, all column-major and contiguous: `left` is `m x k`, `right` is `k x n`. Nothing
+/// is allocated.
+pub fn add_times(
+    product: &mut [f64],
+    left: &[f64],
+    right: &[f64],
+    (m, n, k): (usize, usize, usize),
+) {
+    matmul(
+        MatMut::from_column_major_slice_mut(product, m, n),
+        Accum::Add,
+        MatRef::from_column_major_slice(left, m, k),
+        MatRef::from_column_major_slice(right, k, n),
+        1.0,
+        Par::Seq,
+    );
+}
+
 /// `product += factor left^T right` into a block of a larger column-major matrix: `product` starts
 /// at the block's first entry and has `stride` rows, the block is `m x n`, `left` is `k x m`,
 /// `right` is `k x n`. Nothing is allocated.

@@ -12,7 +12,7 @@ pub use dense::{
 };
 pub use lu::LuWorkspace;
 pub use matrix::{
-    Matrix, Scalar, add_times_vector, add_transpose_times, add_transpose_times_vector,
+    Matrix, Scalar, add_times, add_times_vector, add_transpose_times, add_transpose_times_vector,
 };
 pub use rustfft::num_complex::Complex64;
 pub use sparse::{HermitianSparse, SparseFactor, lowest_modes};

@@ -59,7 +59,8 @@ pub struct ScenarioComparison {
     pub baseline: ComparedScenario,
     /// The candidate.
     pub candidate: ComparedScenario,
-    /// `same_patterns`: pairs of the same wheels; `same_unit_draws`: pairs at two standard deviations;
+    /// `same_patterns`: pairs of the same wheels; `same_blades`: pairs of the same blades with other
+    /// random contact; `same_unit_draws`: pairs at two standard deviations;
     /// `independent`: no pattern in common.
     pub pairing: &'static str,
     /// Patterns used, of the baseline and of the candidate.

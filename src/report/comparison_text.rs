@@ -84,6 +84,7 @@ impl ComparisonReport {
         let pairs = found.pairs.as_ref();
         let patterns = match (found.pairing, found.patterns) {
             ("independent", [x, y]) => format!("{x} and {y}, independent"),
+            ("same_blades", [x, _]) => format!("{x} sets of blades"),
             ("same_unit_draws", [x, _]) => format!("{x} unit draws"),
             (_, [x, _]) => format!("{x} common"),
         };

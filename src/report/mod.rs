@@ -5,6 +5,7 @@ mod comparison_text;
 mod model_report;
 mod optimum;
 mod peak_audit;
+mod plan;
 mod summary;
 mod summary_text;
 mod tail_report;
@@ -20,6 +21,7 @@ pub use comparison::{
 pub use model_report::{ModelReport, NodalDiameterFacts};
 pub use optimum::OptimumReport;
 pub use peak_audit::PeakAuditReport;
+pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use tail_report::StatisticsReport;
 pub use time_domain::{StepReport, TimeDomainReport};

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::Warning;
 use crate::model::reduction::ContactDisplacementErrors;
 use crate::population::statistics::{
-    Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics,
+    Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics, StopOutcome,
 };
 use crate::population::table::ScenarioRecord;
 use crate::response::forced_response::Harmonics;
@@ -22,6 +22,8 @@ pub struct SummaryContext {
     pub seed: u64,
     /// Number of patterns.
     pub patterns: u64,
+    /// What the stopping rule came to, if there is one.
+    pub stop: Option<StopOutcome>,
     /// Harmonics as the study has them.
     pub harmonics: Harmonics,
     /// Reduction basis in use.
@@ -153,6 +155,8 @@ pub struct StudySummary {
     pub seed: u64,
     /// Number of patterns.
     pub patterns: u64,
+    /// What the stopping rule came to; null: all patterns were to be solved.
+    pub stop: Option<StopOutcome>,
     /// Reduction basis in use.
     pub basis: BasisSummary,
     /// Rows by status over all scenarios.
@@ -180,12 +184,19 @@ impl StudySummary {
             version: context.version.clone(),
             seed: context.seed,
             patterns: context.patterns,
+            stop: context.stop.clone(),
             basis: context.basis.clone(),
             rows,
             best: best_loads(&scenarios),
             warnings: warnings(context, records, &rows),
             scenarios,
         }
+    }
+
+    /// Whether all patterns were spent without an interval as narrow as wanted.
+    #[must_use]
+    pub fn misses_its_target(&self) -> bool {
+        self.stop.as_ref().is_some_and(|stop| !stop.met)
     }
 
     /// Whether failures leave a percentile or a tuned reference without value.

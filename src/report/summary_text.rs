@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::text_table::TextTable;
 use super::{BestLoad, ScenarioSummary, StudySummary};
-use crate::population::statistics::{PointStatus, SampleStatistics};
+use crate::population::statistics::{PointStatus, SampleStatistics, ScenarioLook, StopOutcome};
 
 /// A unit of length in which amplitudes are shown.
 #[derive(Clone, Copy)]
@@ -52,6 +52,9 @@ impl fmt::Display for StudySummary {
                 100.0 * error
             )?;
         }
+        if let Some(stop) = &self.stop {
+            writeln!(f, "{}", stop_line(stop))?;
+        }
         let unit = unit_of(&self.scenarios);
         let groups = self.scenarios.chunk_by(|a, b| {
             a.engine_order == b.engine_order && a.standard_deviation == b.standard_deviation
@@ -80,6 +83,36 @@ impl fmt::Display for StudySummary {
              Amplification factor: peak over the tuned peak of the same normal load."
         )
     }
+}
+
+/// What the stopping rule came to, in a line.
+fn stop_line(stop: &StopOutcome) -> String {
+    let made = stop.made.len();
+    let last = stop.made.last();
+    let widest = last.iter().flat_map(|look| &look.scenarios).max_by(|a, b| {
+        let width = |scenario: &ScenarioLook| scenario.relative_width.unwrap_or(f64::INFINITY);
+        width(a).total_cmp(&width(b))
+    });
+    let width = widest.map_or_else(String::new, |widest| {
+        let width = widest
+            .relative_width
+            .map_or("no interval".to_owned(), |width| {
+                format!("{:.2} %", 100.0 * width)
+            });
+        format!("; widest {width} (scenario {})", widest.scenario)
+    });
+    format!(
+        "stop: P{} of {} within {} % {} at look {made} of {}, {} of at most {} patterns{width}; bounds at \
+         {:.1} %, so that all looks hold with 95 %",
+        trimmed(stop.wanted.percentile),
+        stop.wanted.quantity.name(),
+        trimmed(100.0 * stop.wanted.relative_width),
+        if stop.met { "reached" } else { "NOT reached" },
+        stop.looks.len(),
+        last.map_or(0, |look| look.patterns),
+        stop.most_patterns,
+        100.0 * stop.confidence,
+    )
 }
 
 fn heading(scenario: &ScenarioSummary) -> String {

@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::pairing::{PairedPlaces, Pairing, PatternMatcher, follow_from_the_same};
+use super::pairing::{
+    PairedPlaces, Pairing, PatternMatcher, follow_from_the_same, same_contact_factors,
+};
 use super::{PipelineError, ResultColumns, ScenarioColumns};
 use crate::population::statistics::{
-    PairFacts, PercentileEstimator, Quantity, RESAMPLES, best_set, best_set_at,
+    CONFIDENCE, Expansion, PairFacts, PercentileEstimator, Quantity, RESAMPLES, best_set_at,
     compare_independent, compare_paired, holm, percentile, percentile_at, resample_percentile,
 };
 use crate::report::{
@@ -182,6 +184,7 @@ impl Comparison<'_> {
             candidate: self.name(candidate),
             pairing: match places.pairing {
                 Pairing::SamePatterns => "same_patterns",
+                Pairing::SameBlades => "same_blades",
                 Pairing::SameUnitDraws => "same_unit_draws",
                 Pairing::Independent => "independent",
             },
@@ -232,7 +235,15 @@ pub(super) fn best_loads(
     percentile(first, *failed, percent).achieved_coverage?;
     let estimator = PercentileEstimator::of(&values);
     let resamples = resample_percentile(&values, percent, estimator, RESAMPLES, (seed, TOPIC));
-    let wide = best_set_at(&resamples, HALF_ERROR);
+    let expansion = match estimator {
+        PercentileEstimator::SmoothedOrderStatistics => Expansion::of(first.len() as u64, percent),
+        PercentileEstimator::OrderStatistic => Expansion::default(),
+    };
+    let set_at = |confidence: f64| {
+        let confidence = 1.0 - expansion.tail(1.0 - confidence);
+        best_set_at(&resamples, confidence)
+    };
+    let wide = set_at(HALF_ERROR);
     let bounds: Vec<_> = samples
         .iter()
         .zip(&wide)
@@ -245,7 +256,7 @@ pub(super) fn best_loads(
     let loads: Vec<LoadOfSet> = loads
         .iter()
         .zip(&samples)
-        .zip(best_set(&resamples))
+        .zip(set_at(CONFIDENCE))
         .map(|(((scenario, _), (sorted, failed)), possible)| LoadOfSet {
             scenario: scenario.clone(),
             percentile: percentile(sorted, *failed, percent),
@@ -266,7 +277,7 @@ pub(super) fn best_loads(
 
 /// Whether both folders have the same patterns, by what these follow from.
 pub(super) fn same_patterns(a: &ResultColumns, b: &ResultColumns) -> bool {
-    a.patterns == b.patterns && follow_from_the_same(a, b)
+    a.patterns == b.patterns && follow_from_the_same(a, b) && same_contact_factors(a, b)
 }
 
 fn same_group(a: &ScenarioColumns, b: &ScenarioColumns) -> bool {

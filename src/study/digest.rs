@@ -19,11 +19,12 @@ pub struct StudyDigest {
 }
 
 /// Keys that leave every number as it is: names, places, how much is computed and written.
-const NEUTRAL: [&str; 5] = [
+const NEUTRAL: [&str; 6] = [
     "study.name",
     "study.patterns",
     "model.bundle.path",
     "mistuning.file",
+    "stop.",
     "output.",
 ];
 

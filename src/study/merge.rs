@@ -49,13 +49,14 @@ pub fn merge(
     let folder = ResultsFolder::open(results)?;
     folder.find(&stored.study, &digest, None)?;
     let facts = facts(first);
-    let tables = TableWork::new(&stored.study, &digest, &model.patterns, None, facts);
+    let all = (None, model.patterns.ids());
+    let tables = TableWork::new(&stored.study, &digest, &model.patterns, all, facts);
     let files = parts
         .iter()
         .flat_map(|part| finished_rows(&part.folder, &part.manifest))
         .collect();
     let store = RowStore::of_files(tables.schema().clone(), files);
-    let (manifest, summary) = tables.publish(&store, results)?;
+    let (manifest, summary) = tables.publish(&store, results, None)?;
     let rows = RowCounts {
         solved: 0,
         reused: tables.planned(),

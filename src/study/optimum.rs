@@ -125,6 +125,8 @@ impl Search<'_> {
         let folder = self.folder(normal_load_n);
         let mut study = self.request.study.clone();
         study.contacts = vec![ContactCondition::Full { normal_load_n }];
+        // Loads are compared over the same patterns, so that none may stop before the others.
+        study.stop = None;
         let run_request = RunRequest {
             study: &study,
             results: &folder,

@@ -15,6 +15,8 @@ use crate::population::table::{StoredPatterns, read_patterns};
 pub enum Pairing {
     /// The same wheels in both: pairs.
     SamePatterns,
+    /// The same blades with other random contact: pairs, of different wheels.
+    SameBlades,
     /// The same unit draws at two standard deviations: pairs, of different wheels.
     SameUnitDraws,
     /// No wheel in common: two independent populations.
@@ -62,7 +64,7 @@ impl<'a> PatternMatcher<'a> {
     /// Pairs the rows of a scenario of folder `a` with those of a scenario of folder `b`: the same id
     /// and the same deviations. Within a folder these follow from the id; between folders they are
     /// compared value by value where both hold `patterns.parquet`, otherwise the keys that they
-    /// follow from.
+    /// follow from. Random contact is always compared by the keys that it follows from.
     pub(super) fn pair(
         &self,
         (a, baseline): (usize, &Scenario),
@@ -95,10 +97,12 @@ impl<'a> PatternMatcher<'a> {
             };
         }
         PairedPlaces {
-            pairing: if same_deviation {
+            pairing: if !same_deviation {
+                Pairing::SameUnitDraws
+            } else if a == b || same_contact_factors(left, right) {
                 Pairing::SamePatterns
             } else {
-                Pairing::SameUnitDraws
+                Pairing::SameBlades
             },
             baseline: ours,
             candidate: theirs,
@@ -106,16 +110,32 @@ impl<'a> PatternMatcher<'a> {
     }
 }
 
-/// Whether the patterns of two folders follow from the same seed, law or file, and wheel.
+/// Whether the blades of two folders follow from the same seed, law or file, and wheel.
 pub(super) fn follow_from_the_same(a: &ResultColumns, b: &ResultColumns) -> bool {
+    let prefixes = [
+        "study.seed",
+        "mistuning.",
+        "input mistuning.",
+        "model",
+        "input model",
+    ];
+    same_keys(a, b, &prefixes)
+}
+
+/// Whether the contact of the same blades is the same in two folders: it does not vary, or its factors
+/// follow from the same seed, laws and wheel.
+pub(super) fn same_contact_factors(a: &ResultColumns, b: &ResultColumns) -> bool {
+    const LAWS: &str = "contact.variation.";
+    let varies = |columns: &ResultColumns| {
+        let mut keys = columns.manifest.number_keys.keys();
+        keys.any(|key| key.starts_with(LAWS))
+    };
+    (!varies(a) && !varies(b)) || same_keys(a, b, &[LAWS, "study.seed", "model", "input model"])
+}
+
+/// Whether all keys with these beginnings are the same, and the generator.
+fn same_keys(a: &ResultColumns, b: &ResultColumns, prefixes: &[&str]) -> bool {
     let decisive = |columns: &ResultColumns| -> BTreeMap<String, String> {
-        let prefixes = [
-            "study.seed",
-            "mistuning.",
-            "input mistuning.",
-            "model",
-            "input model",
-        ];
         let keys = columns.manifest.number_keys.iter();
         keys.filter(|(key, _)| prefixes.iter().any(|prefix| key.starts_with(prefix)))
             .map(|(key, value)| (key.clone(), value.clone()))

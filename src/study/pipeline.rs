@@ -7,12 +7,13 @@ use std::time::Instant;
 use rayon::ThreadPool;
 
 use super::lock::{host_name, unix_seconds};
+use super::pipeline_goal::{Goal, can_be_cut};
 use super::pipeline_rows::RowWork;
 use super::pipeline_tables::{Facts, TableWork};
 use super::results_folder::{Found, ResultsFolder, finished_rows, is_complete};
+use super::summary::summary_of_rows;
 use super::{
     Engine, EngineSource, PipelineError, Study, StudyDigest, load_sector_model, pattern_source,
-    summarise,
 };
 use crate::population::monte_carlo::{Interruption, block_size, plan_blocks, solve_blocks};
 use crate::population::table::{Manifest, PartSink, RowStore, RunRecord, Shard};
@@ -88,38 +89,59 @@ pub fn run(
     source: &dyn EngineSource,
     progress: &dyn Progress,
 ) -> Result<RunOutcome, PipelineError> {
-    let model = request.results.join("model");
-    run_in(request, None, &model, source, progress)
+    let scope = RunScope {
+        shard: None,
+        model_cache: &request.results.join("model"),
+        held: 0,
+    };
+    run_in(request, scope, source, progress)
 }
 
 /// Creates or continues the shard `shard` of the study of `request`, in a folder of its own below
 /// the results folder: `shards/<number>-of-<count>`.
 ///
 /// # Errors
-/// As [`run`].
+/// As [`run`]; and the study has a stopping rule, which one shard cannot follow.
 pub fn run_shard(
     request: RunRequest<'_>,
     shard: Shard,
     source: &dyn EngineSource,
     progress: &dyn Progress,
 ) -> Result<RunOutcome, PipelineError> {
+    can_be_cut(request.study)?;
     let folder = request.results.join("shards").join(shard.folder_name());
     let model = request.results.join("model");
     let of_shard = RunRequest {
         results: &folder,
         ..request
     };
-    run_in(of_shard, Some(shard), &model, source, progress)
+    let scope = RunScope {
+        shard: Some(shard),
+        model_cache: &model,
+        held: 0,
+    };
+    run_in(of_shard, scope, source, progress)
+}
+
+/// What a run is about beside its study and folder.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RunScope<'a> {
+    /// The share of the patterns; none: all of them.
+    pub(super) shard: Option<Shard>,
+    /// Where reduced models are kept.
+    pub(super) model_cache: &'a Path,
+    /// Patterns that its results held before and are not to lose.
+    pub(super) held: u64,
 }
 
 pub(super) fn run_in(
     request: RunRequest<'_>,
-    shard: Option<Shard>,
-    model_cache: &Path,
+    scope: RunScope<'_>,
     source: &dyn EngineSource,
     progress: &dyn Progress,
 ) -> Result<RunOutcome, PipelineError> {
     let RunRequest { study, results, .. } = request;
+    let shard = scope.shard;
     let clock = Clock::start();
     let digest = StudyDigest::of(study)?;
     let mut folder = ResultsFolder::open(results)?;
@@ -133,41 +155,70 @@ pub(super) fn run_in(
         return Ok(RunOutcome {
             rows_reused: manifest.counts.planned,
             rows_solved: 0,
-            summary: summarise(results)?,
+            // Its files have just been checked.
+            summary: summary_of_rows(results, manifest)?,
         });
     }
     progress.stage(Stage::LoadModel);
     let model = load_sector_model(study)?;
     let patterns = pattern_source(study, &model)?;
+    let held = match &found {
+        Found::Finished(manifest) => manifest.patterns,
+        _ => scope.held,
+    };
     let job = Job {
         request,
+        goal: Goal::new(study, held),
         found: &found,
         patterns: &patterns,
         progress,
     };
-    let tables = |facts: Facts| TableWork::new(study, &digest, &patterns, shard, facts);
+    let tables = |size, facts: Facts| {
+        let all = patterns.ids();
+        let first = &all[..all.len().min(size as usize)];
+        let ids = shard.map_or(first, |shard| shard.of(first)).to_vec();
+        TableWork::new(study, &digest, &patterns, (shard, ids), facts)
+    };
     let pool = pool_of(request.threads)?;
-    let (outcome, manifest) = if let Some(facts) = job.facts_of_stored_rows() {
-        let tables = tables(facts);
-        pool.install(|| job.publish(&tables, 0, tables.planned()))?
-    } else {
+    let mut ended = None;
+    if let Some((size, facts)) = job.facts_of_stored_rows() {
+        ended = pool.install(|| job.end(&tables(size, facts), 0))?;
+    }
+    if ended.is_none() {
         progress.stage(Stage::Reduce);
-        let engine = pool.install(|| source.build(study, &model, Some(model_cache)))?;
+        let engine = pool.install(|| source.build(study, &model, Some(scope.model_cache)))?;
         progress.stage(Stage::Tuned);
         let facts = pool.install(|| Facts::solve(engine.as_ref(), study, &digest));
-        let tables = tables(facts);
-        let rows = job.solve(&pool, engine.as_ref(), &tables, &mut folder)?;
-        if rows.stored() < tables.planned() {
-            clock
-                .record(&study.path, request.threads, rows, BTreeMap::new())
-                .write(results)?;
-            return Err(PipelineError::Interrupted {
-                folder: results.to_owned(),
-                stored: rows.stored(),
-                planned: tables.planned(),
-            });
+        let mut solved = 0;
+        for &size in job.goal.ends() {
+            let tables = tables(size, facts.clone());
+            let rows = job.solve(&pool, engine.as_ref(), &tables, &mut folder)?;
+            solved += rows.solved;
+            let stored = rows.stored();
+            if stored < tables.planned() {
+                let rows = RowCounts {
+                    solved,
+                    reused: stored - solved,
+                };
+                clock
+                    .record(&study.path, request.threads, rows, BTreeMap::new())
+                    .write(results)?;
+                return Err(PipelineError::Interrupted {
+                    folder: results.to_owned(),
+                    stored,
+                    planned: tables.planned(),
+                });
+            }
+            ended = pool.install(|| job.end(&tables, solved))?;
+            if ended.is_some() {
+                break;
+            }
         }
-        pool.install(|| job.publish(&tables, rows.solved, rows.reused))?
+    }
+    let Some((outcome, manifest)) = ended else {
+        return Err(PipelineError::Unfinished {
+            folder: results.to_owned(),
+        });
     };
     let rows = RowCounts {
         solved: outcome.rows_solved,
@@ -180,7 +231,7 @@ pub(super) fn run_in(
 }
 
 /// Threads of a run.
-fn pool_of(threads: usize) -> Result<ThreadPool, PipelineError> {
+pub(super) fn pool_of(threads: usize) -> Result<ThreadPool, PipelineError> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
@@ -206,6 +257,7 @@ impl RowCounts {
 /// A run that has something to do.
 struct Job<'a> {
     request: RunRequest<'a>,
+    goal: Goal,
     found: &'a Found,
     patterns: &'a PatternSource,
     progress: &'a dyn Progress,
@@ -220,11 +272,14 @@ impl Job<'_> {
         }
     }
 
-    /// What the tables are made from, if all rows are stored: in another order, or with other tables
-    /// asked for.
-    fn facts_of_stored_rows(&self) -> Option<Facts> {
+    /// What the tables of the first patterns, up to the first possible end, are made from, if all of
+    /// their rows are stored: in another order, with other tables asked for, or another rule to stop.
+    fn facts_of_stored_rows(&self) -> Option<(u64, Facts)> {
+        let &size = self.goal.ends().first()?;
         match self.found {
-            Found::Finished(manifest) => Facts::stored(manifest, self.request.study),
+            Found::Finished(manifest) if manifest.patterns == size => {
+                Some((size, Facts::stored(manifest, self.request.study)?))
+            }
             _ => None,
         }
     }
@@ -276,21 +331,27 @@ impl Job<'_> {
         Ok(RowCounts { solved, reused })
     }
 
-    /// Writes the tables of the rows stored.
-    fn publish(
+    /// Writes the tables of the rows stored, if the study ends with them; `solved` are those of this
+    /// run.
+    fn end(
         &self,
         tables: &TableWork,
         solved: u64,
-        reused: u64,
-    ) -> Result<(RunOutcome, Manifest), PipelineError> {
+    ) -> Result<Option<(RunOutcome, Manifest)>, PipelineError> {
+        let store = self.store(tables)?;
+        let scenarios = tables.schema().scenarios.len();
+        let verdict = self.goal.look(&store, tables.ids(), scenarios)?;
+        if !verdict.ends {
+            return Ok(None);
+        }
         self.progress.stage(Stage::Tables);
-        let (manifest, summary) = tables.publish(&self.store(tables)?, self.request.results)?;
+        let (manifest, summary) = tables.publish(&store, self.request.results, verdict.outcome)?;
         let outcome = RunOutcome {
             summary,
             rows_solved: solved,
-            rows_reused: reused,
+            rows_reused: tables.planned() - solved,
         };
-        Ok((outcome, manifest))
+        Ok(Some((outcome, manifest)))
     }
 }
 

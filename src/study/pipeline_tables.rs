@@ -9,7 +9,7 @@ use super::results_folder::RESPONSES;
 use super::summary::{context_of, records_of};
 use super::{Engine, PipelineError, Study, StudyDigest};
 use crate::population::monte_carlo::{Scenario, TunedReference};
-use crate::population::statistics::{Accounting, ScenarioAccumulator};
+use crate::population::statistics::{Accounting, CONFIDENCE, ScenarioAccumulator, StopOutcome};
 use crate::population::table::{
     EffectRows, Manifest, RowSchema, RowStore, RunState, SCHEMA_VERSION, ScenarioEntry,
     ScenarioRecord, Shard, Staging, StatusCounts, TableError, TableHeader, write_atomically,
@@ -19,7 +19,7 @@ use crate::report::StudySummary;
 use crate::response::mistuning::{GENERATOR, PatternSource};
 
 /// Patterns up to which `patterns.parquet` is written without being asked for.
-const PATTERNS_WRITTEN: u32 = 10_000;
+const PATTERNS_WRITTEN: usize = 10_000;
 
 /// What a solved model says about a study beside its rows.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,8 +63,7 @@ impl Facts {
         }
     }
 
-    /// Takes them from the manifest of a finished run; none if it lacks a pattern or scenario of
-    /// `study`.
+    /// Takes them from the manifest of a finished run; none if it lacks a scenario of `study`.
     pub(super) fn stored(manifest: &Manifest, study: &Study) -> Option<Self> {
         let scenarios = study.scenarios();
         let entries: Option<Vec<&ScenarioEntry>> = scenarios
@@ -78,7 +77,7 @@ impl Facts {
                 })
             })
             .collect();
-        let entries = entries.filter(|_| manifest.patterns == u64::from(study.patterns))?;
+        let entries = entries?;
         Some(Self {
             tuned: scenarios
                 .iter()
@@ -110,16 +109,16 @@ pub(super) struct TableWork<'a> {
 }
 
 impl<'a> TableWork<'a> {
+    /// The tables of the patterns `ids`, or of the shard that these are.
     pub(super) fn new(
         study: &'a Study,
         digest: &'a StudyDigest,
         patterns: &'a PatternSource,
-        shard: Option<Shard>,
+        (shard, ids): (Option<Shard>, Vec<u32>),
         facts: Facts,
     ) -> Self {
-        let all = patterns.ids();
         Self {
-            ids: shard.map_or(&all[..], |shard| shard.of(&all)).to_vec(),
+            ids,
             schema: RowSchema {
                 scenarios: study.scenarios(),
                 row_digests: facts.row_digests.clone(),
@@ -157,14 +156,16 @@ impl<'a> TableWork<'a> {
     /// Manifest of a run that is not finished.
     pub(super) fn unfinished(&self) -> Manifest {
         let none = vec![Accounting::default(); self.schema.scenarios.len()];
-        self.manifest(RunState::Running, &none)
+        self.manifest(RunState::Running, &none, None)
     }
 
-    /// Joins the rows of `store` to the tables of the folder `results`, which appear all together.
+    /// Joins the rows of `store` to the tables of the folder `results`, which appear all together;
+    /// `stop` says why there are no more of them.
     pub(super) fn publish(
         &self,
         store: &RowStore,
         results: &Path,
+        stop: Option<StopOutcome>,
     ) -> Result<(Manifest, StudySummary), PipelineError> {
         let mut staging = Staging::begin(results)?;
         let mut accumulators = vec![ScenarioAccumulator::default(); self.schema.scenarios.len()];
@@ -176,12 +177,14 @@ impl<'a> TableWork<'a> {
                 effects[row.scenario].add(row);
             }
         })?;
-        let records = records_of(&self.schema.scenarios, &self.facts.tuned, accumulators);
+        let confidence = stop.as_ref().map_or(CONFIDENCE, |stop| stop.confidence);
+        let tuned = &self.facts.tuned;
+        let records = records_of(&self.schema.scenarios, tuned, accumulators, confidence);
         let counts: Vec<Accounting> = records
             .iter()
             .map(|record| record.statistics.accounting)
             .collect();
-        let manifest = self.manifest(RunState::Finished, &counts);
+        let manifest = self.manifest(RunState::Finished, &counts, stop);
         let summary = StudySummary::new(&context_of(&manifest), &records);
         if self.shard.is_none() {
             self.of_population(&mut staging, &records, &summary)?;
@@ -211,10 +214,10 @@ impl<'a> TableWork<'a> {
         write_scenarios(&staging.table("scenarios.parquet"), records, header)?;
         write_percentiles(&staging.table("percentiles.parquet"), records, header)?;
         write_distribution(&staging.table("distribution.parquet"), records, header)?;
-        if self.writes_patterns() {
+        if Self::writes_patterns_of(self.study, self.ids.len()) {
             write_patterns(
                 &staging.table("patterns.parquet"),
-                self.patterns,
+                (self.patterns, &self.ids),
                 &self.study.standard_deviations,
                 header,
             )?;
@@ -225,13 +228,18 @@ impl<'a> TableWork<'a> {
         )
     }
 
-    /// Whether `patterns.parquet` is part of the results.
-    fn writes_patterns(&self) -> bool {
-        let few = self.study.patterns <= PATTERNS_WRITTEN;
-        self.study.output.patterns.unwrap_or(few)
+    /// Whether `patterns.parquet` is part of the results of `study` with that many patterns.
+    pub(super) fn writes_patterns_of(study: &Study, patterns: usize) -> bool {
+        let few = patterns <= PATTERNS_WRITTEN;
+        study.output.patterns.unwrap_or(few)
     }
 
-    fn manifest(&self, state: RunState, counts: &[Accounting]) -> Manifest {
+    fn manifest(
+        &self,
+        state: RunState,
+        counts: &[Accounting],
+        stop: Option<StopOutcome>,
+    ) -> Manifest {
         let mut total = Accounting::default();
         for count in counts {
             total.merge(count);
@@ -255,7 +263,11 @@ impl<'a> TableWork<'a> {
             study_digest: self.schema.header.study_digest.clone(),
             seed: self.study.seed,
             generator: GENERATOR.to_owned(),
-            patterns: u64::from(self.study.patterns),
+            patterns: match self.shard {
+                Some(_) => u64::from(self.study.patterns),
+                None => self.ids.len() as u64,
+            },
+            stop,
             shard: self.shard,
             number_keys: self.digest.number_keys.clone(),
             inputs: self.digest.inputs.clone(),

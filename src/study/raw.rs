@@ -7,6 +7,7 @@ use serde::de::{self, Deserializer, SeqAccess, Visitor};
 
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
+use crate::population::statistics::Quantity;
 use crate::population::table::Compression;
 use crate::response::forced_response::{AmplitudeMeasure, RowsBeyondTolerance};
 use crate::response::friction::{ContactLaw, Ring};
@@ -27,6 +28,7 @@ pub(super) struct RawStudy {
     pub sweep: Option<RawSweep>,
     #[serde(default)]
     pub solver: RawSolver,
+    pub stop: Option<RawStop>,
     #[serde(default)]
     pub output: RawOutput,
 }
@@ -175,6 +177,14 @@ pub(super) struct RawSolver {
     pub amplitude: Option<AmplitudeMeasure>,
     pub time_samples: Option<usize>,
     pub frequency_band_hz: Option<RawBand>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawStop {
+    pub percentile: Option<f64>,
+    pub relative_width: Option<f64>,
+    pub quantity: Option<Quantity>,
 }
 
 #[derive(Debug, Default, Deserialize)]

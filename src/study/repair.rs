@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::lock::FolderLock;
-use super::pipeline::run_in;
+use super::pipeline::{RunScope, run_in};
 use super::results_folder::{RESPONSES, changed_tables};
 use super::stored_study::study_of;
 use super::{EngineSource, PipelineError, Progress, RunOutcome, RunRequest, Study};
@@ -116,7 +116,12 @@ pub fn repair(
         results,
         threads,
     };
-    repair.outcome = Some(run_in(request, shard, &model, source, progress)?);
+    let scope = RunScope {
+        shard,
+        model_cache: &model,
+        held: manifest.as_ref().map_or(0, |manifest| manifest.patterns),
+    };
+    repair.outcome = Some(run_in(request, scope, source, progress)?);
     if let Some(after) = Manifest::read(results)? {
         repair.different = tables
             .into_iter()

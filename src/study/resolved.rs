@@ -9,6 +9,7 @@ use super::source_map::SourceMap;
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::monte_carlo::Scenario;
+use crate::population::statistics::StopOptions;
 use crate::population::table::Compression;
 use crate::response::forced_response::{ContactCondition, FrequencyBand, Harmonics, SolverOptions};
 use crate::response::friction::ContactOptions;
@@ -51,7 +52,7 @@ pub struct Study {
     pub name: String,
     /// Seed of the patterns.
     pub seed: u64,
-    /// Number of patterns.
+    /// Number of patterns; the most of them where the study may stop before.
     pub patterns: u32,
     /// Source of the model.
     pub model: ModelSource,
@@ -75,6 +76,8 @@ pub struct Study {
     pub standard_deviations: Vec<Option<f64>>,
     /// Settings of the solution.
     pub solver: SolverOptions,
+    /// When the study may stop before all patterns are solved.
+    pub stop: Option<StopOptions>,
     /// Settings of the output.
     pub output: OutputOptions,
 }
@@ -152,6 +155,9 @@ impl Study {
             },
             "output": { "patterns": self.output.patterns, "compression": self.output.compression },
         });
+        if let Some(stop) = &self.stop {
+            study["stop"] = json!(stop);
+        }
         if let Some(contact) = &self.contact {
             study["contact"] = json!(contact);
             if !self.contact_variations.is_empty() {

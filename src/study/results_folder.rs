@@ -37,7 +37,7 @@ pub(super) enum Found {
     Nothing,
     /// A run that did not come to its end.
     Unfinished(Box<Manifest>),
-    /// A finished run of this study, or of one with fewer patterns or scenarios.
+    /// A finished run of this study, or of one with fewer patterns or scenarios or another rule to stop.
     Finished(Box<Manifest>),
 }
 
@@ -116,9 +116,12 @@ impl ResultsFolder {
 /// Whether a finished run is all that `study` asks for: rows, their order, and tables.
 pub(super) fn is_complete(manifest: &Manifest, study: &Study) -> bool {
     let keys = manifest.scenarios.iter().map(ScenarioEntry::keys);
-    manifest.patterns == u64::from(study.patterns)
+    let resolved = study.resolved();
+    let same = |key: &str| manifest.study[key] == resolved[key];
+    manifest.study["study"]["patterns"] == resolved["study"]["patterns"]
+        && same("stop")
         && keys.eq(study.scenarios())
-        && manifest.study["output"] == study.resolved()["output"]
+        && same("output")
 }
 
 /// Keys of the study that are not those of the folder and may not differ: `(key, there, here)`.

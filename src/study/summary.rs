@@ -5,7 +5,7 @@ use std::path::Path;
 use super::PipelineError;
 use super::results_folder::{finished_rows, verify_tables};
 use crate::population::monte_carlo::{Scenario, TunedReference};
-use crate::population::statistics::ScenarioAccumulator;
+use crate::population::statistics::{CONFIDENCE, ScenarioAccumulator};
 use crate::population::table::{
     Compression, Manifest, RowSchema, RowStore, RunState, ScenarioEntry, ScenarioRecord,
     TableHeader,
@@ -71,7 +71,11 @@ fn manifest_of(results: &Path) -> Result<Manifest, PipelineError> {
     })
 }
 
-fn summary_of_rows(results: &Path, manifest: &Manifest) -> Result<StudySummary, PipelineError> {
+/// The summary of the rows stored, whose files are checked as they are read.
+pub(super) fn summary_of_rows(
+    results: &Path,
+    manifest: &Manifest,
+) -> Result<StudySummary, PipelineError> {
     let entries = &manifest.scenarios;
     let keys: Vec<Scenario> = entries.iter().map(ScenarioEntry::keys).collect();
     let tuned: Vec<TunedReference> = entries.iter().map(ScenarioEntry::tuned).collect();
@@ -80,7 +84,9 @@ fn summary_of_rows(results: &Path, manifest: &Manifest) -> Result<StudySummary, 
         accumulators[row.scenario].add(&row);
         Ok(())
     })?;
-    let records = records_of(&keys, &tuned, accumulators);
+    let stop = manifest.stop.as_ref();
+    let confidence = stop.map_or(CONFIDENCE, |stop| stop.confidence);
+    let records = records_of(&keys, &tuned, accumulators, confidence);
     Ok(StudySummary::new(&context_of(manifest), &records))
 }
 
@@ -106,10 +112,12 @@ pub(super) fn row_store(results: &Path, manifest: &Manifest) -> Result<RowStore,
     })
 }
 
+/// The scenarios with their statistics, bounds at `confidence`.
 pub(super) fn records_of(
     scenarios: &[Scenario],
     tuned: &[TunedReference],
     accumulators: Vec<ScenarioAccumulator>,
+    confidence: f64,
 ) -> Vec<ScenarioRecord> {
     scenarios
         .iter()
@@ -118,7 +126,7 @@ pub(super) fn records_of(
         .map(|((scenario, tuned), accumulator)| ScenarioRecord {
             scenario: *scenario,
             tuned: tuned.clone(),
-            statistics: accumulator.finish(),
+            statistics: accumulator.finish_at(confidence),
         })
         .collect()
 }
@@ -133,6 +141,7 @@ pub(super) fn context_of(manifest: &Manifest) -> SummaryContext {
         study_digest: manifest.study_digest.clone(),
         seed: manifest.seed,
         patterns: manifest.patterns,
+        stop: manifest.stop.clone(),
         harmonics: harmonics.unwrap_or(Harmonics::Auto),
         basis: basis_of(manifest),
         version: manifest.version.clone(),

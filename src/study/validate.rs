@@ -9,6 +9,7 @@ use super::source_map::SourceMap;
 use super::validate_contact::contact_variations;
 use super::validate_mistuning::mistuning;
 use super::validate_solver::solver;
+use super::validate_stop::stop;
 use super::{Finding, ModelSource, OutputOptions, Problem, Study, StudyError};
 use crate::model::reduction::{Basis, ReductionOptions};
 use crate::response::forced_response::ContactCondition;
@@ -76,7 +77,23 @@ impl Check<'_> {
         value
     }
 
-    /// A number that must be there.
+    /// A number that must be there and accepted; none, and a finding, otherwise.
+    pub(super) fn given(
+        &mut self,
+        key: &str,
+        value: Option<f64>,
+        holds: impl Fn(f64) -> bool,
+        accepted: &str,
+    ) -> Option<f64> {
+        match value {
+            Some(value) if holds(value) => return Some(value),
+            Some(_) => self.refuse(key, accepted),
+            None => self.missing(key, accepted),
+        }
+        None
+    }
+
+    /// The same with a stand-in.
     fn required(
         &mut self,
         key: &str,
@@ -84,12 +101,7 @@ impl Check<'_> {
         holds: impl Fn(f64) -> bool,
         accepted: &str,
     ) -> f64 {
-        if let Some(value) = value {
-            self.within(key, value, holds(value), accepted)
-        } else {
-            self.missing(key, accepted);
-            1.0
-        }
+        self.given(key, value, holds, accepted).unwrap_or(1.0)
     }
 }
 
@@ -190,6 +202,9 @@ fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<S
     let (Some(model), Some(damping), Some(mistuning)) = (model, damping, mistuning) else {
         return Ok(None);
     };
+    let stop = raw
+        .stop
+        .and_then(|raw| stop(check, &raw, mistuning.patterns));
     Ok(Some(Study {
         path: path.to_owned(),
         map: SourceMap::default(),
@@ -207,6 +222,7 @@ fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<S
         contacts,
         standard_deviations: mistuning.standard_deviations,
         solver,
+        stop,
         output: OutputOptions {
             patterns: raw.output.patterns,
             compression: raw.output.compression.unwrap_or_default(),

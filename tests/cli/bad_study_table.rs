@@ -458,4 +458,37 @@ pub const CASES: &[Case] = &[
         "",
         &["model.lumped.ring_coupling_stiffness_n_per_m"],
     ),
+    (
+        "[mistuning]",
+        "[stop]\npercentile = 95\n[mistuning]",
+        &["stop.relative_width is missing"],
+    ),
+    (
+        "[mistuning]",
+        "[stop]\npercentile = 100\nrelative_width = 0.1\n[mistuning]",
+        &["stop.percentile = 100", "below 100"],
+    ),
+    (
+        "[mistuning]",
+        "[stop]\npercentile = 50\nrelative_width = 0\n[mistuning]",
+        &["stop.relative_width = 0", "above 0 and at most 1"],
+    ),
+    (
+        "[mistuning]",
+        "[stop]\npercentile = 95\nrelative_width = 0.1\n[mistuning]",
+        &[
+            "P95 of 10 patterns has no interval",
+            "study.patterns from 72 on",
+        ],
+    ),
+    (
+        "[mistuning]",
+        "[stop]\npercentile = 50\nrelative_width = 0.1\nquantity = \"peak\"\n[mistuning]",
+        &["stop.quantity = \"peak\"", "amplification_factor"],
+    ),
+    (
+        "[mistuning]",
+        "[stop]\npercentil = 50\n[mistuning]",
+        &["unknown key stop.percentil", "did you mean percentile?"],
+    ),
 ];

@@ -260,3 +260,140 @@ fn a_load_on_a_wheel_without_contact_is_refused() {
     );
     assert_eq!(response("free").code, 0);
 }
+
+#[test]
+fn a_study_that_stops_early_says_so_and_one_that_misses_its_target_ends_with_6() {
+    let rule = |width: f64| {
+        let study = GOOD.replace("patterns = 10", "patterns = 64");
+        format!("{study}\n[stop]\npercentile = 50\nrelative_width = {width}\n")
+    };
+    let place = Place::with(&rule(1.0));
+    let run = place.run(&["run", "study.toml", "--json"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let summary: serde_json::Value = serde_json::from_str(&run.stdout).expect("JSON");
+    assert_eq!(summary["stop"]["looks"], serde_json::json!([8, 16, 32, 64]));
+    assert_eq!(summary["stop"]["met"], true);
+    assert_eq!(summary["stop"]["quantity"], "peak_amplitude_m");
+    assert_eq!(summary["patterns"], 8);
+    let text = place.run(&["stats", "results/small"]);
+    assert_eq!(text.code, 0);
+    assert!(
+        text.stdout
+            .contains("reached at look 1 of 4, 8 of at most 64 patterns"),
+        "{}",
+        text.stdout
+    );
+    place.write("study.toml", &rule(1e-6));
+    for (solved, command) in [(true, "run"), (false, "run")] {
+        let missed = place.run(&[command, "study.toml"]);
+        assert_eq!(missed.code, 6, "{}", missed.stderr);
+        assert_eq!(missed.stderr.contains("solved 168 rows, reused 24"), solved);
+        assert!(
+            missed.stdout.contains("NOT reached at look 4 of 4"),
+            "{}",
+            missed.stdout
+        );
+    }
+    assert_eq!(place.run(&["stats", "results/small"]).code, 6);
+    // Neither shards nor a script of them can follow the rule.
+    for refused in [
+        place.run(&["run", "study.toml", "--shard", "1/2"]),
+        place.run(&["slurm", "study.toml", "--tasks", "2"]),
+    ] {
+        assert_eq!(refused.code, 2, "{}", refused.stderr);
+        assert!(
+            refused.stderr.contains("has a [stop]"),
+            "{}",
+            refused.stderr
+        );
+    }
+    assert!(!place.path("small-slurm.sh").exists());
+    // A row of a study that stopped is solved again as any other.
+    let replayed = place.run(&[
+        "replay",
+        "results/small",
+        "--scenario",
+        "1",
+        "--pattern",
+        "3",
+    ]);
+    assert_eq!(replayed.code, 0, "{}", replayed.stderr);
+}
+
+#[test]
+fn a_plan_says_what_a_study_takes_and_what_its_percentiles_are_worth_and_writes_nothing() {
+    let rule = "\n[stop]\npercentile = 50\nrelative_width = 0.02\n";
+    let study = GOOD.replace("patterns = 10", "patterns = 400") + rule;
+    let place = Place::with(&study);
+    let planned = place.run(&[
+        "plan",
+        "study.toml",
+        "--pilot",
+        "40",
+        "--threads",
+        "2",
+        "--json",
+    ]);
+    assert_eq!(planned.code, 0, "{}", planned.stderr);
+    assert!(!place.path("results").exists());
+    let plan: serde_json::Value = serde_json::from_str(&planned.stdout).expect("JSON");
+    assert_eq!(plan["rows"], 1200);
+    assert_eq!(plan["pilot_rows"]["ok"], 120);
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    let cpu = &plan["time"]["cpu_s"];
+    assert!(number(&cpu["lower"]) <= number(&cpu["value"]));
+    assert!(number(&cpu["value"]) <= number(&cpu["upper"]));
+    let mean = number(&plan["cpu_s_per_pattern"]);
+    assert!((number(&cpu["value"]) / (400.0 * mean) - 1.0).abs() < 1e-12);
+    assert!(number(&plan["processor_share"]) <= 1.0);
+    assert!(number(&plan["time"]["wall_s"]) >= number(&plan["set_up_s"]));
+    assert!(number(&plan["memory_bytes"]) > 1e6);
+    // P50 of 40 patterns has an interval, P95 has none; P99 needs 368 patterns.
+    let percentiles = plan["percentiles"].as_array().expect("a list");
+    let of = |percent: u64| {
+        let found = percentiles.iter().find(|p| p["percent"] == percent);
+        found.expect("a percentile")
+    };
+    let width = number(&of(50)["peak_amplitude_m_relative_width"]);
+    assert!(of(95)["peak_amplitude_m_relative_width"].is_null());
+    assert_eq!(
+        (&of(99)["needed_patterns"], &of(99)["estimable"]),
+        (&368.into(), &true.into())
+    );
+    let looks = plan["stop"]["looks"].as_array().expect("a list");
+    let sizes: Vec<u64> = looks
+        .iter()
+        .filter_map(|look| look["patterns"].as_u64())
+        .collect();
+    assert_eq!(sizes, [25, 50, 100, 200, 400]);
+    // What was foretold comes: the study without the rule has that width within a third, and its
+    // tables that size within a quarter.
+    place.write("study.toml", &study.replace(rule, ""));
+    let run = place.run(&["run", "study.toml", "--json"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let summary: serde_json::Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let scenarios = summary["scenarios"].as_array().expect("a list");
+    let widths = scenarios.iter().map(|scenario| {
+        let percentiles = scenario["peak_amplitude_m"]["percentiles"].as_array();
+        let found = percentiles
+            .expect("a list")
+            .iter()
+            .find(|p| p["percent"] == 50.0);
+        let found = found.expect("P50");
+        (number(&found["upper"]) - number(&found["lower"])) / number(&found["value"])
+    });
+    let widest = widths.fold(0.0, f64::max);
+    assert!((width / widest - 1.0).abs() < 0.34, "{width}, {widest}");
+    let size = |table: &str| {
+        let path = place.path("results/small").join(table);
+        std::fs::metadata(path).expect("a table").len() as f64
+    };
+    let bytes = size("responses.parquet") + size("patterns.parquet");
+    let foretold = number(&plan["disk"]["results_bytes"]);
+    assert!((foretold / bytes - 1.0).abs() < 0.25, "{foretold}, {bytes}");
+    let text = place.run(&["plan", "study.toml", "--pilot", "2"]).stdout;
+    assert!(
+        text.contains("400 patterns x 3 scenarios = 1200 rows"),
+        "{text}"
+    );
+}

@@ -208,6 +208,86 @@ fn folders_are_paired_on_equal_patterns_and_independent_otherwise_and_say_which(
 }
 
 #[test]
+fn blades_in_other_random_contact_are_not_the_same_wheels() {
+    let varied = |deviation: f64, per: &str| {
+        format!(
+            "{}\n[contact.variation]\nfriction_coefficient = {{ kind = \"lognormal\", \
+             standard_deviation = {deviation}, per = \"{per}\" }}\n",
+            two_loads().replace("patterns = 100", "patterns = 80")
+        )
+    };
+    // The same blades from a file: with another seed the contact alone is another.
+    let line = |place: u32| {
+        let (pattern, blade) = (place / 6, place % 6);
+        let deviation = f64::from((pattern * 37 + blade * 101) % 41) / 800.0 - 0.025;
+        format!("{pattern},{blade},{deviation}\n")
+    };
+    let lines: Vec<String> = (0..480).map(line).collect();
+    let blades = format!("pattern,blade,deviation\n{}", lines.concat());
+    let from_file = |seed: u64, variation: bool| {
+        let study = if variation {
+            varied(0.2, "wheel")
+        } else {
+            two_loads()
+        };
+        study
+            .replace("patterns = 100\n", "")
+            .replace("patterns = 80\n", "")
+            .replace("seed = 7", &format!("seed = {seed}"))
+            .replace(
+                "distribution = { kind = \"normal\" }",
+                "file = \"blades.csv\"",
+            )
+            .replace("standard_deviation = [0.03]\n", "")
+    };
+    let place = Place::with(GOOD);
+    place.write("blades.csv", &blades);
+    for (name, study) in [
+        ("a", varied(0.2, "wheel")),
+        (
+            "load",
+            varied(0.2, "wheel").replace(
+                "structural_loss_factor = 0.002",
+                "structural_loss_factor = 0.003",
+            ),
+        ),
+        ("wider", varied(0.3, "wheel")),
+        ("sectors", varied(0.2, "sector")),
+        (
+            "nominal",
+            two_loads().replace("patterns = 100", "patterns = 80"),
+        ),
+        ("file", from_file(7, true)),
+        ("file-again", from_file(7, true)),
+        ("file-seed", from_file(8, true)),
+        ("file-nominal", from_file(7, false)),
+        ("file-nominal-seed", from_file(8, false)),
+    ] {
+        place.write("study.toml", &study);
+        let run = place.run(&["run", "study.toml", "--out", name]);
+        assert_eq!(run.code, 0, "{name}: {}", run.stderr);
+    }
+    for (first, second, expected) in [
+        ("a", "load", "same_patterns"),
+        ("a", "wider", "same_blades"),
+        ("a", "sectors", "same_blades"),
+        ("a", "nominal", "same_blades"),
+        ("file", "file-again", "same_patterns"),
+        ("file", "file-seed", "same_blades"),
+        ("file", "file-nominal", "same_blades"),
+        ("file-nominal", "file-nominal-seed", "same_patterns"),
+    ] {
+        let report = json(&place, &["compare", first, second, "--json"]);
+        for found in comparisons(&report) {
+            assert_eq!(found["pairing"], expected, "{first}, {second}");
+            assert_eq!(found["pairs"]["pairs"], 80);
+        }
+    }
+    let text = place.run(&["compare", "a", "wider"]).stdout;
+    assert!(text.contains("80 sets of blades"), "{text}");
+}
+
+#[test]
 fn a_comparison_that_cannot_be_made_is_refused_or_says_what_is_missing() {
     let place = Place::with(GOOD);
     assert_eq!(place.run(&["compare", "nowhere"]).code, 7);

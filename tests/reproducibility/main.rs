@@ -6,4 +6,5 @@ mod extension;
 mod folder;
 mod mock_engine;
 mod shards;
+mod stopping;
 mod tables;

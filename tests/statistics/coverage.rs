@@ -168,6 +168,61 @@ fn every_target_and_law_keeps_its_coverage_at_the_stop() {
     }
 }
 
+/// Share of samples whose last interval holds the percentile where `patterns` is doubled, up to `times`
+/// times, whenever all of them are spent without reaching the target: looks that nobody declared.
+fn extended(rule: &StoppingRule, times: u32, law: Law) -> f64 {
+    let truth = law.quantile(rule.percent / 100.0);
+    let most = rule.patterns << times;
+    let held = |replica: u64| {
+        let values: Vec<f64> = uniform(replica, most as usize)
+            .into_iter()
+            .map(|u| law.quantile(u))
+            .collect();
+        let mut patterns_held = 0;
+        for time in 0..=times {
+            let rule = StoppingRule {
+                patterns: rule.patterns << time,
+                ..*rule
+            };
+            let looks = rule.looks();
+            for (place, &n) in looks.iter().enumerate() {
+                if n < patterns_held {
+                    continue;
+                }
+                patterns_held = n;
+                let mut sorted = values[..n as usize].to_vec();
+                sorted.sort_unstable_by(f64::total_cmp);
+                let look = rule.judge(place as u32 + 1, &sorted, 0);
+                if look.met || n == most {
+                    return look.percentile.lower <= Some(truth)
+                        && look.percentile.upper >= Some(truth);
+                }
+            }
+        }
+        unreachable!("the last look ends it")
+    };
+    (0..REPLICAS).filter(|&replica| held(replica)).count() as f64 / REPLICAS as f64
+}
+
+/// `cargo test --release --test statistics -- --ignored --nocapture doubled`
+#[test]
+#[allow(clippy::print_stdout)]
+#[ignore = "6 rules, 10,000 samples of up to 6400 values each: about a minute"]
+fn patterns_doubled_three_times_after_missed_targets_leave_the_coverage() {
+    for law in [Law::Bounded, Law::Exponential] {
+        for relative_width in [0.2, 0.1, 0.05] {
+            let rule = StoppingRule {
+                percent: 95.0,
+                relative_width,
+                patterns: 800,
+            };
+            let share = extended(&rule, 3, law);
+            println!("{law:?}, width {relative_width}: {share}");
+            assert!(share >= LEAST, "{law:?}, width {relative_width}: {share}");
+        }
+    }
+}
+
 #[test]
 fn looks_double_end_with_all_patterns_and_each_has_an_interval() {
     let rule = |patterns: u64| StoppingRule {

@@ -1,6 +1,7 @@
 //! Statistics: random patterns, order statistics with their intervals, accounting, comparisons, tails.
 
 mod comparison;
+mod comparison_cases;
 mod coverage;
 mod laws;
 mod main_effects;

@@ -14,6 +14,7 @@ fn context(harmonics: Harmonics) -> SummaryContext {
         study_digest: "0123".to_owned(),
         seed: 1,
         patterns: 400,
+        stop: None,
         harmonics,
         version: "0".to_owned(),
     }

@@ -6,6 +6,7 @@
 //! bound the other way round, so that no pair is dropped.
 
 use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use super::percentile_resamples::{PercentileEstimator, PercentileResamples, resample_percentile};
 use super::{CONFIDENCE, Percentile, PointStatus, percentile};
@@ -37,6 +38,48 @@ pub struct PercentileComparison {
     /// Two-sided probability of such a difference if there were none, failed rows at their worst;
     /// at most 0.05 where the interval of the difference excludes 0.
     pub p_value: Option<f64>,
+}
+
+/// Values beyond a percentile from which on percentile intervals of resamples are taken as they are.
+const MANY_BEYOND: f64 = 10.0;
+
+/// Degrees of freedom for each value beyond the percentile, where these are fewer.
+const DEGREES_PER_VALUE: f64 = 2.5;
+
+/// Percentile intervals of resamples are too narrow where few values lie beyond the percentile: a test
+/// of size 5 % has 9 % with four. They are then expanded (Hesterberg 2015, section 3.3): tails are those
+/// of Student's t instead of the normal law, its degrees of freedom in proportion to these values.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Expansion {
+    law: Option<StudentsT>,
+}
+
+impl Expansion {
+    /// The expansion for the percentile `percent` of `n` values.
+    #[must_use]
+    pub fn of(n: u64, percent: f64) -> Self {
+        let beyond = n as f64 * percent.min(100.0 - percent) / 100.0;
+        // Rounding must not make ten into less.
+        let few = beyond < MANY_BEYOND * (1.0 - 1e-12);
+        let law = few.then(|| StudentsT::new(0.0, 1.0, DEGREES_PER_VALUE * beyond).ok());
+        Self { law: law.flatten() }
+    }
+
+    /// One-sided share of resamples to leave out in place of `tail`.
+    #[must_use]
+    pub fn tail(&self, tail: f64) -> f64 {
+        let normal = Normal::standard();
+        self.law
+            .map_or(tail, |law| normal.cdf(law.inverse_cdf(tail)))
+    }
+
+    /// One-sided probability that a share of resamples stands for; the inverse of [`Self::tail`].
+    #[must_use]
+    pub fn probability(&self, share: f64) -> f64 {
+        let normal = Normal::standard();
+        self.law
+            .map_or(share, |law| law.cdf(normal.inverse_cdf(share)))
+    }
 }
 
 /// Compares over pairs: both columns have a value, or none, for each of the same patterns.
@@ -105,13 +148,20 @@ fn compare(
         PercentileEstimator::SmoothedOrderStatistics => Some((x.low, y.low)),
         PercentileEstimator::OrderStatistic => baseline.value.zip(candidate.value),
     };
-    let differences = Bounds::new(&x, &y, |x, y| y - x);
+    let size = baseline_values.len().min(candidate_values.len()) as u64;
+    let expansion = match estimator {
+        PercentileEstimator::SmoothedOrderStatistics => Expansion::of(size, percent),
+        // Conservative as it is.
+        PercentileEstimator::OrderStatistic => Expansion::default(),
+    };
+    let bounds = |contrast: fn(f64, f64) -> f64| Bounds::new(&x, &y, contrast, expansion);
+    let differences = bounds(|x, y| y - x);
     comparison.p_value = Some(differences.p_value(0.0));
     comparison.difference = Some(differences.estimate(points.map(|(x, y)| y - x)));
     // A ratio has a sense, and grows with the candidate, for positive values only.
     let positive = |values: &[f64]| values.first().is_some_and(|&lowest| lowest > 0.0);
     if positive(&baseline_values) && positive(&candidate_values) {
-        let ratios = Bounds::new(&x, &y, ratio);
+        let ratios = bounds(ratio);
         comparison.ratio = Some(ratios.estimate(points.map(|(x, y)| y / x)));
     }
     comparison
@@ -133,13 +183,15 @@ fn ratio(x: f64, y: f64) -> f64 {
 struct Bounds {
     lowest: Vec<f64>,
     highest: Vec<f64>,
+    expansion: Expansion,
 }
 
 impl Bounds {
     fn new(
         baseline: &PercentileResamples,
         candidate: &PercentileResamples,
-        contrast: impl Fn(f64, f64) -> f64,
+        contrast: fn(f64, f64) -> f64,
+        expansion: Expansion,
     ) -> Self {
         let of = |x: &[f64], y: &[f64]| -> Vec<f64> {
             let mut values: Vec<f64> = x.iter().zip(y).map(|(&x, &y)| contrast(x, y)).collect();
@@ -149,12 +201,13 @@ impl Bounds {
         Self {
             lowest: of(&baseline.high_resamples, &candidate.low_resamples),
             highest: of(&baseline.low_resamples, &candidate.high_resamples),
+            expansion,
         }
     }
 
     fn estimate(&self, value: Option<f64>) -> IntervalEstimate {
         let count = self.lowest.len();
-        let tail = 0.5 * (1.0 - CONFIDENCE) * (count as f64 + 1.0);
+        let tail = self.expansion.tail(0.5 * (1.0 - CONFIDENCE)) * (count as f64 + 1.0);
         let place = (tail.floor() as usize).max(1);
         let finite = |value: f64| value.is_finite().then_some(value);
         IntervalEstimate {
@@ -169,6 +222,33 @@ impl Bounds {
         let share = |count: usize| (1.0 + count as f64) / (1.0 + self.lowest.len() as f64);
         let not_above = self.lowest.partition_point(|&value| value <= null);
         let not_below = self.highest.len() - self.highest.partition_point(|&value| value < null);
-        (2.0 * share(not_above).min(share(not_below))).min(1.0)
+        let one_sided = share(not_above).min(share(not_below));
+        (2.0 * self.expansion.probability(one_sided)).min(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Expansion;
+
+    #[test]
+    fn tails_are_expanded_where_few_values_lie_beyond_the_percentile() {
+        for (n, percent) in [(200, 95.0), (1000, 99.0), (400, 97.5), (20, 50.0)] {
+            assert_eq!(
+                Expansion::of(n, percent),
+                Expansion::default(),
+                "{n}, P{percent}"
+            );
+        }
+        assert!((Expansion::default().tail(0.025) - 0.025).abs() < 1e-15);
+        // 4 values, 10 degrees of freedom: t = 2.228139, and the normal law beyond it 0.012936.
+        for (n, percent) in [(80, 95.0), (80, 5.0), (400, 99.0)] {
+            let expansion = Expansion::of(n, percent);
+            assert!((expansion.tail(0.025) - 0.012_936).abs() < 1e-5);
+            for share in [0.3, 0.025, 0.001] {
+                let there = expansion.probability(expansion.tail(share));
+                assert!((there / share - 1.0).abs() < 1e-6, "{there}, {share}");
+            }
+        }
     }
 }

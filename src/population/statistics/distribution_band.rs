@@ -14,7 +14,7 @@ const MOST_POINTS: usize = 1000;
 /// Points at each end of a thinned band that are kept one by one.
 const END_POINTS: usize = 100;
 
-/// The distribution of one quantity with its simultaneous band at [`CONFIDENCE`].
+/// The distribution of one quantity with its simultaneous band.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DistributionBand {
     /// Half width of the band, a probability; none without rows.
@@ -43,16 +43,22 @@ pub fn dkw_half_width(n: u64, confidence: f64) -> f64 {
 }
 
 impl DistributionBand {
-    /// The band of `sorted` values (ascending) beside `failed` rows without value, at every value of
-    /// a small sample, and at 1000 of a large one, those of the tails among them.
+    /// The band at [`CONFIDENCE`] of `sorted` values (ascending) beside `failed` rows without value, at
+    /// every value of a small sample, and at 1000 of a large one, those of the tails among them.
     #[must_use]
     pub fn new(sorted: &[f64], failed: u64) -> Self {
+        Self::at(sorted, failed, CONFIDENCE)
+    }
+
+    /// The same at `confidence`.
+    #[must_use]
+    pub fn at(sorted: &[f64], failed: u64, confidence: f64) -> Self {
         let good = sorted.len();
         let planned = good as f64 + failed as f64;
         if planned < 1.0 {
             return Self::default();
         }
-        let half_width = dkw_half_width(good as u64 + failed, CONFIDENCE);
+        let half_width = dkw_half_width(good as u64 + failed, confidence);
         let point = |rank: usize| {
             let value = sorted[rank - 1];
             // Ties count all: the distribution function is continuous from the right.

@@ -11,6 +11,7 @@ mod multiplicity;
 mod order_statistics;
 mod pairs;
 mod percentile_resamples;
+mod pilot;
 mod quantity;
 mod resampling;
 mod sample;
@@ -20,7 +21,9 @@ mod tail_fit;
 
 pub use accounting::Accounting;
 pub use binomial::{proportion_interval, proportion_upper_bound};
-pub use comparison::{IntervalEstimate, PercentileComparison, compare_independent, compare_paired};
+pub use comparison::{
+    Expansion, IntervalEstimate, PercentileComparison, compare_independent, compare_paired,
+};
 pub use distribution_band::{BandPoint, DistributionBand, dkw_half_width};
 pub use extreme_value::{ExtremeValueLaw, anderson_darling};
 pub use extreme_value_fit::{FEWEST_VALUES, FitStatus, SHAPE_RANGE, fit_extreme_value, fit_gumbel};
@@ -32,11 +35,14 @@ pub use order_statistics::{
 };
 pub use pairs::{Deterioration, PairFacts};
 pub use percentile_resamples::{PercentileEstimator, PercentileResamples, resample_percentile};
+pub use pilot::{ExpectedSum, expected_relative_width, expected_sum};
 pub use quantity::Quantity;
 pub use resampling::{RESAMPLES, resampling_stream};
 pub use sample::{PERCENTILE_LEVELS, PERCENTILES, SampleStatistics};
 pub use scenario::{ScenarioAccumulator, ScenarioStatistics};
-pub use stopping::{Look, MOST_LOOKS, StoppingRule};
+pub use stopping::{
+    Look, MOST_LOOKS, ScenarioLook, StopOptions, StopOutcome, StoppingRule, StudyLook,
+};
 pub use tail_fit::{
     Estimate, TAIL_PERCENTILES, TailFit, TailLaw, TailParameters, TailPercentile, fit_tails,
 };

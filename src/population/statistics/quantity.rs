@@ -1,12 +1,12 @@
 //! The two quantities that populations are judged by.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::population::monte_carlo::ResponseRow;
 use crate::response::harmonic_balance::Status;
 
 /// A quantity of a row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Peak amplitude, m.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Percentile, percentile};
+use super::{CONFIDENCE, Percentile, percentile_at};
 
 /// Percentiles that `scenarios.parquet` and every summary give, in percent.
 pub const PERCENTILES: [u32; 4] = [5, 50, 95, 99];
@@ -26,19 +26,20 @@ impl SampleStatistics {
     #[must_use]
     pub fn new(mut values: Vec<f64>, failed: u64) -> Self {
         values.sort_unstable_by(f64::total_cmp);
-        Self::of_sorted(&values, failed)
+        Self::of_sorted(&values, failed, CONFIDENCE)
     }
 
-    /// Statistics of `sorted` values (ascending) beside `failed` rows without value.
+    /// Statistics of `sorted` values (ascending) beside `failed` rows without value; bounds at the
+    /// two-sided `confidence`.
     #[must_use]
-    pub fn of_sorted(sorted: &[f64], failed: u64) -> Self {
+    pub fn of_sorted(sorted: &[f64], failed: u64, confidence: f64) -> Self {
         let (mean, standard_deviation) = moments(sorted);
         Self {
             mean,
             standard_deviation,
             percentiles: PERCENTILE_LEVELS
                 .iter()
-                .map(|&percent| percentile(sorted, failed, percent))
+                .map(|&percent| percentile_at(sorted, failed, percent, confidence))
                 .collect(),
         }
     }

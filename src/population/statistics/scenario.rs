@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Accounting, DistributionBand, Quantity, SampleStatistics};
+use super::{Accounting, CONFIDENCE, DistributionBand, Quantity, SampleStatistics};
 use crate::population::monte_carlo::ResponseRow;
 use crate::response::harmonic_balance::Status;
 
@@ -74,17 +74,23 @@ impl ScenarioAccumulator {
         }
     }
 
-    /// The statistics of the rows taken.
+    /// The statistics of the rows taken, bounds at [`CONFIDENCE`].
     #[must_use]
     pub fn finish(self) -> ScenarioStatistics {
+        self.finish_at(CONFIDENCE)
+    }
+
+    /// The same with bounds at the two-sided `confidence`.
+    #[must_use]
+    pub fn finish_at(self, confidence: f64) -> ScenarioStatistics {
         let planned = self.accounting.planned();
         let ok = self.accounting.ok();
         let statistics = |mut values: Vec<f64>| {
             values.sort_unstable_by(f64::total_cmp);
             let failed = planned - values.len() as u64;
             (
-                SampleStatistics::of_sorted(&values, failed),
-                DistributionBand::new(&values, failed),
+                SampleStatistics::of_sorted(&values, failed, confidence),
+                DistributionBand::at(&values, failed, confidence),
             )
         };
         let (amplification_factor, amplification_factor_band) =

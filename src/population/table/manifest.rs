@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::TableError;
 use super::checked_json::{read_checked_json, write_checked_json};
 use crate::population::monte_carlo::{Scenario, TunedReference};
-use crate::population::statistics::Accounting;
+use crate::population::statistics::{Accounting, StopOutcome};
 use crate::response::forced_response::{ContactCondition, ErrorEstimate};
 use crate::response::harmonic_balance::Status;
 
@@ -207,6 +207,9 @@ pub struct Manifest {
     pub generator: String,
     /// Number of patterns.
     pub patterns: u64,
+    /// What the stopping rule of a finished study came to; absent: it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stop: Option<StopOutcome>,
     /// The share of the patterns that the folder is about; absent: all of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<Shard>,

@@ -41,20 +41,20 @@ type Row = (Option<f64>, u32, u32, Option<u32>, f64);
 /// Rows that are gathered before a row group is written.
 const ROW_GROUP: usize = 65_536;
 
-/// Writes the patterns of `source` once for each standard deviation (none: as they stand).
+/// Writes the patterns `ids` of `source` once for each standard deviation (none: as they stand).
 ///
 /// # Errors
 /// The file cannot be written.
 pub fn write_patterns(
     path: &Path,
-    source: &PatternSource,
+    (source, ids): (&PatternSource, &[u32]),
     standard_deviations: &[Option<f64>],
     header: &TableHeader,
 ) -> Result<(), TableError> {
     let mut writer = TableWriter::create(path, PATTERN_COLUMNS, header)?;
     let mut rows: Vec<Row> = Vec::new();
     for &standard_deviation in standard_deviations {
-        for id in source.ids() {
+        for &id in ids {
             let Some(pattern) = source.pattern(id, standard_deviation) else {
                 continue;
             };

@@ -31,7 +31,7 @@ pub struct ErrorSettings {
 pub struct ErrorEstimate {
     /// By one Newton correction of the same equations with 4 times the samples per period.
     pub sampling: f64,
-    /// By the harmonics up to 15 that are not in the set, with that sampling.
+    /// By the harmonics up to 15 that are not in the set.
     pub harmonics: f64,
     /// What the estimate of the harmonics may still be off by.
     pub unsettled: f64,
@@ -152,12 +152,13 @@ fn assess(
         largest(amplitude.changed(&structures, &enlarged.before, solution)) / before - 1.0
     };
     let sampling = change(&enlarged.resampled);
+    let alone = change(&enlarged.alone);
     let total = change(&enlarged.after);
     let effects = enlarged.without.iter();
     Some(Screening {
         errors: ErrorEstimate {
             sampling,
-            harmonics: total - sampling,
+            harmonics: total - alone,
             unsettled: enlarged.unsettled,
         },
         effects: effects

@@ -9,8 +9,8 @@ use super::point_settings::PointSettings;
 use crate::linalg::{Complex64, LuWorkspace};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{
-    ContactInterface, ContactShares, HarmonicSystem, NewtonWorkspace, Status, Structure,
-    linear_response, solve, solve_creeping,
+    ContactInterface, ContactShares, HarmonicSystem, NewtonBounds, NewtonWorkspace, Status,
+    Structure, linear_response, solve, solve_creeping,
 };
 
 /// Work done for a row.
@@ -77,6 +77,8 @@ pub struct PointSolver<'a> {
     points: Vec<Point>,
     failures: Vec<(f64, Status)>,
     pub(super) work: Work,
+    /// Bound on the residual of the points solved next, relative to the excitation.
+    residual_tolerance: f64,
 }
 
 impl<'a> PointSolver<'a> {
@@ -118,6 +120,7 @@ impl<'a> PointSolver<'a> {
             points: Vec::new(),
             failures: Vec::new(),
             work: Work::default(),
+            residual_tolerance: settings.bounds.residual_tolerance,
         }
     }
 
@@ -177,6 +180,24 @@ impl<'a> PointSolver<'a> {
                 Err(status)
             }
         }
+    }
+
+    /// Accepts points from now on whose residual is at most `tolerance` of the excitation, or that of the
+    /// settings, if it is larger.
+    pub(super) fn accept(&mut self, tolerance: f64) {
+        self.residual_tolerance = tolerance.max(self.settings.bounds.residual_tolerance);
+    }
+
+    /// The point at a frequency solved before, to the tolerance of the settings.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub(super) fn converge(&mut self, point: Point) -> Result<Point, Status> {
+        self.accept(0.0);
+        if self.nonlinear.is_none() || point.residual <= self.residual_tolerance {
+            return Ok(point);
+        }
+        self.solve(point.frequency_hz).cloned()
     }
 
     fn solve_linear(&mut self, frequency_hz: f64) -> Result<Point, Status> {
@@ -240,10 +261,7 @@ impl<'a> PointSolver<'a> {
     fn attempt(&mut self, attempt: Attempt, frequency_hz: f64) -> Result<Point, Status> {
         match attempt {
             Attempt::Neighbours => {
-                let start = match self.between(frequency_hz) {
-                    Some(start) => start,
-                    None => self.stuck_start(frequency_hz)?,
-                };
+                let start = self.expected(frequency_hz)?;
                 self.newton(frequency_hz, start, None)
             }
             Attempt::Stuck => {
@@ -260,25 +278,61 @@ impl<'a> PointSolver<'a> {
         }
     }
 
-    /// Linear interpolation between the nearest converged points on either side, or the nearest
-    /// one where there is none on the other side.
-    fn between(&self, frequency_hz: f64) -> Option<Vec<f64>> {
-        let below = self
-            .points
-            .iter()
-            .filter(|point| point.frequency_hz <= frequency_hz)
-            .max_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
-        let above = self
-            .points
-            .iter()
-            .filter(|point| point.frequency_hz > frequency_hz)
-            .min_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
-        let (Some(below), Some(above)) = (below, above) else {
-            return below.or(above).map(|point| point.solution.clone());
+    /// The start with the smallest residual: what the converged points beside the frequency lead one to expect,
+    /// or the stuck solution, which is the answer itself where nothing slips.
+    fn expected(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
+        let mut starts = self.between(frequency_hz);
+        let near = |point: &Point| {
+            (point.frequency_hz - frequency_hz).abs() <= NEAR * frequency_hz
+                && point.shares.slipping > 0.5
         };
-        let share = (frequency_hz - below.frequency_hz) / (above.frequency_hz - below.frequency_hz);
-        let pairs = below.solution.iter().zip(&above.solution);
-        Some(pairs.map(|(a, b)| a + share * (b - a)).collect())
+        if !self.nearest(frequency_hz).is_some_and(near) {
+            starts.push(self.stuck_start(frequency_hz)?);
+        }
+        if let [_] = starts[..] {
+            return Ok(starts.remove(0));
+        }
+        let Some((system, workspace)) = &mut self.nonlinear else {
+            return Err(Status::SingularJacobian);
+        };
+        let mut residual = vec![0.0; system.unknowns()];
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for start in starts {
+            let buffers = workspace.system_mut();
+            let (norm, _) =
+                system.residual(TAU * frequency_hz, &start, &mut residual, false, buffers);
+            if best.as_ref().is_none_or(|(least, _)| norm < *least) {
+                best = Some((norm, start));
+            }
+        }
+        best.map(|(_, start)| start).ok_or(Status::NonFinite)
+    }
+
+    /// The nearest converged point, and the polynomials through the two and three nearest with points on
+    /// either side.
+    fn between(&self, frequency_hz: f64) -> Vec<Vec<f64>> {
+        let distance = |point: &Point| (point.frequency_hz - frequency_hz).abs();
+        let mut near: Vec<&Point> = self.points.iter().collect();
+        near.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let Some(&first) = near.first() else {
+            return Vec::new();
+        };
+        let below = first.frequency_hz <= frequency_hz;
+        let other = near[1..]
+            .iter()
+            .find(|point| (point.frequency_hz <= frequency_hz) != below);
+        let Some(&second) = other else {
+            return vec![first.solution.clone()];
+        };
+        let mut starts = vec![interpolated(&[first, second], frequency_hz)];
+        let third = near[1..].iter().find(|point| {
+            let differs = |other: &Point| point.frequency_hz.total_cmp(&other.frequency_hz).is_ne();
+            differs(first) && differs(second)
+        });
+        if let Some(&third) = third {
+            starts.push(interpolated(&[first, second, third], frequency_hz));
+        }
+        starts
     }
 
     pub(super) fn nearest(&self, frequency_hz: f64) -> Option<&Point> {
@@ -300,7 +354,10 @@ impl<'a> PointSolver<'a> {
         };
         let mut x = start;
         let omega = TAU * frequency_hz;
-        let bounds = self.settings.bounds;
+        let bounds = NewtonBounds {
+            residual_tolerance: self.residual_tolerance,
+            ..self.settings.bounds
+        };
         let (outcome, ring_drift_m) = if let Some(other) = other {
             // On the way the ring is locked.
             (solve(other, omega, &mut x, bounds, workspace), [0.0; 2])
@@ -338,6 +395,9 @@ impl<'a> PointSolver<'a> {
     }
 }
 
+/// Share of the frequency within which a point at which most pairs slip tells more than the stuck solution.
+const NEAR: f64 = 0.002;
+
 /// Attempts at one point, in order.
 #[derive(Debug, Clone, Copy)]
 enum Attempt {
@@ -361,6 +421,23 @@ impl Attempt {
         Self::StiffnessHomotopy,
         Self::LoadHomotopy,
     ];
+}
+
+/// The polynomial through the solutions of `points`, of different frequencies, at `frequency_hz`.
+fn interpolated(points: &[&Point], frequency_hz: f64) -> Vec<f64> {
+    let mut sum = vec![0.0; points[0].solution.len()];
+    for (at, point) in points.iter().enumerate() {
+        let others = points.iter().enumerate().filter(|(other, _)| *other != at);
+        let share: f64 = others
+            .map(|(_, other)| {
+                (frequency_hz - other.frequency_hz) / (point.frequency_hz - other.frequency_hz)
+            })
+            .product();
+        for (sum, x) in sum.iter_mut().zip(&point.solution) {
+            *sum += share * x;
+        }
+    }
+    sum
 }
 
 fn real_parts(x: &[Complex64]) -> Vec<f64> {

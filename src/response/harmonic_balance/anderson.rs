@@ -3,108 +3,166 @@
 
 use super::transform::dot;
 
-/// Anderson's acceleration of `x <- x + f(x)`.
+/// A difference of steps that depends on the earlier ones up to this share of itself says nothing new.
+const DEPENDENT: f64 = 1e-8;
+
+/// Anderson's acceleration of `x <- x + f(x)`; allocates nothing after its creation.
 pub(super) struct Anderson {
+    unknowns: usize,
     depth: usize,
-    /// Last iterate and its step.
+    /// Last iterate and its step, once there is one.
     last: Option<(Vec<f64>, Vec<f64>)>,
-    /// Differences of iterates and of steps.
-    differences: Vec<(Vec<f64>, Vec<f64>)>,
+    /// Whether `last` belongs to the present iteration.
+    begun: bool,
+    /// Differences of iterates plus those of steps, `unknowns x depth`, of which `columns` are used.
+    moves: Vec<f64>,
+    /// Orthonormal columns Q of the differences of steps, `unknowns x depth`.
+    directions: Vec<f64>,
+    /// R of the differences of steps `Q R`, `depth x depth`, column after column.
+    triangle: Vec<f64>,
+    columns: usize,
+    shares: Vec<f64>,
 }
 
 impl Anderson {
-    pub(super) fn new(depth: usize) -> Self {
+    /// An acceleration that combines at most `depth` earlier iterates of `unknowns` entries; it begins
+    /// anew when they are full.
+    pub(super) fn new(unknowns: usize, depth: usize) -> Self {
         Self {
+            unknowns,
             depth,
             last: None,
-            differences: Vec::new(),
+            begun: false,
+            moves: vec![0.0; unknowns * depth],
+            directions: vec![0.0; unknowns * depth],
+            triangle: vec![0.0; depth * depth],
+            columns: 0,
+            shares: vec![0.0; depth],
         }
     }
 
-    /// The next iterate from `x` and `step = f(x)`.
-    pub(super) fn next(&mut self, x: &[f64], step: &[f64]) -> Vec<f64> {
-        let minus = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect();
-        if let Some((last_x, last_step)) = &self.last {
-            self.differences
-                .push((minus(x, last_x), minus(step, last_step)));
-            if self.differences.len() > self.depth {
-                self.differences.remove(0);
-            }
-        }
-        self.last = Some((x.to_vec(), step.to_vec()));
-        let columns: Vec<&[f64]> = self.differences.iter().map(|(_, f)| f.as_slice()).collect();
-        let shares = least_squares(&columns, step);
-        let mut next: Vec<f64> = x.iter().zip(step).map(|(x, f)| x + f).collect();
-        for (share, (dx, df)) in shares.iter().zip(&self.differences) {
-            for ((next, dx), df) in next.iter_mut().zip(dx).zip(df) {
-                *next -= share * (dx + df);
-            }
-        }
-        next
+    /// Forgets the iterates: another function follows.
+    pub(super) fn begin(&mut self) {
+        self.begun = false;
+        self.columns = 0;
     }
-}
 
-/// Shares by which the columns come nearest to `target`; a column that depends on those after it,
-/// the more recent ones, has none.
-fn least_squares(columns: &[&[f64]], target: &[f64]) -> Vec<f64> {
-    const DEPENDENT: f64 = 1e-8;
-    let n = columns.len();
-    // Modified Gram-Schmidt from the last column on: A = Q R, R gathered by columns.
-    let mut orthonormal: Vec<Option<Vec<f64>>> = vec![None; n];
-    let mut triangle = vec![vec![0.0; n]; n];
-    for j in (0..n).rev() {
-        let mut q = columns[j].to_vec();
-        let length = dot(&q, &q).sqrt();
-        for i in (j + 1..n).rev() {
-            if let Some(other) = &orthonormal[i] {
-                let share = dot(other, &q);
-                triangle[i][j] = share;
-                q.iter_mut().zip(other).for_each(|(q, o)| *q -= share * o);
+    /// The next iterate from `x` and `step = f(x)`, into `next`.
+    pub(super) fn next(&mut self, x: &[f64], step: &[f64], next: &mut [f64]) {
+        if self.begun {
+            self.learn(x, step);
+        }
+        let (last_x, last_step) = self
+            .last
+            .get_or_insert_with(|| (vec![0.0; x.len()], vec![0.0; x.len()]));
+        last_x.copy_from_slice(x);
+        last_step.copy_from_slice(step);
+        self.begun = true;
+        for ((next, x), f) in next.iter_mut().zip(x).zip(step) {
+            *next = x + f;
+        }
+        self.find_shares(step);
+        let moves = self.moves.chunks_exact(self.unknowns.max(1));
+        for (share, moves) in self.shares[..self.columns].iter().zip(moves) {
+            for (next, moved) in next.iter_mut().zip(moves) {
+                *next -= share * moved;
             }
         }
-        let left = dot(&q, &q).sqrt();
-        if left > DEPENDENT * length {
-            for q in &mut q {
-                *q /= left;
+    }
+
+    /// Takes in the differences to the last iterate.
+    fn learn(&mut self, x: &[f64], step: &[f64]) {
+        let Some((last_x, last_step)) = &self.last else {
+            return;
+        };
+        if self.columns == self.depth {
+            self.columns = 0;
+        }
+        let (n, column) = (self.unknowns, self.columns);
+        let (known, free) = self.directions.split_at_mut(n * column);
+        let direction = &mut free[..n];
+        for ((d, f), last) in direction.iter_mut().zip(step).zip(last_step) {
+            *d = f - last;
+        }
+        let length = dot(direction, direction).sqrt();
+        let triangle = &mut self.triangle[self.depth * column..][..self.depth];
+        triangle.fill(0.0);
+        // Twice: once leaves too much of the others where the columns are almost dependent.
+        for _ in 0..2 {
+            for (entry, other) in triangle.iter_mut().zip(known.chunks_exact(n)) {
+                let share = dot(other, direction);
+                *entry += share;
+                for (d, o) in direction.iter_mut().zip(other) {
+                    *d -= share * o;
+                }
             }
-            triangle[j][j] = left;
-            orthonormal[j] = Some(q);
+        }
+        let left = dot(direction, direction).sqrt();
+        if left.is_nan() || left <= DEPENDENT * length {
+            return;
+        }
+        triangle[column] = left;
+        for d in direction.iter_mut() {
+            *d /= left;
+        }
+        let moves = self.moves[n * column..][..n].iter_mut();
+        let (x, step) = (x.iter().zip(last_x), step.iter().zip(last_step));
+        for (moved, ((x, last_x), (f, last_f))) in moves.zip(x.zip(step)) {
+            *moved = (x - last_x) + (f - last_f);
+        }
+        self.columns += 1;
+    }
+
+    /// Shares by which the differences of steps come nearest to `step`: `R shares = Q^T step`.
+    fn find_shares(&mut self, step: &[f64]) {
+        for column in (0..self.columns).rev() {
+            let direction = &self.directions[self.unknowns * column..][..self.unknowns];
+            let known: f64 = (column + 1..self.columns)
+                .map(|j| self.triangle[self.depth * j + column] * self.shares[j])
+                .sum();
+            self.shares[column] =
+                (dot(direction, step) - known) / self.triangle[self.depth * column + column];
         }
     }
-    let mut shares = vec![0.0; n];
-    for i in 0..n {
-        if let Some(q) = &orthonormal[i] {
-            let known: f64 = (0..i).map(|j| triangle[i][j] * shares[j]).sum();
-            shares[i] = (dot(q, target) - known) / triangle[i][i];
-        }
-    }
-    shares
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Anderson, least_squares};
+    use super::Anderson;
 
-    #[test]
-    fn least_squares_meet_a_target_in_the_span_and_drop_a_repeated_column() {
-        let (a, b) = ([1.0, 2.0, 0.0, 1.0], [0.0, 1.0, 1.0, -1.0]);
-        let target: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 3.0 * a - 2.0 * b).collect();
-        let shares = least_squares(&[&a, &b], &target);
-        assert!((shares[0] - 3.0).abs() < 1e-12 && (shares[1] + 2.0).abs() < 1e-12);
-        let shares = least_squares(&[&b, &a, &b], &target);
-        assert!(shares[0] == 0.0 && (shares[1] - 3.0).abs() < 1e-12);
+    /// Iterates `x <- x + 1 - A x` with a diagonal A.
+    fn iterate(acceleration: &mut Anderson, diagonal: &[f64], steps: usize) -> Vec<f64> {
+        let mut x = vec![0.0; diagonal.len()];
+        let mut next = x.clone();
+        acceleration.begin();
+        for _ in 0..steps {
+            let step: Vec<f64> = x.iter().zip(diagonal).map(|(x, a)| 1.0 - a * x).collect();
+            acceleration.next(&x, &step, &mut next);
+            std::mem::swap(&mut x, &mut next);
+        }
+        x
     }
 
     #[test]
     fn a_linear_iteration_that_diverges_by_itself_is_solved_in_as_many_steps_as_unknowns() {
-        // f(x) = b - A x with eigenvalues 0.2, 1.5 and 4.
         let a = [0.2, 1.5, 4.0];
-        let step = |x: &[f64]| -> Vec<f64> { x.iter().zip(a).map(|(x, a)| 1.0 - a * x).collect() };
-        let mut acceleration = Anderson::new(6);
-        let mut x = vec![0.0; 3];
-        for _ in 0..5 {
-            x = acceleration.next(&x, &step(&x));
+        let mut acceleration = Anderson::new(3, 6);
+        for attempt in 0..2 {
+            let x = iterate(&mut acceleration, &a, 5);
+            for (x, a) in x.iter().zip(a) {
+                assert!((x - 1.0 / a).abs() < 1e-9, "{attempt}: {x} for {}", 1.0 / a);
+            }
         }
+    }
+
+    #[test]
+    fn a_repeated_difference_is_left_out_and_full_columns_begin_anew() {
+        // All entries alike: every difference after the first is a multiple of it.
+        let mut acceleration = Anderson::new(3, 2);
+        let x = iterate(&mut acceleration, &[0.3; 3], 6);
+        assert!(x.iter().all(|x| (x - 1.0 / 0.3).abs() < 1e-12), "{x:?}");
+        let a = [0.5, 1.2, 0.9, 0.7, 1.4];
+        let x = iterate(&mut Anderson::new(5, 3), &a, 24);
         for (x, a) in x.iter().zip(a) {
             assert!((x - 1.0 / a).abs() < 1e-9, "{x} for {}", 1.0 / a);
         }

@@ -1,4 +1,4 @@
-//! What a solution would become with the harmonics outside of its set, sampled more finely.
+//! What a solution would become with finer sampling, and with the harmonics outside of its set.
 //!
 //! With s the harmonics of the set, o those outside and the residual `R` of the enlarged system,
 //!
@@ -18,8 +18,8 @@ use std::sync::Arc;
 
 use super::anderson::Anderson;
 use super::{
-    HarmonicBlock, HarmonicSystem, HarmonicTransform, NewtonWorkspace, PairJacobian,
-    SystemWorkspace, TransformError,
+    HarmonicBlock, HarmonicSystem, HarmonicTransform, NewtonWorkspace, SystemWorkspace,
+    TransformError,
 };
 use crate::linalg::LuWorkspace;
 
@@ -27,8 +27,12 @@ use crate::linalg::LuWorkspace;
 const HIGHEST_HARMONIC: u32 = 15;
 /// Unknowns of a wheel up to which the whole Jacobian is factored.
 const SMALL_WHEEL: usize = 1200;
-/// Samples per period of the derivatives in P.
+/// Samples per period of the enlarged set at least, and per period of its highest harmonic.
+const SAMPLES: usize = 256;
+const SAMPLES_OF_HIGHEST: usize = 16;
+/// Samples per period of the derivatives in P at least, and per period of the highest harmonic.
 const LINEARISED_SAMPLES: usize = 128;
+const LINEARISED_SAMPLES_OF_HIGHEST: usize = 4;
 /// Steps of the iteration at most.
 const EVALUATIONS: usize = 14;
 /// Earlier iterates that the acceleration combines.
@@ -42,13 +46,15 @@ const NEGLIGIBLE: f64 = 5e-5;
 #[derive(Debug, Clone)]
 pub struct EnlargedSet {
     harmonics: Vec<u32>,
+    /// The set itself, sampled more finely.
     fine: Arc<HarmonicTransform>,
+    enlarged: Arc<HarmonicTransform>,
     linearised: Arc<HarmonicTransform>,
 }
 
 impl EnlargedSet {
     /// The harmonics 0 to 15 (odd ones where the normal load is constant, since no law then
-    /// excites the others) and those of `set`, with `samples` per period.
+    /// excites the others) and those of `set`, whose sampling is checked with `samples` per period.
     ///
     /// # Errors
     /// If the harmonics cannot be told apart with the samples asked for.
@@ -59,14 +65,19 @@ impl EnlargedSet {
             .collect();
         harmonics.sort_unstable();
         harmonics.dedup();
-        let numbers: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
-        let highest = numbers.last().copied().unwrap_or(1);
+        let transform = |harmonics: &[u32], samples: usize| {
+            let numbers: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
+            HarmonicTransform::new(&numbers, samples).map(Arc::new)
+        };
+        let highest = harmonics.last().map_or(1, |&k| k as usize);
+        let of_highest = |least: usize, per_period: usize| least.max(per_period * highest);
         Ok(Self {
-            fine: Arc::new(HarmonicTransform::new(&numbers, samples)?),
-            linearised: Arc::new(HarmonicTransform::new(
-                &numbers,
-                LINEARISED_SAMPLES.max(4 * highest),
-            )?),
+            fine: transform(set, samples)?,
+            enlarged: transform(&harmonics, of_highest(SAMPLES, SAMPLES_OF_HIGHEST))?,
+            linearised: transform(
+                &harmonics,
+                of_highest(LINEARISED_SAMPLES, LINEARISED_SAMPLES_OF_HIGHEST),
+            )?,
             harmonics,
         })
     }
@@ -85,6 +96,8 @@ pub struct Enlarged {
     pub before: Vec<f64>,
     /// After one Newton correction at the finer sampling, in the set alone.
     pub resampled: Vec<f64>,
+    /// The same at the sampling of the enlarged set: what `after` would be without harmonics outside.
+    pub alone: Vec<f64>,
     /// With the harmonics outside: the iterate that the next step would change least.
     pub after: Vec<f64>,
     /// What that step would still change of the set, relative to the set.
@@ -106,7 +119,7 @@ pub enum Effects {
 struct Enlargement<'a> {
     system: &'a HarmonicSystem,
     workspace: &'a mut NewtonWorkspace,
-    fine: HarmonicSystem,
+    enlarged: HarmonicSystem,
     buffers: SystemWorkspace,
     /// Place in the set of each enlarged block.
     places: Vec<Option<usize>>,
@@ -136,7 +149,7 @@ pub fn enlarge(
     if !workspace.factor_at(system, omega, x) {
         return None;
     }
-    let with = |transform: &Arc<HarmonicTransform>| {
+    let with = |blocks: &[HarmonicBlock], transform: &Arc<HarmonicTransform>| {
         let mut enlarged = HarmonicSystem::new(
             blocks.to_vec(),
             system.force().to_vec(),
@@ -146,37 +159,50 @@ pub fn enlarge(
         enlarged.set_ring_drift(system.ring_drift_m());
         enlarged
     };
-    let fine = with(&set.fine);
+    let fine = with(system.blocks(), &set.fine);
+    let enlarged = with(blocks, &set.enlarged);
     let same = |block: &HarmonicBlock| {
         let own = |own: &HarmonicBlock| own.harmonic == block.harmonic;
         system.blocks().iter().position(own)
     };
     let places: Vec<Option<usize>> = blocks.iter().map(same).collect();
-    let before = embed(system, &fine, &places, x);
-    let outside = Outside::factor(&with(&set.linearised), &places, omega, &before)?;
+    let before = embed(system, &enlarged, &places, x);
+    let outside = Outside::factor(&with(blocks, &set.linearised), &places, omega, &before)?;
+    let mut correction = vec![0.0; x.len()];
+    fine.residual(omega, x, &mut correction, false, &mut fine.workspace());
+    workspace.solve_linear(&mut correction);
+    let resampled: Vec<f64> = x.iter().zip(&correction).map(|(x, c)| x - c).collect();
+    let resampled = embed(system, &enlarged, &places, &resampled);
     Enlargement {
-        buffers: fine.workspace(),
+        buffers: enlarged.workspace(),
         system,
         workspace,
-        fine,
+        enlarged,
         places,
         omega,
         outside,
     }
-    .correct(before, wanted)
+    .correct(before, resampled, wanted)
 }
 
 impl Enlargement<'_> {
-    fn correct(mut self, before: Vec<f64>, wanted: Effects) -> Option<Enlarged> {
+    fn correct(
+        mut self,
+        before: Vec<f64>,
+        resampled: Vec<f64>,
+        wanted: Effects,
+    ) -> Option<Enlarged> {
         let mut step = self.step(&before);
-        let resampled = self.resampled(&before);
+        let alone = self.alone(&before);
         let scale = self.in_set(&before);
-        let mut acceleration = Anderson::new(DEPTH);
+        let mut acceleration = Anderson::new(before.len(), DEPTH);
         let mut iterate = before.clone();
+        let mut next = before.clone();
         let mut best: Option<(f64, Vec<f64>)> = None;
         for evaluation in 1..=EVALUATIONS {
             let last = self.in_set(&step);
-            iterate = acceleration.next(&iterate, &step);
+            acceleration.next(&iterate, &step, &mut next);
+            std::mem::swap(&mut iterate, &mut next);
             step = self.step(&iterate);
             if !step.iter().all(|s| s.is_finite()) {
                 return None;
@@ -201,6 +227,7 @@ impl Enlargement<'_> {
         Some(Enlarged {
             before,
             resampled,
+            alone,
             after,
             unsettled,
             without,
@@ -209,7 +236,7 @@ impl Enlargement<'_> {
 
     fn residual(&mut self, x: &[f64]) -> Vec<f64> {
         let mut residual = vec![0.0; x.len()];
-        self.fine
+        self.enlarged
             .residual(self.omega, x, &mut residual, false, &mut self.buffers);
         residual
     }
@@ -225,7 +252,7 @@ impl Enlargement<'_> {
                 return own;
             };
             for (index, factors) in blocks.iter_mut().enumerate() {
-                let place = range(&self.fine, index);
+                let place = range(&self.enlarged, index);
                 match factors {
                     Some(factors) => factors.solve(&mut step[place]),
                     None => step[place.clone()].copy_from_slice(&own[place]),
@@ -243,15 +270,16 @@ impl Enlargement<'_> {
         let mut own = vec![0.0; self.system.unknowns()];
         for (index, place) in self.places.iter().enumerate() {
             if let Some(place) = *place {
-                own[range(self.system, place)].copy_from_slice(&residual[range(&self.fine, index)]);
+                own[range(self.system, place)]
+                    .copy_from_slice(&residual[range(&self.enlarged, index)]);
             }
         }
         self.workspace.solve_linear(&mut own);
-        embed(self.system, &self.fine, &self.places, &own)
+        embed(self.system, &self.enlarged, &self.places, &own)
     }
 
-    /// One Newton correction in the set at the finer sampling.
-    fn resampled(&mut self, before: &[f64]) -> Vec<f64> {
+    /// One Newton correction in the set at the sampling of the enlarged set.
+    fn alone(&mut self, before: &[f64]) -> Vec<f64> {
         let residual = self.residual(before);
         let step = self.set_step(&residual);
         before.iter().zip(step).map(|(x, s)| x - s).collect()
@@ -266,7 +294,7 @@ impl Enlargement<'_> {
                 continue;
             }
             let mut less = after.to_vec();
-            less[range(&self.fine, index)].fill(0.0);
+            less[range(&self.enlarged, index)].fill(0.0);
             let mut residual = self.residual(&less);
             residual
                 .iter_mut()
@@ -274,7 +302,7 @@ impl Enlargement<'_> {
                 .for_each(|(r, all)| *r -= all);
             let step = self.set_step(&residual);
             let corrected = after.iter().zip(step).map(|(x, s)| x - s).collect();
-            changed.push((self.fine.blocks[index].harmonic, corrected));
+            changed.push((self.enlarged.blocks[index].harmonic, corrected));
         }
         changed
     }
@@ -282,7 +310,7 @@ impl Enlargement<'_> {
     /// Norm of the part in the set.
     fn in_set(&self, x: &[f64]) -> f64 {
         let square = |(index, place): (usize, &Option<usize>)| match place {
-            Some(_) => x[range(&self.fine, index)].iter().map(|x| x * x).sum(),
+            Some(_) => x[range(&self.enlarged, index)].iter().map(|x| x * x).sum(),
             None => 0.0,
         };
         self.places
@@ -321,86 +349,30 @@ impl Outside {
         omega: f64,
         x: &[f64],
     ) -> Option<Self> {
-        let mut buffers = system.workspace();
+        let one_sector = system.blocks[0].structure.sectors() == 1;
+        let whole = one_sector || system.unknowns() <= SMALL_WHEEL;
+        let mut buffers = if whole {
+            system.workspace()
+        } else {
+            system.decoupled_workspace()
+        };
         let mut residual = vec![0.0; system.unknowns()];
         system.residual(omega, x, &mut residual, true, &mut buffers);
-        let one_sector = system.blocks[0].structure.sectors() == 1;
-        if one_sector || system.unknowns() <= SMALL_WHEEL {
+        if whole {
             let mut factors = LuWorkspace::new(system.unknowns());
             system.jacobian(omega, &mut buffers, factors.matrix_mut());
             return factors.factor().then_some(Self::Whole(factors));
         }
         let mut blocks = Vec::with_capacity(places.len());
         for (index, place) in places.iter().enumerate() {
-            blocks.push(match place {
-                Some(_) => None,
-                None => Some(factored_block(system, index, omega, &buffers)?),
-            });
+            if place.is_some() {
+                blocks.push(None);
+                continue;
+            }
+            let mut factors = LuWorkspace::new(range(system, index).len());
+            system.jacobian_of(index..index + 1, omega, &mut buffers, factors.matrix_mut());
+            blocks.push(factors.factor().then_some(Some(factors))?);
         }
         Some(Self::Blocks(blocks))
     }
-}
-
-/// The Jacobian of one harmonic by itself, factored; none if it is singular.
-fn factored_block(
-    system: &HarmonicSystem,
-    index: usize,
-    omega: f64,
-    evaluated: &SystemWorkspace,
-) -> Option<LuWorkspace<f64>> {
-    let block = system.blocks[index].clone();
-    let samples = system.transform.n_samples();
-    let transform = HarmonicTransform::new(&[block.harmonic as usize], samples).ok()?;
-    let alone = HarmonicSystem::new(
-        vec![block],
-        Vec::new(),
-        system.interface.clone(),
-        Arc::new(transform),
-    );
-    let mut buffers = alone.workspace();
-    let first = system.coefficient[index];
-    let (all, own) = (
-        system.transform.n_coefficients(),
-        alone.transform.n_coefficients(),
-    );
-    buffers.active.copy_from_slice(&evaluated.active);
-    for (target, source) in buffers.jacobians.iter_mut().zip(&evaluated.jacobians) {
-        restrict(source, all, first, own, target);
-    }
-    let mut factors = LuWorkspace::new(alone.unknowns());
-    alone.jacobian(omega, &mut buffers, factors.matrix_mut());
-    factors.factor().then_some(factors)
-}
-
-/// The blocks of `own` coefficients from `first` on, out of `all`.
-fn restrict(
-    source: &PairJacobian,
-    all: usize,
-    first: usize,
-    own: usize,
-    target: &mut PairJacobian,
-) {
-    let copy = |from: &[f64], to: &mut [f64]| {
-        for (row, to) in to.chunks_exact_mut(own).enumerate() {
-            to.copy_from_slice(&from[(first + row) * all + first..][..own]);
-        }
-    };
-    copy(&source.normal_normal, &mut target.normal_normal);
-    for tangent in 0..2 {
-        copy(
-            &source.tangential_tangential[tangent],
-            &mut target.tangential_tangential[tangent],
-        );
-        copy(
-            &source.tangential_normal[tangent],
-            &mut target.tangential_normal[tangent],
-        );
-    }
-    target.tangential_cross = source.tangential_cross.as_ref().map(|cross| {
-        cross.each_ref().map(|from| {
-            let mut to = vec![0.0; own * own];
-            copy(from, &mut to);
-            to
-        })
-    });
 }

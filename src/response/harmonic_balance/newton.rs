@@ -1,11 +1,19 @@
 //! Newton's method, damped, with a Jacobian kept while it serves: at one frequency, or for any
 //! equation that can be linearised.
 
+use super::anderson::Anderson;
 use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
 use crate::linalg::LuWorkspace;
 
-/// A kept Jacobian must reduce the residual at least to this share, else it is renewed.
-const KEPT_JACOBIAN_CONTRACTION: f64 = 0.6;
+/// A Jacobian is kept where the step became at most this share of the one before,
+const KEPT_BY_ONE_STEP: f64 = 0.75;
+/// or of the one before that: accelerated steps do not shrink evenly.
+const KEPT_BY_TWO_STEPS: f64 = 0.64;
+/// A step with a kept Jacobian is taken where the next one is at most so much longer.
+const LONGER: f64 = 1.2;
+
+/// Earlier iterates that the acceleration combines.
+const DEPTH: usize = 16;
 
 /// Outcome of one nonlinear solve; the solution itself is left in the caller's vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,6 +52,7 @@ pub(super) struct NewtonBuffers {
     step: Vec<f64>,
     trial: Vec<f64>,
     trial_step: Vec<f64>,
+    acceleration: Anderson,
 }
 
 impl NewtonBuffers {
@@ -54,6 +63,7 @@ impl NewtonBuffers {
             step: vec![0.0; n],
             trial: vec![0.0; n],
             trial_step: vec![0.0; n],
+            acceleration: Anderson::new(n, DEPTH),
         }
     }
 }
@@ -157,8 +167,8 @@ pub fn solve(
 /// Methods for Nonlinear Problems, section 3.3): a damped step is taken where the next simplified
 /// step `-J^-1 R(u + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual
 /// itself this does not depend on how the equations are scaled, and contact forces are far from
-/// well scaled. While the simplified step is much shorter, it is taken as the next step and the
-/// Jacobian is kept.
+/// well scaled. While the simplified steps become shorter the Jacobian is kept and they are combined
+/// by Anderson's acceleration: they tend to what a renewed Jacobian would say, at a fraction of its cost.
 pub(super) fn iterate(
     equation: &mut impl Equation,
     u: &mut Vec<f64>,
@@ -170,7 +180,9 @@ pub(super) fn iterate(
         step,
         trial,
         trial_step,
+        acceleration,
     } = buffers;
+    acceleration.begin();
     let (first, shares) = equation.residual(u, residual);
     let mut state = NewtonOutcome {
         status: Status::IterationLimit,
@@ -184,9 +196,9 @@ pub(super) fn iterate(
     // solve, which a neighbouring point often allows to go on with.
     let mut kept = equation.is_linearised() && first.is_finite();
     if kept {
-        step.copy_from_slice(residual);
-        equation.step(step);
+        negative_step(equation, residual, step);
     }
+    let mut before_last = 0.0;
     loop {
         if let Some(status) = bounds.judge(first, state.residual, state.iterations as usize) {
             // Forces of a pair without a periodic state prove nothing, however small the residual.
@@ -198,29 +210,35 @@ pub(super) fn iterate(
                 return ended(state, Status::SingularJacobian);
             }
             state.factorisations += 1;
-            step.copy_from_slice(residual);
-            equation.step(step);
+            negative_step(equation, residual, step);
+            acceleration.begin();
+            before_last = 0.0;
         }
         state.iterations += 1;
         let length = norm_of(step);
+        acceleration.next(u, step, trial);
         let halvings = if kept { 0 } else { bounds.halvings };
         let accepted = (0..=halvings).find_map(|halving| {
             let factor = 0.5_f64.powi(halving as i32);
-            for ((t, u), s) in trial.iter_mut().zip(u.iter()).zip(step.iter()) {
-                *t = u - factor * s;
+            if halving > 0 {
+                for ((t, u), s) in trial.iter_mut().zip(u.iter()).zip(step.iter()) {
+                    *t = u + factor * s;
+                }
             }
             let (norm, shares) = equation.residual(trial, residual);
-            trial_step.copy_from_slice(residual);
-            equation.step(trial_step);
+            negative_step(equation, residual, trial_step);
             let contraction = norm_of(trial_step) / length;
-            let monotone = contraction <= 1.0 - 0.25 * factor;
+            let bound = if kept { LONGER } else { 1.0 - 0.25 * factor };
+            let monotone = contraction <= bound;
             (monotone || norm <= bounds.residual_tolerance).then_some((norm, shares, contraction))
         });
         match accepted {
             Some((norm, shares, contraction)) => {
                 std::mem::swap(u, trial);
                 (state.residual, state.shares) = (norm, shares);
-                kept = contraction <= KEPT_JACOBIAN_CONTRACTION;
+                kept = contraction <= KEPT_BY_ONE_STEP
+                    || contraction * length <= KEPT_BY_TWO_STEPS * before_last;
+                before_last = length;
                 if kept {
                     std::mem::swap(step, trial_step);
                 }
@@ -229,6 +247,15 @@ pub(super) fn iterate(
             None if state.residual.is_finite() => return ended(state, Status::Stagnated),
             None => return ended(state, Status::NonFinite),
         }
+    }
+}
+
+/// `-J^-1 residual`, into `step`.
+fn negative_step(equation: &mut impl Equation, residual: &[f64], step: &mut [f64]) {
+    step.copy_from_slice(residual);
+    equation.step(step);
+    for step in step {
+        *step = -*step;
     }
 }
 

@@ -17,6 +17,7 @@
 //! and columns in the tangential directions. Under `coulomb_3d` the sums over clips become those of
 //! `coupled_derivative`.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::coupled_derivative::{CoupledDerivative, Slopes};
@@ -83,6 +84,8 @@ pub struct PairHarmonics {
     history: ContactHistory,
     /// Growth of the tangential displacement per period, m.
     drift_m: [f64; 2],
+    /// Whether derivatives of one harmonic by another are left out.
+    decoupled: bool,
     sums: ClipSums,
     coupled: CoupledDerivative,
 }
@@ -99,6 +102,7 @@ impl PairHarmonics {
             displacement: vec![0.0; 3 * n_samples],
             history: ContactHistory::new(n_samples),
             drift_m: [0.0; 2],
+            decoupled: false,
             sums: ClipSums::new(n_coefficients, n_samples),
             coupled: CoupledDerivative::new(n_coefficients),
             transform,
@@ -121,6 +125,12 @@ impl PairHarmonics {
     /// besides its harmonics, m; zero at first.
     pub fn set_drift(&mut self, drift_m: [f64; 2]) {
         self.drift_m = drift_m;
+    }
+
+    /// Leaves out the derivatives of one harmonic by another from now on (not under `coulomb_3d`): they
+    /// remain zero.
+    pub(super) fn decouple(&mut self) {
+        self.decoupled = true;
     }
 
     /// Corrections of one pair, and where wanted their derivative.
@@ -240,7 +250,9 @@ impl PairHarmonics {
         if self.law.has_variable_load() && self.history.state().separated {
             self.sums
                 .gather_separated(&self.transform, self.history.normal_load_n());
-            self.sums.fill_normal(-kn, &mut jacobian.normal_normal);
+            let wanted = |c| wanted(&self.transform, self.decoupled, c);
+            self.sums
+                .fill_normal(-kn, wanted, &mut jacobian.normal_normal);
         }
         if self.law == ContactLaw::Coulomb3d {
             let slopes = Slopes {
@@ -261,8 +273,10 @@ impl PairHarmonics {
             }
             self.sums
                 .gather_clips(&self.transform, slider.clip_samples(), slider.clip_signs());
+            let wanted = |c| wanted(&self.transform, self.decoupled, c);
+            let factors = [-kt, limit_slope];
             self.sums
-                .fill_tangential(-kt, limit_slope, by_tangential, by_normal);
+                .fill_tangential(factors, wanted, by_tangential, by_normal);
             if self.transform.has_mean() {
                 let n_coefficients = self.transform.n_coefficients();
                 clear_mean_row(by_tangential, n_coefficients);
@@ -305,6 +319,19 @@ impl PairHarmonics {
                 }
             }
         }
+    }
+}
+
+/// Coefficients by which the derivatives of coefficient `c` are wanted: all, or those of its harmonic.
+fn wanted(transform: &HarmonicTransform, decoupled: bool, c: usize) -> Range<usize> {
+    let mean = usize::from(transform.has_mean());
+    if !decoupled {
+        0..transform.n_coefficients()
+    } else if c < mean {
+        0..mean
+    } else {
+        let first = c - (c - mean) % 2;
+        first..first + 2
     }
 }
 
@@ -387,10 +414,11 @@ impl ClipSums {
     }
 
     /// `block_{cc'} = factor sum_e held_{e,c} moved_{e,c'}`.
-    fn fill_normal(&self, factor: f64, block: &mut [f64]) {
+    fn fill_normal(&self, factor: f64, wanted: impl Fn(usize) -> Range<usize>, block: &mut [f64]) {
         for (c, row) in block.chunks_exact_mut(self.n_coefficients).enumerate() {
-            for (other, entry) in row.iter_mut().enumerate() {
-                *entry = factor * dot(self.events(&self.held, c), self.events(&self.moved, other));
+            for other in wanted(c) {
+                row[other] =
+                    factor * dot(self.events(&self.held, c), self.events(&self.moved, other));
             }
         }
     }
@@ -398,8 +426,8 @@ impl ClipSums {
     /// `by_tangential = tangential_factor W`, `by_normal = normal_factor V`.
     fn fill_tangential(
         &self,
-        tangential_factor: f64,
-        normal_factor: f64,
+        [tangential_factor, normal_factor]: [f64; 2],
+        wanted: impl Fn(usize) -> Range<usize>,
         by_tangential: &mut [f64],
         by_normal: &mut [f64],
     ) {
@@ -410,8 +438,9 @@ impl ClipSums {
                 self.events(&self.held_signed, c),
             ];
             // Two columns at a time; an odd last one is paired with itself.
-            for first in (0..n).step_by(2) {
-                let second = (first + 1).min(n - 1);
+            let others = wanted(c);
+            for first in others.clone().step_by(2) {
+                let second = (first + 1).min(others.end - 1);
                 let moved = [
                     self.events(&self.moved, first),
                     self.events(&self.moved, second),

@@ -15,7 +15,9 @@ use std::sync::Arc;
 
 use super::structure::{ContactStiffnessMatrix, Structure};
 use super::{ContactInterface, HarmonicTransform, PairHarmonics, PairJacobian};
-use crate::linalg::{Complex64, Matrix, add_times_vector, add_transpose_times_vector};
+use crate::linalg::{
+    Complex64, Matrix, add_times, add_times_vector, add_transpose_times, add_transpose_times_vector,
+};
 use crate::response::friction::PairParameters;
 
 /// One harmonic of the set: its number, and the structure it lives in.
@@ -43,6 +45,9 @@ pub struct HarmonicSystem {
     pub(super) transform: Arc<HarmonicTransform>,
     /// Number of contact rows over all sectors.
     rows: usize,
+    /// Whether all harmonics have the same real matrices, those of a wheel: the unknowns are then one matrix
+    /// with a column per real coefficient.
+    shared: bool,
     /// Drift of the ring along its rigid motions, m per period.
     ring_drift_m: [f64; 2],
 }
@@ -69,8 +74,11 @@ pub struct SystemWorkspace {
     pair_output: Vec<f64>,
     pub(super) jacobians: Vec<PairJacobian>,
     pub(super) active: Vec<bool>,
-    /// Contact rows of the active pairs, then `G C` of them.
+    /// Whether a pair separates.
+    pub(super) separated: bool,
+    /// Contact rows of the active pairs; those of them that have a correction; then `dG/dd C`.
     pub(super) active_rows: Vec<f64>,
+    pub(super) left_rows: Vec<f64>,
     pub(super) loaded_rows: Vec<f64>,
 }
 
@@ -103,6 +111,11 @@ impl HarmonicSystem {
         }
         let force_norm = force.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
         let rows = blocks[0].structure.contact().real.rows();
+        let shared = blocks.iter().all(|block| {
+            Arc::ptr_eq(&block.structure, &blocks[0].structure)
+                && block.structure.contact().imaginary.is_none()
+                && block.stuck.imaginary.is_none()
+        });
         Self {
             blocks,
             start,
@@ -112,6 +125,7 @@ impl HarmonicSystem {
             interface,
             transform,
             rows,
+            shared,
             ring_drift_m: [0.0; 2],
         }
     }
@@ -230,9 +244,18 @@ impl HarmonicSystem {
             pair_output: vec![0.0; 3 * coefficients],
             jacobians: vec![PairJacobian::new(coefficients); pairs],
             active: vec![false; pairs],
+            separated: false,
             active_rows: vec![0.0; self.rows * largest],
+            left_rows: vec![0.0; self.rows * largest],
             loaded_rows: vec![0.0; self.rows * largest],
         }
+    }
+
+    /// [`Self::workspace`] for derivatives of every harmonic by itself, see [`PairHarmonics::decouple`].
+    pub(super) fn decoupled_workspace(&self) -> SystemWorkspace {
+        let mut workspace = self.workspace();
+        workspace.pairs.decouple();
+        workspace
     }
 
     /// Residual at `x` into `residual`; returns its norm relative to the excitation and the
@@ -264,6 +287,11 @@ impl HarmonicSystem {
     /// `(Z + C^H k_c C) x - f` of every harmonic.
     fn linear_part(&self, omega: f64, x: &[f64], residual: &mut [f64]) {
         residual.fill(0.0);
+        if self.shared {
+            let n = self.blocks[0].structure.size();
+            let stuck = self.blocks[0].stuck.real.as_slice();
+            add_times(residual, stuck, x, (n, x.len() / n.max(1), n));
+        }
         let fundamental = self.fundamental();
         for (index, block) in self.blocks.iter().enumerate() {
             let n = block.structure.size();
@@ -272,7 +300,9 @@ impl HarmonicSystem {
             let k_omega = f64::from(block.harmonic) * omega;
             let stuck = &block.stuck;
             if block.harmonic == 0 {
-                add_times_vector(r, 1.0, stuck.real.as_slice(), x);
+                if !self.shared {
+                    add_times_vector(r, 1.0, stuck.real.as_slice(), x);
+                }
                 for (mode, lambda) in block.structure.eigenvalues().iter().enumerate() {
                     r[mode] += lambda * x[mode];
                 }
@@ -280,8 +310,10 @@ impl HarmonicSystem {
             }
             let (x_real, x_imaginary) = x.split_at(n);
             let (r_real, r_imaginary) = r.split_at_mut(n);
-            add_times_vector(r_real, 1.0, stuck.real.as_slice(), x_real);
-            add_times_vector(r_imaginary, 1.0, stuck.real.as_slice(), x_imaginary);
+            if !self.shared {
+                add_times_vector(r_real, 1.0, stuck.real.as_slice(), x_real);
+                add_times_vector(r_imaginary, 1.0, stuck.real.as_slice(), x_imaginary);
+            }
             if let Some(imaginary) = &stuck.imaginary {
                 add_times_vector(r_real, -1.0, imaginary.as_slice(), x_imaginary);
                 add_times_vector(r_imaginary, 1.0, imaginary.as_slice(), x_real);
@@ -307,6 +339,12 @@ impl HarmonicSystem {
     /// Coefficients of `C x`.
     fn contact_displacement(&self, x: &[f64], displacement: &mut [f64]) {
         displacement.fill(0.0);
+        if self.shared {
+            let rows = &self.blocks[0].structure.contact().real;
+            let size = (rows.rows(), x.len() / rows.columns().max(1), rows.columns());
+            add_times(displacement, rows.as_slice(), x, size);
+            return;
+        }
         for link in self.links() {
             let x = &x[link.unknown..link.unknown + link.size];
             let d = &mut displacement[link.coefficient * self.rows..][..self.rows];
@@ -316,6 +354,13 @@ impl HarmonicSystem {
 
     /// `residual += C^H G`.
     fn add_contact_force(&self, correction: &[f64], residual: &mut [f64]) {
+        if self.shared {
+            let rows = &self.blocks[0].structure.contact().real;
+            let (n, count) = (rows.columns(), residual.len() / rows.columns().max(1));
+            let size = (n, count, rows.rows());
+            add_transpose_times(residual, n, 1.0, rows.as_slice(), correction, size);
+            return;
+        }
         for link in self.links() {
             let r = &mut residual[link.unknown..link.unknown + link.size];
             let g = &correction[link.coefficient * self.rows..][..self.rows];
@@ -415,6 +460,7 @@ impl HarmonicSystem {
                 }
             }
         }
+        workspace.separated = separated > 0;
         ContactShares {
             slipping: slipping as f64 / count as f64,
             separated: separated as f64 / count as f64,
