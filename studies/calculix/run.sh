@@ -28,7 +28,7 @@ python3 "$here/prepare.py" ring.gmsh.inp ring.inc RING_HOLD=first:RING-RING_LOW-
 for body in blisk ring; do
     "$blisk" import wheel_rest.toml --equations $body >"${body}_equations.inc"
 done
-for job in blisk_rest blade_rest ring_rest blisk_speed blade_speed ring_speed \
+for job in blisk_rest blade_rest ring_rest blisk_speed ring_speed \
     blisk_cyclic_rest ring_cyclic_rest blisk_cyclic_speed ring_cyclic_speed; do
     echo "ccx $job"
     ccx "$job" >"$job.log" 2>&1
