@@ -71,11 +71,7 @@ fn a_wheel_of_calculix_goes_from_its_files_to_results() {
         std::fs::read_to_string(place.path("bundle/frequencies.csv")).expect("written");
     assert_eq!(frequencies.lines().count(), 1 + 13 * 3);
     let ended = place.run(&["run", "study.toml", "--out", "results"]);
-    assert_eq!(
-        ended.code, 5,
-        "too few patterns for percentiles: {}",
-        ended.stderr
-    );
+    assert_eq!(ended.code, 0, "{}", ended.stderr);
     assert!(
         ended.stdout.contains("6 rows ok, 0 failed"),
         "{}",
