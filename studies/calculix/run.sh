@@ -20,7 +20,7 @@ cd "$folder"
 
 order=${ORDER:-2}
 for body in blisk ring; do
-    gmsh -3 "$here/$body.geo" -setnumber order "$order" -setnumber match "${MATCH:-1}" -o "$body.gmsh.inp" >"$body.gmsh.log"
+    gmsh -3 "$here/$body.geo" -setnumber order "$order" -o "$body.gmsh.inp" >"$body.gmsh.log"
 done
 python3 "$here/prepare.py" blisk.gmsh.inp blisk.inc BORE_MASTER=BORE-LOW
 python3 "$here/prepare.py" ring.gmsh.inp ring.inc RING_HOLD=first:RING-RING_LOW-RING_HIGH
