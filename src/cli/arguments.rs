@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use super::compare::CompareArguments;
+use super::estimate::EstimateArguments;
 use super::fidelity::FidelityArguments;
 use super::import::ImportArguments;
 use super::merge::MergeArguments;
@@ -177,6 +178,8 @@ pub enum Command {
     Compare(CompareArguments),
     /// Search for the normal load with the lowest percentile, on the same patterns at every load.
     Optimum(OptimumArguments),
+    /// Mean and percentiles from few solves: a cheap surrogate of every pattern says which to solve.
+    Estimate(EstimateArguments),
     /// Show the statistics of a results folder again, from its tables.
     Stats(StatsArguments),
 }

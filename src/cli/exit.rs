@@ -69,6 +69,7 @@ impl From<&PipelineError> for ExitStatus {
             | PipelineError::NoRow { .. }
             | PipelineError::NoScenario { .. }
             | PipelineError::NoOptimum { .. }
+            | PipelineError::NoEstimate { .. }
             | PipelineError::NoTimeDomain { .. }
             | PipelineError::NoContact { .. } => Self::Usage,
             PipelineError::Threads { .. } => Self::InternalError,

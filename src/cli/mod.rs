@@ -3,6 +3,7 @@
 mod arguments;
 mod check;
 mod compare;
+mod estimate;
 mod exit;
 mod fidelity;
 mod import;

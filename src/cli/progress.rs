@@ -90,6 +90,7 @@ impl Progress for RunProgress {
             Stage::LoadModel => "loading the model",
             Stage::Reduce => "reducing the model",
             Stage::Tuned => "solving the tuned wheel",
+            Stage::Surrogates => "finding the surrogates",
             Stage::Rows => "solving the patterns",
             Stage::Tables => "writing the tables",
         };

@@ -149,6 +149,22 @@ impl ReducedModel {
         self.contact.row_count()
     }
 
+    /// Bytes of its matrices.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        let complex = |entries: usize| 16 * entries;
+        let diameters: usize = self
+            .nodal_diameters
+            .iter()
+            .map(|nd| {
+                8 * nd.eigenvalues.len()
+                    + complex(nd.contact.as_slice().len() + nd.observed.as_slice().len())
+                    + complex(2 * nd.eigenvalues.len())
+            })
+            .sum();
+        diameters + 8 * self.blade_gram.as_slice().len()
+    }
+
     /// The travelling wave of a nodal diameter: contact, observation and force of one sector.
     #[must_use]
     pub fn wave(&self, nodal_diameter: NodalDiameter) -> ReducedNodalDiameter {

@@ -2,6 +2,7 @@
 
 mod comparison;
 mod comparison_text;
+mod estimate;
 mod model_report;
 mod optimum;
 mod peak_audit;
@@ -18,6 +19,7 @@ pub use comparison::{
     BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet, QuantityComparison,
     ScenarioComparison,
 };
+pub use estimate::{EstimateReport, QuantityEstimate, ScenarioEstimate};
 pub use model_report::{ModelReport, NodalDiameterFacts};
 pub use optimum::OptimumReport;
 pub use peak_audit::PeakAuditReport;

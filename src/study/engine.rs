@@ -14,6 +14,9 @@ use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
 use crate::response::time_integration::{PointComparison, TimeOptions};
 
+/// Approximate peak amplitude of a pattern, m.
+pub type SurrogateOf<'a> = Box<dyn Fn(&Pattern) -> Option<f64> + Send + Sync + 'a>;
+
 /// A reduced model with the settings of a study, ready to be solved; shared between threads.
 pub trait Engine: Send + Sync {
     /// Sizes, frequencies, rank and condition of the reduced model.
@@ -42,6 +45,16 @@ pub trait Engine: Send + Sync {
         pattern: &Pattern,
         scenarios: &[(&Scenario, &TunedReference)],
     ) -> Vec<ResponseRow>;
+
+    /// The approximate peak amplitude, m, of any pattern under a scenario: cheap, for ranking
+    /// alone; none where there is no such thing.
+    fn surrogate<'a>(
+        &'a self,
+        _scenario: &Scenario,
+        _tuned: &TunedReference,
+    ) -> Option<SurrogateOf<'a>> {
+        None
+    }
 
     /// Where the linear limits of a row say that its peak can lie. `tuned_hz` is the frequency of
     /// the tuned peak.

@@ -6,6 +6,7 @@ mod contact_displacement;
 mod digest;
 mod engine;
 mod error;
+mod estimate;
 mod fixed_interface;
 mod folder_status;
 mod full_model;
@@ -47,8 +48,9 @@ mod verify;
 
 pub use compare::{CompareRequest, compare};
 pub use digest::StudyDigest;
-pub use engine::{Engine, EngineSource};
+pub use engine::{Engine, EngineSource, SurrogateOf};
 pub use error::{Finding, Problem, StudyError};
+pub use estimate::{EstimateRequest, estimate};
 pub use folder_status::{FolderStatus, Work, status_of_folder};
 pub use full_model::{FullModel, FullRow, FullSettings};
 pub use lock::LockHolder;

@@ -30,6 +30,8 @@ pub enum Stage {
     Reduce,
     /// Solving the tuned wheel of every scenario.
     Tuned,
+    /// Finding the surrogate of every pattern.
+    Surrogates,
     /// Solving the patterns.
     Rows,
     /// Joining parts and writing tables.
@@ -356,7 +358,7 @@ impl Job<'_> {
 }
 
 /// The listener as the one that stops the solution of rows.
-struct Stop<'a>(&'a dyn Progress);
+pub(super) struct Stop<'a>(pub(super) &'a dyn Progress);
 
 impl Interruption for Stop<'_> {
     fn requested(&self) -> bool {

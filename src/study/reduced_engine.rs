@@ -11,7 +11,7 @@ use super::basis_choice::{
 };
 use super::fixed_interface::{FixedInterface, reduce_sector};
 use super::harmonic_choice::{choose_harmonics, with_separation};
-use super::{Engine, EngineSource, MistuningSource, PipelineError, Study};
+use super::{Engine, EngineSource, MistuningSource, PipelineError, Study, SurrogateOf};
 use crate::model::reduction::{Basis, BasisChoice, ContactStiffness, Reduction, ReductionOptions};
 use crate::model::sector::SectorModel;
 use crate::model::{ReducedModel, read_cached, reduction_digest, write_cached};
@@ -157,7 +157,7 @@ impl Engine for ReducedEngine {
             craig_bampton_error: self.fixed_interface.error,
             craig_bampton_reach,
             warnings: summary.warnings(),
-            memory_bytes: memory_bytes(model),
+            memory_bytes: model.memory_bytes(),
             digest: self.digest.clone(),
             nodal_diameters: model
                 .report
@@ -230,6 +230,15 @@ impl Engine for ReducedEngine {
         scenarios: &[(&Scenario, &TunedReference)],
     ) -> Vec<ResponseRow> {
         self.solver.rows(pattern, scenarios)
+    }
+
+    fn surrogate<'a>(
+        &'a self,
+        scenario: &Scenario,
+        tuned: &TunedReference,
+    ) -> Option<SurrogateOf<'a>> {
+        let surrogate = self.solver.surrogate(scenario, tuned)?;
+        Some(Box::new(move |pattern| surrogate.peak_amplitude_m(pattern)))
     }
 
     fn search_plan(
@@ -482,18 +491,4 @@ fn models_digest(stored: &Stored) -> String {
         add(&beyond.model, beyond.basis_error);
     }
     hasher.finalize().to_hex().to_string()
-}
-
-fn memory_bytes(model: &ReducedModel) -> usize {
-    let complex = |entries: usize| 16 * entries;
-    let diameters: usize = model
-        .nodal_diameters
-        .iter()
-        .map(|nd| {
-            8 * nd.eigenvalues.len()
-                + complex(nd.contact.as_slice().len() + nd.observed.as_slice().len())
-                + complex(2 * nd.eigenvalues.len())
-        })
-        .sum();
-    diameters + 8 * model.blade_gram.as_slice().len()
 }

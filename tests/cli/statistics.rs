@@ -450,3 +450,66 @@ fn a_search_that_cannot_be_made_is_refused() {
         turned.stderr
     );
 }
+
+#[test]
+fn an_estimate_solves_few_rows_is_the_same_for_any_threads_and_continues() {
+    let place = Place::with(&two_loads().replace("patterns = 100", "patterns = 400"));
+    let estimate = |out: &str, threads: &str, solves: &str| {
+        place.run(&[
+            "estimate",
+            "study.toml",
+            "--target",
+            "90",
+            "--solves",
+            solves,
+            "--out",
+            out,
+            "--threads",
+            threads,
+            "--json",
+        ])
+    };
+    let first = estimate("results/one", "1", "100");
+    assert_eq!(first.code, 0, "{}", first.stderr);
+    let report: serde_json::Value = serde_json::from_str(&first.stdout).expect("JSON");
+    assert_eq!(report["patterns"], 400);
+    for scenario in report["scenarios"].as_array().expect("a list") {
+        assert!(scenario["rows"]["planned"].as_u64().expect("a count") <= 100);
+        for quantity in scenario["quantities"].as_array().expect("a list") {
+            assert!(quantity["mean"]["value"].as_f64() > Some(0.0));
+            for percentile in quantity["percentiles"].as_array().expect("a list") {
+                if let Some(value) = percentile["value"].as_f64() {
+                    assert!(percentile["lower"].as_f64() <= Some(value));
+                    assert!(percentile["upper"].as_f64() >= Some(value));
+                }
+            }
+        }
+    }
+    let second = estimate("results/two", "3", "100");
+    assert_eq!(second.stdout, first.stdout);
+    let bytes =
+        |folder: &str| std::fs::read(place.path(folder).join("sample.parquet")).expect("a table");
+    assert_eq!(bytes("results/one"), bytes("results/two"));
+    // More solves take the rows that are there, and come to what they would have alone.
+    let more = estimate("results/one", "2", "160");
+    assert_eq!(more.code, 0, "{}", more.stderr);
+    assert_eq!(estimate("results/three", "2", "160").stdout, more.stdout);
+    let refused = estimate("results/four", "1", "20");
+    assert_eq!(refused.code, 2);
+    assert!(refused.stderr.contains("at least 60"), "{}", refused.stderr);
+    let text = place.run(&[
+        "estimate",
+        "study.toml",
+        "--target",
+        "mean",
+        "--solves",
+        "100",
+        "--out",
+        "results/one",
+    ]);
+    assert!(
+        text.stdout.contains("simple random sample"),
+        "{}",
+        text.stdout
+    );
+}

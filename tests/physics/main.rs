@@ -20,5 +20,6 @@ mod reduction;
 mod reference;
 mod sector_sources;
 mod separation;
+mod surrogate;
 mod time_integration;
 mod wheels;

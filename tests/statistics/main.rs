@@ -5,6 +5,7 @@ mod comparison_cases;
 mod coverage;
 mod laws;
 mod main_effects;
+mod multi_fidelity;
 mod order_statistics;
 mod patterns;
 mod summary;

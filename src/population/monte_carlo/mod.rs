@@ -9,6 +9,7 @@ mod row;
 mod row_solver;
 mod scenario;
 mod sink;
+mod surrogate;
 mod time_domain;
 
 pub use blocks::{PatternBlock, StoredRows, block_size, plan_blocks};
@@ -19,3 +20,4 @@ pub use row::{ResponseRow, TunedReference};
 pub use row_solver::{RowSettings, RowSolver, amplification_factor, harmonics_name};
 pub use scenario::Scenario;
 pub use sink::{MemorySink, RowSink};
+pub use surrogate::Surrogate;

@@ -1,6 +1,7 @@
 //! Accounting by status, moments, order statistics with distribution-free intervals, tail fits.
 
 mod accounting;
+mod beta_law;
 mod binomial;
 mod comparison;
 mod distribution_band;
@@ -18,6 +19,8 @@ mod sample;
 mod scenario;
 mod stopping;
 mod tail_fit;
+mod two_phase_design;
+mod two_phase_estimate;
 
 pub use accounting::Accounting;
 pub use binomial::{proportion_interval, proportion_upper_bound};
@@ -46,3 +49,5 @@ pub use stopping::{
 pub use tail_fit::{
     Estimate, TAIL_PERCENTILES, TailFit, TailLaw, TailParameters, TailPercentile, fit_tails,
 };
+pub use two_phase_design::{Allocation, EstimateTarget, Population, SamplingMethod};
+pub use two_phase_estimate::{MeanEstimate, StratumSample, TwoPhasePercentile, TwoPhaseSample};

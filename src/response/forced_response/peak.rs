@@ -12,9 +12,6 @@ use crate::response::harmonic_balance::Status;
 
 /// Tolerance of peaks of linear limits, which cost almost nothing.
 const LINEAR_PEAK_TOLERANCE: f64 = 4e-11;
-/// Residual, over the excitation and the tolerance of the peak, to which the points of a search are solved; the
-/// peak itself is then solved to the tolerance of the residual.
-const SEARCH_RESIDUAL: f64 = 1e-3;
 /// Largest number of points of one row.
 const EVALUATIONS: usize = 1500;
 /// Starting points between the dominant stuck and slide peaks.
@@ -188,7 +185,6 @@ pub fn peak(
         extensions: plan.extensions,
     };
     let mut solver = PointSolver::new(excited, condition, settings);
-    solver.accept(SEARCH_RESIDUAL * peak_tolerance);
     let result = find_peak(
         plan.band_hz,
         &plan.starts_hz,
@@ -224,12 +220,6 @@ pub fn peak(
     let cliff = result
         .best
         .is_some_and(|best| falls_off(&result.samples, best, plan.envelope));
-    let point = match (status, point) {
-        (Status::Ok, Some(point)) => solver.converge(point).map(Some),
-        (_, point) => Ok(point),
-    };
-    let status = point.as_ref().err().copied().unwrap_or(status);
-    let point = point.unwrap_or(None);
     let higher = match (status, &point) {
         (Status::Ok, Some(point)) if cliff => {
             solver.over_folds(point, search.tolerance, plan.extensions > 0)

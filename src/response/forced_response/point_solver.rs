@@ -9,8 +9,8 @@ use super::point_settings::PointSettings;
 use crate::linalg::{Complex64, LuWorkspace};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{
-    ContactInterface, ContactShares, HarmonicSystem, NewtonBounds, NewtonWorkspace, Status,
-    Structure, linear_response, solve, solve_creeping,
+    ContactInterface, ContactShares, HarmonicSystem, NewtonWorkspace, Status, Structure,
+    linear_response, solve, solve_creeping,
 };
 
 /// Work done for a row.
@@ -77,8 +77,6 @@ pub struct PointSolver<'a> {
     points: Vec<Point>,
     failures: Vec<(f64, Status)>,
     pub(super) work: Work,
-    /// Bound on the residual of the points solved next, relative to the excitation.
-    residual_tolerance: f64,
 }
 
 impl<'a> PointSolver<'a> {
@@ -120,7 +118,6 @@ impl<'a> PointSolver<'a> {
             points: Vec::new(),
             failures: Vec::new(),
             work: Work::default(),
-            residual_tolerance: settings.bounds.residual_tolerance,
         }
     }
 
@@ -148,6 +145,14 @@ impl<'a> PointSolver<'a> {
         let (system, workspace) = self.nonlinear.as_mut()?;
         system.set_ring_drift(point.ring_drift_m);
         Some(system.mean_friction_n(&point.solution, workspace.system_mut()))
+    }
+
+    /// Equivalent linear spring of every contact row at a point of this solver, N/m, see
+    /// [`HarmonicSystem::equivalent_springs`]; none for a linear limit.
+    pub fn equivalent_springs(&mut self, point: &Point) -> Option<Vec<Complex64>> {
+        let (system, workspace) = self.nonlinear.as_mut()?;
+        system.set_ring_drift(point.ring_drift_m);
+        Some(system.equivalent_springs(&point.solution, workspace.system_mut()))
     }
 
     /// The nonlinear equation that `point` solves, with its buffers; none for a linear limit.
@@ -180,24 +185,6 @@ impl<'a> PointSolver<'a> {
                 Err(status)
             }
         }
-    }
-
-    /// Accepts points from now on whose residual is at most `tolerance` of the excitation, or that of the
-    /// settings, if it is larger.
-    pub(super) fn accept(&mut self, tolerance: f64) {
-        self.residual_tolerance = tolerance.max(self.settings.bounds.residual_tolerance);
-    }
-
-    /// The point at a frequency solved before, to the tolerance of the settings.
-    ///
-    /// # Errors
-    /// As [`Self::solve`].
-    pub(super) fn converge(&mut self, point: Point) -> Result<Point, Status> {
-        self.accept(0.0);
-        if self.nonlinear.is_none() || point.residual <= self.residual_tolerance {
-            return Ok(point);
-        }
-        self.solve(point.frequency_hz).cloned()
     }
 
     fn solve_linear(&mut self, frequency_hz: f64) -> Result<Point, Status> {
@@ -354,10 +341,7 @@ impl<'a> PointSolver<'a> {
         };
         let mut x = start;
         let omega = TAU * frequency_hz;
-        let bounds = NewtonBounds {
-            residual_tolerance: self.residual_tolerance,
-            ..self.settings.bounds
-        };
+        let bounds = self.settings.bounds;
         let (outcome, ring_drift_m) = if let Some(other) = other {
             // On the way the ring is locked.
             (solve(other, omega, &mut x, bounds, workspace), [0.0; 2])

@@ -5,12 +5,29 @@ use super::anderson::Anderson;
 use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
 use crate::linalg::LuWorkspace;
 
-/// A Jacobian is kept where the step became at most this share of the one before,
-const KEPT_BY_ONE_STEP: f64 = 0.75;
-/// or of the one before that: accelerated steps do not shrink evenly.
-const KEPT_BY_TWO_STEPS: f64 = 0.64;
-/// A step with a kept Jacobian is taken where the next one is at most so much longer.
-const LONGER: f64 = 1.2;
+/// When a Jacobian serves on: by the length of a simplified step over that of an earlier one.
+#[derive(Clone, Copy)]
+struct Serves {
+    /// At most, over the step before,
+    one_step: f64,
+    /// or over the one before that: accelerated steps do not shrink evenly.
+    two_steps: f64,
+    /// The step before is taken up to this.
+    longer: f64,
+}
+
+/// Of simplified steps by themselves.
+const PLAIN: Serves = Serves {
+    one_step: 0.6,
+    two_steps: 0.0,
+    longer: 0.75,
+};
+/// Of accelerated ones.
+const ACCELERATED: Serves = Serves {
+    one_step: 0.75,
+    two_steps: 0.64,
+    longer: 1.2,
+};
 
 /// Earlier iterates that the acceleration combines.
 const DEPTH: usize = 16;
@@ -52,7 +69,7 @@ pub(super) struct NewtonBuffers {
     step: Vec<f64>,
     trial: Vec<f64>,
     trial_step: Vec<f64>,
-    acceleration: Anderson,
+    acceleration: Option<Anderson>,
 }
 
 impl NewtonBuffers {
@@ -63,7 +80,15 @@ impl NewtonBuffers {
             step: vec![0.0; n],
             trial: vec![0.0; n],
             trial_step: vec![0.0; n],
-            acceleration: Anderson::new(n, DEPTH),
+            acceleration: None,
+        }
+    }
+
+    /// The same with room to accelerate simplified steps.
+    fn accelerated(n: usize) -> Self {
+        Self {
+            acceleration: Some(Anderson::new(n, DEPTH)),
+            ..Self::new(n)
         }
     }
 }
@@ -86,7 +111,7 @@ impl NewtonWorkspace {
             system: system.workspace(),
             jacobian: LuWorkspace::new(n),
             factored: false,
-            buffers: NewtonBuffers::new(n),
+            buffers: NewtonBuffers::accelerated(n),
         }
     }
 
@@ -167,8 +192,8 @@ pub fn solve(
 /// Methods for Nonlinear Problems, section 3.3): a damped step is taken where the next simplified
 /// step `-J^-1 R(u + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual
 /// itself this does not depend on how the equations are scaled, and contact forces are far from
-/// well scaled. While the simplified steps become shorter the Jacobian is kept and they are combined
-/// by Anderson's acceleration: they tend to what a renewed Jacobian would say, at a fraction of its cost.
+/// well scaled. While the simplified steps become shorter the Jacobian is kept. With room for it they are
+/// combined by Anderson's acceleration: they tend to what a renewed Jacobian would say, at a fraction of its cost.
 pub(super) fn iterate(
     equation: &mut impl Equation,
     u: &mut Vec<f64>,
@@ -182,7 +207,10 @@ pub(super) fn iterate(
         trial_step,
         acceleration,
     } = buffers;
-    acceleration.begin();
+    let serves = acceleration.as_mut().map_or(PLAIN, |acceleration| {
+        acceleration.begin();
+        ACCELERATED
+    });
     let (first, shares) = equation.residual(u, residual);
     let mut state = NewtonOutcome {
         status: Status::IterationLimit,
@@ -211,24 +239,31 @@ pub(super) fn iterate(
             }
             state.factorisations += 1;
             negative_step(equation, residual, step);
-            acceleration.begin();
+            if let Some(acceleration) = acceleration {
+                acceleration.begin();
+            }
             before_last = 0.0;
         }
         state.iterations += 1;
         let length = norm_of(step);
-        acceleration.next(u, step, trial);
+        match acceleration {
+            Some(acceleration) => acceleration.next(u, step, trial),
+            None => add_scaled(trial, u, 1.0, step),
+        }
         let halvings = if kept { 0 } else { bounds.halvings };
         let accepted = (0..=halvings).find_map(|halving| {
             let factor = 0.5_f64.powi(halving as i32);
             if halving > 0 {
-                for ((t, u), s) in trial.iter_mut().zip(u.iter()).zip(step.iter()) {
-                    *t = u + factor * s;
-                }
+                add_scaled(trial, u, factor, step);
             }
             let (norm, shares) = equation.residual(trial, residual);
             negative_step(equation, residual, trial_step);
             let contraction = norm_of(trial_step) / length;
-            let bound = if kept { LONGER } else { 1.0 - 0.25 * factor };
+            let bound = if kept {
+                serves.longer
+            } else {
+                1.0 - 0.25 * factor
+            };
             let monotone = contraction <= bound;
             (monotone || norm <= bounds.residual_tolerance).then_some((norm, shares, contraction))
         });
@@ -236,8 +271,8 @@ pub(super) fn iterate(
             Some((norm, shares, contraction)) => {
                 std::mem::swap(u, trial);
                 (state.residual, state.shares) = (norm, shares);
-                kept = contraction <= KEPT_BY_ONE_STEP
-                    || contraction * length <= KEPT_BY_TWO_STEPS * before_last;
+                kept = contraction <= serves.one_step
+                    || contraction * length <= serves.two_steps * before_last;
                 before_last = length;
                 if kept {
                     std::mem::swap(step, trial_step);
@@ -256,6 +291,13 @@ fn negative_step(equation: &mut impl Equation, residual: &[f64], step: &mut [f64
     equation.step(step);
     for step in step {
         *step = -*step;
+    }
+}
+
+/// `sum = u + factor step`.
+fn add_scaled(sum: &mut [f64], u: &[f64], factor: f64, step: &[f64]) {
+    for ((sum, u), s) in sum.iter_mut().zip(u).zip(step) {
+        *sum = u + factor * s;
     }
 }
 

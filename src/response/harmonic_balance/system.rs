@@ -68,8 +68,8 @@ pub struct ContactShares {
 pub struct SystemWorkspace {
     pairs: PairHarmonics,
     /// Displacement and correction at the contact rows, coefficient after coefficient (`n_coefficients x rows`).
-    displacement: Vec<f64>,
-    correction: Vec<f64>,
+    pub(super) displacement: Vec<f64>,
+    pub(super) correction: Vec<f64>,
     pair_input: Vec<f64>,
     pair_output: Vec<f64>,
     pub(super) jacobians: Vec<PairJacobian>,
@@ -113,6 +113,7 @@ impl HarmonicSystem {
         let rows = blocks[0].structure.contact().real.rows();
         let shared = blocks.iter().all(|block| {
             Arc::ptr_eq(&block.structure, &blocks[0].structure)
+                && Arc::ptr_eq(&block.stuck, &blocks[0].stuck)
                 && block.structure.contact().imaginary.is_none()
                 && block.stuck.imaginary.is_none()
         });
@@ -167,38 +168,6 @@ impl HarmonicSystem {
     #[must_use]
     pub fn force_norm(&self) -> f64 {
         self.force_norm
-    }
-
-    /// The same system under another normal load per pair.
-    #[must_use]
-    pub fn with_pairs(&self, pairs: Vec<PairParameters>) -> Self {
-        let mut system = self.clone();
-        system.interface.pairs = pairs;
-        system
-    }
-
-    /// The same system with all tangential contact springs multiplied by `factor`, in the law and in
-    /// the stuck base.
-    #[must_use]
-    pub fn with_tangential_stiffness(&self, factor: f64) -> Self {
-        let mut system = self.clone();
-        for pair in &mut system.interface.pairs {
-            pair.tangential_stiffness_n_per_m *= factor;
-        }
-        let springs = self.interface.stuck_springs(factor);
-        let mut renewed: Vec<(Arc<Structure>, Arc<ContactStiffnessMatrix>)> = Vec::new();
-        for block in &mut system.blocks {
-            let known = renewed
-                .iter()
-                .find(|(structure, _)| Arc::ptr_eq(structure, &block.structure));
-            let stuck = known.map_or_else(
-                || Arc::new(block.structure.contact_stiffness(&springs)),
-                |(_, stuck)| Arc::clone(stuck),
-            );
-            renewed.push((Arc::clone(&block.structure), Arc::clone(&stuck)));
-            block.stuck = stuck;
-        }
-        system
     }
 
     /// Pair parameters of one sector, or of the whole wheel where sectors differ.
@@ -337,7 +306,7 @@ impl HarmonicSystem {
     }
 
     /// Coefficients of `C x`.
-    fn contact_displacement(&self, x: &[f64], displacement: &mut [f64]) {
+    pub(super) fn contact_displacement(&self, x: &[f64], displacement: &mut [f64]) {
         displacement.fill(0.0);
         if self.shared {
             let rows = &self.blocks[0].structure.contact().real;
@@ -424,7 +393,7 @@ impl HarmonicSystem {
     }
 
     /// The laws, pair by pair: displacement coefficients to correction coefficients.
-    fn contact_correction(
+    pub(super) fn contact_correction(
         &self,
         derivative: bool,
         workspace: &mut SystemWorkspace,

@@ -32,7 +32,7 @@ pub struct StructuralModes {
     pub eigenvalues: Vec<f64>,
     /// Eigenvalues of the tuned wheel in the tuned coordinates, (rad/s)^2.
     pub tuned_eigenvalues: Vec<f64>,
-    /// Tuned coordinates of each mode, orthogonal; none where they are the same.
+    /// Tuned coordinates of each mode, orthonormal columns; none where they are the same.
     pub rotation: Option<Matrix<f64>>,
     /// Relative motion at the contact rows, sector after sector.
     pub contact: ModalRows,
@@ -63,6 +63,38 @@ impl StructuralModes {
             tuned_eigenvalues: basis.eigenvalues().to_vec(),
             rotation: Some(rotation),
             sectors: basis.model().sectors,
+        })
+    }
+
+    /// The same with the wheel held to the motions `shapes` (orthonormal columns, in its coordinates):
+    /// the Rayleigh-Ritz modes of that space.
+    #[must_use]
+    pub fn of_subspace(
+        basis: &WheelBasis,
+        change: &Matrix<f64>,
+        shapes: &Matrix<f64>,
+    ) -> Option<Self> {
+        let scaled = Matrix::from_fn(shapes.rows(), shapes.columns(), |i, j| {
+            basis.eigenvalues()[i] * shapes[(i, j)]
+        });
+        let mut stiffness = shapes.adjoint_times(&change.times(shapes));
+        let tuned = shapes.adjoint_times(&scaled);
+        for (sum, &part) in stiffness.as_mut_slice().iter_mut().zip(tuned.as_slice()) {
+            *sum += part;
+        }
+        let (eigenvalues, rotation) = hermitian_eigen(&stiffness).ok()?;
+        let shapes = shapes.times(&rotation);
+        let rows = |rows: &Matrix<f64>| ModalRows {
+            real: rows.times(&shapes),
+            imaginary: None,
+        };
+        Some(Self {
+            contact: rows(basis.contact()),
+            observed: rows(basis.observed()),
+            eigenvalues,
+            tuned_eigenvalues: basis.eigenvalues().to_vec(),
+            sectors: basis.model().sectors,
+            rotation: Some(shapes),
         })
     }
 

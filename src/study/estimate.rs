@@ -1,0 +1,446 @@
+//! Mean and percentiles of a study from few solves: a surrogate of every pattern, a sample of rows.
+//!
+//! Rows are stored as those of a run are, so that an estimate that was interrupted, or that is to have
+//! more solves, continues. The sample of each scenario depends on the seed, the ids and the pilot
+//! alone.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+use rayon::ThreadPool;
+use rayon::prelude::*;
+
+use super::pipeline::{Clock, RowCounts, Stop, pool_of};
+use super::pipeline_rows::RowWork;
+use super::pipeline_tables::Facts;
+use super::results_folder::ResultsFolder;
+use super::{
+    Engine, EngineSource, MistuningSource, PipelineError, Progress, Stage, Study, StudyDigest,
+    load_sector_model, pattern_source,
+};
+use crate::population::monte_carlo::{
+    ResponseRow, Scenario, TunedReference, block_size, plan_blocks, solve_blocks,
+};
+use crate::population::statistics::{
+    Accounting, Allocation, EstimateTarget, Population, Quantity, SamplingMethod, StratumSample,
+    TwoPhasePercentile, TwoPhaseSample, percentile,
+};
+use crate::population::table::{
+    EstimateRow, MANIFEST, PartSink, RowSchema, RowStore, TableError, TableHeader, digest_file,
+    write_atomically, write_estimate_rows,
+};
+use crate::report::{EstimateReport, QuantityEstimate, ScenarioEstimate};
+use crate::response::mistuning::PatternSource;
+
+/// Fewest solves that an estimate is made of.
+const FEWEST_SOLVES: u32 = 60;
+/// Patterns whose surrogates are found between looks at whether to stop.
+const CHUNK: usize = 1024;
+/// Percentiles that are reported besides the target.
+const PERCENTS: [f64; 2] = [95.0, 99.0];
+
+/// What to estimate.
+#[derive(Debug, Clone, Copy)]
+pub struct EstimateRequest<'a> {
+    /// The study; its patterns are the population.
+    pub study: &'a Study,
+    /// Folder of the estimate.
+    pub results: &'a Path,
+    /// Patterns that are solved in each scenario at most.
+    pub solves: u32,
+    /// What they are to tell best.
+    pub target: EstimateTarget,
+    /// Number of threads.
+    pub threads: usize,
+}
+
+/// Estimates as `request` says, and writes `sample.parquet`, `estimate.json` and `summary.txt`.
+///
+/// # Errors
+/// Too few solves or patterns, the folder holds something else, or a stage failed; what is stored stays
+/// stored, and the same call continues.
+pub fn estimate(
+    request: EstimateRequest<'_>,
+    source: &dyn EngineSource,
+    progress: &dyn Progress,
+) -> Result<EstimateReport, PipelineError> {
+    refuse(&request)?;
+    let EstimateRequest { study, results, .. } = request;
+    let clock = Clock::start();
+    let digest = StudyDigest::of(study)?;
+    let mut folder = ResultsFolder::open(results)?;
+    if let Some(holder) = folder.broken_off() {
+        progress.taken_over(&holder.to_string());
+    }
+    progress.stage(Stage::LoadModel);
+    let model = load_sector_model(study)?;
+    let patterns = pattern_source(study, &model)?;
+    let pool = pool_of(request.threads)?;
+    progress.stage(Stage::Reduce);
+    let engine = pool.install(|| source.build(study, &model, Some(&results.join("model"))))?;
+    progress.stage(Stage::Tuned);
+    let facts = pool.install(|| Facts::solve(engine.as_ref(), study, &digest));
+    let work = Work {
+        request,
+        engine: engine.as_ref(),
+        patterns: &patterns,
+        ids: patterns.ids(),
+        pool: &pool,
+        header: TableHeader {
+            study_digest: digest.hex(),
+            compression: study.output.compression,
+        },
+        progress,
+    };
+    let mut rows = Vec::new();
+    let mut scenarios: Vec<ScenarioEstimate> = Vec::new();
+    for (scenario, tuned) in study.scenarios().iter().zip(&facts.tuned) {
+        let row_digest = &facts.row_digests[scenario.index];
+        let (found, solved) = work.scenario(scenario, tuned, row_digest, &mut folder)?;
+        scenarios.push(found);
+        rows.extend(solved);
+    }
+    progress.stage(Stage::Tables);
+    let table = results.join("sample.parquet");
+    write_estimate_rows(&table, &rows, &work.header)?;
+    let counts = RowCounts {
+        solved: scenarios.iter().map(|found| found.rows.planned()).sum(),
+        reused: 0,
+    };
+    let report = EstimateReport {
+        name: study.name.clone(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        study_digest: digest.hex(),
+        seed: study.seed,
+        patterns: work.ids.len() as u64,
+        solves: u64::from(request.solves),
+        target: request.target,
+        study: study.resolved(),
+        inputs: digest.inputs.clone(),
+        reduction: facts.reduction,
+        chosen: facts.chosen,
+        sample_digest: digest_file(&table).map_err(|source| TableError::Io {
+            action: "read",
+            path: table.clone(),
+            source,
+        })?,
+        scenarios,
+    };
+    let json = serde_json::to_string_pretty(&report).map_err(|error| TableError::Encoding {
+        path: results.join("estimate.json"),
+        reason: error.to_string(),
+    })?;
+    write_atomically(&results.join("estimate.json"), json.as_bytes())?;
+    write_atomically(&results.join("summary.txt"), report.to_string().as_bytes())?;
+    clock
+        .record(&study.path, request.threads, counts, BTreeMap::new())
+        .write(results)?;
+    Ok(report)
+}
+
+/// What cannot be estimated.
+fn refuse(request: &EstimateRequest<'_>) -> Result<(), PipelineError> {
+    let (solves, patterns) = (request.solves, request.study.patterns);
+    let reason = if solves < FEWEST_SOLVES {
+        format!("{solves} solves are too few; accepted: --solves of at least {FEWEST_SOLVES}")
+    } else if solves > patterns {
+        format!(
+            "{solves} solves are more than the {patterns} patterns; accepted: --patterns of at least {solves}, best ten times as many"
+        )
+    } else if matches!(request.study.mistuning.source, MistuningSource::File { .. }) {
+        "the patterns of a file are no sample of a law; accepted: a study with [mistuning] distribution"
+            .to_owned()
+    } else if request.results.join(MANIFEST).exists() {
+        format!(
+            "{} holds the results of a run; accepted: --out with a folder of its own",
+            request.results.display()
+        )
+    } else {
+        return Ok(());
+    };
+    Err(PipelineError::NoEstimate { reason })
+}
+
+/// All that the estimate of a scenario needs.
+struct Work<'a> {
+    request: EstimateRequest<'a>,
+    engine: &'a dyn Engine,
+    patterns: &'a PatternSource,
+    ids: Vec<u32>,
+    pool: &'a ThreadPool,
+    header: TableHeader,
+    progress: &'a dyn Progress,
+}
+
+/// Solved rows by pattern.
+type Solved = BTreeMap<u32, ResponseRow>;
+
+impl Work<'_> {
+    /// The estimate of one scenario, and its rows.
+    fn scenario(
+        &self,
+        scenario: &Scenario,
+        tuned: &TunedReference,
+        row_digest: &str,
+        folder: &mut ResultsFolder,
+    ) -> Result<(ScenarioEstimate, Vec<EstimateRow>), PipelineError> {
+        let surrogates = self.surrogates(scenario, tuned)?;
+        let population = Population::new(
+            self.request.study.seed,
+            &self.ids,
+            &surrogates,
+            self.request.target,
+        );
+        // The rows are stored as those of a study with this scenario alone.
+        let only = Rows {
+            work: self,
+            schema: RowSchema {
+                scenarios: vec![Scenario {
+                    index: 0,
+                    ..*scenario
+                }],
+                row_digests: vec![row_digest.to_owned()],
+                header: self.header.clone(),
+            },
+            tuned: TunedReference {
+                scenario: 0,
+                ..tuned.clone()
+            },
+        };
+        let pilot = population.pilot(self.request.solves as usize);
+        let of_pilot = only.solve(pilot, folder)?;
+        let amplitudes: Vec<Option<f64>> = pilot
+            .iter()
+            .map(|&place| Quantity::PeakAmplitudeM.of(of_pilot.get(&self.ids[place])?))
+            .collect();
+        let allocation = population.allocate(self.request.solves as usize, &amplitudes);
+        let places = population.sample(&allocation);
+        let solved = only.solve(&places, folder)?;
+        let sample = Sample {
+            population: &population,
+            allocation: &allocation,
+            rows: places
+                .iter()
+                .filter_map(|&place| Some((place, solved.get(&self.ids[place])?)))
+                .collect(),
+            surrogates: &surrogates,
+        };
+        let in_pilot: BTreeSet<usize> = pilot.iter().copied().collect();
+        let rows = (0..self.ids.len())
+            .map(|place| EstimateRow {
+                scenario: *scenario,
+                pattern: self.ids[place],
+                surrogate_amplitude_m: surrogates[place],
+                stratum: sample.stratum(place),
+                inclusion_probability: sample.inclusion_probability(place),
+                pilot: in_pilot.contains(&place),
+                row: solved.get(&self.ids[place]).cloned(),
+            })
+            .collect();
+        let strata = sample.strata(Quantity::PeakAmplitudeM);
+        let of_amplitude = TwoPhaseSample::new(strata, None);
+        let found = ScenarioEstimate {
+            scenario: scenario.index,
+            contact: scenario.contact.name().to_owned(),
+            engine_order: scenario.engine_order,
+            normal_load_n: scenario.contact.normal_load_n(),
+            standard_deviation: scenario.standard_deviation,
+            tuned_amplitude_m: tuned.amplitude_m,
+            without_surrogate: surrogates.iter().filter(|value| value.is_none()).count() as u64,
+            pilot: pilot.len() as u64,
+            strata: sample.sizes(),
+            rows: sample
+                .rows
+                .iter()
+                .map(|(_, row)| row.status)
+                .collect::<Accounting>(),
+            failed_share: of_amplitude.failed_share(),
+            largest_weight: of_amplitude.largest_weight(),
+            quantities: Quantity::ALL
+                .into_iter()
+                .map(|quantity| sample.estimate(quantity, self.request.target))
+                .collect(),
+            allocation: allocation.clone(),
+        };
+        Ok((found, rows))
+    }
+
+    /// Surrogate amplitude of every pattern, m.
+    fn surrogates(
+        &self,
+        scenario: &Scenario,
+        tuned: &TunedReference,
+    ) -> Result<Vec<Option<f64>>, PipelineError> {
+        self.progress.stage(Stage::Surrogates);
+        let Some(surrogate) = self.engine.surrogate(scenario, tuned) else {
+            return Ok(vec![None; self.ids.len()]);
+        };
+        let of_pattern = |id: u32| {
+            let pattern = self.patterns.pattern(id, scenario.standard_deviation)?;
+            catch_unwind(AssertUnwindSafe(|| surrogate(&pattern))).unwrap_or(None)
+        };
+        let mut values = Vec::with_capacity(self.ids.len());
+        for ids in self.ids.chunks(CHUNK) {
+            if self.progress.stop_requested() {
+                return Err(self.interrupted(0, u64::from(self.request.solves)));
+            }
+            let found: Vec<_> = self
+                .pool
+                .install(|| ids.par_iter().map(|&id| of_pattern(id)).collect());
+            values.extend(found);
+        }
+        Ok(values)
+    }
+
+    fn interrupted(&self, stored: u64, planned: u64) -> PipelineError {
+        PipelineError::Interrupted {
+            folder: self.request.results.to_owned(),
+            stored,
+            planned,
+        }
+    }
+}
+
+/// Rows of one scenario.
+struct Rows<'a> {
+    work: &'a Work<'a>,
+    schema: RowSchema,
+    tuned: TunedReference,
+}
+
+impl Rows<'_> {
+    /// Rows of the patterns at `places`: those stored, and those solved now.
+    fn solve(&self, places: &[usize], folder: &mut ResultsFolder) -> Result<Solved, PipelineError> {
+        let Work {
+            request, progress, ..
+        } = *self.work;
+        let mut ids: Vec<u32> = places.iter().map(|&place| self.work.ids[place]).collect();
+        ids.sort_unstable();
+        let stored = self.store()?.stored()?;
+        let planned = ids.len() as u64;
+        let reused = stored.count(&ids);
+        progress.stage(Stage::Rows);
+        folder.announce(planned, reused)?;
+        progress.begin_rows(planned, reused);
+        let rows = RowWork {
+            engine: self.work.engine,
+            patterns: self.work.patterns,
+            scenarios: &self.schema.scenarios,
+            tuned: std::slice::from_ref(&self.tuned),
+            progress,
+        };
+        let mut sink = PartSink::new(request.results, &self.schema);
+        let solved = solve_blocks(
+            self.work.pool,
+            &plan_blocks(&ids, &stored, 1, block_size(ids.len())),
+            |block, id| rows.of_pattern(id, &block.scenarios),
+            &mut sink,
+            &Stop(progress),
+        )?;
+        if reused + solved < planned {
+            return Err(self.work.interrupted(reused + solved, planned));
+        }
+        let mut found = Solved::new();
+        self.store()?.visit(|row| {
+            if ids.binary_search(&row.pattern).is_ok() {
+                found.insert(row.pattern, row);
+            }
+            Ok(())
+        })?;
+        Ok(found)
+    }
+
+    fn store(&self) -> Result<RowStore, PipelineError> {
+        let results = self.work.request.results;
+        Ok(RowStore::open(results, self.schema.clone(), Vec::new())?)
+    }
+}
+
+/// The solved rows of a scenario as a sample of its population.
+struct Sample<'a> {
+    population: &'a Population<'a>,
+    allocation: &'a Allocation,
+    rows: Vec<(usize, &'a ResponseRow)>,
+    surrogates: &'a [Option<f64>],
+}
+
+impl Sample<'_> {
+    /// Patterns of each stratum; all in one under crude sampling.
+    fn sizes(&self) -> Vec<u64> {
+        match self.allocation.method {
+            SamplingMethod::Crude => vec![self.population.len() as u64],
+            SamplingMethod::TwoPhase => (0..self.population.strata())
+                .map(|stratum| self.population.size(stratum) as u64)
+                .collect(),
+        }
+    }
+
+    fn stratum(&self, place: usize) -> usize {
+        match self.allocation.method {
+            SamplingMethod::Crude => 0,
+            SamplingMethod::TwoPhase => self.population.stratum(place),
+        }
+    }
+
+    fn inclusion_probability(&self, place: usize) -> f64 {
+        let stratum = self.stratum(place);
+        self.allocation.rows[stratum] as f64 / self.sizes()[stratum] as f64
+    }
+
+    /// The strata with the values of a quantity.
+    fn strata(&self, quantity: Quantity) -> Vec<StratumSample> {
+        let mut strata: Vec<StratumSample> = self
+            .sizes()
+            .into_iter()
+            .map(|size| StratumSample {
+                size,
+                rows: Vec::new(),
+            })
+            .collect();
+        for &(place, row) in &self.rows {
+            let pair = (self.surrogates[place], quantity.of(row));
+            strata[self.stratum(place)].rows.push(pair);
+        }
+        strata
+    }
+
+    fn estimate(&self, quantity: Quantity, target: EstimateTarget) -> QuantityEstimate {
+        let strata = self.strata(quantity);
+        let mut good: Vec<f64> = self
+            .rows
+            .iter()
+            .filter_map(|(_, row)| quantity.of(row))
+            .collect();
+        good.sort_unstable_by(f64::total_cmp);
+        let failed = (self.rows.len() - good.len()) as u64;
+        let two_phase = TwoPhaseSample::new(strata, self.population.surrogate_mean());
+        let mut percents = PERCENTS.to_vec();
+        if let EstimateTarget::Percentile(percent) = target {
+            percents.push(percent);
+        }
+        percents.sort_by(f64::total_cmp);
+        percents.dedup_by(|a, b| a.total_cmp(b).is_eq());
+        let percentiles = percents
+            .into_iter()
+            .map(|percent| match self.allocation.method {
+                SamplingMethod::TwoPhase => two_phase.percentile(percent),
+                SamplingMethod::Crude => {
+                    let found = percentile(&good, failed, percent);
+                    TwoPhasePercentile {
+                        percent,
+                        value: found.value,
+                        lower: found.lower,
+                        upper: found.upper,
+                        status: found.status,
+                        equivalent_patterns: found.value.map(|_| self.rows.len() as f64),
+                    }
+                }
+            });
+        QuantityEstimate {
+            quantity,
+            percentiles: percentiles.collect(),
+            mean: two_phase.mean(),
+        }
+    }
+}
