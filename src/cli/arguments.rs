@@ -7,6 +7,7 @@ use clap::{Parser, Subcommand};
 use super::compare::CompareArguments;
 use super::estimate::EstimateArguments;
 use super::fidelity::FidelityArguments;
+use super::import::ImportArguments;
 use super::merge::MergeArguments;
 use super::optimum::OptimumArguments;
 use super::plan::PlanArguments;
@@ -56,6 +57,11 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Make a sector bundle from the files of a finite-element code.
+    ///
+    /// The import file names meshes, matrices and sets; docs/import.md has the commands that write
+    /// them with `CalculiX`, Ansys and Nastran.
+    Import(ImportArguments),
     /// Solve a few patterns, and say what the study will take and what its percentiles will be worth.
     ///
     /// Nothing is written. Times are those of this machine at the time.

@@ -6,6 +6,7 @@ mod compare;
 mod estimate;
 mod exit;
 mod fidelity;
+mod import;
 mod init;
 mod interrupt;
 mod merge;

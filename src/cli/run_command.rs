@@ -6,8 +6,8 @@ use std::io::{self, ErrorKind};
 use clap::Parser;
 
 use super::{
-    Arguments, Command, ExitStatus, check, compare, estimate, init, merge, model, optimum, output,
-    plan, replay, response, run, slurm, stats, status, verify,
+    Arguments, Command, ExitStatus, check, compare, estimate, import, init, merge, model, optimum,
+    output, plan, replay, response, run, slurm, stats, status, verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).
@@ -32,6 +32,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             export,
             json,
         } => model::command(&study, export.as_deref(), json),
+        Command::Import(arguments) => import::command(&arguments),
         Command::Plan(arguments) => plan::command(&arguments),
         Command::Run(arguments) => run::command(arguments),
         Command::Merge(arguments) => merge::command(&arguments),

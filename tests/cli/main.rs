@@ -5,6 +5,7 @@ mod bad_study_table;
 mod blisk;
 mod commands;
 mod faults;
+mod imports;
 mod interruption;
 mod runs;
 mod statistics;

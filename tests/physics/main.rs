@@ -12,6 +12,7 @@ mod extremes;
 mod finite_element;
 mod fuzz;
 mod harmonic_balance;
+mod imports;
 mod limits;
 mod mistuning;
 mod peaks;

@@ -8,8 +8,10 @@
 
 mod contact_rows;
 mod cyclic_sector;
+mod natural_frequencies;
 mod nodal_diameter;
 
 pub use contact_rows::{ContactGeometry, ContactRow, Direction, ring_free};
 pub use cyclic_sector::CyclicSector;
+pub use natural_frequencies::contact_free_frequencies_hz;
 pub use nodal_diameter::{NodalDiameter, nodal_diameter_of, phase};

@@ -177,7 +177,7 @@ impl SolidMesh {
 }
 
 /// `T_a^T B T_b` for the turns (cosine, sine) of two nodes.
-fn turned((ca, sa): (f64, f64), block: &Block, (cb, sb): (f64, f64)) -> Block {
+pub(super) fn turned((ca, sa): (f64, f64), block: &Block, (cb, sb): (f64, f64)) -> Block {
     let half = block.map(|[x, y, z]| [x * cb + y * sb, y * cb - x * sb, z]);
     let mut result = [[0.0; 3]; 3];
     for j in 0..3 {

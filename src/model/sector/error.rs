@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use super::error_place::{Accepted, Item, Matrix, Place, StiffnessKind};
+use super::import::ImportProblem;
 use super::line_problem::LineProblem;
 use super::sector_model::Component;
 
@@ -50,6 +51,24 @@ pub enum ModelError {
         line: usize,
         /// What is wrong there.
         problem: LineProblem,
+    },
+    /// A line of a file of another code is refused.
+    #[error("{}:{line}: {problem}", path.display())]
+    ImportLine {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong there.
+        problem: Box<ImportProblem>,
+    },
+    /// A file of another code, or what several of them make up, is refused.
+    #[error("{}: {problem}", path.display())]
+    Import {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: Box<ImportProblem>,
     },
     /// A name cannot stand in the unquoted CSV files of a bundle.
     #[error(

@@ -5,6 +5,7 @@ pub mod bundle;
 mod error;
 mod error_place;
 pub mod hexahedron20;
+pub mod import;
 mod line_problem;
 pub mod lumped;
 pub mod matrix_market;

@@ -10,6 +10,7 @@
 //! The same kinds of file guided by coverage, with a nightly toolchain and `cargo-fuzz`, are in `fuzz/`.
 
 mod bundles;
+mod imports;
 mod matrices;
 mod mutator;
 mod patterns;

@@ -1,0 +1,399 @@
+//! From an import file to a sector model: one call per stage.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use super::cyclic_faces::{FacePairs, match_faces, turned_by};
+use super::cylindrical::{Frames, Node};
+use super::import_file::{ForceDirection, ImportFile, Pairing};
+use super::matrices::Matrices;
+use super::problem::{ImportProblem, body_name};
+use super::projection::{Projected, project};
+use super::report::{BodyReport, ImportReport};
+use super::run::Run;
+use super::source::refuse;
+use super::{blade, contact};
+use crate::linalg::{Complex64, SymmetricSparse};
+use crate::model::sector::error::ModelError;
+use crate::model::sector::sector_model::{Body, Component, ObservedNode, SectorModel};
+use crate::model::sector::validate::{position_tolerance_of, validate};
+
+/// An imported sector.
+#[derive(Debug)]
+pub struct Imported {
+    /// The model, validated.
+    pub model: SectorModel,
+    /// What was found.
+    pub report: ImportReport,
+}
+
+/// Reads the files that the import file names and makes a sector model of them.
+///
+/// # Errors
+/// A file that cannot be read, a line that is not what its format says, parts that do not go together,
+/// or a model that is refused.
+pub fn import(path: &Path) -> Result<Imported, ModelError> {
+    let file = ImportFile::read(path)?;
+    let runs = Run::read_meshes(&file)?;
+    let mut nodes: BTreeMap<usize, Node> = runs.iter().flat_map(|run| run.nodes(&file)).collect();
+    let mut matrices: Vec<Matrices> = runs
+        .iter()
+        .map(|run| run.matrices(&file))
+        .collect::<Result<_, _>>()?;
+    let free = matrices
+        .iter()
+        .flat_map(|run| &run.rows)
+        .map(|&(node, _)| node)
+        .collect();
+    let mut faces = cyclic_faces(&file, &runs, &nodes, &free)?;
+    let projected = project_ring(&file, &runs, &mut nodes, &mut matrices, &mut faces)?;
+    let rows = || matrices.iter().flat_map(|run| run.rows.iter().copied());
+    let high_face_moved = place_high_face(&mut nodes, &faces, file.sectors);
+    let frames = Frames::new(rows(), &nodes, path)?;
+    let n = frames.dofs.len();
+    let factor = file.units.stiffness_and_mass();
+    let assembled = |of: fn(&Matrices) -> &SymmetricSparse| {
+        matrices
+            .iter()
+            .flat_map(|run| frames.turn(&run.rows, of(run), factor))
+            .collect::<Vec<_>>()
+    };
+    let mut stiffness = assembled(|run| &run.stiffness);
+    let mass: Vec<(usize, usize, f64)> = assembled(|run| &run.mass)
+        .into_iter()
+        .filter(|&(.., value)| value != 0.0)
+        .collect();
+    let bodies = body_reports(&file, &runs, &frames, &faces, &stiffness, &mass);
+    let ring_grounding_hz = file
+        .ring
+        .as_ref()
+        .and_then(|ring| ring.grounding_hz)
+        .unwrap_or(0.0);
+    ground_ring(&mut stiffness, &mass, &frames, ring_grounding_hz);
+    let (mut blade, blade_source) = blade::stiffness(&file, &runs[0], &frames)?;
+    blade.retain(|&(.., value)| value != 0.0);
+    let low_of_high = faces
+        .values()
+        .flat_map(|faces| &faces.pairs)
+        .map(|&(low, high)| (high, low))
+        .collect();
+    let sector = contact::Sector {
+        nodes: &nodes,
+        frames: &frames,
+        low_of_high: &low_of_high,
+        projected,
+        tolerance_m: tolerance_m(&file, &nodes),
+    };
+    let contact = file
+        .contact
+        .as_ref()
+        .map(|table| contact::pairs(&file, table, &runs, &sector));
+    let (contact_pairs, contact) = contact.transpose()?.unzip();
+    let force = force(&file, &runs, &frames, &low_of_high)?;
+    let observed = observed(&file, &runs)?;
+    let blade_dofs: BTreeSet<usize> = blade
+        .iter()
+        .flat_map(|&(row, column, _)| [row, column])
+        .collect();
+    let report = ImportReport {
+        name: file.name.clone(),
+        sectors: file.sectors,
+        position_tolerance_m: tolerance_m(&file, &nodes),
+        high_face_moved,
+        bodies,
+        blade_source,
+        blade_dofs: blade_dofs.len(),
+        contact,
+        ring_grounding_hz,
+        forced_dofs: force.len(),
+        observed: observed
+            .iter()
+            .map(|node| (node.name.clone(), node.node))
+            .collect(),
+    };
+    let model = SectorModel {
+        name: file.name.clone(),
+        sectors: file.sectors,
+        stiffness: SymmetricSparse::from_lower_triplets(n, &stiffness),
+        mass: SymmetricSparse::from_lower_triplets(n, &mass),
+        blade_stiffness: SymmetricSparse::from_lower_triplets(n, &blade),
+        cyclic_pairs: cyclic_dofs(&file, &frames, &faces)?,
+        dofs: frames.dofs,
+        contact_pairs: contact_pairs.unwrap_or_default(),
+        force,
+        observed,
+    };
+    validate(&model)?;
+    Ok(Imported { model, report })
+}
+
+/// Makes the ring's contact nodes follow the blisk's, if the import file asks for it.
+fn project_ring(
+    file: &ImportFile,
+    runs: &[Run],
+    nodes: &mut BTreeMap<usize, Node>,
+    matrices: &mut [Matrices],
+    faces: &mut BTreeMap<&'static str, FacePairs>,
+) -> Result<Option<Projected>, ModelError> {
+    let (Some(table), Some(ring)) = (&file.contact, matrices.last_mut()) else {
+        return Ok(None);
+    };
+    if table.pairing == Pairing::Nodes {
+        return Ok(None);
+    }
+    let tolerance_m = table.tolerance_m.unwrap_or(tolerance_m(file, nodes));
+    project(file, table, runs, tolerance_m, nodes, ring, faces).map(Some)
+}
+
+/// Tolerance on positions: the import file's, or what a bundle accepts.
+fn tolerance_m(file: &ImportFile, nodes: &BTreeMap<usize, Node>) -> f64 {
+    file.position_tolerance_m
+        .unwrap_or_else(|| position_tolerance_of(nodes.values().map(|node| node.position_m)))
+}
+
+/// Low and high set of each body with the run that holds them.
+pub(super) fn face_sets<'a>(
+    file: &'a ImportFile,
+    runs: &'a [Run],
+) -> impl Iterator<Item = (Body, &'a Run, [(&'static str, &'a str); 2])> {
+    let blisk = [
+        ("blisk.low_face", file.blisk.low_face.as_str()),
+        ("blisk.high_face", file.blisk.high_face.as_str()),
+    ];
+    let ring = file.ring.as_ref().map(|ring| {
+        [
+            ("ring.low_face", ring.low_face.as_str()),
+            ("ring.high_face", ring.high_face.as_str()),
+        ]
+    });
+    [(Body::Blisk, Some(blisk)), (Body::Ring, ring)]
+        .into_iter()
+        .filter_map(move |(body, names)| {
+            let run = runs.iter().rev().find(|run| run.holds(body))?;
+            Some((body, run, names?))
+        })
+}
+
+/// Pairs of the free nodes on the faces of each body.
+pub(super) fn cyclic_faces(
+    file: &ImportFile,
+    runs: &[Run],
+    nodes: &BTreeMap<usize, Node>,
+    free: &BTreeSet<usize>,
+) -> Result<BTreeMap<&'static str, FacePairs>, ModelError> {
+    let tolerance_m = tolerance_m(file, nodes);
+    let mut faces = BTreeMap::new();
+    for (body, run, names) in face_sets(file, runs) {
+        let mut sides = Vec::new();
+        for (key, name) in names {
+            let side: BTreeMap<usize, [f64; 3]> = run
+                .set(key, name)?
+                .into_iter()
+                .map(|node| node + run.offset)
+                .filter(|node| free.contains(node) && nodes[node].body == body)
+                .map(|node| (node, nodes[&node].position_m))
+                .collect();
+            sides.push(side);
+        }
+        let pairs = match_faces(&sides[0], &sides[1], file.sectors, tolerance_m)
+            .map_err(|problem| refuse(&run.mesh_path, problem))?;
+        faces.insert(body_name(body), pairs);
+    }
+    Ok(faces)
+}
+
+/// Puts the high face where the low face turned by a sector is, if the two are further apart than a
+/// bundle allows; the user's tolerance has let them pass.
+fn place_high_face(
+    nodes: &mut BTreeMap<usize, Node>,
+    faces: &BTreeMap<&'static str, FacePairs>,
+    sectors: usize,
+) -> bool {
+    let allowed = position_tolerance_of(nodes.values().map(|node| node.position_m));
+    let moved = faces.values().any(|faces| faces.worst_m > allowed);
+    if moved {
+        for &(low, high) in faces.values().flat_map(|faces| &faces.pairs) {
+            let image = turned_by(nodes[&low].position_m, TAU / sectors as f64);
+            if let Some(node) = nodes.get_mut(&high) {
+                node.position_m = image;
+            }
+        }
+    }
+    moved
+}
+
+/// Pairs of dofs from pairs of nodes: both must be free in the same components.
+fn cyclic_dofs(
+    file: &ImportFile,
+    frames: &Frames,
+    faces: &BTreeMap<&'static str, FacePairs>,
+) -> Result<Vec<(usize, usize)>, ModelError> {
+    let mut pairs = Vec::new();
+    for &(low, high) in faces.values().flat_map(|faces| &faces.pairs) {
+        for component in 0..3 {
+            match (frames.dof(low, component), frames.dof(high, component)) {
+                (Some(low), Some(high)) => pairs.push((low, high)),
+                (None, None) => {}
+                _ => {
+                    return Err(refuse(
+                        &file.path,
+                        ImportProblem::FaceComponents { low, high },
+                    ));
+                }
+            }
+        }
+    }
+    Ok(pairs)
+}
+
+fn body_reports(
+    file: &ImportFile,
+    runs: &[Run],
+    frames: &Frames,
+    faces: &BTreeMap<&'static str, FacePairs>,
+    stiffness: &[(usize, usize, f64)],
+    mass: &[(usize, usize, f64)],
+) -> Vec<BodyReport> {
+    let axial = |dof: usize, body: Body| {
+        frames.dofs[dof].body == body && frames.dofs[dof].component == Component::Axial
+    };
+    let report = |body: Body, run: &Run| {
+        // e^T M e and K e for the unit shift e along z.
+        let mut mass_kg = 0.0;
+        for &(row, column, value) in mass {
+            if axial(row, body) && axial(column, body) {
+                mass_kg += if row == column { value } else { 2.0 * value };
+            }
+        }
+        let mut force = vec![0.0; frames.dofs.len()];
+        let mut largest = 0.0_f64;
+        for &(row, column, value) in stiffness {
+            if frames.dofs[row].body == body && row == column {
+                largest = largest.max(value);
+            }
+            if axial(column, body) {
+                force[row] += value;
+            }
+            if axial(row, body) && row != column {
+                force[column] += value;
+            }
+        }
+        let residual = force
+            .iter()
+            .fold(0.0_f64, |worst, value| worst.max(value.abs()))
+            / largest;
+        let own = |dof: &&crate::model::sector::Dof| dof.body == body;
+        let nodes: BTreeSet<usize> = frames.dofs.iter().filter(own).map(|dof| dof.node).collect();
+        let facts = &run.mesh.run;
+        let faces = &faces[body_name(body)];
+        BodyReport {
+            body: body_name(body),
+            nodes: nodes.len(),
+            dofs: frames.dofs.iter().filter(own).count(),
+            mass_kg,
+            node_offset: run.offset,
+            prestressed: facts.stores_matrices.then_some(facts.prestressed),
+            rotation_rad_per_s: facts
+                .centrifugal
+                .filter(|_| facts.prestressed)
+                .map(|squared| squared.abs().sqrt()),
+            cyclic_node_pairs: faces.pairs.len(),
+            worst_face_mismatch_m: faces.worst_m,
+            rigid_shift_residual: (body == Body::Ring).then_some(residual),
+        }
+    };
+    face_sets(file, runs)
+        .map(|(body, run, _)| report(body, run))
+        .collect()
+}
+
+/// Adds `(2 pi f)^2 M` on the ring's dofs to the stiffness.
+fn ground_ring(
+    stiffness: &mut Vec<(usize, usize, f64)>,
+    mass: &[(usize, usize, f64)],
+    frames: &Frames,
+    frequency_hz: f64,
+) {
+    let omega = TAU * frequency_hz;
+    if omega > 0.0 {
+        let ring = |&&(row, _, _): &&(usize, usize, f64)| frames.dofs[row].body == Body::Ring;
+        let springs = mass.iter().filter(ring);
+        stiffness.extend(springs.map(|&(row, column, value)| (row, column, omega * omega * value)));
+    }
+}
+
+/// Nodes that a force or an observed point names.
+fn named_nodes(
+    file: &ImportFile,
+    runs: &[Run],
+    key: &str,
+    node: Option<usize>,
+    set: Option<&String>,
+) -> Result<Vec<usize>, ModelError> {
+    match (node, set) {
+        (Some(node), None) => Ok(vec![node]),
+        (None, Some(name)) => {
+            let key = format!("{key}.set");
+            let run = runs.iter().find(|run| run.mesh.nodes_of(name).is_some());
+            let run = run.unwrap_or(&runs[0]);
+            let nodes = run.set(&key, name)?;
+            Ok(nodes.into_iter().map(|node| node + run.offset).collect())
+        }
+        _ => Err(file.missing(key, "either node or set")),
+    }
+}
+
+/// The force: each entry is shared equally by its nodes, those of the high face acting on the low one.
+fn force(
+    file: &ImportFile,
+    runs: &[Run],
+    frames: &Frames,
+    low_of_high: &BTreeMap<usize, usize>,
+) -> Result<Vec<(usize, Complex64)>, ModelError> {
+    let mut sum: BTreeMap<usize, Complex64> = BTreeMap::new();
+    for (index, table) in file.force.iter().enumerate() {
+        let key = format!("force[{index}]");
+        for (part, value) in [("re", table.re), ("im", table.im)] {
+            if !value.is_finite() {
+                let accepted = "a finite number".to_owned();
+                return Err(file.value(&format!("{key}.{part}"), &value, accepted));
+            }
+        }
+        let nodes = named_nodes(file, runs, &key, table.node, table.set.as_ref())?;
+        let nodes: BTreeSet<usize> = nodes
+            .into_iter()
+            .map(|node| low_of_high.get(&node).copied().unwrap_or(node))
+            .collect();
+        let component = match table.component {
+            ForceDirection::Radial => 0,
+            ForceDirection::Tangential => 1,
+            ForceDirection::Axial => 2,
+        };
+        for &node in &nodes {
+            let Some(dof) = frames.dof(node, component) else {
+                let accepted = "nodes that are free in that direction".to_owned();
+                return Err(file.value(&key, &format!("node {node}"), accepted));
+            };
+            *sum.entry(dof).or_default() += Complex64::new(table.re, table.im) / nodes.len() as f64;
+        }
+    }
+    Ok(sum.into_iter().collect())
+}
+
+fn observed(file: &ImportFile, runs: &[Run]) -> Result<Vec<ObservedNode>, ModelError> {
+    let mut observed = Vec::new();
+    for (index, table) in file.observe.iter().enumerate() {
+        let key = format!("observe[{index}]");
+        let nodes = named_nodes(file, runs, &key, table.node, table.set.as_ref())?;
+        let [node] = nodes.as_slice() else {
+            let found = nodes.len();
+            return Err(refuse(&file.path, ImportProblem::OneNode { key, found }));
+        };
+        observed.push(ObservedNode {
+            name: table.name.clone(),
+            node: *node,
+        });
+    }
+    Ok(observed)
+}
