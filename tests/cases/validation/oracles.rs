@@ -429,8 +429,6 @@ fn symmetries() -> Vec<Oracle> {
         study.reduction.stick_modes = Some(4);
         study.solver.peak_tolerance = 1e-7;
         study.solver.residual_tolerance = 1e-11;
-        // Kinks of the sampled law make small tops on the curve, here 4e-6 high with 128 samples: two searches may end on different ones.
-        study.solver.samples_per_period = 1024;
         study.amplitude_n = amplitude_n;
         study.contact.as_mut().unwrap().friction_coefficient = friction;
         Case::new(study)
