@@ -1,6 +1,5 @@
 //! `blisk estimate`: mean and percentiles from few solves, with a surrogate of every pattern.
 
-use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -8,6 +7,7 @@ use clap::Args;
 
 use super::progress::RunProgress;
 use super::run_command::Failure;
+use super::scheduler::threads;
 use super::{ExitStatus, output};
 use crate::population::statistics::EstimateTarget;
 use crate::study::{EstimateRequest, ReducedEngineSource, Study, estimate};
@@ -70,10 +70,7 @@ pub(super) fn command(arguments: &EstimateArguments) -> Result<ExitStatus, Failu
             results: &results,
             solves: arguments.solves.unwrap_or(study.patterns / 10),
             target: arguments.target.0,
-            threads: arguments.threads.map_or_else(
-                || std::thread::available_parallelism().map_or(1, NonZero::get),
-                usize::from,
-            ),
+            threads: threads(arguments.threads),
         },
         &ReducedEngineSource,
         &progress,

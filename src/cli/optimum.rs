@@ -1,6 +1,5 @@
 //! `blisk optimum`: the normal load with the lowest percentile.
 
-use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -8,6 +7,7 @@ use clap::{Args, ValueEnum};
 use super::compare::percent;
 use super::progress::RunProgress;
 use super::run_command::Failure;
+use super::scheduler::threads;
 use super::{ExitStatus, output};
 use crate::population::statistics::Quantity;
 use crate::study::{OptimumRequest, ReducedEngineSource, Study, find_optimum};
@@ -66,10 +66,7 @@ pub(super) fn command(arguments: &OptimumArguments) -> Result<ExitStatus, Failur
                 QuantityArgument::AmplificationFactor => Quantity::AmplificationFactor,
             },
             resolution: arguments.resolution,
-            threads: arguments.threads.map_or_else(
-                || std::thread::available_parallelism().map_or(1, NonZero::get),
-                usize::from,
-            ),
+            threads: threads(arguments.threads),
         },
         &ReducedEngineSource,
         &progress,
