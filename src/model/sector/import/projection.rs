@@ -15,7 +15,7 @@ use super::matrices::Matrices;
 use super::problem::{ImportProblem, body_name};
 use super::run::{Run, round_up};
 use super::source::refuse;
-use super::surface::shape_functions;
+use super::surface::FacePoint;
 use crate::linalg::{Matrix, SymmetricSparse, hermitian_eigen};
 use crate::model::sector::error::ModelError;
 use crate::model::sector::sector_model::Body;
@@ -282,21 +282,10 @@ fn closest_point(positions: &[[f64; 3]], target: [f64; 3]) -> (Vec<f64>, f64) {
     let triangle = count.is_multiple_of(3);
     let start = if triangle { [1.0 / 3.0; 2] } else { [0.0; 2] };
     let mut point = start;
-    let at = |point: [f64; 2]| {
-        let (value, slope) = shape_functions(count, point);
-        let mut position = [0.0; 3];
-        let mut along = [[0.0; 3]; 2];
-        for a in 0..count {
-            for i in 0..3 {
-                position[i] += value[a] * positions[a][i];
-                along[0][i] += slope[a][0] * positions[a][i];
-                along[1][i] += slope[a][1] * positions[a][i];
-            }
-        }
-        (value, position, along)
-    };
     for _ in 0..STEPS {
-        let (_, position, along) = at(point);
+        let FacePoint {
+            position, along, ..
+        } = FacePoint::of(positions, point);
         let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let off = [0, 1, 2].map(|i| target[i] - position[i]);
         let (a, b, c) = (
@@ -324,8 +313,9 @@ fn closest_point(positions: &[[f64; 3]], target: [f64; 3]) -> (Vec<f64>, f64) {
             break;
         }
     }
-    let (value, position, _) = at(point);
-    (value, distance(position, target))
+    let nearest = FacePoint::of(positions, point);
+    let off = distance(nearest.position, target);
+    (nearest.value, off)
 }
 
 /// A step that leaves the square ends on the edge that it crosses; the other coordinate is then sought

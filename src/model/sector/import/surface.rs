@@ -51,16 +51,11 @@ pub(super) fn add_face(
     let mut area = 0.0;
     let mut outward = 0.0;
     for (point, weight) in rule(count) {
-        let (value, slope) = shape_functions(count, point);
-        let mut position = [0.0; 3];
-        let mut along = [[0.0; 3]; 2];
-        for a in 0..count {
-            for i in 0..3 {
-                position[i] += value[a] * positions[a][i];
-                along[0][i] += slope[a][0] * positions[a][i];
-                along[1][i] += slope[a][1] * positions[a][i];
-            }
-        }
+        let FacePoint {
+            value,
+            position,
+            along,
+        } = FacePoint::of(positions, point);
         let cross = cross(along[0], along[1]);
         let jacobian = cross.iter().map(|c| c * c).sum::<f64>().sqrt();
         area += weight * jacobian;
@@ -114,8 +109,39 @@ fn rule(count: usize) -> Vec<([f64; 2], f64)> {
 /// Corners of the reference quadrilateral.
 const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
+/// A point of a face.
+pub(super) struct FacePoint {
+    /// Values of the shape functions.
+    pub value: Vec<f64>,
+    /// Position, in the unit of the nodes.
+    pub position: [f64; 3],
+    /// Derivatives of the position by the natural coordinates.
+    pub along: [[f64; 3]; 2],
+}
+
+impl FacePoint {
+    /// The point at the natural coordinates `point` of the face with nodes at `positions`.
+    pub(super) fn of(positions: &[[f64; 3]], point: [f64; 2]) -> Self {
+        let (value, slope) = shape_functions(positions.len(), point);
+        let mut position = [0.0; 3];
+        let mut along = [[0.0; 3]; 2];
+        for ((node, value), slope) in positions.iter().zip(&value).zip(&slope) {
+            for i in 0..3 {
+                position[i] += value * node[i];
+                along[0][i] += slope[0] * node[i];
+                along[1][i] += slope[1] * node[i];
+            }
+        }
+        Self {
+            value,
+            position,
+            along,
+        }
+    }
+}
+
 /// Shape functions of a face and their derivatives.
-pub(super) fn shape_functions(count: usize, [x, y]: [f64; 2]) -> (Vec<f64>, Vec<[f64; 2]>) {
+fn shape_functions(count: usize, [x, y]: [f64; 2]) -> (Vec<f64>, Vec<[f64; 2]>) {
     let mut value = Vec::with_capacity(count);
     let mut slope = Vec::with_capacity(count);
     if count.is_multiple_of(3) {
