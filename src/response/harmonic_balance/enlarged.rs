@@ -35,8 +35,8 @@ const LINEARISED_SAMPLES: usize = 128;
 const LINEARISED_SAMPLES_OF_HIGHEST: usize = 4;
 /// Steps of the iteration at most.
 const EVALUATIONS: usize = 14;
-/// Earlier iterates that the acceleration combines.
-const DEPTH: usize = 12;
+/// Earlier iterates that the acceleration combines: all of them.
+const DEPTH: usize = EVALUATIONS;
 /// The iteration ends when the next step would change the set by this share of the change so far,
 const SETTLED: f64 = 0.03;
 /// or by this share of the set itself.
