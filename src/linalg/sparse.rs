@@ -91,15 +91,30 @@ impl HermitianSparse {
     /// Product with a dense matrix.
     #[must_use]
     pub fn times(&self, x: &Matrix<Complex64>) -> Matrix<Complex64> {
-        let mut y = Matrix::zeros(self.dimension(), x.columns());
+        let n = self.dimension();
+        let mut y = Matrix::zeros(n, x.columns());
         let pattern = self.matrix.as_ref();
-        for column in 0..x.columns() {
-            let source = x.column(column);
-            let target = y.column_mut(column);
-            for (j, &factor) in source.iter().enumerate() {
+        // Several columns at once, side by side, so that every entry of the matrix is read once for all of them.
+        let mut source = vec![Lanes::default(); n];
+        let mut target = vec![Lanes::default(); n];
+        for first in (0..x.columns()).step_by(LANES) {
+            let lanes = LANES.min(x.columns() - first);
+            for lane in 0..lanes {
+                for (source, value) in source.iter_mut().zip(x.column(first + lane)) {
+                    (source.re[lane], source.im[lane]) = (value.re, value.im);
+                }
+            }
+            target.fill(Lanes::default());
+            for (j, source) in source.iter().enumerate() {
                 let rows = pattern.symbolic().row_idx_of_col_raw(j);
                 for (&row, &value) in rows.iter().zip(pattern.val_of_col(j)) {
-                    target[row] += value * factor;
+                    target[row].add_product(value, source);
+                }
+            }
+            for lane in 0..lanes {
+                let column = y.column_mut(first + lane);
+                for (value, target) in column.iter_mut().zip(&target) {
+                    *value = Complex64::new(target.re[lane], target.im[lane]);
                 }
             }
         }
@@ -117,6 +132,25 @@ impl HermitianSparse {
         let factor = Llt::try_new_with_symbolic(symbolic, self.matrix.as_ref(), Side::Lower)
             .map_err(|_| NotPositiveDefinite)?;
         Ok(SparseFactor { factor })
+    }
+}
+
+/// Columns of a dense matrix that a product takes at once.
+const LANES: usize = 8;
+
+/// One row of that many columns.
+#[derive(Clone, Copy, Default)]
+struct Lanes {
+    re: [f64; LANES],
+    im: [f64; LANES],
+}
+
+impl Lanes {
+    fn add_product(&mut self, factor: Complex64, x: &Self) {
+        for lane in 0..LANES {
+            self.re[lane] += factor.re * x.re[lane] - factor.im * x.im[lane];
+            self.im[lane] += factor.re * x.im[lane] + factor.im * x.re[lane];
+        }
     }
 }
 

@@ -23,3 +23,4 @@ mod separation;
 mod surrogate;
 mod time_integration;
 mod wheels;
+mod work_counts;

@@ -156,7 +156,7 @@ impl Wheel {
             self.amplitude_n,
             self.damping,
             harmonics,
-            LimitsWanted::default(),
+            LimitsWanted::of(&[full(1.0)]),
         )
     }
 
@@ -171,7 +171,7 @@ impl Wheel {
             &self.model,
             &ContactFactors::default(),
             self.damping,
-            LimitsWanted::default(),
+            LimitsWanted::of(&[full(1.0)]),
         );
         Excited::wheel(&wheel, force, harmonics)
     }

@@ -53,6 +53,30 @@ impl ObservedAmplitude {
             .collect()
     }
 
+    /// Whether `step` changes no amplitude by more than `share` of the largest one of `solution`.
+    pub(super) fn is_steady(
+        &self,
+        blocks: &[(u32, &Structure)],
+        solution: &[f64],
+        step: &[f64],
+        share: f64,
+    ) -> bool {
+        let (whole, change) = (observed(blocks, solution), observed(blocks, step));
+        let length = |u: &[Complex64]| u.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+        let blades = whole[0].displacement.len() / 3;
+        let largest = (0..blades)
+            .map(|blade| length(fundamental(&whole, blade)))
+            .fold(0.0, f64::max);
+        (0..blades).all(|blade| {
+            let changed: f64 = change
+                .iter()
+                .filter(|own| own.harmonic == 1 || self.time_grid.is_some())
+                .map(|own| length(&own.displacement[3 * blade..3 * blade + 3]))
+                .sum();
+            changed <= share * largest
+        })
+    }
+
     /// Amplitude of each blade after a solution has changed from `before` to `after`. A turn in
     /// phase of the fundamental does not count: at a peak it stands for a shift in frequency,
     /// which leaves the height of the peak as it is.

@@ -14,6 +14,9 @@ use crate::response::harmonic_balance::Status;
 const LINEAR_PEAK_TOLERANCE: f64 = 4e-11;
 /// Largest number of points of one row.
 const EVALUATIONS: usize = 1500;
+/// Precision of the amplitudes that the search compares, over its tolerance: far below the share of it that a
+/// summit may be missed by.
+const SEARCH_PRECISION: f64 = 0.01;
 /// Starting points between the dominant stuck and slide peaks.
 const STARTS_BETWEEN: usize = 5;
 /// Times the automatic band is widened while the largest value lies at its end.
@@ -184,7 +187,8 @@ pub fn peak(
         evaluations: EVALUATIONS,
         extensions: plan.extensions,
     };
-    let mut solver = PointSolver::new(excited, condition, settings);
+    let precision = SEARCH_PRECISION * search.tolerance;
+    let mut solver = PointSolver::new(excited, condition, settings).with_precision(precision);
     let result = find_peak(
         plan.band_hz,
         &plan.starts_hz,
@@ -198,15 +202,13 @@ pub fn peak(
         },
     );
     let best = result.best.map(|best| &result.samples[best]);
-    let point = best.and_then(|best| {
-        solver
-            .points()
-            .iter()
-            .find(|point| point.frequency_hz.total_cmp(&best.frequency_hz).is_eq())
-            .cloned()
-    });
+    let (point, unfinished) = match best.map(|best| solver.finish(best.frequency_hz).cloned()) {
+        Some(Ok(point)) => (Some(point), None),
+        Some(Err(status)) => (None, Some(status)),
+        None => (None, None),
+    };
     let status = match result.end {
-        SearchEnd::Found if result.bracketed => Status::Ok,
+        SearchEnd::Found if result.bracketed => unfinished.unwrap_or(Status::Ok),
         SearchEnd::Found | SearchEnd::Open => {
             failure_beyond(&solver, best).unwrap_or(Status::NotBracketed)
         }

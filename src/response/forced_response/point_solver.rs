@@ -76,6 +76,8 @@ pub struct PointSolver<'a> {
     pub(super) nonlinear: Option<(HarmonicSystem, NewtonWorkspace)>,
     points: Vec<Point>,
     failures: Vec<(f64, Status)>,
+    /// Relative precision of the amplitudes at which a point may end before its residual is met.
+    precision: Option<f64>,
     pub(super) work: Work,
 }
 
@@ -117,6 +119,7 @@ impl<'a> PointSolver<'a> {
             nonlinear,
             points: Vec::new(),
             failures: Vec::new(),
+            precision: None,
             work: Work::default(),
         }
     }
@@ -163,6 +166,34 @@ impl<'a> PointSolver<'a> {
         let (system, workspace) = self.nonlinear.as_mut()?;
         system.set_ring_drift(point.ring_drift_m);
         Some((&*system, workspace))
+    }
+
+    /// The same for a search: from now on a point ends where the next step would change no amplitude by more
+    /// than `precision` of the largest, unless its contacts open. Its residual may be far above the tolerance.
+    #[must_use]
+    pub fn with_precision(self, precision: f64) -> Self {
+        Self {
+            precision: Some(precision),
+            ..self
+        }
+    }
+
+    /// The point at `frequency_hz` again, to the tolerance of the residual.
+    ///
+    /// # Errors
+    /// The status of the last attempt, if none converged.
+    pub fn finish(&mut self, frequency_hz: f64) -> Result<&Point, Status> {
+        self.precision = None;
+        let same = |point: &Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
+        let tolerance = self.settings.bounds.residual_tolerance;
+        let done = |point: &Point| same(point) && point.residual <= tolerance;
+        if let Some(at) = self.points.iter().position(done) {
+            return Ok(&self.points[at]);
+        }
+        let finished = self.solve_nonlinear(frequency_hz)?;
+        self.points.retain(|point| !same(point));
+        self.points.push(finished);
+        Ok(&self.points[self.points.len() - 1])
     }
 
     /// Solves at one frequency, Hz.
@@ -355,10 +386,21 @@ impl<'a> PointSolver<'a> {
         let bounds = self.settings.bounds;
         let (outcome, ring_drift_m) = if let Some(other) = other {
             // On the way the ring is locked.
-            (solve(other, omega, &mut x, bounds, workspace), [0.0; 2])
+            let outcome = solve(other, omega, &mut x, bounds, None, workspace);
+            (outcome, [0.0; 2])
         } else {
+            let blocks = structures(self.excited);
+            let amplitude = &self.settings.amplitude;
+            let precision = self.precision;
+            let steady = |x: &[f64], step: &[f64]| {
+                precision.is_some_and(|share| {
+                    // Cheap to ask, and nearly always the answer.
+                    let small = norm(step) <= WHOLE_STEP * share * norm(x);
+                    small && amplitude.is_steady(&blocks, x, step, share)
+                })
+            };
             let outcome = match self.settings.ring {
-                Ring::Locked => solve(system, omega, &mut x, bounds, workspace),
+                Ring::Locked => solve(system, omega, &mut x, bounds, Some(&steady), workspace),
                 Ring::Creeping => solve_creeping(system, omega, &mut x, bounds, workspace),
             };
             (outcome, system.ring_drift_m())
@@ -380,14 +422,24 @@ impl<'a> PointSolver<'a> {
 
     /// Amplitude of every blade, m, of a nonlinear solution.
     pub(super) fn amplitudes_of(&self, solution: &[f64]) -> Vec<f64> {
-        let blocks: Vec<(u32, &Structure)> = self
-            .excited
-            .blocks
-            .iter()
-            .map(|block| (block.harmonic, &*block.structure))
-            .collect();
+        let blocks = structures(self.excited);
         self.settings.amplitude.of(&blocks, solution)
     }
+}
+
+/// A step that changes the amplitudes by a share is no longer than this many times the share of the solution.
+const WHOLE_STEP: f64 = 10.0;
+
+/// Harmonics and structures in the order of the unknowns.
+fn structures(excited: &Excited) -> Vec<(u32, &Structure)> {
+    let blocks = excited.blocks.iter();
+    blocks
+        .map(|block| (block.harmonic, &*block.structure))
+        .collect()
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// Share of the frequency within which a point at which most pairs slip tells more than the stuck solution.

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! R_s(x_s, x_o) = 0,    R_o(x_s, x_o) = 0,    from (x_s, 0)
-//! P = J    or    P = [J_ss, 0; 0, diag_k J_kk]
+//! P = J    or    P = [J_ss, 0; 0, diag_k (complex-linear part of J_kk)]
 //! ```
 //!
 //! is solved by the fixed-point iteration `x <- x - P^-1 R(x)` with Anderson's acceleration (Anderson
@@ -21,7 +21,7 @@ use super::{
     HarmonicBlock, HarmonicSystem, HarmonicTransform, NewtonWorkspace, SystemWorkspace,
     TransformError,
 };
-use crate::linalg::LuWorkspace;
+use crate::linalg::{Complex64, LuWorkspace};
 
 /// Highest harmonic that is looked at.
 const HIGHEST_HARMONIC: u32 = 15;
@@ -130,7 +130,7 @@ struct Enlargement<'a> {
 /// Factors of P but for those of `J_ss`.
 enum Outside {
     Whole(LuWorkspace<f64>),
-    Blocks(Vec<Option<LuWorkspace<f64>>>),
+    Blocks(Vec<Option<LuWorkspace<Complex64>>>),
 }
 
 /// Corrects the solution `x` of `system` at `omega` towards that of the enlarged set; `blocks` are
@@ -254,7 +254,7 @@ impl Enlargement<'_> {
             for (index, factors) in blocks.iter_mut().enumerate() {
                 let place = range(&self.enlarged, index);
                 match factors {
-                    Some(factors) => factors.solve(&mut step[place]),
+                    Some(factors) => solve_complex(factors, &mut step[place]),
                     None => step[place.clone()].copy_from_slice(&own[place]),
                 }
             }
@@ -322,6 +322,22 @@ impl Enlargement<'_> {
     }
 }
 
+/// Solves for the unknowns of one harmonic, in place: real parts, then imaginary ones where it is not harmonic 0.
+fn solve_complex(factors: &mut LuWorkspace<Complex64>, unknowns: &mut [f64]) {
+    let n = factors.dimension();
+    let imaginary = |i: usize| unknowns.get(n + i).copied().unwrap_or(0.0);
+    let mut right: Vec<Complex64> = (0..n)
+        .map(|i| Complex64::new(unknowns[i], imaginary(i)))
+        .collect();
+    factors.solve(&mut right);
+    for (i, solution) in right.iter().enumerate() {
+        unknowns[i] = solution.re;
+        if let Some(imaginary) = unknowns.get_mut(n + i) {
+            *imaginary = solution.im;
+        }
+    }
+}
+
 fn range(system: &HarmonicSystem, block: usize) -> std::ops::Range<usize> {
     system.start[block]..system.start[block + 1]
 }
@@ -369,8 +385,8 @@ impl Outside {
                 blocks.push(None);
                 continue;
             }
-            let mut factors = LuWorkspace::new(range(system, index).len());
-            system.jacobian_of(index..index + 1, omega, &mut buffers, factors.matrix_mut());
+            let mut factors = LuWorkspace::new(system.blocks[index].structure.size());
+            system.complex_jacobian_of(index, omega, &mut buffers, factors.matrix_mut());
             blocks.push(factors.factor().then_some(Some(factors))?);
         }
         Some(Self::Blocks(blocks))

@@ -10,59 +10,64 @@
 use std::ops::Range;
 
 use super::system::{HarmonicSystem, Link, SystemWorkspace};
-use crate::linalg::{Matrix, add_transpose_times};
+use crate::linalg::{Complex64, Matrix, add_transpose_times};
 
 impl HarmonicSystem {
     /// Derivative of the residual at the point last given to [`Self::residual`] with `derivative`,
     /// column-major `n x n` into `jacobian`.
     pub fn jacobian(&self, omega: f64, workspace: &mut SystemWorkspace, jacobian: &mut [f64]) {
-        self.jacobian_of(0..self.blocks.len(), omega, workspace, jacobian);
+        let all = 0..self.blocks.len();
+        self.jacobian_of(all.clone(), all, omega, workspace, jacobian);
     }
 
-    /// [`Self::jacobian`] of the harmonics at the places `wanted` of the set by themselves.
+    /// Derivative of the harmonics at the places `rows` of the set by those at `columns`, which are among them.
     pub(super) fn jacobian_of(
         &self,
-        wanted: Range<usize>,
+        rows: Range<usize>,
+        columns: Range<usize>,
         omega: f64,
         workspace: &mut SystemWorkspace,
         jacobian: &mut [f64],
     ) {
-        let (first, end) = (self.start[wanted.start], self.start[wanted.end]);
-        let unknowns = end - first;
-        self.linear_jacobian(wanted, omega, jacobian);
-        let active: Vec<usize> = (0..workspace.active.len())
-            .filter(|&pair| workspace.active[pair])
-            .collect();
+        let of = |blocks: &Range<usize>| self.start[blocks.start]..self.start[blocks.end];
+        let (wanted_rows, wanted_columns) = (of(&rows), of(&columns));
+        let height = wanted_rows.len();
+        self.linear_jacobian(rows, columns, omega, jacobian);
+        let active = active_pairs(workspace);
         if active.is_empty() {
             return;
         }
-        let inside = |link: &Link<'_>| link.unknown >= first && link.unknown < end;
-        let links: Vec<Link<'_>> = self.links().into_iter().filter(inside).collect();
+        let links = self.links();
+        let rows: Vec<&Link<'_>> = within(&links, &wanted_rows);
         let separated = workspace.separated;
         let (mut gathered, mut left_gathered): (Option<&Matrix<f64>>, Option<&Matrix<f64>>) =
             (None, None);
         let mut n_rows = 0;
-        for column in &links {
+        let n_coefficients = self.transform.n_coefficients();
+        for column in within(&links, &wanted_columns) {
             if !gathered.is_some_and(|rows| std::ptr::eq(rows, column.rows)) {
                 self.gather_active(&active, column.rows, true, &mut workspace.active_rows);
                 gathered = Some(column.rows);
             }
             let mut loaded: Option<usize> = None;
-            for c in 0..self.transform.n_coefficients() {
-                for row in links.iter().filter(|row| row.coefficient == c) {
+            for c in 0..n_coefficients {
+                for row in rows.iter().filter(|row| row.coefficient == c) {
                     if !left_gathered.is_some_and(|rows| std::ptr::eq(rows, row.rows)) {
                         let packed = &mut workspace.left_rows;
                         n_rows = self.gather_active(&active, row.rows, separated, packed);
                         left_gathered = Some(row.rows);
                     }
                     if loaded != Some(c) {
-                        self.load_active(&active, c, column, workspace);
+                        let entry = c * n_coefficients + column.coefficient;
+                        let slope = |slopes: &[f64]| slopes[entry];
+                        self.load_active(&active, column.size, slope, workspace);
                         loaded = Some(c);
                     }
-                    let at = (column.unknown - first) * unknowns + (row.unknown - first);
+                    let at = (column.unknown - wanted_columns.start) * height
+                        + (row.unknown - wanted_rows.start);
                     add_transpose_times(
-                        &mut jacobian[at..at + (column.size - 1) * unknowns + row.size],
-                        unknowns,
+                        &mut jacobian[at..at + (column.size - 1) * height + row.size],
+                        height,
                         row.sign * column.sign,
                         &workspace.left_rows[..n_rows * row.size],
                         &workspace.loaded_rows[..n_rows * column.size],
@@ -71,6 +76,67 @@ impl HarmonicSystem {
                 }
             }
         }
+    }
+
+    /// The part of the derivative of one harmonic by itself that is linear in the complex unknowns, column-major
+    /// `n x n` into `jacobian`: of `dG = g dd + h conj(dd)` the part g. For harmonics of a wheel, whose
+    /// contact rows are real.
+    pub(super) fn complex_jacobian_of(
+        &self,
+        index: usize,
+        omega: f64,
+        workspace: &mut SystemWorkspace,
+        jacobian: &mut [Complex64],
+    ) {
+        let block = &self.blocks[index];
+        let (n, rows) = (block.structure.size(), &block.structure.contact().real);
+        let k_omega = f64::from(block.harmonic) * omega;
+        for (entry, &stuck) in jacobian.iter_mut().zip(block.stuck.real.as_slice()) {
+            *entry = Complex64::new(stuck, 0.0);
+        }
+        for (mode, lambda) in block.structure.eigenvalues().iter().enumerate() {
+            jacobian[mode * n + mode].re += lambda - k_omega * k_omega;
+        }
+        if block.harmonic > 0 {
+            block
+                .structure
+                .for_each_damping(k_omega, |i, j, d| jacobian[j * n + i].im += d);
+        }
+        let active = active_pairs(workspace);
+        if active.is_empty() {
+            return;
+        }
+        self.gather_active(&active, rows, true, &mut workspace.active_rows);
+        let separated = workspace.separated;
+        let n_rows = self.gather_active(&active, rows, separated, &mut workspace.left_rows);
+        let (count, re) = (self.transform.n_coefficients(), self.coefficient[index]);
+        let mut product = vec![0.0; n * n];
+        let mut add = |part: fn(&mut Complex64) -> &mut f64, slope: &dyn Fn(&[f64]) -> f64| {
+            self.load_active(&active, n, slope, workspace);
+            product.fill(0.0);
+            add_transpose_times(
+                &mut product,
+                n,
+                1.0,
+                &workspace.left_rows[..n_rows * n],
+                &workspace.loaded_rows[..n_rows * n],
+                (n, n, n_rows),
+            );
+            for (entry, product) in jacobian.iter_mut().zip(&product) {
+                *part(entry) += product;
+            }
+        };
+        if block.harmonic == 0 {
+            add(|entry| &mut entry.re, &|slopes| slopes[re * count + re]);
+            return;
+        }
+        let im = re + 1;
+        add(|entry| &mut entry.re, &|slopes| {
+            0.5 * (slopes[re * count + re] + slopes[im * count + im])
+        });
+        add(|entry| &mut entry.im, &|slopes| {
+            0.5 * (slopes[im * count + re] - slopes[re * count + im])
+        });
     }
 
     /// Contact rows of the active pairs, packed, with or without those along the normal; returns their
@@ -100,19 +166,18 @@ impl HarmonicSystem {
         at / rows.columns().max(1)
     }
 
-    /// `dG_c / dx_{c'}` of the active pairs times their packed rows, into `loaded_rows`; c' is the coefficient
-    /// of `column`, and the rows along the normal are there where pairs separate.
+    /// Derivatives of G of the active pairs times their packed rows of `size` columns, into `loaded_rows`; `slope`
+    /// picks the wanted one from a block of a pair's. The rows along the normal are there where pairs separate.
     fn load_active(
         &self,
         active: &[usize],
-        c: usize,
-        column: &Link<'_>,
+        size: usize,
+        slope: impl Fn(&[f64]) -> f64,
         workspace: &mut SystemWorkspace,
     ) {
-        let entry = c * self.transform.n_coefficients() + column.coefficient;
         let per_sector = self.interface.per_sector();
         let (mut from, mut to) = (0, 0);
-        for _ in 0..column.size {
+        for _ in 0..size {
             for &pair in active {
                 let jacobian = &workspace.jacobians[pair];
                 let places = &self.interface.geometry.rows[pair % per_sector];
@@ -122,25 +187,27 @@ impl HarmonicSystem {
                 let mut at = usize::from(normal.is_some());
                 let mut first = 0;
                 if let (Some(normal), true) = (normal, workspace.separated) {
-                    target[0] = jacobian.normal_normal[entry] * normal;
+                    target[0] = slope(&jacobian.normal_normal) * normal;
                     first = 1;
                 }
                 let first_tangent = at;
                 let mut written = first;
                 for (tangent, place) in places[1..].iter().enumerate() {
                     if place.is_some() {
-                        target[written] = jacobian.tangential_tangential[tangent][entry]
+                        target[written] = slope(&jacobian.tangential_tangential[tangent])
                             * source[at]
                             + normal.map_or(0.0, |normal| {
-                                jacobian.tangential_normal[tangent][entry] * normal
+                                slope(&jacobian.tangential_normal[tangent]) * normal
                             });
                         written += 1;
                         at += 1;
                     }
                 }
-                if let (Some(cross), [_, Some(_), Some(_)]) = (&jacobian.tangential_cross, places) {
-                    target[first] += cross[0][entry] * source[first_tangent + 1];
-                    target[first + 1] += cross[1][entry] * source[first_tangent];
+                if let (Some([by_second, by_first]), [_, Some(_), Some(_)]) =
+                    (&jacobian.tangential_cross, places)
+                {
+                    target[first] += slope(by_second) * source[first_tangent + 1];
+                    target[first + 1] += slope(by_first) * source[first_tangent];
                 }
                 from += at;
                 to += written;
@@ -148,28 +215,38 @@ impl HarmonicSystem {
         }
     }
 
-    /// Derivative of the linear part of the wanted harmonics, column-major.
-    fn linear_jacobian(&self, wanted: Range<usize>, omega: f64, jacobian: &mut [f64]) {
-        let first = self.start[wanted.start];
-        let unknowns = self.start[wanted.end] - first;
+    /// Derivative of the linear part of the harmonics at `rows` by those at `columns`, column-major.
+    fn linear_jacobian(
+        &self,
+        rows: Range<usize>,
+        columns: Range<usize>,
+        omega: f64,
+        jacobian: &mut [f64],
+    ) {
+        let first_row = self.start[rows.start];
+        let height = self.start[rows.end] - first_row;
+        let first_column = self.start[columns.start];
         jacobian.fill(0.0);
-        for index in wanted {
+        for index in columns {
             let block = &self.blocks[index];
             let n = block.structure.size();
-            let start = self.start[index] - first;
+            let (top, left) = (
+                self.start[index] - first_row,
+                self.start[index] - first_column,
+            );
             let k_omega = f64::from(block.harmonic) * omega;
             let parts = if block.harmonic == 0 { 1 } else { 2 };
             for part in 0..parts {
-                let offset = start + part * n;
+                let row = top + part * n;
                 for j in 0..n {
-                    let column = &mut jacobian[(offset + j) * unknowns..][..unknowns];
-                    column[offset..offset + n].copy_from_slice(block.stuck.real.column(j));
-                    column[offset + j] += block.structure.eigenvalues()[j] - k_omega * k_omega;
+                    let column = &mut jacobian[(left + part * n + j) * height..][..height];
+                    column[row..row + n].copy_from_slice(block.stuck.real.column(j));
+                    column[row + j] += block.structure.eigenvalues()[j] - k_omega * k_omega;
                     if let (2, Some(imaginary)) = (parts, &block.stuck.imaginary) {
                         let (other, sign) = if part == 0 {
-                            (start + n, 1.0)
+                            (top + n, 1.0)
                         } else {
-                            (start, -1.0)
+                            (top, -1.0)
                         };
                         for (i, &value) in imaginary.column(j).iter().enumerate() {
                             column[other + i] += sign * value;
@@ -179,10 +256,24 @@ impl HarmonicSystem {
             }
             if parts == 2 {
                 block.structure.for_each_damping(k_omega, |i, j, d| {
-                    jacobian[(start + j) * unknowns + start + n + i] += d;
-                    jacobian[(start + n + j) * unknowns + start + i] -= d;
+                    jacobian[(left + j) * height + top + n + i] += d;
+                    jacobian[(left + n + j) * height + top + i] -= d;
                 });
             }
         }
     }
+}
+
+fn active_pairs(workspace: &SystemWorkspace) -> Vec<usize> {
+    (0..workspace.active.len())
+        .filter(|&pair| workspace.active[pair])
+        .collect()
+}
+
+/// The links whose unknowns are among `unknowns`.
+fn within<'a, 'b>(links: &'a [Link<'b>], unknowns: &Range<usize>) -> Vec<&'a Link<'b>> {
+    links
+        .iter()
+        .filter(|link| unknowns.contains(&link.unknown))
+        .collect()
 }

@@ -2,8 +2,8 @@
 //! equation that can be linearised.
 
 use super::anderson::Anderson;
+use super::kept_jacobian::KeptJacobian;
 use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
-use crate::linalg::LuWorkspace;
 
 /// When a Jacobian serves on: by the length of a simplified step over that of an earlier one.
 #[derive(Clone, Copy)]
@@ -22,12 +22,15 @@ const PLAIN: Serves = Serves {
     two_steps: 0.0,
     longer: 0.75,
 };
-/// Of accelerated ones.
+/// Of accelerated ones, which cost a small part of what a new Jacobian does.
 const ACCELERATED: Serves = Serves {
-    one_step: 0.75,
-    two_steps: 0.64,
-    longer: 1.2,
+    one_step: 0.9,
+    two_steps: 0.8,
+    longer: 2.0,
 };
+
+/// Unknowns up to which the whole Jacobian costs next to nothing.
+const SMALL: usize = 400;
 
 /// Earlier iterates that the acceleration combines.
 const DEPTH: usize = 16;
@@ -61,7 +64,15 @@ pub(super) trait Equation {
 
     /// Turns a residual into the step `J^-1 R` with the factors at hand, in place.
     fn step(&mut self, residual: &mut [f64]);
+
+    /// Whether `u` serves its purpose already, where `step` is what it still lacks.
+    fn is_settled(&self, _u: &[f64], _step: &[f64]) -> bool {
+        false
+    }
 }
+
+/// Whether a solution serves its purpose (first argument) with the next step (second) left undone.
+pub type Settled<'a> = &'a dyn Fn(&[f64], &[f64]) -> bool;
 
 /// Vectors of the iteration.
 pub(super) struct NewtonBuffers {
@@ -99,9 +110,8 @@ impl NewtonBuffers {
 /// Buffers of Newton's method for one system.
 pub struct NewtonWorkspace {
     system: SystemWorkspace,
-    jacobian: LuWorkspace<f64>,
-    /// Whether `jacobian` holds the factors of an earlier point.
-    factored: bool,
+    /// Of the last point at which it was factored.
+    jacobian: KeptJacobian,
     buffers: NewtonBuffers,
 }
 
@@ -112,8 +122,7 @@ impl NewtonWorkspace {
         let n = system.unknowns();
         Self {
             system: system.workspace(),
-            jacobian: LuWorkspace::new(n),
-            factored: false,
+            jacobian: KeptJacobian::new(),
             buffers: NewtonBuffers::accelerated(n),
         }
     }
@@ -131,9 +140,7 @@ impl NewtonWorkspace {
     /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
     pub fn factor_at(&mut self, system: &HarmonicSystem, omega: f64, x: &[f64]) -> bool {
         system.residual(omega, x, &mut self.buffers.residual, true, &mut self.system);
-        system.jacobian(omega, &mut self.system, self.jacobian.matrix_mut());
-        self.factored = self.jacobian.factor();
-        self.factored
+        self.jacobian.factor_whole(system, omega, &mut self.system)
     }
 
     /// `J^-1 residual` with the factors at hand, in place.
@@ -147,8 +154,9 @@ struct FixedFrequency<'a> {
     system: &'a HarmonicSystem,
     omega: f64,
     workspace: &'a mut SystemWorkspace,
-    jacobian: &'a mut LuWorkspace<f64>,
-    factored: &'a mut bool,
+    jacobian: &'a mut KeptJacobian,
+    accelerated: bool,
+    settled: Option<Settled<'a>>,
 }
 
 impl Equation for FixedFrequency<'_> {
@@ -158,30 +166,41 @@ impl Equation for FixedFrequency<'_> {
     }
 
     fn linearise(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
-        self.system
+        let (_, shares) = self
+            .system
             .residual(self.omega, x, residual, true, self.workspace);
-        self.system
-            .jacobian(self.omega, self.workspace, self.jacobian.matrix_mut());
-        *self.factored = self.jacobian.factor();
-        *self.factored
+        // Contact that opens couples the harmonics closely.
+        let whole = self.system.unknowns() <= SMALL || shares.separated > 0.0;
+        if whole || !self.accelerated {
+            self.jacobian
+                .factor_whole(self.system, self.omega, self.workspace)
+        } else {
+            self.jacobian
+                .factor_triangle(self.system, self.omega, self.workspace)
+        }
     }
 
     fn is_linearised(&self) -> bool {
-        *self.factored
+        self.jacobian.is_factored()
     }
 
     fn step(&mut self, residual: &mut [f64]) {
         self.jacobian.solve(residual);
     }
+
+    fn is_settled(&self, x: &[f64], step: &[f64]) -> bool {
+        self.settled.is_some_and(|settled| settled(x, step))
+    }
 }
 
-/// Solves `R(x) = 0` at angular frequency `omega` from the given `x`, in place; the factors of the
-/// last Jacobian serve again at the next, neighbouring frequency.
+/// Solves `R(x) = 0` at angular frequency `omega` from the given `x`, in place, or until it is `settled`; the
+/// factors of the last Jacobian serve again at the next, neighbouring frequency.
 pub fn solve(
     system: &HarmonicSystem,
     omega: f64,
     x: &mut Vec<f64>,
     bounds: NewtonBounds,
+    settled: Option<Settled<'_>>,
     workspace: &mut NewtonWorkspace,
 ) -> NewtonOutcome {
     let mut equation = FixedFrequency {
@@ -189,7 +208,8 @@ pub fn solve(
         omega,
         workspace: &mut workspace.system,
         jacobian: &mut workspace.jacobian,
-        factored: &mut workspace.factored,
+        accelerated: workspace.buffers.accelerated,
+        settled,
     };
     iterate(&mut equation, x, bounds, &mut workspace.buffers)
 }
@@ -287,6 +307,11 @@ pub(super) fn iterate(
             Some((norm, shares, contraction)) => {
                 std::mem::swap(u, trial);
                 (state.residual, state.shares) = (norm, shares);
+                // Where contact opens, a step tells little of what is left.
+                let proven = shares.separated == 0.0 && shares.unclosed == 0.0;
+                if proven && equation.is_settled(u, trial_step) {
+                    return ended(state, Status::Ok);
+                }
                 kept = contraction <= serves.one_step
                     || contraction * length <= serves.two_steps * before_last;
                 before_last = length;

@@ -59,7 +59,7 @@ pub fn solve_creeping(
     workspace: &mut NewtonWorkspace,
 ) -> NewtonOutcome {
     system.set_ring_drift([0.0; 2]);
-    let mut outcome = solve(system, omega, x, bounds, workspace);
+    let mut outcome = solve(system, omega, x, bounds, None, workspace);
     let free = system.free_ring_motions();
     let sizes = Sizes::of(system.pairs());
     let mut drifting = [false; 2];
@@ -163,7 +163,7 @@ fn balance(
             }
         }
         system.set_ring_drift(next);
-        let outcome = solve(system, omega, x, bounds, workspace);
+        let outcome = solve(system, omega, x, bounds, None, workspace);
         iterations += outcome.iterations;
         factorisations += outcome.factorisations;
         last = Some(outcome);

@@ -309,7 +309,7 @@ fn oscillator(
 fn converge(system: &HarmonicSystem, omega: f64, x: &mut Vec<f64>) {
     let mut workspace = NewtonWorkspace::new(system);
     let bounds = NewtonBounds::with_tolerance(1e-9);
-    let outcome = solve(system, omega, x, bounds, &mut workspace);
+    let outcome = solve(system, omega, x, bounds, None, &mut workspace);
     assert_eq!(outcome.status, Status::Ok, "omega {omega}: {outcome:?}");
 }
 
