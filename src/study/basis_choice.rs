@@ -194,7 +194,6 @@ fn vectors(reduction: &Reduction<'_>, choice: BasisChoice) -> usize {
         BasisChoice::StickAttachment { stick } => stick + reduction.contact_rows(),
         BasisChoice::CraigBampton => reduction
             .models()
-            .iter()
             .map(crate::model::reduction::CraigBampton::size)
             .max()
             .unwrap_or(0),
@@ -255,7 +254,7 @@ impl Peaks {
 
     /// How far the fixed-interface modes reach beyond the harmonics of the peaks.
     fn reach(&self, reduction: &Reduction<'_>, judged: Judged<'_>) -> Option<f64> {
-        let models = reduction.models();
+        let models: &[_] = &reduction.models().collect::<Vec<_>>();
         let sectors = reduction.sectors();
         judged
             .each()

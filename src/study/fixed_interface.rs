@@ -16,6 +16,7 @@ use super::full_model::reference_settings;
 use super::reduced_engine::{contact_stiffness, row_settings, sensitivity_vectors};
 use super::{PipelineError, Study};
 use crate::model::ReducedModel;
+use crate::model::cyclic::nodal_diameter_of;
 use crate::model::reduction::{BasisChoice, Reduction, ReductionOptions};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{RowSettings, RowSolver, Scenario};
@@ -72,20 +73,19 @@ pub fn reduce_sector<'a>(
     let fixed = study.reduction.craig_bampton_modes;
     let compared = Compared::new(study)?;
     let mut tried = Vec::new();
-    let mut coarse = Rung::new(
-        study,
-        sector,
-        fixed.unwrap_or(ReductionOptions::FIRST_CRAIG_BAMPTON_MODES),
-    )?;
+    let first = fixed.unwrap_or(ReductionOptions::FIRST_CRAIG_BAMPTON_MODES);
+    let mut coarse = Rung::new(study, sector, first);
+    let waves = compared.waves(sector.sectors);
+    let model = coarse.model(&waves)?;
     if coarse.reduction.is_whole_space() {
-        return Ok(coarse.taken(Some(0.0), tried));
+        return coarse.taken(Some(0.0), tried);
     }
-    let mut peaks = compared.peaks(&coarse.model()?, None)?;
-    let mut next = Rung::new(study, sector, coarse.more_modes())?;
-    let mut next_peaks = compared.peaks(&next.model()?, Some(&peaks))?;
+    let mut peaks = compared.peaks(&model, None)?;
+    let mut next = Rung::new(study, sector, coarse.more_modes());
+    let mut next_peaks = compared.peaks(&next.model(&waves)?, Some(&peaks))?;
     loop {
-        let finest = Rung::new(study, sector, next.more_modes())?;
-        let finest_peaks = compared.peaks(&finest.model()?, Some(&next_peaks))?;
+        let finest = Rung::new(study, sector, next.more_modes());
+        let finest_peaks = compared.peaks(&finest.model(&waves)?, Some(&next_peaks))?;
         let change = largest_change(&peaks, &next_peaks);
         tried.push(ModesTried {
             modes: coarse.modes,
@@ -95,7 +95,7 @@ pub fn reduce_sector<'a>(
         if enough || fixed.is_some() || next.modes > MOST_MODES {
             let further = largest_change(&peaks, &finest_peaks);
             let error = change.zip(further).map(|(a, b)| a.max(b));
-            return Ok(coarse.taken(error, tried));
+            return coarse.taken(error, tried);
         }
         (coarse, peaks) = (next, next_peaks);
         (next, next_peaks) = (finest, finest_peaks);
@@ -111,7 +111,7 @@ pub fn reduction_of<'a>(
     sector: &'a SectorModel,
 ) -> Result<Reduction<'a>, PipelineError> {
     match study.reduction.craig_bampton_modes {
-        Some(modes) => Ok(Rung::new(study, sector, modes)?.reduction),
+        Some(modes) => Ok(Rung::new(study, sector, modes).reduction.completed()?),
         None => Ok(reduce_sector(study, sector)?.0),
     }
 }
@@ -123,32 +123,38 @@ struct Rung<'a> {
 }
 
 impl<'a> Rung<'a> {
-    fn new(study: &Study, sector: &'a SectorModel, modes: usize) -> Result<Self, PipelineError> {
-        let reduction = Reduction::new(
+    /// No nodal diameter is reduced yet.
+    fn new(study: &Study, sector: &'a SectorModel, modes: usize) -> Self {
+        let reduction = Reduction::on_demand(
             sector,
             contact_stiffness(study.contact.as_ref()),
             modes,
             sensitivity_vectors(study),
-        )?;
-        Ok(Self { modes, reduction })
+        );
+        Self { modes, reduction }
     }
 
     fn more_modes(&self) -> usize {
         (3 * self.modes).div_ceil(2)
     }
 
-    /// The tuned wheel with every contact dof.
-    fn model(&self) -> Result<Arc<ReducedModel>, PipelineError> {
-        Ok(Arc::new(self.reduction.tuned(BasisChoice::CraigBampton)?))
+    /// The tuned wheel with every contact dof, in the nodal diameters `waves`.
+    fn model(&self, waves: &[usize]) -> Result<Arc<ReducedModel>, PipelineError> {
+        let model = self.reduction.tuned_in(BasisChoice::CraigBampton, waves)?;
+        Ok(Arc::new(model))
     }
 
-    fn taken(self, error: Option<f64>, tried: Vec<ModesTried>) -> (Reduction<'a>, FixedInterface) {
+    fn taken(
+        self,
+        error: Option<f64>,
+        tried: Vec<ModesTried>,
+    ) -> Result<(Reduction<'a>, FixedInterface), PipelineError> {
         let evidence = FixedInterface {
             modes: self.modes,
             error,
             tried,
         };
-        (self.reduction, evidence)
+        Ok((self.reduction.completed()?, evidence))
     }
 }
 
@@ -210,6 +216,22 @@ impl Compared {
             row,
             sets,
         })
+    }
+
+    /// Nodal diameters that the tuned wheel answers in, in any harmonic of any set.
+    fn waves(&self, sectors: usize) -> Vec<usize> {
+        let harmonics = 0..=HIGHEST_HARMONIC as u32;
+        let mut waves: Vec<usize> = harmonics
+            .flat_map(|harmonic| {
+                let of = move |case: &Scenario| {
+                    nodal_diameter_of(harmonic, case.engine_order, sectors).index
+                };
+                self.cases.iter().map(of)
+            })
+            .collect();
+        waves.sort_unstable();
+        waves.dedup();
+        waves
     }
 
     /// Peaks with the sets of those `known` before, or with the first set that has one.

@@ -111,7 +111,7 @@ fn a_basis_holds_the_modes_it_is_made_of() {
         ),
         (BasisChoice::StickAttachment { stick: 3 }, vec![&stick]),
     ] {
-        for (h, whole) in reduction.models().iter().enumerate() {
+        for (h, whole) in reduction.models().enumerate() {
             let reduced = reduction.nodal_diameter(h, choice).unwrap();
             for springs in &states {
                 let (expected, _) = whole.modes(springs).unwrap();
@@ -129,7 +129,7 @@ fn a_basis_holds_the_modes_it_is_made_of() {
 fn rank_and_condition_of_every_basis_are_reported() {
     let model = wheel8_sector();
     let reduction = Reduction::new(&model, wheel8_springs(), 25, 0).unwrap();
-    let whole = reduction.models()[0].size();
+    let whole = reduction.models().next().unwrap().size();
     for modes in [2, 6, 20, 28] {
         let choice = BasisChoice::StickSlide {
             stick: modes,

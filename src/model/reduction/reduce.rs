@@ -1,6 +1,7 @@
 //! From a cyclic sector to a reduced model: Craig-Bampton once, then a basis of a chosen size.
 
 use std::f64::consts::TAU;
+use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
@@ -17,14 +18,16 @@ use crate::model::sector::{ModelError, SectorModel};
 /// Number of frequencies per nodal diameter in the report.
 const REPORTED_FREQUENCIES: usize = 6;
 
-/// The Craig-Bampton models of every nodal diameter 0..=N/2 of a sector: made once, then
-/// reduced further as often as a choice of basis asks for.
+/// The Craig-Bampton models of the nodal diameters 0..=N/2 of a sector: each made once, when it is asked for,
+/// then reduced further as often as a choice of basis asks for.
 #[derive(Debug)]
 pub struct Reduction<'a> {
     name: &'a str,
     sector: CyclicSector<'a>,
     springs: ContactSprings,
-    models: Vec<CraigBampton>,
+    craig_bampton_modes: usize,
+    sensitivity_vectors: usize,
+    models: Vec<OnceLock<CraigBampton>>,
 }
 
 /// Per-sector contact stiffness, N/m, in normal, first and second tangential direction.
@@ -50,6 +53,17 @@ impl<'a> Reduction<'a> {
         craig_bampton_modes: usize,
         sensitivity_vectors: usize,
     ) -> Result<Self, ModelError> {
+        Self::on_demand(model, stiffness, craig_bampton_modes, sensitivity_vectors).completed()
+    }
+
+    /// The same with no model made yet: each is made when it is first needed.
+    #[must_use]
+    pub fn on_demand(
+        model: &'a SectorModel,
+        stiffness: ContactStiffness,
+        craig_bampton_modes: usize,
+        sensitivity_vectors: usize,
+    ) -> Self {
         let sector = CyclicSector::new(model);
         let springs = ContactSprings {
             stick: sector.contact().springs([
@@ -61,22 +75,14 @@ impl<'a> Reduction<'a> {
                 .contact()
                 .springs([stiffness.normal_n_per_m, 0.0, 0.0]),
         };
-        let models = (0..=model.sectors / 2)
-            .into_par_iter()
-            .map(|h| {
-                CraigBampton::new(&sector, h, craig_bampton_modes)?.with_blade_sensitivity(
-                    &sector,
-                    &springs.stick,
-                    sensitivity_vectors,
-                )
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        Ok(Self {
+        Self {
             name: &model.name,
             sector,
             springs,
-            models,
-        })
+            craig_bampton_modes,
+            sensitivity_vectors,
+            models: (0..=model.sectors / 2).map(|_| OnceLock::new()).collect(),
+        }
     }
 
     /// Number of sectors N.
@@ -85,16 +91,35 @@ impl<'a> Reduction<'a> {
         self.sector.sectors()
     }
 
-    /// The Craig-Bampton model of each nodal diameter.
-    #[must_use]
-    pub fn models(&self) -> &[CraigBampton] {
-        &self.models
+    /// The same with the models of all nodal diameters made, in parallel.
+    ///
+    /// # Errors
+    /// If a mass or stiffness is not positive definite.
+    pub fn completed(self) -> Result<Self, ModelError> {
+        (0..self.models.len())
+            .into_par_iter()
+            .try_for_each(|h| self.model(h).map(|_| ()))?;
+        Ok(self)
+    }
+
+    fn model(&self, h: usize) -> Result<&CraigBampton, ModelError> {
+        if let Some(model) = self.models[h].get() {
+            return Ok(model);
+        }
+        let model = CraigBampton::new(&self.sector, h, self.craig_bampton_modes)?
+            .with_blade_sensitivity(&self.sector, &self.springs.stick, self.sensitivity_vectors)?;
+        Ok(self.models[h].get_or_init(|| model))
+    }
+
+    /// The Craig-Bampton models made so far, in order of their nodal diameters.
+    pub fn models(&self) -> impl Iterator<Item = &CraigBampton> {
+        self.models.iter().filter_map(OnceLock::get)
     }
 
     /// Whether every nodal diameter keeps all of its dofs, so that any basis is the whole space.
     #[must_use]
     pub fn is_whole_space(&self) -> bool {
-        self.models.iter().all(|model| model.whole_space)
+        self.models().next().is_some() && self.models().all(|model| model.whole_space)
     }
 
     /// Number of contact rows of a sector.
@@ -125,7 +150,8 @@ impl<'a> Reduction<'a> {
         choice: BasisChoice,
         cantilever_mode_count: Option<usize>,
     ) -> Result<ReducedModel, ModelError> {
-        let (mut model, bases) = self.nodal_diameters(choice)?;
+        let all: Vec<usize> = (0..self.models.len()).collect();
+        let (mut model, bases) = self.nodal_diameters(choice, &all)?;
         model.cantilever = cantilever_mode_count
             .map(|count| cantilever_modes(&self.sector, &bases, count))
             .transpose()?;
@@ -139,17 +165,37 @@ impl<'a> Reduction<'a> {
     /// # Errors
     /// If a mass is not positive definite.
     pub fn tuned(&self, choice: BasisChoice) -> Result<ReducedModel, ModelError> {
-        Ok(self.nodal_diameters(choice)?.0)
+        let all: Vec<usize> = (0..self.models.len()).collect();
+        Ok(self.nodal_diameters(choice, &all)?.0)
+    }
+
+    /// The same of a wheel that answers in the nodal diameters `wanted` alone; the others have no modes.
+    ///
+    /// # Errors
+    /// If a mass is not positive definite.
+    pub fn tuned_in(
+        &self,
+        choice: BasisChoice,
+        wanted: &[usize],
+    ) -> Result<ReducedModel, ModelError> {
+        Ok(self.nodal_diameters(choice, wanted)?.0)
     }
 
     /// The reduced model but for the blade, and the basis of each nodal diameter (`n_dofs x n_modes`).
     fn nodal_diameters(
         &self,
         choice: BasisChoice,
+        wanted: &[usize],
     ) -> Result<(ReducedModel, Vec<Matrix<Complex64>>), ModelError> {
         let projected = (0..self.models.len())
             .into_par_iter()
-            .map(|h| self.project(h, choice))
+            .map(|h| {
+                if wanted.contains(&h) {
+                    self.project(h, choice)
+                } else {
+                    Ok(self.without_modes(h))
+                }
+            })
             .collect::<Result<Vec<_>, _>>()?;
         let mut nodal_diameters = Vec::new();
         let mut bases = Vec::new();
@@ -180,7 +226,7 @@ impl<'a> Reduction<'a> {
         h: usize,
         choice: BasisChoice,
     ) -> Result<(ReducedNodalDiameter, Matrix<Complex64>, NodalDiameterReport), ModelError> {
-        let model = &self.models[h];
+        let model = self.model(h)?;
         let basis = basis_of(model, &self.springs, choice)?;
         let v = &basis.vectors;
         let mass = v.adjoint_times(&model.mass.times(v));
@@ -211,6 +257,33 @@ impl<'a> Reduction<'a> {
             free_frequencies_hz: frequencies_hz(&pencil(&model.stiffness, &model.mass, h)?.0),
         };
         Ok((reduced, full, report))
+    }
+}
+
+impl Reduction<'_> {
+    /// [`Self::project`] onto nothing.
+    fn without_modes(
+        &self,
+        h: usize,
+    ) -> (ReducedNodalDiameter, Matrix<Complex64>, NodalDiameterReport) {
+        let reduced = ReducedNodalDiameter {
+            contact: Matrix::zeros(self.contact_rows(), 0),
+            observed: Matrix::zeros(3, 0),
+            force: Matrix::zeros(0, 1),
+            conjugate_force: Matrix::zeros(0, 1),
+            eigenvalues: Vec::new(),
+        };
+        let report = NodalDiameterReport {
+            nodal_diameter: h,
+            craig_bampton_size: 0,
+            candidates: 0,
+            rank: 0,
+            condition: 1.0,
+            stick_frequencies_hz: Vec::new(),
+            slide_frequencies_hz: Vec::new(),
+            free_frequencies_hz: Vec::new(),
+        };
+        (reduced, Matrix::zeros(self.sector.dimension(), 0), report)
     }
 }
 
