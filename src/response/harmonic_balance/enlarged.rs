@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! R_s(x_s, x_o) = 0,    R_o(x_s, x_o) = 0,    from (x_s, 0)
-//! P = J    or    P = [J_ss, 0; 0, diag_k (complex-linear part of J_kk)]
+//! P = J    or    P = [J_ss, 0; 0, diag_k (part of J_kk linear in complex unknowns)]
 //! ```
 //!
 //! is solved by the fixed-point iteration `x <- x - P^-1 R(x)` with Anderson's acceleration (Anderson
