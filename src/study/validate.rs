@@ -313,6 +313,7 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
     let counts = [
         ("reduction.stick_modes", options.stick_modes, 1),
         ("reduction.slide_modes", options.slide_modes, 1),
+        ("reduction.partial_modes", options.partial_modes, 1),
         (
             "reduction.craig_bampton_modes",
             options.craig_bampton_modes,
@@ -329,7 +330,14 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
             check.refuse(key, &format!("a whole number from {least} to 1000"));
         }
     }
+    if options.partial_modes.is_some() && options.basis != Basis::StickPartialSlide {
+        check.conflict(
+            "reduction.partial_modes",
+            "only basis = \"stick_partial_slide\" has partial modes",
+        );
+    }
     match options.basis {
+        Basis::StickPartialSlide => {}
         Basis::Auto => {
             for (key, given) in [
                 ("reduction.stick_modes", options.stick_modes.is_some()),
@@ -339,7 +347,7 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
                     check.conflict(
                         key,
                         "basis = \"auto\" chooses the number of modes; accepted: reduction.error, or \
-                         basis = \"stick_slide\" or \"stick_attachment\" with fixed numbers",
+                         basis = \"stick_slide\", \"stick_partial_slide\" or \"stick_attachment\" with fixed numbers",
                     );
                 }
             }

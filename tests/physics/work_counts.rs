@@ -47,6 +47,7 @@ fn peak_at(wheel: &Wheel, load: f64) -> Peak {
 /// Solves, Newton iterations and factorisations of each row within a tenth, and three, of those written down;
 /// rounding, which differs between processors, moves a few.
 fn assert_work(wheel: &Wheel, expected: &[(f64, [u64; 3])]) {
+    let mut beyond = Vec::new();
     for (load, counts) in expected {
         let row = peak_at(wheel, *load);
         let found = [
@@ -56,21 +57,23 @@ fn assert_work(wheel: &Wheel, expected: &[(f64, [u64; 3])]) {
         ];
         println!("{load} N: {found:?}, {} retries", row.work.retries);
         assert_eq!(row.status, Status::Ok, "{load} N");
-        for (found, expected) in found.iter().zip(counts) {
-            let margin = 3 + expected / 10;
-            assert!(
-                found.abs_diff(*expected) <= margin,
-                "{load} N: {found} for {expected}"
-            );
+        let near = |(found, expected): (&u64, &u64)| found.abs_diff(*expected) <= 3 + expected / 10;
+        if !found.iter().zip(counts).all(near) {
+            beyond.push(format!("{load} N: {found:?} for {counts:?}"));
         }
     }
+    assert!(beyond.is_empty(), "{beyond:#?}");
 }
 
 #[test]
 fn a_peak_of_a_wheel_of_many_unknowns_takes_the_work_known_for_it() {
     assert_work(
         &wheel24(),
-        &[(160.0, [0; 3]), (320.0, [0; 3]), (1280.0, [0; 3])],
+        &[
+            (160.0, [18, 151, 10]),
+            (320.0, [18, 93, 9]),
+            (1280.0, [28, 104, 14]),
+        ],
     );
 }
 

@@ -10,6 +10,8 @@ pub enum Basis {
     Auto,
     /// Modes under global sticking and global sliding contact.
     StickSlide,
+    /// Modes under sticking, sliding and partly sticking contact.
+    StickPartialSlide,
     /// Stick modes and one attachment vector per contact direction.
     StickAttachment,
 }
@@ -24,8 +26,11 @@ pub struct ReductionOptions {
     pub error: f64,
     /// Number of stick modes per nodal diameter; fixes the size instead of `error`.
     pub stick_modes: Option<usize>,
-    /// Number of slide modes per nodal diameter (`stick_slide` only); fixes the size instead of `error`.
+    /// Number of slide modes per nodal diameter (not `stick_attachment`); fixes the size instead of `error`.
     pub slide_modes: Option<usize>,
+    /// Number of modes per nodal diameter at each of the two contact stiffnesses between sliding and sticking
+    /// (`stick_partial_slide` only).
+    pub partial_modes: Option<usize>,
     /// Fixed-interface modes of the Craig-Bampton model per nodal diameter. Absent: so many, from
     /// [`Self::FIRST_CRAIG_BAMPTON_MODES`] on, that more of them change no tuned peak by more than
     /// [`Self::error`].
@@ -47,6 +52,7 @@ impl Default for ReductionOptions {
             error: 1e-3,
             stick_modes: None,
             slide_modes: None,
+            partial_modes: None,
             craig_bampton_modes: None,
             sensitivity_vectors: None,
         }

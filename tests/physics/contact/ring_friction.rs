@@ -1,6 +1,8 @@
 //! Mean friction on the ring, and the ring that creeps under it.
 
-use blisk::response::forced_response::{ContactCondition, SolverOptions};
+use blisk::response::forced_response::{
+    ContactCondition, PointSettings, PointSolver, SolverOptions,
+};
 use blisk::response::friction::{ContactLaw, CoupledSlider, PeriodicSlider, Ring};
 use blisk::response::harmonic_balance::HarmonicTransform;
 
@@ -148,12 +150,26 @@ fn a_creeping_ring_feels_no_mean_friction_unless_pairs_that_stick_take_it() {
         }
         let change = relative(other, one);
         if drift.iter().all(|drift| drift.abs() <= 0.0) {
-            assert!(change < 1e-9, "{change:e}");
+            // The searches take other points on their way; at one frequency there is no difference.
+            assert!(change < 1e-5, "{change:e}");
+            let [one, other] = [Ring::Locked, Ring::Creeping]
+                .map(|ring| amplitude_at(&Wheel::wheel8(), ring, load, points[0].frequency_hz));
+            assert!(relative(other, one) < 1e-9, "{one:e} {other:e}");
         } else {
             assert!(change < 5e-2, "{change:e}");
         }
     }
     assert!(creeping > 0 && held > 0, "{creeping} {held}");
+}
+
+fn amplitude_at(wheel: &Wheel, ring: Ring, load: f64, frequency_hz: f64) -> f64 {
+    let contact = Some((wheel.law, wheel.sector));
+    let geometry = wheel.model.contact.clone();
+    let settings = PointSettings::new(&SolverOptions::default(), &[1, 3], contact, geometry);
+    let settings = settings.unwrap().with_ring(ring);
+    let tuned = wheel.tuned(&[1, 3]);
+    let mut solver = PointSolver::new(&tuned, full(load), &settings);
+    solver.solve(frequency_hz).unwrap().largest_amplitude_m()
 }
 
 #[test]
