@@ -11,6 +11,7 @@ use super::import::ImportArguments;
 use super::merge::MergeArguments;
 use super::optimum::OptimumArguments;
 use super::plan::PlanArguments;
+use super::report::{PlotArguments, ReportArguments};
 use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
 use super::run::RunArguments;
 use super::slurm::SlurmArguments;
@@ -182,4 +183,11 @@ pub enum Command {
     Estimate(EstimateArguments),
     /// Show the statistics of a results folder again, from its tables.
     Stats(StatsArguments),
+    /// Write a finished study as one HTML page: which load to choose, how sure that is, figures, tables.
+    ///
+    /// The page needs no network and shows in any browser. A few wheels are solved again for their
+    /// response curves.
+    Report(ReportArguments),
+    /// Write one figure of the report as SVG.
+    Plot(PlotArguments),
 }

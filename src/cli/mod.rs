@@ -16,6 +16,7 @@ mod output;
 mod plan;
 mod progress;
 mod replay;
+mod report;
 mod response;
 mod run;
 mod scheduler;

@@ -7,7 +7,7 @@ use clap::Parser;
 
 use super::{
     Arguments, Command, ExitStatus, check, compare, estimate, import, init, merge, model, optimum,
-    output, plan, replay, response, run, slurm, stats, status, verify,
+    output, plan, replay, report, response, run, slurm, stats, status, verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).
@@ -105,6 +105,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Optimum(arguments) => optimum::command(&arguments),
         Command::Estimate(arguments) => estimate::command(&arguments),
         Command::Stats(arguments) => stats::command(&arguments),
+        Command::Report(arguments) => report::command(&arguments),
+        Command::Plot(arguments) => report::plot(&arguments),
     };
     match ended {
         Ok(status) => status,

@@ -1,0 +1,127 @@
+//! Errors that the rows of a scenario state, and what they come to in a percentile.
+
+use serde::Serialize;
+
+use super::PercentileError;
+use crate::population::monte_carlo::ResponseRow;
+use crate::population::statistics::percentile_at;
+use crate::response::harmonic_balance::Status;
+
+/// Median, 95th percentile and largest of the magnitudes of an error.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct ErrorSpread {
+    /// Median.
+    pub median: f64,
+    /// 95th percentile.
+    pub p95: f64,
+    /// Largest.
+    pub largest: f64,
+}
+
+impl ErrorSpread {
+    /// The spread of the magnitudes of `errors`; none without any.
+    #[must_use]
+    pub fn of(errors: impl Iterator<Item = f64>) -> Option<Self> {
+        let mut sizes: Vec<f64> = errors.map(f64::abs).collect();
+        sizes.sort_unstable_by(f64::total_cmp);
+        let at = |p: f64| sizes[((p * sizes.len() as f64).ceil() as usize).max(1) - 1];
+        (!sizes.is_empty()).then(|| Self {
+            median: at(0.5),
+            p95: at(0.95),
+            largest: at(1.0),
+        })
+    }
+}
+
+/// Relative errors of the peak amplitude that the rows of a scenario state.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct NumericalError {
+    /// Rows with a result.
+    pub rows: u64,
+    /// Those of them that state no bound.
+    pub without_bound: u64,
+    /// Change by finer sampling.
+    pub sampling: Option<ErrorSpread>,
+    /// Change by more harmonics.
+    pub harmonics: Option<ErrorSpread>,
+    /// Bound on the error from all sources.
+    pub stated: Option<ErrorSpread>,
+}
+
+/// Amplitude and errors of one row with a result.
+#[derive(Debug, Clone, Copy)]
+struct Judged {
+    amplitude_m: f64,
+    sampling: Option<f64>,
+    harmonics: Option<f64>,
+    stated: Option<f64>,
+}
+
+/// The rows of one scenario as they are read.
+#[derive(Debug, Clone, Default)]
+pub struct ErrorRows {
+    good: Vec<Judged>,
+    failed: u64,
+}
+
+impl ErrorRows {
+    /// Adds a row.
+    pub fn add(&mut self, row: &ResponseRow) {
+        match row.peak_amplitude_m.filter(|_| row.status == Status::Ok) {
+            Some(amplitude_m) => self.good.push(Judged {
+                amplitude_m,
+                sampling: row.sampling_error,
+                harmonics: row.harmonic_error,
+                stated: row.stated_error,
+            }),
+            None => self.failed += 1,
+        }
+    }
+
+    /// What the rows state.
+    #[must_use]
+    pub fn spread(&self) -> NumericalError {
+        let of =
+            |error: fn(&Judged) -> Option<f64>| ErrorSpread::of(self.good.iter().filter_map(error));
+        NumericalError {
+            rows: self.good.len() as u64,
+            without_bound: self.good.iter().filter(|row| row.stated.is_none()).count() as u64,
+            sampling: of(|row| row.sampling),
+            harmonics: of(|row| row.harmonics),
+            stated: of(|row| row.stated),
+        }
+    }
+
+    /// The percentile `percent`, bounds at `confidence`, with what the errors make of it.
+    ///
+    /// An order statistic does not fall if no value does, so that the percentile of the lowest values
+    /// that the rows allow is the lowest that it can be. With `|x - t| <= s t`, the true value t
+    /// lies between `x / (1 + s)` and `x / (1 - s)`; a row without bound can be anything.
+    #[must_use]
+    pub fn percentile(&self, percent: f64, confidence: f64) -> PercentileError {
+        let of = |value: &dyn Fn(&Judged) -> f64| {
+            let mut values: Vec<f64> = self.good.iter().map(value).collect();
+            values.sort_unstable_by(f64::total_cmp);
+            percentile_at(&values, self.failed, percent, confidence)
+        };
+        let finite = |found: Option<f64>| found.filter(|value| value.is_finite());
+        let lowest = of(&|row| match row.stated {
+            Some(stated) => row.amplitude_m / (1.0 + stated),
+            None => f64::NEG_INFINITY,
+        });
+        let highest = of(&|row| match row.stated {
+            Some(stated) if stated < 1.0 => row.amplitude_m / (1.0 - stated),
+            _ => f64::INFINITY,
+        });
+        let corrected = of(&|row| {
+            let change = row.sampling.unwrap_or(0.0) + row.harmonics.unwrap_or(0.0);
+            row.amplitude_m * (1.0 + change)
+        });
+        PercentileError {
+            percentile: of(&|row| row.amplitude_m),
+            lowest: finite(lowest.value),
+            highest: finite(highest.value),
+            corrected: corrected.value,
+        }
+    }
+}
