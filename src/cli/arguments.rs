@@ -11,6 +11,7 @@ use super::import::ImportArguments;
 use super::merge::MergeArguments;
 use super::optimum::OptimumArguments;
 use super::plan::PlanArguments;
+use super::replay::ReplayArguments;
 use super::report::{PlotArguments, ReportArguments};
 use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
 use super::run::RunArguments;
@@ -108,25 +109,7 @@ pub enum Command {
         json: bool,
     },
     /// Solve one delivered row again and say whether it is the same bit for bit.
-    Replay {
-        /// The results folder.
-        results: PathBuf,
-        /// Scenario, counted from 0.
-        #[arg(long, value_name = "I")]
-        scenario: usize,
-        /// Id of the pattern.
-        #[arg(long, value_name = "ID")]
-        pattern: u32,
-        /// Which model the row is compared with besides.
-        #[command(flatten)]
-        fidelity: FidelityArguments,
-        /// Where the inputs lie now: beside this study file [default: that of the last run].
-        #[arg(long, value_name = "FILE")]
-        study: Option<PathBuf>,
-        /// Print JSON.
-        #[arg(long)]
-        json: bool,
-    },
+    Replay(ReplayArguments),
     /// Solve a random sample of delivered rows again, on the same path and on the full-contact model.
     ///
     /// Writes verification.parquet into the results folder.

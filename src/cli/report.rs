@@ -1,5 +1,6 @@
 //! `blisk report` and `blisk plot`: a finished study made for looking.
 
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -123,7 +124,12 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<ExitStatus, Failure> {
         )));
     };
     write_atomically(&out, drawn.standalone().as_bytes())?;
-    output::text(&format!("wrote {}: {}", out.display(), drawn.title));
+    output::text(&format!(
+        "wrote {}: {}, {}",
+        out.display(),
+        drawn.title,
+        drawn.setting
+    ));
     Ok(ExitStatus::Done)
 }
 
@@ -185,9 +191,10 @@ fn in_words(found: &StudyReport) -> String {
             reasons,
         } in answers(found, group)
         {
-            text.push_str(&format!("{question}\n  {verdict}\n"));
+            // Writing to a String cannot fail.
+            let _ = write!(text, "{question}\n  {verdict}\n");
             for reason in reasons {
-                text.push_str(&format!("  {reason}\n"));
+                let _ = writeln!(text, "  {reason}");
             }
             text.push('\n');
         }

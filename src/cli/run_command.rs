@@ -61,21 +61,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             continuation,
             json,
         }),
-        Command::Replay {
-            results,
-            scenario,
-            pattern,
-            fidelity,
-            study,
-            json,
-        } => replay::command(&replay::ReplayArguments {
-            results,
-            scenario,
-            pattern,
-            fidelity,
-            study,
-            json,
-        }),
+        Command::Replay(arguments) => replay::command(&arguments),
         Command::Verify {
             target,
             sample,

@@ -84,3 +84,22 @@ pub(super) fn setting(group: &GroupReport) -> String {
         None => format!("engine order {}, patterns from a file", group.engine_order),
     }
 }
+
+/// `text` with its units held to their numbers by spaces that do not break.
+pub(super) fn tied(text: &str) -> String {
+    const UNITS: [&str; 7] = ["%", "N", "Hz", "m", "mm", "µm", "nm"];
+    let mut tied = String::with_capacity(text.len() + 16);
+    for word in text.split(' ') {
+        if !tied.is_empty() {
+            let bare = word.trim_end_matches(['.', ',', ';', ':', ')', ']']);
+            let of_number = tied.ends_with(|before: char| before.is_ascii_digit() || before == ']');
+            tied.push(if UNITS.contains(&bare) && of_number {
+                '\u{a0}'
+            } else {
+                ' '
+            });
+        }
+        tied.push_str(word);
+    }
+    tied
+}

@@ -90,7 +90,8 @@ pub(super) fn of_load(
     legend(&mut svg, &entries);
     Some(Figure {
         name,
-        title: title(quantity, scenario, group),
+        title: title(quantity, scenario),
+        setting: setting(group),
         caption: caption(found),
         height: HEIGHT,
         body: svg.into_body(),
@@ -150,15 +151,14 @@ fn percentiles(svg: &mut Svg, frame: &Frame<'_>, found: &DistributionReport, sca
     }
 }
 
-fn title(quantity: Quantity, scenario: &ScenarioSummary, group: &GroupReport) -> String {
+fn title(quantity: Quantity, scenario: &ScenarioSummary) -> String {
     let what = match quantity {
         Quantity::PeakAmplitudeM => "peak amplitude",
         Quantity::AmplificationFactor => "amplification factor",
     };
     format!(
-        "Distribution of the {what} at load {}, {}",
-        load_with_unit(scenario.contact, scenario.normal_load_n),
-        setting(group)
+        "Distribution of the {what} at load {}",
+        load_with_unit(scenario.contact, scenario.normal_load_n)
     )
 }
 

@@ -41,11 +41,6 @@ pub const FIGURES: [(FigureName, &str, &str); 9] = [
         "amplification factor against normal load",
     ),
     (
-        FigureName::Uncertainty,
-        "uncertainty",
-        "statistical and numerical error of a percentile against normal load",
-    ),
-    (
         FigureName::AmplitudeDistribution,
         "amplitude-distribution",
         "distribution of the peak amplitude at the chosen load, with its band and a tail fit",
@@ -54,6 +49,11 @@ pub const FIGURES: [(FigureName, &str, &str); 9] = [
         FigureName::AmplificationFactorDistribution,
         "amplification-factor-distribution",
         "the same of the amplification factor",
+    ),
+    (
+        FigureName::Uncertainty,
+        "uncertainty",
+        "statistical and numerical error of a percentile against normal load",
     ),
     (
         FigureName::MedianResponse,
@@ -93,6 +93,8 @@ pub struct Figure {
     pub name: FigureName,
     /// What stands above it.
     pub title: String,
+    /// Engine order and standard deviation that it is of.
+    pub setting: String,
     /// What stands below it: what is drawn, and how to read it.
     pub caption: String,
     /// Height, user units.
@@ -118,16 +120,18 @@ impl Figure {
     /// The drawing as a file of its own, on white.
     #[must_use]
     pub fn standalone(&self) -> String {
-        const HEAD: f64 = 30.0;
+        const HEAD: f64 = 48.0;
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 {top} {WIDTH} {full}\" width=\"{WIDTH}\" height=\"{full}\" role=\"img\" aria-labelledby=\"title description\">\n\
              <title id=\"title\">{title}</title>\n<desc id=\"description\">{caption}</desc>\n<style>\n{style}</style>\n\
              <rect x=\"0\" y=\"{top}\" width=\"{WIDTH}\" height=\"{full}\" fill=\"#ffffff\"/>\n\
-             <text class=\"strong\" x=\"{middle}\" y=\"-10\" text-anchor=\"middle\">{title}</text>\n{body}</svg>\n",
+             <text class=\"strong\" x=\"{middle}\" y=\"-26\" text-anchor=\"middle\">{title}</text>\n\
+             <text class=\"quiet small\" x=\"{middle}\" y=\"-8\" text-anchor=\"middle\">{setting}</text>\n{body}</svg>\n",
             top = -HEAD,
             full = self.height + HEAD,
             middle = WIDTH / 2.0,
             title = escaped(&self.title),
+            setting = escaped(&self.setting),
             caption = escaped(&self.caption),
             style = standalone_style(),
             body = self.body,

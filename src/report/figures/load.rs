@@ -15,9 +15,9 @@ const BOTTOM: f64 = 330.0;
 /// Height of the drawing.
 const HEIGHT: f64 = 382.0;
 /// Width of the place of a linear limit beside the axis of loads.
-const SLOT: f64 = 58.0;
+const SLOT: f64 = 48.0;
 /// Ratio of the largest to the smallest value from which on an axis is logarithmic.
-const LOGARITHMIC_FROM: f64 = 8.0;
+const LOGARITHMIC_FROM: f64 = 4.0;
 /// Share of the largest value below which the smallest one makes an axis begin at zero.
 const FROM_ZERO: f64 = 0.4;
 /// Percentiles drawn: in percent, class, mark.
@@ -177,7 +177,7 @@ pub(super) fn by_load(
     };
     let y = value_axis(&values, BOTTOM, TOP);
     let y_title = match y.scale {
-        Scale::Logarithmic => format!("{y_title} (logarithmic)"),
+        Scale::Logarithmic => format!("{y_title} (log.)"),
         _ => y_title,
     };
     let frame = Frame {
@@ -209,7 +209,8 @@ pub(super) fn by_load(
     };
     Some(Figure {
         name,
-        title: format!("{what} against damper normal load, {}", setting(group)),
+        title: format!("{what} against damper normal load"),
+        setting: setting(group),
         caption: caption(amplitude, choice, report.summary.patterns),
         height: HEIGHT,
         body: svg.into_body(),

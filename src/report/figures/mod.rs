@@ -26,9 +26,10 @@ pub fn figure(report: &StudyReport, group: &GroupReport, name: FigureName) -> Op
         FigureName::AmplitudeDistribution | FigureName::AmplificationFactorDistribution => {
             distribution::of_load(report, group, name)
         }
-        FigureName::MedianResponse => response::of_wheel(report, group, wheels?, name),
-        FigureName::WorstResponse => response::of_wheel(report, group, wheels?, name),
-        FigureName::WorstBlades => wheel::blades(report, wheels?),
-        FigureName::Contact => wheel::contact(wheels?),
+        FigureName::MedianResponse | FigureName::WorstResponse => {
+            response::of_wheel(report, group, wheels?, name)
+        }
+        FigureName::WorstBlades => wheel::blades(report, group, wheels?),
+        FigureName::Contact => wheel::contact(group, wheels?),
     }
 }

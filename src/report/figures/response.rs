@@ -36,7 +36,7 @@ pub(super) fn of_wheel(
     let high = values().copied().fold(wheel.peak_amplitude_m, f64::max);
     let low = values().copied().fold(high, f64::min).max(high / SHOWN);
     let frequencies = &wheel.full.frequency_hz;
-    let y_title = format!("largest blade amplitude, {} (logarithmic)", units.name());
+    let y_title = format!("largest amplitude, {} (log.)", units.name());
     let frame = Frame {
         x: Axis {
             scale: Scale::Linear,
@@ -89,11 +89,11 @@ pub(super) fn of_wheel(
     Some(Figure {
         name,
         title: format!(
-            "Response of the {which} wheel (pattern {}) at load {}, {}",
+            "Response of the {which} wheel (pattern {}) at load {}",
             wheel.pattern,
-            load_with_unit(scenario.contact, scenario.normal_load_n),
-            setting(group)
+            load_with_unit(scenario.contact, scenario.normal_load_n)
         ),
+        setting: setting(group),
         caption: caption(wheel, units),
         height: HEIGHT,
         body: svg.into_body(),

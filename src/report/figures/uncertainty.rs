@@ -10,8 +10,13 @@ use crate::report::{GroupReport, PercentileError, ScenarioSummary, StudyReport};
 const BOTTOM: f64 = 260.0;
 /// Height of the drawing.
 const HEIGHT: f64 = 312.0;
+/// Half of the distance between both widths of a load.
+const APART: f64 = 4.5;
 /// Smallest width that is told from none.
 const LEAST: f64 = 1e-6;
+
+/// A width over the value.
+type Width = fn(&PercentileError) -> Option<f64>;
 
 /// Both widths for the highest percentile that has a value, over all loads.
 pub(super) fn by_load(report: &StudyReport, group: &GroupReport) -> Option<Figure> {
@@ -30,16 +35,25 @@ pub(super) fn by_load(report: &StudyReport, group: &GroupReport) -> Option<Figur
         .iter()
         .map(|&scenario| &report.summary.scenarios[scenario])
         .collect();
-    type Width = fn(&PercentileError) -> Option<f64>;
-    let widths: [(&str, Mark, Width); 2] = [
-        ("high", Mark::Square, PercentileError::statistical_width),
-        ("median", Mark::Circle, PercentileError::numerical_width),
+    let widths: [(&str, Mark, f64, Width); 2] = [
+        (
+            "high",
+            Mark::Square,
+            -APART,
+            PercentileError::statistical_width,
+        ),
+        (
+            "median",
+            Mark::Circle,
+            APART,
+            PercentileError::numerical_width,
+        ),
     ];
     let width =
         |width: Width, place: usize| width(of_scenario(place)?).filter(|width| *width > LEAST);
     let all: Vec<f64> = widths
         .iter()
-        .flat_map(|(_, _, of)| (0..loads.len()).filter_map(|place| width(*of, place)))
+        .flat_map(|(_, _, _, of)| (0..loads.len()).filter_map(|place| width(*of, place)))
         .map(|width| 100.0 * width)
         .collect();
     let high = all.iter().copied().fold(0.0, f64::max);
@@ -49,7 +63,7 @@ pub(super) fn by_load(report: &StudyReport, group: &GroupReport) -> Option<Figur
     }
     let x = LoadAxis::new(&loads);
     let percent = percent_words(choice.percent);
-    let y_title = format!("width over the P{percent}, % (log.)");
+    let y_title = format!("width, % of the P{percent} (log.)");
     let frame = Frame {
         x: Axis {
             scale: Scale::Linear,
@@ -69,13 +83,13 @@ pub(super) fn by_load(report: &StudyReport, group: &GroupReport) -> Option<Figur
     let mut svg = Svg::default();
     frame.draw(&mut svg);
     x.ticks(&mut svg, &frame, &loads);
-    for (class, mark, of) in widths {
+    for (class, mark, aside, of) in widths {
         for (place, load) in loads.iter().enumerate() {
             if let Some(width) = width(of, place) {
                 let name = load_words(load.contact, load.normal_load_n);
                 let words = format!("{name}: {}", share_words(width));
-                let at = (x.at(load), frame.y.at(100.0 * width));
-                svg.line(&format!("bound {class}"), (at.0, BOTTOM), at);
+                let at = (x.at(load) + aside, frame.y.at(100.0 * width));
+                svg.line(&format!("stem {class}"), (at.0, BOTTOM), at);
                 mark.draw(&mut svg, class, at, &words);
             }
         }
@@ -90,9 +104,9 @@ pub(super) fn by_load(report: &StudyReport, group: &GroupReport) -> Option<Figur
     Some(Figure {
         name: FigureName::Uncertainty,
         title: format!(
-            "Statistical and numerical uncertainty of the P{percent} of the peak amplitude, {}",
-            setting(group)
+            "Statistical and numerical uncertainty of the P{percent} of the peak amplitude"
         ),
+        setting: setting(group),
         caption: format!(
             "Statistical: 95 % interval of the P{percent}, from the number of patterns. Numerical: what the P{percent} \
              could move between if every row were wrong by all that it states, all upwards or all downwards. Both as a \

@@ -1,11 +1,13 @@
 //! The worst wheel at its peak: amplitudes and deviations of its blades, and its contact.
 
+use std::fmt::Write;
+
 use super::{Figure, FigureName};
 use crate::report::plot::{
     Anchor, Axis, Frame, LegendEntry, SIDES, Scale, Svg, TOP, legend, nice_top,
 };
-use crate::report::words::{Quantities, share_words};
-use crate::report::{PairReport, StudyReport, WheelReport, WheelStateReport};
+use crate::report::words::{Quantities, setting, share_words};
+use crate::report::{GroupReport, PairReport, StudyReport, WheelReport, WheelStateReport};
 
 /// Lower ends of the panels of amplitudes and deviations, and upper end of the second.
 const AMPLITUDES: f64 = 210.0;
@@ -16,7 +18,11 @@ const MAP: (f64, f64) = (260.0, 22.0);
 const BAR: f64 = 0.72;
 
 /// Amplitudes above, deviations below, blade by blade.
-pub(super) fn blades(report: &StudyReport, wheels: &WheelReport) -> Option<Figure> {
+pub(super) fn blades(
+    report: &StudyReport,
+    group: &GroupReport,
+    wheels: &WheelReport,
+) -> Option<Figure> {
     let state = wheels.state.as_ref()?;
     let units = Quantities::of(&report.summary);
     let amplitudes: Vec<f64> = state
@@ -104,6 +110,7 @@ pub(super) fn blades(report: &StudyReport, wheels: &WheelReport) -> Option<Figur
             "Blades of the worst wheel (pattern {}) at its peak, {:.2} Hz",
             wheels.worst.pattern, wheels.worst.peak_frequency_hz
         ),
+        setting: setting(group),
         caption: format!(
             "Amplitude of every blade at the frequency of the peak, and below the relative deviation of its stiffness{mode}."
         ),
@@ -113,7 +120,7 @@ pub(super) fn blades(report: &StudyReport, wheels: &WheelReport) -> Option<Figur
 }
 
 /// Sectors from left to right, the contact pairs of a sector from top to bottom.
-pub(super) fn contact(wheels: &WheelReport) -> Option<Figure> {
+pub(super) fn contact(group: &GroupReport, wheels: &WheelReport) -> Option<Figure> {
     let state = wheels
         .state
         .as_ref()
@@ -170,6 +177,7 @@ pub(super) fn contact(wheels: &WheelReport) -> Option<Figure> {
             "Contact of the worst wheel (pattern {}) at its peak",
             wheels.worst.pattern
         ),
+        setting: setting(group),
         caption: shares(state),
         height: bottom + 52.0,
         body: svg.into_body(),
@@ -217,11 +225,12 @@ fn class(pair: &PairReport) -> String {
 fn in_words(pair: &PairReport) -> String {
     let mut words = pair.state.to_owned();
     if let Some(share) = pair.slipping_share.filter(|share| *share > 0.0) {
-        words.push_str(&format!(", slips {} of the period", share_words(share)));
+        // Writing to a String cannot fail.
+        let _ = write!(words, ", slips {} of the period", share_words(share));
     }
     if pair.separated_share > 0.0 {
         let share = share_words(pair.separated_share);
-        words.push_str(&format!(", open {share} of the period"));
+        let _ = write!(words, ", open {share} of the period");
     }
     words
 }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::tables;
 use crate::report::plot::{escaped, page_style};
 use crate::report::words::setting;
+use crate::report::words::tied;
 use crate::report::{
     Answer, FIGURES, FigureName, GroupReport, StudyReport, Wheels, answers, figure,
 };
@@ -83,11 +84,11 @@ fn answers_of(report: &StudyReport, group: &GroupReport) -> String {
         let _ = writeln!(
             html,
             "<div class=\"answer\"><h3>{}</h3><p class=\"verdict\">{}</p>",
-            escaped(&question),
-            escaped(&verdict)
+            escaped(&tied(&question)),
+            escaped(&tied(&verdict))
         );
         for reason in reasons {
-            let _ = writeln!(html, "<p>{}</p>", escaped(&reason));
+            let _ = writeln!(html, "<p>{}</p>", escaped(&tied(&reason)));
         }
         html.push_str("</div>\n");
     }
@@ -99,12 +100,10 @@ fn warnings(report: &StudyReport) -> String {
     if report.summary.warnings.is_empty() {
         return String::new();
     }
-    let items: String = report
-        .summary
-        .warnings
-        .iter()
-        .map(|warning| format!("<li>{}</li>\n", escaped(&warning.to_string())))
-        .collect();
+    let mut items = String::new();
+    for warning in &report.summary.warnings {
+        let _ = writeln!(items, "<li>{}</li>", escaped(&tied(&warning.to_string())));
+    }
     format!("<section>\n<h2>Warnings</h2>\n<ul class=\"warnings\">\n{items}</ul>\n</section>\n")
 }
 
@@ -146,9 +145,9 @@ fn figures_of(report: &StudyReport, group: &GroupReport, place: usize) -> String
                 let _ = writeln!(
                     html,
                     "<figure id=\"{words}-{place}\"><h3>{}</h3>\n{}<figcaption>{}</figcaption></figure>",
-                    escaped(&drawn.title),
+                    escaped(&tied(&drawn.title)),
                     drawn.inline(&format!("{words}-{place}")),
-                    escaped(&drawn.caption)
+                    escaped(&tied(&drawn.caption))
                 );
             }
         }
@@ -159,13 +158,15 @@ fn figures_of(report: &StudyReport, group: &GroupReport, place: usize) -> String
 
 fn tables_of(report: &StudyReport, group: &GroupReport) -> String {
     format!(
-        "<section>\n<h2>Numbers: {}</h2>\n<h3>Statistics of every load, 95 % bounds in brackets</h3>\n{}\
+        "<section>\n<h2>Numbers: {}</h2>\n<h3>Peak amplitude, 95 % bounds in brackets</h3>\n{}\
+         <h3>Amplification factor, 95 % bounds in brackets</h3>\n{}\
          <h3>Numerical error (median of the rows) beside the statistical interval, both relative</h3>\n{}\
          <h3>Tail fits at the chosen load, a second opinion beside the sample</h3>\n{}\
          <p class=\"quiet\">* outside of the bounds of the sample; + beyond 1 − 1/n, where no value of the sample \
          reaches. – not estimable.</p>\n</section>\n",
         escaped(&setting(group)),
-        tables::loads(report, group),
+        tables::amplitudes(report, group),
+        tables::factors(report, group),
         tables::errors(report, group),
         tables::tails(report, group),
     )

@@ -7,13 +7,13 @@ use crate::population::statistics::{FitStatus, Percentile, Quantity, SampleStati
 use crate::report::plot::escaped;
 use crate::report::summary_text::four_digits;
 use crate::report::words::{Quantities, load_words, percent_words, setting, share_words};
-use crate::report::{ErrorSpread, GroupReport, ScenarioSummary, StudyReport};
+use crate::report::{ErrorSpread, GroupReport, PercentileError, ScenarioSummary, StudyReport};
 
 /// What stands where there is nothing.
 const NONE: &str = "–";
 
-/// Statistics of every load.
-pub(super) fn loads(report: &StudyReport, group: &GroupReport) -> String {
+/// Amplitudes of every load.
+pub(super) fn amplitudes(report: &StudyReport, group: &GroupReport) -> String {
     let units = Quantities::of(&report.summary);
     let column = |name: &str| format!("{name}, {}", units.name());
     let header = [
@@ -23,11 +23,6 @@ pub(super) fn loads(report: &StudyReport, group: &GroupReport) -> String {
         column("P50"),
         column("P95"),
         column("P99"),
-        "factor P50".to_owned(),
-        "factor P95".to_owned(),
-        "factor P99".to_owned(),
-        "slip".to_owned(),
-        "wheels with separation".to_owned(),
     ];
     let mut table = Table::new(&header.each_ref().map(String::as_str));
     for &index in &group.scenarios {
@@ -43,6 +38,24 @@ pub(super) fn loads(report: &StudyReport, group: &GroupReport) -> String {
                 .map_or(NONE.to_owned(), |hz| format!("{hz:.2}")),
         ];
         row.extend(percentiles(&scenario.peak_amplitude_m, amplitude));
+        table.row_chosen(index == group.shown, row);
+    }
+    table.html()
+}
+
+/// Amplification factors of every load, and what its contacts do.
+pub(super) fn factors(report: &StudyReport, group: &GroupReport) -> String {
+    let mut table = Table::new(&[
+        "load, N",
+        "P50",
+        "P95",
+        "P99",
+        "pairs that slip",
+        "wheels with separation",
+    ]);
+    for &index in &group.scenarios {
+        let scenario = &report.summary.scenarios[index];
+        let mut row = vec![name(scenario)];
         row.extend(percentiles(&scenario.amplification_factor, |factor| {
             format!("{factor:.3}")
         }));
@@ -118,8 +131,8 @@ pub(super) fn errors(report: &StudyReport, group: &GroupReport) -> String {
                 rows.stated
                     .map_or(NONE.to_owned(), |spread| share_words(spread.largest)),
                 rows.without_bound.to_string(),
-                width(found.and_then(|found| found.numerical_width())),
-                width(found.and_then(|found| found.statistical_width())),
+                width(found.and_then(PercentileError::numerical_width)),
+                width(found.and_then(PercentileError::statistical_width)),
             ],
         );
     }

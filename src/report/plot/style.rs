@@ -3,6 +3,8 @@
 //! Hues are those of Okabe & Ito (2008), which readers with any colour vision tell apart; lines also
 //! differ by their dashes and marks by their shape, for print without colour.
 
+use std::fmt::Write;
+
 /// Colours: name, in light, in dark.
 const COLOURS: [(&str, &str, &str); 12] = [
     ("paper", "#ffffff", "#15191f"),
@@ -61,6 +63,9 @@ const RULES: &[(&str, &str)] = &[
     (".bound.median", "stroke:$median"),
     (".bound.high", "stroke:$high"),
     (".bound.extreme", "stroke:$extreme"),
+    (".stem", "fill:none;stroke-width:3.5;stroke-opacity:.45"),
+    (".stem.median", "stroke:$median"),
+    (".stem.high", "stroke:$high"),
     (".mark", "stroke:$paper;stroke-width:1.2"),
     (".mark.median", "fill:$median"),
     (".mark.high", "fill:$high"),
@@ -87,32 +92,30 @@ const NARROW: &str =
 
 /// Style sheet of the page: colours as variables for light, dark and print, and the classes of the plots.
 pub(in crate::report) fn page_style() -> String {
-    let variables = |dark: bool| -> String {
-        COLOURS
-            .iter()
-            .map(|(name, light, dim)| format!("--{name}:{};", if dark { dim } else { light }))
-            .collect()
-    };
-    let rules: String = RULES
-        .iter()
-        .map(|(selector, rule)| format!("svg.plot {selector}{{{}}}\n", variables_in(rule)))
-        .collect();
+    let (mut light, mut dark, mut rules) = (String::new(), String::new(), String::new());
+    // Writing to a String cannot fail.
+    for (name, in_light, in_dark) in COLOURS {
+        let _ = write!(light, "--{name}:{in_light};");
+        let _ = write!(dark, "--{name}:{in_dark};");
+    }
+    for (selector, rule) in RULES {
+        let _ = writeln!(rules, "svg.plot {selector}{{{}}}", variables_in(rule));
+    }
     format!(
         ":root{{color-scheme:light dark;{light}}}\n\
          @media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n\
-         {rules}{NARROW}\n",
-        light = variables(false),
-        dark = variables(true),
+         {rules}{NARROW}\n"
     )
 }
 
 /// Style sheet of a plot by itself, with its colours written out: not every program that shows SVG knows
 /// variables.
 pub(in crate::report) fn standalone_style() -> String {
-    RULES
-        .iter()
-        .map(|(selector, rule)| format!("{selector}{{{}}}\n", light_in(rule)))
-        .collect()
+    let mut rules = String::new();
+    for (selector, rule) in RULES {
+        let _ = writeln!(rules, "{selector}{{{}}}", light_in(rule));
+    }
+    rules
 }
 
 /// `rule` with its colours as variables of the page.
