@@ -6,8 +6,10 @@ use clap::{Parser, Subcommand};
 
 use super::compare::CompareArguments;
 use super::estimate::EstimateArguments;
+use super::explain::{CompletionsArguments, ExplainArguments};
 use super::fidelity::FidelityArguments;
 use super::import::ImportArguments;
+use super::init::InitArguments;
 use super::merge::MergeArguments;
 use super::optimum::OptimumArguments;
 use super::plan::PlanArguments;
@@ -35,11 +37,7 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Write a commented study file to start from.
-    Init {
-        /// The file; it must not exist yet.
-        #[arg(long, value_name = "FILE", default_value = "study.toml")]
-        out: PathBuf,
-    },
+    Init(InitArguments),
     /// Check a study, its model and its patterns without solving anything.
     Check {
         /// The study file.
@@ -173,4 +171,10 @@ pub enum Command {
     Report(ReportArguments),
     /// Write one figure of the report as SVG.
     Plot(PlotArguments),
+    /// Say what a key of a study file accepts, what it means and its default.
+    Explain(ExplainArguments),
+    /// Print the JSON Schema of study files, for editors.
+    Schema,
+    /// Print a script that completes commands and options in a shell.
+    Completions(CompletionsArguments),
 }

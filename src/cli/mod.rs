@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod estimate;
 mod exit;
+mod explain;
 mod fidelity;
 mod import;
 mod init;

@@ -68,7 +68,8 @@ impl Writer<'_> {
     fn load(&self, choice: &LoadChoice) -> Answer {
         let percent = percent_words(choice.percent);
         let question = format!(
-            "Which normal load for the P{percent} of the peak amplitude, and how sure is that?"
+            "Which normal load should I choose for the {percent}th percentile (P{percent}) of the peak amplitude, and how \
+             sure is that?"
         );
         let found = choice
             .lowest

@@ -7,6 +7,8 @@ mod commands;
 mod faults;
 mod imports;
 mod interruption;
+mod report;
 mod runs;
 mod statistics;
+mod study_keys;
 mod verification;

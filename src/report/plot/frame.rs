@@ -11,7 +11,7 @@ pub(in crate::report) const TOP: f64 = 44.0;
 /// Length of a tick.
 const TICK: f64 = 4.0;
 /// Space between entries of a legend and the width of a letter, about.
-const LEGEND: (f64, f64) = (36.0, 8.0);
+const LEGEND: (f64, f64) = (40.0, 8.0);
 
 /// What stands at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
