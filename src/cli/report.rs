@@ -11,6 +11,7 @@ use super::{ExitStatus, output};
 use crate::population::table::write_atomically;
 use crate::report::{
     Answer, FIGURES, FigureName, GroupReport, StudyReport, Wheels, answers, figure, html_report,
+    setting,
 };
 use crate::study::{ReducedEngineSource, ReportRequest, report};
 
@@ -185,6 +186,10 @@ fn chosen<'a>(
 fn in_words(found: &StudyReport) -> String {
     let mut text = String::new();
     for group in &found.groups {
+        if found.groups.len() > 1 {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{}\n", setting(group));
+        }
         for Answer {
             question,
             verdict,

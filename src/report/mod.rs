@@ -46,3 +46,4 @@ pub use time_domain::{StepReport, TimeDomainReport};
 pub use verification::{ErrorDistribution, RegimeErrors, VerificationContext, VerificationReport};
 pub use warning::Warning;
 pub use wheel_report::{PairReport, ResponseCurve, WheelCurves, WheelReport, WheelStateReport};
+pub use words::setting;

@@ -73,8 +73,9 @@ pub(super) fn share_words(ratio: f64) -> String {
     format!("{percent:.decimals$} %")
 }
 
-/// Engine order and standard deviation of a group.
-pub(super) fn setting(group: &GroupReport) -> String {
+/// Engine order and standard deviation of a group, in words.
+#[must_use]
+pub fn setting(group: &GroupReport) -> String {
     match group.standard_deviation {
         Some(deviation) => format!(
             "engine order {}, standard deviation {} %",
