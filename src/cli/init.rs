@@ -1,6 +1,6 @@
 //! `blisk init`: a commented study file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -46,13 +46,23 @@ pub(super) fn command(arguments: &InitArguments) -> Result<ExitStatus, Failure> 
         "wrote {}; next: blisk check {0}, blisk run {0}",
         out.display()
     ));
-    if let Ok(study) = Study::read(out)
-        && let ModelSource::Bundle { path, written } = &study.model
-        && !path.exists()
-    {
+    if let Some(missing) = missing_input(out) {
         output::message(&format!(
-            "it reads the sector bundle {written}, which is not there: put one there or change model.bundle.path"
+            "{missing}: this example reads files of the repository; put some there, or change their paths"
         ));
     }
     Ok(ExitStatus::Done)
+}
+
+/// What a study reads and is not there.
+fn missing_input(file: &Path) -> Option<String> {
+    match Study::read(file) {
+        Err(error) => Some(error.to_string()),
+        Ok(study) => match &study.model {
+            ModelSource::Bundle { path, written } if !path.exists() => {
+                Some(format!("there is no sector bundle {written}"))
+            }
+            _ => None,
+        },
+    }
 }

@@ -4,6 +4,7 @@ mod bad_studies;
 mod bad_study_table;
 mod blisk;
 mod commands;
+mod documentation;
 mod faults;
 mod imports;
 mod interruption;

@@ -1,5 +1,7 @@
 //! The report: its numbers are those of the tables, its page stands alone, and its figures are drawn.
 
+use std::fmt::Write;
+
 use serde_json::Value;
 
 use crate::blisk::{GOOD, Place};
@@ -243,7 +245,7 @@ fn a_report_without_the_inputs_says_so_and_has_no_curves() {
     for pattern in 0..20 {
         for blade in 0..6 {
             let deviation = 0.03 * f64::from((7 * pattern + 5 * blade) % 11 - 5) / 5.0;
-            table.push_str(&format!("{pattern},{blade},{deviation}\n"));
+            writeln!(table, "{pattern},{blade},{deviation}").expect("a line");
         }
     }
     place.write("patterns.csv", &table);
