@@ -2,8 +2,7 @@
 
 use super::words::{Quantities, load_with_unit, percent_words, share_words};
 use super::{
-    BestLoads, GroupReport, LoadChoice, NumericalError, PercentileError, ScenarioSummary,
-    StudyReport,
+    BestLoads, GroupReport, LoadChoice, PercentileError, ScenarioSummary, StatedErrors, StudyReport,
 };
 
 /// A question of an engineer with its answer from the numbers of a report.
@@ -47,11 +46,7 @@ impl Writer<'_> {
         load_with_unit(scenario.contact, scenario.normal_load_n)
     }
 
-    fn error_of(
-        &self,
-        scenario: usize,
-        percent: f64,
-    ) -> Option<(&NumericalError, &PercentileError)> {
+    fn error_of(&self, scenario: usize, percent: f64) -> Option<(&StatedErrors, &PercentileError)> {
         let errors = self
             .group
             .errors
@@ -232,7 +227,7 @@ impl Writer<'_> {
 }
 
 /// What the rows of the chosen load state.
-fn stated(rows: &NumericalError) -> String {
+fn stated(rows: &StatedErrors) -> String {
     let mut parts = Vec::new();
     let sources = [
         ("all sources", &rows.stated),

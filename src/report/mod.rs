@@ -7,11 +7,11 @@ mod estimate;
 mod figures;
 mod html;
 mod model_report;
-mod numerical_error;
 mod optimum;
 mod peak_audit;
 mod plan;
 mod plot;
+mod stated_errors;
 mod study_report;
 mod summary;
 mod summary_text;
@@ -32,10 +32,10 @@ pub use estimate::{EstimateReport, QuantityEstimate, ScenarioEstimate};
 pub use figures::{FIGURES, Figure, FigureName, figure};
 pub use html::html_report;
 pub use model_report::{ModelReport, NodalDiameterFacts};
-pub use numerical_error::{ErrorRows, ErrorSpread, NumericalError};
 pub use optimum::OptimumReport;
 pub use peak_audit::PeakAuditReport;
 pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};
+pub use stated_errors::{ErrorRows, ErrorSpread, StatedErrors};
 pub use study_report::{
     DistributionReport, GroupReport, LoadChoice, PercentileError, Provenance, ScenarioErrors,
     StudyReport, Wheels,

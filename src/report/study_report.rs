@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::{BestLoads, NumericalError, StudySummary, WheelReport};
+use super::{BestLoads, StatedErrors, StudySummary, WheelReport};
 use crate::population::statistics::{Percentile, Quantity, TailFit};
+use crate::population::table::AccuracyLadder;
 
 /// The report on a finished study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -15,6 +16,8 @@ pub struct StudyReport {
     pub summary: StudySummary,
     /// Engine orders and standard deviations, each with its loads.
     pub groups: Vec<GroupReport>,
+    /// What accuracy costs, where it was measured.
+    pub accuracy_ladder: Option<AccuracyLadder>,
     /// What the numbers were made from.
     pub provenance: Provenance,
 }
@@ -78,7 +81,7 @@ pub struct ScenarioErrors {
     /// The scenario.
     pub scenario: usize,
     /// Errors that its rows state.
-    pub rows: NumericalError,
+    pub rows: StatedErrors,
     /// What they come to in percentiles of the peak amplitude.
     pub percentiles: Vec<PercentileError>,
 }

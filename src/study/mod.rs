@@ -53,7 +53,7 @@ mod verify;
 pub use compare::{CompareRequest, compare};
 pub use digest::StudyDigest;
 pub use engine::{Engine, EngineSource, SurrogateOf};
-pub use error::{Finding, Problem, StudyError};
+pub use error::{Excerpt, Finding, Problem, StudyError};
 pub use estimate::{EstimateRequest, estimate};
 pub use examples::EXAMPLES;
 pub use folder_status::{FolderStatus, Work, status_of_folder};

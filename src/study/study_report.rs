@@ -11,7 +11,7 @@ use crate::population::statistics::{
     CONFIDENCE, DistributionBand, FitStatus, Quantity, RESAMPLES, TailLaw, fit_extreme_value,
     fit_tails, percentile_at, smallest_sample,
 };
-use crate::population::table::ResponseReader;
+use crate::population::table::{AccuracyLadder, ResponseReader};
 use crate::report::{
     ComparedScenario, DistributionReport, ErrorRows, GroupReport, LoadChoice, Provenance,
     ScenarioErrors, StudyReport, Wheels,
@@ -59,6 +59,7 @@ pub fn report(
     Ok(StudyReport {
         summary,
         groups,
+        accuracy_ladder: AccuracyLadder::read(&request.results)?,
         provenance: Provenance {
             version: manifest.version,
             generator: manifest.generator,

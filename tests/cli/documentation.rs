@@ -105,7 +105,8 @@ fn every_command_of_the_documentation_is_one_of_the_program() {
             let line = ["blisk".to_owned()].into_iter().chain(words.clone());
             if let Err(error) = blisk::cli::Arguments::try_parse_from(line) {
                 let lacks = error.kind() == clap::error::ErrorKind::MissingRequiredArgument;
-                assert!(lacks && words.len() < 3, "{name}: blisk {command}\n{error}");
+                let shortened = words.len() < 3 || command.contains("...");
+                assert!(lacks && shortened, "{name}: blisk {command}\n{error}");
             }
             count += 1;
         }

@@ -14,6 +14,8 @@ pub enum FigureName {
     AmplificationFactor,
     /// Statistical and numerical error against normal load.
     Uncertainty,
+    /// Error of measured settings against their cost.
+    Accuracy,
     /// Distribution of the peak amplitude at one load.
     AmplitudeDistribution,
     /// Distribution of the amplification factor at one load.
@@ -29,7 +31,7 @@ pub enum FigureName {
 }
 
 /// Every figure in the order of a report, with its name on the command line and what it shows.
-pub const FIGURES: [(FigureName, &str, &str); 9] = [
+pub const FIGURES: [(FigureName, &str, &str); 10] = [
     (
         FigureName::Amplitude,
         "amplitude",
@@ -54,6 +56,11 @@ pub const FIGURES: [(FigureName, &str, &str); 9] = [
         FigureName::Uncertainty,
         "uncertainty",
         "statistical and numerical error of a percentile against normal load",
+    ),
+    (
+        FigureName::Accuracy,
+        "accuracy",
+        "what accuracy costs, where `blisk tradeoff` measured it",
     ),
     (
         FigureName::MedianResponse,

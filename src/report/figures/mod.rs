@@ -2,6 +2,7 @@
 
 mod distribution;
 mod figure;
+mod ladder;
 mod load;
 mod response;
 mod uncertainty;
@@ -23,6 +24,7 @@ pub fn figure(report: &StudyReport, group: &GroupReport, name: FigureName) -> Op
             load::by_load(report, group, name)
         }
         FigureName::Uncertainty => uncertainty::by_load(report, group),
+        FigureName::Accuracy => ladder::by_cost(report),
         FigureName::AmplitudeDistribution | FigureName::AmplificationFactorDistribution => {
             distribution::of_load(report, group, name)
         }

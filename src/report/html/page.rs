@@ -138,7 +138,9 @@ fn figures_of(report: &StudyReport, group: &GroupReport, place: usize) -> String
         }
         html.push_str("<div class=\"figures\">\n");
         for (name, words, _) in FIGURES {
-            if single(name) != wheels {
+            // The ladder is of the study, not of one of its sections.
+            let again = name == FigureName::Accuracy && place > 0;
+            if single(name) != wheels || again {
                 continue;
             }
             if let Some(drawn) = figure(report, group, name) {

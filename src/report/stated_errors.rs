@@ -35,7 +35,7 @@ impl ErrorSpread {
 
 /// Relative errors of the peak amplitude that the rows of a scenario state.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct NumericalError {
+pub struct StatedErrors {
     /// Rows with a result.
     pub rows: u64,
     /// Those of them that state no bound.
@@ -80,10 +80,10 @@ impl ErrorRows {
 
     /// What the rows state.
     #[must_use]
-    pub fn spread(&self) -> NumericalError {
+    pub fn spread(&self) -> StatedErrors {
         let of =
             |error: fn(&Judged) -> Option<f64>| ErrorSpread::of(self.good.iter().filter_map(error));
-        NumericalError {
+        StatedErrors {
             rows: self.good.len() as u64,
             without_bound: self.good.iter().filter(|row| row.stated.is_none()).count() as u64,
             sampling: of(|row| row.sampling),
