@@ -168,13 +168,25 @@ pub enum Command {
     ///
     /// The page needs no network and shows in any browser. A few wheels are solved again for their
     /// response curves.
+    #[command(
+        after_help = "Examples:\n  blisk report results/quickstart\n  blisk report results/quickstart --out quickstart.html --no-curves\n  blisk report results/quickstart --json > numbers.json"
+    )]
     Report(ReportArguments),
     /// Write one figure of the report as SVG.
+    #[command(
+        after_help = "Example:\n  blisk plot results/quickstart amplitude --out amplitude.svg"
+    )]
     Plot(PlotArguments),
     /// Say what a key of a study file accepts, what it means and its default.
+    #[command(
+        after_help = "Examples:\n  blisk explain solver.peak_tolerance\n  blisk explain contact"
+    )]
     Explain(ExplainArguments),
     /// Print the JSON Schema of study files, for editors.
     Schema,
     /// Print a script that completes commands and options in a shell.
+    #[command(
+        after_help = "Example:\n  blisk completions bash > ~/.local/share/bash-completion/completions/blisk"
+    )]
     Completions(CompletionsArguments),
 }

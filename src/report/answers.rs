@@ -73,7 +73,7 @@ impl Writer<'_> {
             return Answer {
                 question,
                 verdict: format!("Not known: these rows give no P{percent}."),
-                reasons: vec![self.why_none(choice)],
+                reasons: self.why_none(choice),
             };
         };
         let value = found.percentile.value.unwrap_or(f64::NAN);
@@ -102,9 +102,9 @@ impl Writer<'_> {
         }
     }
 
-    fn why_none(&self, choice: &LoadChoice) -> String {
+    fn why_none(&self, choice: &LoadChoice) -> Vec<String> {
         let patterns = self.report.summary.patterns;
-        if patterns < choice.needed_patterns {
+        let mut reasons = vec![if patterns < choice.needed_patterns {
             format!(
                 "A 95 % interval needs {} patterns, the study has {patterns}: raise study.patterns and run again, only \
                  the new ones are solved.",
@@ -112,7 +112,20 @@ impl Writer<'_> {
             )
         } else {
             "Too many rows failed: see the accounting below.".to_owned()
+        }];
+        // The next lower percentile that there is may serve meanwhile.
+        let lower = self.group.choices.iter();
+        let mut lower = lower.filter(|other| other.percent < choice.percent);
+        if let Some((percent, lowest)) =
+            lower.find_map(|other| Some((other.percent, other.lowest?)))
+        {
+            reasons.push(format!(
+                "The lowest P{} is that of {}.",
+                percent_words(percent),
+                self.load_of(lowest)
+            ));
         }
+        reasons
     }
 
     /// Which other loads could be the best, and how low the percentile of the best can be.

@@ -125,3 +125,117 @@ impl ErrorRows {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::population::statistics::CONFIDENCE;
+
+    /// Uniform on the unit interval.
+    struct Uniform(u64);
+
+    impl Uniform {
+        fn draw(&mut self) -> f64 {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        }
+    }
+
+    fn rows(count: usize, draw: &mut Uniform) -> ErrorRows {
+        let mut row = || Judged {
+            amplitude_m: 1.0 + draw.draw(),
+            sampling: Some(1e-3 * (draw.draw() - 0.5)),
+            harmonics: Some(1e-2 * (draw.draw() - 0.5)),
+            stated: Some(0.2 * draw.draw()),
+        };
+        ErrorRows {
+            good: (0..count).map(|_| row()).collect(),
+            failed: 0,
+        }
+    }
+
+    fn value(values: &[f64], percent: f64) -> f64 {
+        let mut sorted = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let found = percentile_at(&sorted, 0, percent, CONFIDENCE);
+        found.value.expect("enough values")
+    }
+
+    #[test]
+    fn no_true_amplitudes_within_the_stated_errors_leave_the_bounds_and_some_reach_them() {
+        let mut draw = Uniform(7);
+        let rows = rows(400, &mut draw);
+        for percent in [50.0, 95.0, 99.0] {
+            let found = rows.percentile(percent, CONFIDENCE);
+            let (lowest, highest) = (
+                found.lowest.expect("a bound"),
+                found.highest.expect("a bound"),
+            );
+            let mut of_truth = |share: &mut dyn FnMut() -> f64| {
+                let truths: Vec<f64> = rows
+                    .good
+                    .iter()
+                    .map(|row| {
+                        let stated = row.stated.unwrap_or_default();
+                        let (low, high) = (
+                            row.amplitude_m / (1.0 + stated),
+                            row.amplitude_m / (1.0 - stated),
+                        );
+                        let truth = low + share() * (high - low);
+                        // The error is relative to the truth, as rows state it.
+                        assert!((row.amplitude_m - truth).abs() <= stated * truth * (1.0 + 1e-12));
+                        truth
+                    })
+                    .collect();
+                value(&truths, percent)
+            };
+            for _ in 0..200 {
+                let truth = of_truth(&mut || draw.draw());
+                assert!(lowest <= truth && truth <= highest, "{percent}");
+            }
+            assert!((of_truth(&mut || 0.0) / lowest - 1.0).abs() < 1e-12);
+            assert!((of_truth(&mut || 1.0) / highest - 1.0).abs() < 1e-12);
+            assert!(found.numerical_width().expect("a width") > 0.0);
+        }
+    }
+
+    #[test]
+    fn rows_without_a_bound_cost_the_bounds_where_they_reach_the_percentile() {
+        let mut draw = Uniform(3);
+        let mut rows = rows(400, &mut draw);
+        let before = rows.percentile(95.0, CONFIDENCE);
+        for row in rows.good.iter_mut().take(3) {
+            row.stated = None;
+        }
+        let few = rows.percentile(95.0, CONFIDENCE);
+        assert!(few.lowest <= before.lowest && few.highest >= before.highest);
+        assert!(few.highest.is_some());
+        for row in rows.good.iter_mut().take(30) {
+            row.stated = None;
+        }
+        assert_eq!(rows.percentile(95.0, CONFIDENCE).highest, None);
+        assert_eq!(rows.spread().without_bound, 30);
+        rows.failed = 40;
+        assert_eq!(rows.percentile(95.0, CONFIDENCE).percentile.value, None);
+        assert_eq!(
+            ErrorRows::default().percentile(95.0, CONFIDENCE).lowest,
+            None
+        );
+        assert_eq!(ErrorRows::default().spread().stated, None);
+    }
+
+    #[test]
+    fn the_spread_is_by_rank_and_of_magnitudes() {
+        let spread = ErrorSpread::of((1..=100).map(|i| f64::from(if i % 2 == 0 { i } else { -i })));
+        let expected = ErrorSpread {
+            median: 50.0,
+            p95: 95.0,
+            largest: 100.0,
+        };
+        assert_eq!(spread, Some(expected));
+        assert_eq!(ErrorSpread::of([].into_iter()), None);
+    }
+}

@@ -60,7 +60,7 @@ pub const FIGURES: [(FigureName, &str, &str); 10] = [
     (
         FigureName::Accuracy,
         "accuracy",
-        "what accuracy costs, where `blisk tradeoff` measured it",
+        "what accuracy costs, where the folder has a tradeoff.parquet",
     ),
     (
         FigureName::MedianResponse,

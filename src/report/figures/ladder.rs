@@ -86,7 +86,7 @@ pub(super) fn by_cost(report: &StudyReport) -> Option<Figure> {
         title: "What accuracy costs".to_owned(),
         setting: format!("{} settings", placed.len()),
         caption: format!(
-            "Settings measured by blisk tradeoff on a sample of rows: upper bound of the error that 95 % of the amplitudes \
+            "Settings measured on a sample of rows: upper bound of the error that 95 % of the amplitudes \
              keep, against floating-point operations of a row.{other}"
         ),
         height: HEIGHT,

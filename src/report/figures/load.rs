@@ -31,6 +31,8 @@ const DRAWN: [(u32, &str, Mark); 3] = [
 /// newtons between them.
 pub(super) struct LoadAxis {
     axis: Axis,
+    /// Whether there is one load alone, which then stands in the middle.
+    alone: bool,
 }
 
 impl LoadAxis {
@@ -57,6 +59,7 @@ impl LoadAxis {
                 0.5 * SLOT
             };
         Self {
+            alone: loads.len() == 1,
             axis: Axis {
                 scale,
                 low,
@@ -76,6 +79,7 @@ impl LoadAxis {
     /// Place of a load.
     pub(super) fn at(&self, load: &ScenarioSummary) -> f64 {
         match (load.contact, load.normal_load_n) {
+            _ if self.alone => f64::midpoint(SIDES.0, SIDES.1),
             ("stuck", _) => SIDES.1 - 0.5 * SLOT,
             ("free", _) | (_, None) => SIDES.0 + 0.5 * SLOT,
             (_, Some(newtons)) => self.axis.at(newtons),
