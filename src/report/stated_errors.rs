@@ -174,7 +174,7 @@ mod tests {
                 found.lowest.expect("a bound"),
                 found.highest.expect("a bound"),
             );
-            let mut of_truth = |share: &mut dyn FnMut() -> f64| {
+            let of_truth = |share: &mut dyn FnMut() -> f64| {
                 let truths: Vec<f64> = rows
                     .good
                     .iter()
