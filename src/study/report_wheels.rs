@@ -73,7 +73,7 @@ fn rows_of(
         .values(Quantity::PeakAmplitudeM)
         .iter()
         .enumerate()
-        .filter_map(|(pattern, value)| Some(((*value)?, pattern * scenarios + index)))
+        .filter_map(|(place, value)| Some(((*value)?, place * scenarios + index)))
         .collect();
     good.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let Some(&(_, worst)) = good.last() else {
@@ -97,7 +97,11 @@ impl Curves<'_> {
     fn wheel(&self, pattern: &Pattern, row: &ResponseRow) -> Option<WheelCurves> {
         let peak_frequency_hz = row.peak_frequency_hz?;
         let friction = matches!(self.scenario.contact, ContactCondition::Full { .. });
-        let (low, high) = self.band(pattern)?;
+        // The band in which the peak was sought holds those of the linear limits.
+        let plan = self
+            .engine
+            .search_plan(&self.scenario, pattern, self.tuned_hz);
+        let (low, high) = plan.ok()?.band_hz;
         let (low, high) = (low.min(peak_frequency_hz), high.max(peak_frequency_hz));
         let frequencies = frequencies(low, high, peak_frequency_hz);
         let dense = between(&frequencies);
@@ -115,19 +119,6 @@ impl Curves<'_> {
             stuck: linear(ContactCondition::Stuck),
             slide: linear(ContactCondition::Slide),
         })
-    }
-
-    /// Where the response of the wheel and of its linear limits can be largest, Hz.
-    fn band(&self, pattern: &Pattern) -> Option<(f64, f64)> {
-        let plan = |contact| {
-            let scenario = Scenario {
-                contact,
-                ..self.scenario
-            };
-            let plan = self.engine.search_plan(&scenario, pattern, self.tuned_hz);
-            plan.ok().map(|plan| plan.band_hz)
-        };
-        plan(self.scenario.contact)
     }
 
     fn curve(

@@ -47,7 +47,7 @@ pub fn report(
 ) -> Result<StudyReport, PipelineError> {
     let summary = summarise(&request.results)?;
     let columns = ResultColumns::read(&request.results)?;
-    let rows = StoredRows::read(&request.results, columns.scenarios.len())?;
+    let rows = stated_errors(&request.results, columns.scenarios.len())?;
     let mut groups: Vec<GroupReport> = groups_of(&columns)
         .into_iter()
         .map(|group| group_report(&columns, &rows, group))
@@ -72,22 +72,16 @@ pub fn report(
 }
 
 /// Errors of the rows of every scenario.
-struct StoredRows {
-    errors: Vec<ErrorRows>,
-}
-
-impl StoredRows {
-    fn read(results: &Path, scenarios: usize) -> Result<Self, PipelineError> {
-        let mut errors = vec![ErrorRows::default(); scenarios];
-        let mut reader = ResponseReader::open(&results.join("responses.parquet"))?;
-        loop {
-            let batch: Vec<ResponseRow> = reader.next_batch()?;
-            if batch.is_empty() {
-                return Ok(Self { errors });
-            }
-            for row in &batch {
-                errors[row.scenario].add(row);
-            }
+fn stated_errors(results: &Path, scenarios: usize) -> Result<Vec<ErrorRows>, PipelineError> {
+    let mut errors = vec![ErrorRows::default(); scenarios];
+    let mut reader = ResponseReader::open(&results.join("responses.parquet"))?;
+    loop {
+        let batch: Vec<ResponseRow> = reader.next_batch()?;
+        if batch.is_empty() {
+            return Ok(errors);
+        }
+        for row in &batch {
+            errors[row.scenario].add(row);
         }
     }
 }
@@ -109,7 +103,7 @@ fn groups_of(columns: &ResultColumns) -> Vec<Range<usize>> {
         .collect()
 }
 
-fn group_report(columns: &ResultColumns, rows: &StoredRows, group: Range<usize>) -> GroupReport {
+fn group_report(columns: &ResultColumns, rows: &[ErrorRows], group: Range<usize>) -> GroupReport {
     let manifest = &columns.manifest;
     let confidence = manifest
         .stop
@@ -128,10 +122,10 @@ fn group_report(columns: &ResultColumns, rows: &StoredRows, group: Range<usize>)
         .clone()
         .map(|scenario| ScenarioErrors {
             scenario,
-            rows: rows.errors[scenario].spread(),
+            rows: rows[scenario].spread(),
             percentiles: CHOSEN_BY
                 .iter()
-                .map(|&percent| rows.errors[scenario].percentile(percent, confidence))
+                .map(|&percent| rows[scenario].percentile(percent, confidence))
                 .collect(),
         })
         .collect();

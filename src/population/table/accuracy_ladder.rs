@@ -30,7 +30,7 @@ const COLUMNS: &[ColumnSpec] = &[
 
 /// One setting of a measured trade-off between accuracy and cost.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LadderSetting {
+pub struct MeasuredSetting {
     /// Its number.
     pub setting: u32,
     /// `reference`, `base`, `knob` or `combination`.
@@ -59,7 +59,7 @@ pub struct AccuracyLadder {
     /// Digest of the study that it was measured on.
     pub study_digest: String,
     /// The settings, in the order of the table.
-    pub settings: Vec<LadderSetting>,
+    pub settings: Vec<MeasuredSetting>,
 }
 
 impl AccuracyLadder {
@@ -83,7 +83,7 @@ impl AccuracyLadder {
         let operations = rows.float64("operations")?;
         let on_front = rows.boolean("on_front")?;
         let settings = (0..table.rows())
-            .map(|row| LadderSetting {
+            .map(|row| MeasuredSetting {
                 setting: setting[row].unwrap_or_default() as u32,
                 role: role[row].clone().unwrap_or_default(),
                 basis: basis[row].clone().unwrap_or_default(),

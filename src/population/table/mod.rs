@@ -25,7 +25,7 @@ mod traced_curve;
 mod verification;
 mod writer;
 
-pub use accuracy_ladder::{AccuracyLadder, LadderSetting};
+pub use accuracy_ladder::{AccuracyLadder, MeasuredSetting};
 pub use atomic::{digest_file, remove_leftovers, write_atomically};
 pub use column::{ColumnKind, ColumnSpec};
 pub use curve::{CURVE_COLUMNS, CurveFormat, CurvePoint, write_curve};

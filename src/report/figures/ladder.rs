@@ -1,7 +1,7 @@
 //! What accuracy costs: the error of each measured setting against its operations.
 
 use super::{Figure, FigureName};
-use crate::population::table::LadderSetting;
+use crate::population::table::MeasuredSetting;
 use crate::report::StudyReport;
 use crate::report::plot::{Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend};
 use crate::report::words::share_words;
@@ -14,7 +14,7 @@ const HEIGHT: f64 = 312.0;
 /// All settings, those on the front joined; none without a measured ladder.
 pub(super) fn by_cost(report: &StudyReport) -> Option<Figure> {
     let ladder = report.accuracy_ladder.as_ref()?;
-    let placed: Vec<(f64, f64, &LadderSetting)> = ladder
+    let placed: Vec<(f64, f64, &MeasuredSetting)> = ladder
         .settings
         .iter()
         .filter_map(|setting| {
@@ -26,7 +26,7 @@ pub(super) fn by_cost(report: &StudyReport) -> Option<Figure> {
             drawn.then_some((operations, 100.0 * error, setting))
         })
         .collect();
-    let axis = |value: fn(&(f64, f64, &LadderSetting)) -> f64, ends| {
+    let axis = |value: fn(&(f64, f64, &MeasuredSetting)) -> f64, ends| {
         let values = || placed.iter().map(value);
         Axis {
             scale: Scale::Logarithmic,
