@@ -52,7 +52,8 @@ pub struct GroupReport {
     pub choices: Vec<LoadChoice>,
     /// Errors of the numbers of every scenario, in their order.
     pub errors: Vec<ScenarioErrors>,
-    /// Scenario that the distributions and wheels are of: the best by the first choice with a value.
+    /// Scenario that the distributions and wheels are of: the best by the first choice with
+    /// a value, or by the tuned peak where there is none.
     pub shown: usize,
     /// Distributions of both quantities there.
     pub distributions: Vec<DistributionReport>,

@@ -117,7 +117,7 @@ fn group_report(columns: &ResultColumns, rows: &[ErrorRows], group: Range<usize>
     let shown = choices
         .iter()
         .find_map(|choice| choice.lowest)
-        .unwrap_or(group.start);
+        .unwrap_or_else(|| lowest_tuned(columns, group.clone()));
     let errors = group
         .clone()
         .map(|scenario| ScenarioErrors {
@@ -153,6 +153,16 @@ fn group_report(columns: &ResultColumns, rows: &[ErrorRows], group: Range<usize>
             reason: "not asked for".to_owned(),
         },
     }
+}
+
+/// The scenario with the lowest tuned peak, where too few patterns or too many failures give no percentile.
+fn lowest_tuned(columns: &ResultColumns, group: Range<usize>) -> usize {
+    let tuned = |scenario: usize| columns.manifest.scenarios[scenario].tuned_amplitude_m;
+    let first = group.start;
+    group
+        .filter_map(|scenario| Some((scenario, tuned(scenario)?)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map_or(first, |(scenario, _)| scenario)
 }
 
 /// The load with the lowest percentile of the peak amplitude, and which others could be.

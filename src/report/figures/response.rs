@@ -139,9 +139,14 @@ fn caption(wheel: &WheelCurves, units: Quantities) -> String {
             wheel.full.amplitude_m.len()
         )
     };
+    let limits = if wheel.stuck.is_some() {
+        " stuck and slide: the same wheel with welded and with frictionless contact."
+    } else {
+        ""
+    };
     format!(
         "Largest amplitude of any blade, harmonics {}, solved again for this figure. Delivered peak: {} at {:.2} Hz, \
-         blade {}{factor}{error}. stuck and slide: the same wheel with welded and with frictionless contact.{lost}",
+         blade {}{factor}{error}.{limits}{lost}",
         wheel.harmonics,
         units.amplitude(wheel.peak_amplitude_m),
         wheel.peak_frequency_hz,
