@@ -6,11 +6,15 @@ use clap::{Parser, Subcommand};
 
 use super::compare::CompareArguments;
 use super::estimate::EstimateArguments;
+use super::explain::{CompletionsArguments, ExplainArguments};
 use super::fidelity::FidelityArguments;
 use super::import::ImportArguments;
+use super::init::InitArguments;
 use super::merge::MergeArguments;
 use super::optimum::OptimumArguments;
 use super::plan::PlanArguments;
+use super::replay::ReplayArguments;
+use super::report::{PlotArguments, ReportArguments};
 use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
 use super::run::RunArguments;
 use super::slurm::SlurmArguments;
@@ -33,11 +37,7 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Write a commented study file to start from.
-    Init {
-        /// The file; it must not exist yet.
-        #[arg(long, value_name = "FILE", default_value = "study.toml")]
-        out: PathBuf,
-    },
+    Init(InitArguments),
     /// Check a study, its model and its patterns without solving anything.
     Check {
         /// The study file.
@@ -107,25 +107,7 @@ pub enum Command {
         json: bool,
     },
     /// Solve one delivered row again and say whether it is the same bit for bit.
-    Replay {
-        /// The results folder.
-        results: PathBuf,
-        /// Scenario, counted from 0.
-        #[arg(long, value_name = "I")]
-        scenario: usize,
-        /// Id of the pattern.
-        #[arg(long, value_name = "ID")]
-        pattern: u32,
-        /// Which model the row is compared with besides.
-        #[command(flatten)]
-        fidelity: FidelityArguments,
-        /// Where the inputs lie now: beside this study file [default: that of the last run].
-        #[arg(long, value_name = "FILE")]
-        study: Option<PathBuf>,
-        /// Print JSON.
-        #[arg(long)]
-        json: bool,
-    },
+    Replay(ReplayArguments),
     /// Solve a random sample of delivered rows again, on the same path and on the full-contact model.
     ///
     /// Writes verification.parquet into the results folder.
@@ -182,4 +164,29 @@ pub enum Command {
     Estimate(EstimateArguments),
     /// Show the statistics of a results folder again, from its tables.
     Stats(StatsArguments),
+    /// Write a finished study as one HTML page: which load to choose, how sure that is, figures, tables.
+    ///
+    /// The page needs no network and shows in any browser. A few wheels are solved again for their
+    /// response curves.
+    #[command(
+        after_help = "Examples:\n  blisk report results/quickstart\n  blisk report results/quickstart --out quickstart.html --no-curves\n  blisk report results/quickstart --json > numbers.json"
+    )]
+    Report(ReportArguments),
+    /// Write one figure of the report as SVG.
+    #[command(
+        after_help = "Example:\n  blisk plot results/quickstart amplitude --out amplitude.svg"
+    )]
+    Plot(PlotArguments),
+    /// Say what a key of a study file accepts, what it means and its default.
+    #[command(
+        after_help = "Examples:\n  blisk explain solver.peak_tolerance\n  blisk explain contact"
+    )]
+    Explain(ExplainArguments),
+    /// Print the JSON Schema of study files, for editors.
+    Schema,
+    /// Print a script that completes commands and options in a shell.
+    #[command(
+        after_help = "Example:\n  blisk completions bash > ~/.local/share/bash-completion/completions/blisk"
+    )]
+    Completions(CompletionsArguments),
 }

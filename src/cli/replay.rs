@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
+use clap::Args;
 use serde_json::{Value, json};
 
 use super::fidelity::{Fidelity, FidelityArguments};
@@ -11,15 +12,26 @@ use super::{ExitStatus, output};
 use crate::population::monte_carlo::{ResponseRow, harmonics_name};
 use crate::study::{ReducedEngineSource, Replay, ReplayRequest, StoredStudy, replay};
 
-/// Arguments of the command.
-#[derive(Debug)]
-pub(super) struct ReplayArguments {
-    pub(super) results: PathBuf,
-    pub(super) scenario: usize,
-    pub(super) pattern: u32,
-    pub(super) fidelity: FidelityArguments,
-    pub(super) study: Option<PathBuf>,
-    pub(super) json: bool,
+/// Arguments of `blisk replay`.
+#[derive(Debug, Args)]
+pub struct ReplayArguments {
+    /// The results folder.
+    results: PathBuf,
+    /// Scenario, counted from 0.
+    #[arg(long, value_name = "I")]
+    scenario: usize,
+    /// Id of the pattern.
+    #[arg(long, value_name = "ID")]
+    pattern: u32,
+    /// Which model the row is compared with besides.
+    #[command(flatten)]
+    fidelity: FidelityArguments,
+    /// Where the inputs lie now: beside this study file [default: that of the last run].
+    #[arg(long, value_name = "FILE")]
+    study: Option<PathBuf>,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 pub(super) fn command(arguments: &ReplayArguments) -> Result<ExitStatus, Failure> {

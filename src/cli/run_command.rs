@@ -6,8 +6,8 @@ use std::io::{self, ErrorKind};
 use clap::Parser;
 
 use super::{
-    Arguments, Command, ExitStatus, check, compare, estimate, import, init, merge, model, optimum,
-    output, plan, replay, response, run, slurm, stats, status, verify,
+    Arguments, Command, ExitStatus, check, compare, estimate, explain, import, init, merge, model,
+    optimum, output, plan, replay, report, response, run, slurm, stats, status, verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).
@@ -25,7 +25,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         }
     };
     let ended = match arguments.command {
-        Command::Init { out } => init::command(&out),
+        Command::Init(arguments) => init::command(&arguments),
         Command::Check { study, json } => check::command(&study, json),
         Command::Model {
             study,
@@ -61,21 +61,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             continuation,
             json,
         }),
-        Command::Replay {
-            results,
-            scenario,
-            pattern,
-            fidelity,
-            study,
-            json,
-        } => replay::command(&replay::ReplayArguments {
-            results,
-            scenario,
-            pattern,
-            fidelity,
-            study,
-            json,
-        }),
+        Command::Replay(arguments) => replay::command(&arguments),
         Command::Verify {
             target,
             sample,
@@ -105,6 +91,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Optimum(arguments) => optimum::command(&arguments),
         Command::Estimate(arguments) => estimate::command(&arguments),
         Command::Stats(arguments) => stats::command(&arguments),
+        Command::Report(arguments) => report::command(&arguments),
+        Command::Plot(arguments) => report::plot(&arguments),
+        Command::Explain(arguments) => explain::explain(&arguments),
+        Command::Schema => Ok(explain::schema()),
+        Command::Completions(arguments) => Ok(explain::completions(&arguments)),
     };
     match ended {
         Ok(status) => status,

@@ -1,12 +1,18 @@
 //! The numbers of a report as one struct, warnings with advice, and the summary as text.
 
+mod answers;
 mod comparison;
 mod comparison_text;
 mod estimate;
+mod figures;
+mod html;
 mod model_report;
 mod optimum;
 mod peak_audit;
 mod plan;
+mod plot;
+mod stated_errors;
+mod study_report;
 mod summary;
 mod summary_text;
 mod tail_report;
@@ -14,18 +20,30 @@ mod text_table;
 mod time_domain;
 mod verification;
 mod warning;
+mod wheel_report;
+mod words;
 
+pub use answers::{Answer, answers};
 pub use comparison::{
     BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet, QuantityComparison,
     ScenarioComparison,
 };
 pub use estimate::{EstimateReport, QuantityEstimate, ScenarioEstimate};
+pub use figures::{FIGURES, Figure, FigureName, figure};
+pub use html::html_report;
 pub use model_report::{ModelReport, NodalDiameterFacts};
 pub use optimum::OptimumReport;
 pub use peak_audit::PeakAuditReport;
 pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};
+pub use stated_errors::{ErrorRows, ErrorSpread, StatedErrors};
+pub use study_report::{
+    DistributionReport, GroupReport, LoadChoice, PercentileError, Provenance, ScenarioErrors,
+    StudyReport, Wheels,
+};
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use tail_report::StatisticsReport;
 pub use time_domain::{StepReport, TimeDomainReport};
 pub use verification::{ErrorDistribution, RegimeErrors, VerificationContext, VerificationReport};
 pub use warning::Warning;
+pub use wheel_report::{PairReport, ResponseCurve, WheelCurves, WheelReport, WheelStateReport};
+pub use words::setting;

@@ -8,9 +8,9 @@ use crate::population::statistics::{PointStatus, SampleStatistics, ScenarioLook,
 
 /// A unit of length in which amplitudes are shown.
 #[derive(Clone, Copy)]
-struct Unit {
-    name: &'static str,
-    metres: f64,
+pub(super) struct Unit {
+    pub(super) name: &'static str,
+    pub(super) metres: f64,
 }
 
 const UNITS: [Unit; 4] = [
@@ -234,7 +234,7 @@ fn share(fraction: Option<f64>) -> String {
 }
 
 /// The largest unit in which no tuned amplitude or mean is below 1.
-fn unit_of(scenarios: &[ScenarioSummary]) -> Unit {
+pub(super) fn unit_of(scenarios: &[ScenarioSummary]) -> Unit {
     let smallest = scenarios
         .iter()
         .flat_map(|scenario| [scenario.tuned_amplitude_m, scenario.peak_amplitude_m.mean])

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::{PipelineError, Study};
 use crate::model::sector::SectorModel;
-use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use crate::population::monte_carlo::{ResponseRow, RowSolver, Scenario, TunedReference};
 use crate::population::table::CurvePoint;
 use crate::report::ModelReport;
 use crate::response::forced_response::{ResponseTrace, SearchPlan};
@@ -88,6 +88,11 @@ pub trait Engine: Send + Sync {
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
     ) -> Result<[ResponseTrace; 2], Status>;
+
+    /// The solver of the rows, for looking into single ones; none where there is no such thing.
+    fn row_solver(&self) -> Option<&RowSolver> {
+        None
+    }
 
     /// The point of a delivered row, its pattern at its peak frequency, by harmonic balance and by
     /// time integration.

@@ -52,6 +52,19 @@ pub struct Finding {
     pub key: String,
     /// What is wrong.
     pub problem: Problem,
+    /// The part of the file that it is about; none where something is missing.
+    pub excerpt: Option<Excerpt>,
+}
+
+/// A part of a line of a study file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Excerpt {
+    /// The line.
+    pub text: String,
+    /// Characters before the part.
+    pub start: usize,
+    /// Characters of the part.
+    pub width: usize,
 }
 
 /// Ways in which a key of a study file can be wrong.
@@ -128,10 +141,21 @@ impl fmt::Display for Finding {
     }
 }
 
+/// Every finding with its place, and the part of the line that it is about underlined.
 fn listed(path: &std::path::Path, findings: &[Finding]) -> String {
-    findings
-        .iter()
-        .map(|finding| format!("{}:{}: {finding}", path.display(), finding.line))
-        .collect::<Vec<_>>()
-        .join("\n")
+    let told = findings.iter().map(|finding| {
+        let line = finding.line;
+        let underlined = finding
+            .excerpt
+            .as_ref()
+            .map_or_else(String::new, |excerpt| {
+                let Excerpt { text, start, width } = excerpt;
+                let number = line.to_string();
+                let margin = " ".repeat(number.len());
+                let (before, mark) = (" ".repeat(*start), "^".repeat(*width));
+                format!("\n  {number} | {text}\n  {margin} | {before}{mark}")
+            });
+        format!("{}:{line}: {finding}{underlined}", path.display())
+    });
+    told.collect::<Vec<_>>().join("\n")
 }

@@ -241,6 +241,10 @@ impl Engine for ReducedEngine {
         Some(Box::new(move |pattern| surrogate.peak_amplitude_m(pattern)))
     }
 
+    fn row_solver(&self) -> Option<&RowSolver> {
+        Some(&self.solver)
+    }
+
     fn search_plan(
         &self,
         scenario: &Scenario,

@@ -1,6 +1,6 @@
 //! The sector model that a study names, and the checks that need both.
 
-use super::{Finding, MistuningSource, ModelSource, PipelineError, Problem, Study, StudyError};
+use super::{MistuningSource, ModelSource, PipelineError, Problem, Study, StudyError};
 use crate::model::cyclic::ring_free;
 use crate::model::sector::{ModelError, SectorModel, bundle, lumped, parametric};
 use crate::response::forced_response::ContactCondition;
@@ -60,13 +60,12 @@ fn refused(study: &Study, error: ModelError) -> PipelineError {
         ModelError::Option { ref key, .. } | ModelError::NeedsMass { ref key, .. } => {
             StudyError::Invalid {
                 path: study.path.clone(),
-                findings: vec![Finding {
-                    line: study.map.line(key),
-                    key: key.clone(),
-                    problem: Problem::Conflict {
+                findings: vec![study.map.finding(
+                    key,
+                    Problem::Conflict {
                         reason: error.to_string(),
                     },
-                }],
+                )],
             }
             .into()
         }
@@ -78,11 +77,7 @@ fn check_contact(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
     let finding = |key: &str, problem: Problem| {
         Err(StudyError::Invalid {
             path: study.path.clone(),
-            findings: vec![Finding {
-                line: study.map.line(key),
-                key: key.to_owned(),
-                problem,
-            }],
+            findings: vec![study.map.finding(key, problem)],
         })
     };
     let only_free = study

@@ -7,7 +7,7 @@ use strsim::damerau_levenshtein;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::{Finding, Problem};
+use super::{Excerpt, Finding, Problem};
 
 /// Spans of the keys and values of a TOML text, by full key.
 #[derive(Debug, Clone, Default)]
@@ -24,7 +24,7 @@ struct Place {
 
 impl SourceMap {
     /// Parses `text`; a finding if it is no TOML.
-    pub(super) fn new(text: &str) -> Result<Self, Finding> {
+    pub(super) fn new(text: &str) -> Result<Self, Box<Finding>> {
         let mut map = Self {
             text: text.to_owned(),
             places: BTreeMap::new(),
@@ -34,7 +34,7 @@ impl SourceMap {
                 map.add_table("", table.get_ref());
                 Ok(map)
             }
-            Err(error) => Err(map.describe(&error)),
+            Err(error) => Err(Box::new(map.describe(&error))),
         }
     }
 
@@ -75,6 +75,52 @@ impl SourceMap {
                 None => return 1,
             }
         }
+    }
+
+    /// `problem` with `key`, underlined in the file: the value where that is the matter, else the key.
+    pub(super) fn finding(&self, key: &str, problem: Problem) -> Finding {
+        let of_value = matches!(problem, Problem::NotAccepted { .. });
+        let part = |place: &Place| {
+            if of_value {
+                place.value.clone()
+            } else {
+                place.key.clone()
+            }
+        };
+        Finding {
+            line: self.line(key),
+            key: key.to_owned(),
+            problem,
+            excerpt: self
+                .places
+                .get(key)
+                .map(part)
+                .and_then(|part| self.excerpt(&part)),
+        }
+    }
+
+    /// The part `range` of its line, up to the end of that; none where it is empty.
+    fn excerpt(&self, range: &Range<usize>) -> Option<Excerpt> {
+        let start = self
+            .text
+            .get(..range.start)?
+            .rfind('\n')
+            .map_or(0, |end| end + 1);
+        let end = self.text[range.start..]
+            .find('\n')
+            .map_or(self.text.len(), |end| range.start + end);
+        let part = self.text.get(range.start..range.end.min(end))?;
+        let (text, before) = (
+            self.text.get(start..end)?,
+            self.text.get(start..range.start)?,
+        );
+        // A tab is as wide as the terminal likes.
+        let plain = |text: &str| text.trim_end().replace('\t', " ");
+        (!part.is_empty()).then(|| Excerpt {
+            text: plain(text),
+            start: before.chars().count(),
+            width: part.trim_end().chars().count(),
+        })
     }
 
     /// The value of `key` as written.
@@ -145,13 +191,20 @@ impl SourceMap {
                 problem: Problem::Missing {
                     accepted: "a value".to_owned(),
                 },
+                excerpt: None,
             };
         } else {
             Problem::Syntax {
                 message: message.replace('\n', " "),
             }
         };
-        Finding { line, key, problem }
+        let excerpt = error.span().and_then(|span| self.excerpt(&span));
+        Finding {
+            line,
+            key,
+            problem,
+            excerpt,
+        }
     }
 }
 

@@ -56,11 +56,7 @@ impl Check<'_> {
     }
 
     fn add(&mut self, key: &str, problem: Problem) {
-        self.findings.push(Finding {
-            line: self.map.line(key),
-            key: key.to_owned(),
-            problem,
-        });
+        self.findings.push(self.map.finding(key, problem));
     }
 
     /// `value` if `holds`, otherwise a finding and `fallback`.
@@ -127,7 +123,7 @@ impl Study {
             path: path.to_owned(),
             findings,
         };
-        let map = SourceMap::new(text).map_err(|finding| invalid(vec![finding]))?;
+        let map = SourceMap::new(text).map_err(|finding| invalid(vec![*finding]))?;
         let raw: RawStudy =
             toml::from_str(text).map_err(|error| invalid(vec![map.describe(&error)]))?;
         let mut check = Check {

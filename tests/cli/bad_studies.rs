@@ -46,6 +46,41 @@ fn everything_that_is_wrong_is_told_at_once_in_the_order_of_lines() {
 }
 
 #[test]
+fn what_is_wrong_is_underlined_in_its_line() {
+    for (good, bad, shown) in [
+        (
+            "friction_coefficient = 0.3",
+            "friction_coefficient =  11",
+            "24 | friction_coefficient =  11\n     |                         ^^\n",
+        ),
+        ("seed = 7", "sed = 7", "5 | sed = 7\n    | ^^^\n"),
+        (
+            "engine_orders = [2]",
+            "engine_orders = [2] # of the stator\nmodes = 4",
+            "32 | modes = 4\n     | ^^^^^\n",
+        ),
+        (
+            "kind = \"normal\"",
+            "kind = \"gauss\"",
+            "35 | distribution = { kind = \"gauss\" }\n     |                         ^^^^^^^\n",
+        ),
+        (
+            "blade_mass_kg = 0.25",
+            "blade_mass_kg = -1",
+            "13 | blade_mass_kg = -1\n     | ^^^^^^^^^^^^^\n",
+        ),
+    ] {
+        assert!(GOOD.contains(good), "{good}");
+        let ended = Place::with(&GOOD.replacen(good, bad, 1)).run(&["check", "study.toml"]);
+        assert_eq!(ended.code, 3);
+        assert!(ended.stderr.contains(shown), "{shown}{}", ended.stderr);
+    }
+    // What is missing has no part of a line.
+    let ended = Place::with(&GOOD.replace("seed = 7\n", "")).run(&["check", "study.toml"]);
+    assert!(!ended.stderr.contains('^'), "{}", ended.stderr);
+}
+
+#[test]
 fn contact_of_study_and_model_must_agree() {
     let without_ring = GOOD
         .replace("ring_mass_kg = 0.03\n", "")

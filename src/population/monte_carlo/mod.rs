@@ -11,6 +11,7 @@ mod scenario;
 mod sink;
 mod surrogate;
 mod time_domain;
+mod wheel_state;
 
 pub use blocks::{PatternBlock, StoredRows, block_size, plan_blocks};
 pub use curves::CurveResult;
@@ -21,3 +22,4 @@ pub use row_solver::{RowSettings, RowSolver, amplification_factor, harmonics_nam
 pub use scenario::Scenario;
 pub use sink::{MemorySink, RowSink};
 pub use surrogate::Surrogate;
+pub use wheel_state::WheelState;

@@ -53,7 +53,7 @@ impl RowSolver {
     }
 
     /// The solver that a row came from: this one, or that for rows beyond it.
-    fn solver_of(&self, scenario: &Scenario, row: &ResponseRow) -> &Self {
+    pub(super) fn solver_of(&self, scenario: &Scenario, row: &ResponseRow) -> &Self {
         let points = self.points(scenario.engine_order, scenario.contact);
         let own = row.harmonics == harmonics_name(points.harmonics())
             && row.basis == self.basis().model().basis_name();

@@ -1,5 +1,6 @@
 //! Parquet tables and manifest of a results folder: schema, atomic writing, reading, parts.
 
+mod accuracy_ladder;
 mod atomic;
 mod checked_json;
 mod column;
@@ -24,6 +25,7 @@ mod traced_curve;
 mod verification;
 mod writer;
 
+pub use accuracy_ladder::{AccuracyLadder, MeasuredSetting};
 pub use atomic::{digest_file, remove_leftovers, write_atomically};
 pub use column::{ColumnKind, ColumnSpec};
 pub use curve::{CURVE_COLUMNS, CurveFormat, CurvePoint, write_curve};

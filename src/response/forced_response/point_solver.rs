@@ -9,8 +9,8 @@ use super::point_settings::PointSettings;
 use crate::linalg::{Complex64, LuWorkspace};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{
-    ContactInterface, ContactShares, HarmonicSystem, NewtonWorkspace, Status, Structure,
-    linear_response, solve, solve_creeping,
+    ContactInterface, ContactShares, HarmonicSystem, NewtonWorkspace, PairContact, Status,
+    Structure, linear_response, solve, solve_creeping,
 };
 
 /// Work done for a row.
@@ -156,6 +156,13 @@ impl<'a> PointSolver<'a> {
         let (system, workspace) = self.nonlinear.as_mut()?;
         system.set_ring_drift(point.ring_drift_m);
         Some(system.equivalent_springs(&point.solution, workspace.system_mut()))
+    }
+
+    /// State of every contact pair at a point of this solver, see [`HarmonicSystem::contact_states`];
+    /// none for a linear limit.
+    pub fn contact_states(&mut self, point: &Point) -> Option<Vec<PairContact>> {
+        let (system, workspace) = self.nonlinear_at(point)?;
+        Some(system.contact_states(&point.solution, workspace.system_mut()))
     }
 
     /// The nonlinear equation that `point` solves, with its buffers; none for a linear limit.

@@ -2,6 +2,7 @@
 
 mod anderson;
 mod contact_interface;
+mod contact_states;
 mod continuation;
 mod convergence;
 mod coupled_derivative;
@@ -23,6 +24,7 @@ mod system;
 mod transform;
 
 pub use contact_interface::ContactInterface;
+pub use contact_states::PairContact;
 pub use continuation::{Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint};
 pub use convergence::NewtonBounds;
 pub use damping::Damping;

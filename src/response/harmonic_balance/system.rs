@@ -66,12 +66,12 @@ pub struct ContactShares {
 /// Buffers of one thread for one [`HarmonicSystem`].
 #[derive(Debug)]
 pub struct SystemWorkspace {
-    pairs: PairHarmonics,
+    pub(super) pairs: PairHarmonics,
     /// Displacement and correction at the contact rows, coefficient after coefficient (`n_coefficients x rows`).
     pub(super) displacement: Vec<f64>,
     pub(super) correction: Vec<f64>,
-    pair_input: Vec<f64>,
-    pair_output: Vec<f64>,
+    pub(super) pair_input: Vec<f64>,
+    pub(super) pair_output: Vec<f64>,
     pub(super) jacobians: Vec<PairJacobian>,
     pub(super) active: Vec<bool>,
     /// Whether a pair separates.
@@ -371,7 +371,7 @@ impl HarmonicSystem {
     }
 
     /// Coefficients of the displacement of one pair into `pair_input`, and its drift.
-    fn gather_pair(&self, pair: usize, workspace: &mut SystemWorkspace) {
+    pub(super) fn gather_pair(&self, pair: usize, workspace: &mut SystemWorkspace) {
         let coefficients = self.transform.n_coefficients();
         let per_sector = self.interface.per_sector();
         let base = pair / per_sector * self.interface.geometry.row_count();

@@ -220,3 +220,36 @@ fn constant_load_of_zero_is_no_ring() {
     // The peak of one is sought to 1e-3 of height, that of the other far closer.
     assert!(relative(none, free) < 1e-3, "{none} {free}");
 }
+
+#[test]
+fn the_share_of_the_period_in_slip_is_that_of_the_hysteresis_loop() {
+    // After each reversal of x = X cos(theta) the slider sticks until x has moved by 2 x_c, x_c = limit / kt:
+    // X (1 - cos(theta)) = 2 x_c, twice per period.
+    const SAMPLES: usize = 4096;
+    let (kt, limit) = (2.0, 0.5);
+    let least = limit / kt;
+    for law in LAWS {
+        let system = oscillator(law, &[1], SAMPLES, 1.0, kt, limit);
+        let mut workspace = system.workspace();
+        for ratio in [0.5, 0.999, 1.001, 1.5, 4.0, 100.0] {
+            let x = [ratio * least, 0.0];
+            let states = system.contact_states(&x, &mut workspace);
+            let [state] = states[..] else {
+                panic!("one pair, {} states", states.len())
+            };
+            assert_eq!(state.slipping, ratio > 1.0, "{law:?} {ratio}");
+            assert!(!state.separated && state.separated_share == 0.0);
+            let sticks = if ratio > 1.0 {
+                (1.0_f64 - 2.0 / ratio).acos() / PI
+            } else {
+                1.0
+            };
+            let share = state.slipping_share.expect("no drift");
+            assert!(
+                (share - (1.0 - sticks)).abs() <= 4.0 / SAMPLES as f64,
+                "{law:?} {ratio}: {share}, {}",
+                1.0 - sticks
+            );
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! `blisk explain`, `blisk schema` and `blisk completions`: what a study file and the command line accept.
+
+use std::fmt;
+
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+use serde::Serialize;
+
+use super::run_command::Failure;
+use super::{Arguments, ExitStatus, output};
+use crate::study::{KeySpec, Value, keys_below, nearest_keys, study_schema};
+
+/// Arguments of `blisk explain`.
+#[derive(Debug, Args)]
+pub struct ExplainArguments {
+    /// A key, like `solver.peak_tolerance`, or a table, like `solver` [default: all keys].
+    #[arg(value_name = "KEY")]
+    key: Option<String>,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Arguments of `blisk completions`.
+#[derive(Debug, Args)]
+pub struct CompletionsArguments {
+    /// The shell.
+    shell: Shell,
+}
+
+/// A key in the words of a user.
+#[derive(Debug, Serialize)]
+struct Explanation {
+    key: String,
+    accepted: String,
+    default: &'static str,
+    required: bool,
+    meaning: &'static str,
+}
+
+impl From<&KeySpec> for Explanation {
+    fn from(key: &KeySpec) -> Self {
+        Self {
+            key: key.key.clone(),
+            accepted: key.value.to_string(),
+            default: key.default,
+            required: key.required,
+            meaning: key.meaning,
+        }
+    }
+}
+
+impl fmt::Display for Explanation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.key)?;
+        let lines = [
+            ("accepted", self.accepted.as_str()),
+            ("default", self.default),
+            ("meaning", self.meaning),
+        ];
+        for (name, words) in lines {
+            if !words.is_empty() {
+                writeln!(f, "  {name:<8}  {}", plain(words))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Markdown as plain text: no marks of code, and a link as the file it leads to.
+fn plain(words: &str) -> String {
+    let mut parts = words.split(['[', ']']);
+    let mut plain = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        // `[file](file)` comes as `file` and `(file)...`.
+        match part.strip_prefix('(').and_then(|rest| rest.split_once(')')) {
+            Some((_, rest)) => plain.push_str(rest),
+            None => plain.push_str(part),
+        }
+    }
+    plain.replace('`', "")
+}
+
+pub(super) fn explain(arguments: &ExplainArguments) -> Result<ExitStatus, Failure> {
+    let name = arguments.key.as_deref().unwrap_or_default();
+    let found: Vec<Explanation> = keys_below(name).iter().map(Explanation::from).collect();
+    if found.is_empty() {
+        return Err(Failure::usage(format!(
+            "there is no key {name}; did you mean {}?",
+            nearest_keys(name).join(" or ")
+        )));
+    }
+    if arguments.json {
+        output::json_only(&found);
+        return Ok(ExitStatus::Done);
+    }
+    let table = keys_below(name).iter().any(|key| key.value == Value::Table);
+    let text: Vec<String> = found.iter().map(ToString::to_string).collect();
+    output::text(&text.join(if table { "\n" } else { "" }));
+    Ok(ExitStatus::Done)
+}
+
+pub(super) fn schema() -> ExitStatus {
+    output::json_only(&study_schema());
+    ExitStatus::Done
+}
+
+pub(super) fn completions(arguments: &CompletionsArguments) -> ExitStatus {
+    let mut script = Vec::new();
+    clap_complete::generate(
+        arguments.shell,
+        &mut Arguments::command(),
+        "blisk",
+        &mut script,
+    );
+    output::text(&String::from_utf8_lossy(&script));
+    ExitStatus::Done
+}

@@ -1,0 +1,37 @@
+//! The figures of a report, each drawn from its numbers.
+
+mod distribution;
+mod figure;
+mod ladder;
+mod load;
+mod response;
+mod uncertainty;
+mod wheel;
+
+pub use figure::{FIGURES, Figure, FigureName};
+
+use super::{GroupReport, StudyReport, Wheels};
+
+/// The figure `name` of a group; none where the report has no numbers for it.
+#[must_use]
+pub fn figure(report: &StudyReport, group: &GroupReport, name: FigureName) -> Option<Figure> {
+    let wheels = match &group.wheels {
+        Wheels::Solved(wheels) => Some(&**wheels),
+        Wheels::NotSolved { .. } => None,
+    };
+    match name {
+        FigureName::Amplitude | FigureName::AmplificationFactor => {
+            load::by_load(report, group, name)
+        }
+        FigureName::Uncertainty => uncertainty::by_load(report, group),
+        FigureName::Accuracy => ladder::by_cost(report),
+        FigureName::AmplitudeDistribution | FigureName::AmplificationFactorDistribution => {
+            distribution::of_load(report, group, name)
+        }
+        FigureName::MedianResponse | FigureName::WorstResponse => {
+            response::of_wheel(report, group, wheels?, name)
+        }
+        FigureName::WorstBlades => wheel::blades(report, group, wheels?),
+        FigureName::Contact => wheel::contact(group, wheels?),
+    }
+}

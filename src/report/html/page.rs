@@ -1,0 +1,194 @@
+//! The page: answers first, then figures, tables and provenance.
+
+use std::fmt::Write;
+
+use super::tables;
+use crate::report::plot::{escaped, page_style};
+use crate::report::words::setting;
+use crate::report::words::tied;
+use crate::report::{
+    Answer, FIGURES, FigureName, GroupReport, StudyReport, Wheels, answers, figure,
+};
+
+/// Style of everything but the plots.
+const STYLE: &str = include_str!("page.css");
+
+/// The report as a page of its own: no script, no font, no image from elsewhere; the same numbers give the
+/// same bytes.
+#[must_use]
+pub fn html_report(report: &StudyReport) -> String {
+    let name = escaped(&report.summary.name);
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"generator\" content=\"blisk {version}\">\n\
+         <link rel=\"icon\" href=\"data:,\">\n\
+         <title>{name}: forced response under random mistuning</title>\n<style>\n{}{STYLE}</style>\n</head>\n<body>\n",
+        page_style(),
+        version = escaped(&report.provenance.version),
+    );
+    page.push_str(&header(report));
+    page.push_str("<main>\n");
+    for (place, group) in report.groups.iter().enumerate() {
+        page.push_str(&answers_of(report, group));
+        if place == 0 {
+            page.push_str(&warnings(report));
+        }
+        page.push_str(&figures_of(report, group, place));
+        page.push_str(&tables_of(report, group));
+    }
+    page.push_str(&end(report));
+    page.push_str("</main>\n");
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        page,
+        "<footer>Made by blisk {} from the tables of this study; the same numbers are in \
+         <code>blisk report DIR --json</code>. Definitions of every statistic: docs/statistics.md.</footer>\n</body>\n</html>",
+        escaped(&report.provenance.version)
+    );
+    page
+}
+
+fn header(report: &StudyReport) -> String {
+    let summary = &report.summary;
+    let stop = summary.stop.as_ref().map_or_else(String::new, |stop| {
+        let met = if stop.met { "reached" } else { "not reached" };
+        format!(
+            " The wanted width of P{} was {met}; bounds hold at {:.1} %, so that all looks together hold with 95 %.",
+            stop.wanted.percentile,
+            100.0 * stop.confidence
+        )
+    });
+    format!(
+        "<header>\n<h1>{}</h1>\n<p class=\"quiet\">Forced response of randomly mistuned bladed disks with a friction ring \
+         damper: {} patterns, {} scenarios, {} rows with a result, {} failed.{stop}</p>\n</header>\n",
+        escaped(&summary.name),
+        summary.patterns,
+        summary.scenarios.len(),
+        summary.rows.ok(),
+        summary.rows.failed(),
+    )
+}
+
+fn answers_of(report: &StudyReport, group: &GroupReport) -> String {
+    let mut html = format!(
+        "<section>\n<h2>Which normal load: {}</h2>\n<div class=\"answers\">\n",
+        escaped(&setting(group))
+    );
+    for Answer {
+        question,
+        verdict,
+        reasons,
+    } in answers(report, group)
+    {
+        let _ = writeln!(
+            html,
+            "<div class=\"answer\"><h3>{}</h3><p class=\"verdict\">{}</p>",
+            escaped(&tied(&question)),
+            escaped(&tied(&verdict))
+        );
+        for reason in reasons {
+            let _ = writeln!(html, "<p>{}</p>", escaped(&tied(&reason)));
+        }
+        html.push_str("</div>\n");
+    }
+    html.push_str("</div>\n</section>\n");
+    html
+}
+
+fn warnings(report: &StudyReport) -> String {
+    if report.summary.warnings.is_empty() {
+        return String::new();
+    }
+    let mut items = String::new();
+    for warning in &report.summary.warnings {
+        let _ = writeln!(items, "<li>{}</li>", escaped(&tied(&warning.to_string())));
+    }
+    format!("<section>\n<h2>Warnings</h2>\n<ul class=\"warnings\">\n{items}</ul>\n</section>\n")
+}
+
+/// Figures of the population, then those of single wheels.
+fn figures_of(report: &StudyReport, group: &GroupReport, place: usize) -> String {
+    let several = report.groups.len() > 1;
+    let heading = |words: &str| {
+        if several {
+            format!("{words}: {}", setting(group))
+        } else {
+            words.to_owned()
+        }
+    };
+    let mut html = String::new();
+    let single = |name: FigureName| {
+        matches!(
+            name,
+            FigureName::MedianResponse
+                | FigureName::WorstResponse
+                | FigureName::WorstBlades
+                | FigureName::Contact
+        )
+    };
+    for (words, wheels) in [("The population", false), ("Single wheels", true)] {
+        let _ = writeln!(html, "<section>\n<h2>{}</h2>", escaped(&heading(words)));
+        if let (true, Wheels::NotSolved { reason }) = (wheels, &group.wheels) {
+            let _ = writeln!(
+                html,
+                "<p class=\"quiet\">No wheels were solved again: {}.</p>",
+                escaped(reason)
+            );
+        }
+        html.push_str("<div class=\"figures\">\n");
+        for (name, words, _) in FIGURES {
+            // The ladder is of the study, not of one of its sections.
+            let again = name == FigureName::Accuracy && place > 0;
+            if single(name) != wheels || again {
+                continue;
+            }
+            if let Some(drawn) = figure(report, group, name) {
+                let _ = writeln!(
+                    html,
+                    "<figure id=\"{words}-{place}\"><h3>{}</h3>\n{}<figcaption>{}</figcaption></figure>",
+                    escaped(&tied(&drawn.title)),
+                    drawn.inline(&format!("{words}-{place}")),
+                    escaped(&tied(&drawn.caption))
+                );
+            }
+        }
+        html.push_str("</div>\n</section>\n");
+    }
+    html
+}
+
+fn tables_of(report: &StudyReport, group: &GroupReport) -> String {
+    format!(
+        "<section>\n<h2>Numbers: {}</h2>\n<h3>Peak amplitude, 95 % bounds in brackets</h3>\n{}\
+         <h3>Amplification factor, 95 % bounds in brackets</h3>\n{}\
+         <h3>Numerical error (median of the rows) beside the statistical interval, both relative</h3>\n{}\
+         <h3>Tail fits at the chosen load, a second opinion beside the sample</h3>\n{}\
+         <p class=\"quiet\">* outside of the bounds of the sample; + beyond 1 − 1/n, where no value of the sample \
+         reaches. – not estimable.</p>\n</section>\n",
+        escaped(&setting(group)),
+        tables::amplitudes(report, group),
+        tables::factors(report, group),
+        tables::errors(report, group),
+        tables::tails(report, group),
+    )
+}
+
+fn end(report: &StudyReport) -> String {
+    let made = &report.provenance;
+    let pretty = |value: &serde_json::Value| {
+        let text = serde_json::to_string_pretty(value).unwrap_or_default();
+        escaped(&text)
+    };
+    format!(
+        "<section>\n<h2>Accounting</h2>\n<p class=\"quiet\">Every planned row by status; failed rows stand at both \
+         infinities in the bounds. Last column: one-sided 95 % bound.</p>\n{}</section>\n\
+         <section>\n<h2>Provenance</h2>\n{}<details><summary>The study with every default filled in</summary>\n\
+         <pre>{}</pre></details>\n<details><summary>Settings that the program chose</summary>\n<pre>{}</pre></details>\n\
+         </section>\n",
+        tables::accounting(report),
+        tables::provenance(report),
+        pretty(&made.study),
+        pretty(&made.chosen),
+    )
+}

@@ -1,0 +1,269 @@
+//! The tables of a report: loads, errors, tail fits, accounting, provenance.
+
+use std::collections::BTreeSet;
+
+use super::table::Table;
+use crate::population::statistics::{FitStatus, Percentile, Quantity, SampleStatistics};
+use crate::report::plot::escaped;
+use crate::report::summary_text::four_digits;
+use crate::report::words::{Quantities, load_words, percent_words, setting, share_words};
+use crate::report::{ErrorSpread, GroupReport, PercentileError, ScenarioSummary, StudyReport};
+
+/// What stands where there is nothing.
+const NONE: &str = "–";
+
+/// Amplitudes of every load.
+pub(super) fn amplitudes(report: &StudyReport, group: &GroupReport) -> String {
+    let units = Quantities::of(&report.summary);
+    let column = |name: &str| format!("{name}, {}", units.name());
+    let header = [
+        "load, N".to_owned(),
+        column("tuned"),
+        "at, Hz".to_owned(),
+        column("P50"),
+        column("P95"),
+        column("P99"),
+    ];
+    let mut table = Table::new(&header.each_ref().map(String::as_str));
+    for &index in &group.scenarios {
+        let scenario = &report.summary.scenarios[index];
+        let amplitude = |metres: f64| units.number(metres);
+        let mut row = vec![
+            name(scenario),
+            scenario
+                .tuned_amplitude_m
+                .map_or_else(|| escaped(scenario.tuned_status), amplitude),
+            scenario
+                .tuned_frequency_hz
+                .map_or(NONE.to_owned(), |hz| format!("{hz:.2}")),
+        ];
+        row.extend(percentiles(&scenario.peak_amplitude_m, amplitude));
+        table.row_chosen(index == group.shown, row);
+    }
+    table.html()
+}
+
+/// Amplification factors of every load, and what its contacts do.
+pub(super) fn factors(report: &StudyReport, group: &GroupReport) -> String {
+    let mut table = Table::new(&[
+        "load, N",
+        "P50",
+        "P95",
+        "P99",
+        "pairs that slip",
+        "wheels with separation",
+    ]);
+    for &index in &group.scenarios {
+        let scenario = &report.summary.scenarios[index];
+        let mut row = vec![name(scenario)];
+        row.extend(percentiles(&scenario.amplification_factor, |factor| {
+            format!("{factor:.3}")
+        }));
+        row.extend([scenario.mean_slipping_fraction, scenario.separated_rows].map(optional_share));
+        table.row_chosen(index == group.shown, row);
+    }
+    table.html()
+}
+
+fn name(scenario: &ScenarioSummary) -> String {
+    escaped(&load_words(scenario.contact, scenario.normal_load_n))
+}
+
+fn optional_share(share: Option<f64>) -> String {
+    share.map_or(NONE.to_owned(), |share| format!("{:.1} %", 100.0 * share))
+}
+
+fn percentiles(sample: &SampleStatistics, show: impl Fn(f64) -> String) -> Vec<String> {
+    [50, 95, 99]
+        .into_iter()
+        .map(|percent| bounded(sample.percentile(percent), &show))
+        .collect()
+}
+
+/// A value with its bounds.
+fn bounded(found: Option<&Percentile>, show: impl Fn(f64) -> String) -> String {
+    let Some((found, value)) = found.and_then(|found| Some((found, found.value?))) else {
+        return NONE.to_owned();
+    };
+    let bound = |bound: Option<f64>| bound.map_or(NONE.to_owned(), &show);
+    format!(
+        "{} <span class=\"bounds\">[{}, {}]</span>",
+        show(value),
+        bound(found.lower),
+        bound(found.upper)
+    )
+}
+
+/// Numerical errors of every load beside its statistical interval.
+pub(super) fn errors(report: &StudyReport, group: &GroupReport) -> String {
+    let choice = group.choices.iter().find(|choice| choice.lowest.is_some());
+    let percent = choice.map_or(95.0, |choice| choice.percent);
+    let percentile = percent_words(percent);
+    let header = [
+        "load, N".to_owned(),
+        "sampling".to_owned(),
+        "harmonics".to_owned(),
+        "stated".to_owned(),
+        "stated, largest".to_owned(),
+        "rows without bound".to_owned(),
+        format!("numerical width of P{percentile}"),
+        format!("statistical width of P{percentile}"),
+    ];
+    let mut table = Table::new(&header.each_ref().map(String::as_str));
+    for errors in &group.errors {
+        let scenario = &report.summary.scenarios[errors.scenario];
+        let rows = &errors.rows;
+        let median = |spread: &Option<ErrorSpread>| {
+            spread.map_or(NONE.to_owned(), |spread| share_words(spread.median))
+        };
+        let width = |width: Option<f64>| width.map_or(NONE.to_owned(), share_words);
+        let found = errors
+            .percentiles
+            .iter()
+            .find(|error| error.percentile.percent.total_cmp(&percent).is_eq());
+        table.row_chosen(
+            errors.scenario == group.shown,
+            vec![
+                name(scenario),
+                median(&rows.sampling),
+                median(&rows.harmonics),
+                median(&rows.stated),
+                rows.stated
+                    .map_or(NONE.to_owned(), |spread| share_words(spread.largest)),
+                rows.without_bound.to_string(),
+                width(found.and_then(PercentileError::numerical_width)),
+                width(found.and_then(PercentileError::statistical_width)),
+            ],
+        );
+    }
+    table.html()
+}
+
+/// Percentiles of fitted laws beside those of the sample, at the load shown.
+pub(super) fn tails(report: &StudyReport, group: &GroupReport) -> String {
+    let units = Quantities::of(&report.summary);
+    let mut table = Table::new(&["", "P95", "P99", "P99.9", "P99.99", "goodness of fit"]);
+    for found in &group.distributions {
+        let (quantity, unit) = match found.quantity {
+            Quantity::PeakAmplitudeM => ("peak amplitude", units.metres()),
+            Quantity::AmplificationFactor => ("amplification factor", 1.0),
+        };
+        let show = |value: f64| four_digits(value / unit);
+        let Some(first) = found.fits.first() else {
+            continue;
+        };
+        let mut row = vec![format!("{quantity}, sample")];
+        row.extend(
+            first
+                .percentiles
+                .iter()
+                .map(|percentile| bounded(Some(&percentile.empirical), show)),
+        );
+        row.push(String::new());
+        table.row(row);
+        for fit in &found.fits {
+            let mut row = vec![format!(
+                "{quantity}, {}",
+                escaped(&fit.law.name().replace('_', " "))
+            )];
+            row.extend(fit.percentiles.iter().map(|percentile| {
+                percentile.model.map_or(NONE.to_owned(), |model| {
+                    let marks = match (percentile.outside_interval, percentile.extrapolates) {
+                        (true, true) => " *+",
+                        (true, false) => " *",
+                        (false, true) => " +",
+                        (false, false) => "",
+                    };
+                    let bound = |bound: Option<f64>| bound.map_or(NONE.to_owned(), show);
+                    format!(
+                        "{}{marks} <span class=\"bounds\">[{}, {}]</span>",
+                        show(model.value),
+                        bound(model.lower),
+                        bound(model.upper)
+                    )
+                })
+            }));
+            row.push(match (fit.status, fit.p_value) {
+                (FitStatus::Converged, Some(p)) if fit.rejected => format!("p = {p:.3}, rejected"),
+                (FitStatus::Converged, Some(p)) => format!("p = {p:.3}"),
+                (FitStatus::Converged, None) => "no p".to_owned(),
+                (status, _) => escaped(&status.name().replace('_', " ")),
+            });
+            table.row(row);
+        }
+    }
+    table.html()
+}
+
+/// Rows by status, a row per scenario and the sum.
+pub(super) fn accounting(report: &StudyReport) -> String {
+    let summary = &report.summary;
+    let statuses: BTreeSet<&str> = summary
+        .rows
+        .by_status()
+        .into_keys()
+        .filter(|status| *status != "ok")
+        .collect();
+    let mut header = vec!["scenario", "", "planned", "ok", "failed"];
+    header.extend(&statuses);
+    header.push("share that fails in the population");
+    let mut table = Table::new(&header);
+    let several = report.groups.len() > 1;
+    let counts = |rows: &crate::population::statistics::Accounting| -> Vec<String> {
+        let by_status = rows.by_status();
+        let mut cells = vec![
+            rows.planned().to_string(),
+            rows.ok().to_string(),
+            rows.failed().to_string(),
+        ];
+        cells.extend(
+            statuses
+                .iter()
+                .map(|status| by_status.get(status).copied().unwrap_or(0).to_string()),
+        );
+        cells.push(
+            rows.failed_share_upper_bound()
+                .map_or(NONE.to_owned(), |bound| {
+                    format!("at most {}", share_words(bound))
+                }),
+        );
+        cells
+    };
+    for group in &report.groups {
+        for &index in &group.scenarios {
+            let scenario = &summary.scenarios[index];
+            let load = name(scenario);
+            let words = if several {
+                format!("{}, load {load}", escaped(&setting(group)))
+            } else {
+                format!("load {load}")
+            };
+            let mut row = vec![index.to_string(), words];
+            row.extend(counts(&scenario.rows));
+            table.row(row);
+        }
+    }
+    let mut row = vec!["all".to_owned(), String::new()];
+    row.extend(counts(&summary.rows));
+    table.row(row);
+    table.html()
+}
+
+/// What the numbers were made from.
+pub(super) fn provenance(report: &StudyReport) -> String {
+    let (summary, made) = (&report.summary, &report.provenance);
+    let mut table = Table::of_facts();
+    table.fact("study", &summary.name);
+    table.fact("study digest", &summary.study_digest);
+    table.fact("program", &format!("blisk {}", made.version));
+    table.fact("seed", &summary.seed.to_string());
+    table.fact("generator", &made.generator);
+    table.fact("patterns", &summary.patterns.to_string());
+    table.fact("basis", &summary.basis.name);
+    for (name, digests) in [("input", &made.inputs), ("table", &made.tables)] {
+        for (path, digest) in digests {
+            table.fact(&format!("{name} {path}"), digest);
+        }
+    }
+    table.html()
+}

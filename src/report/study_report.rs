@@ -1,0 +1,147 @@
+//! Every number of the report on a finished study.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::{BestLoads, StatedErrors, StudySummary, WheelReport};
+use crate::population::statistics::{Percentile, Quantity, TailFit};
+use crate::population::table::AccuracyLadder;
+
+/// The report on a finished study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StudyReport {
+    /// The summary: statistics per scenario, counts by status, warnings.
+    pub summary: StudySummary,
+    /// Engine orders and standard deviations, each with its loads.
+    pub groups: Vec<GroupReport>,
+    /// What accuracy costs, where it was measured.
+    pub accuracy_ladder: Option<AccuracyLadder>,
+    /// What the numbers were made from.
+    pub provenance: Provenance,
+}
+
+/// What the numbers of a report were made from; no clock, host or thread count.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Provenance {
+    /// Version of the program that solved the rows.
+    pub version: String,
+    /// Random number generator.
+    pub generator: String,
+    /// Digests of the input files, by path as written in the study.
+    pub inputs: BTreeMap<String, String>,
+    /// Digests of the tables, by file name.
+    pub tables: BTreeMap<String, String>,
+    /// The study with every default filled in.
+    pub study: Value,
+    /// Settings that the program chose where the study says `auto`.
+    pub chosen: Value,
+}
+
+/// The loads of one engine order and standard deviation.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GroupReport {
+    /// Engine order.
+    pub engine_order: u32,
+    /// Standard deviation, if the study has one.
+    pub standard_deviation: Option<f64>,
+    /// Its scenarios.
+    pub scenarios: Vec<usize>,
+    /// Which load to choose for each percentile of the peak amplitude, the highest percentile first.
+    pub choices: Vec<LoadChoice>,
+    /// Errors of the numbers of every scenario, in their order.
+    pub errors: Vec<ScenarioErrors>,
+    /// Scenario that the distributions and wheels are of: the best by the first choice with
+    /// a value, or by the tuned peak where there is none.
+    pub shown: usize,
+    /// Distributions of both quantities there.
+    pub distributions: Vec<DistributionReport>,
+    /// Wheels solved again there.
+    pub wheels: Wheels,
+}
+
+/// Which load to choose for one percentile of the peak amplitude.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LoadChoice {
+    /// The percentile in percent.
+    pub percent: f64,
+    /// Loads that could be best; none where the percentile is not estimable, or there is one load.
+    pub best: Option<BestLoads>,
+    /// Smallest number of patterns with an interval of this percentile.
+    pub needed_patterns: u64,
+    /// Scenario with the lowest value, if any has one.
+    pub lowest: Option<usize>,
+    /// Whether a lower and a higher normal load than that were studied.
+    pub enclosed: bool,
+}
+
+/// Numerical and statistical error of the percentiles of one scenario.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ScenarioErrors {
+    /// The scenario.
+    pub scenario: usize,
+    /// Errors that its rows state.
+    pub rows: StatedErrors,
+    /// What they come to in percentiles of the peak amplitude.
+    pub percentiles: Vec<PercentileError>,
+}
+
+/// Statistical and numerical error of one percentile, side by side.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PercentileError {
+    /// The percentile of the delivered rows with its statistical interval.
+    pub percentile: Percentile,
+    /// The same percentile if every row is as much too high as it states; none where rows state no
+    /// bound that matters to it.
+    pub lowest: Option<f64>,
+    /// The same if every row is as much too low as it states.
+    pub highest: Option<f64>,
+    /// The same with every row corrected by its sampling and harmonic error.
+    pub corrected: Option<f64>,
+}
+
+impl PercentileError {
+    /// Width of the statistical interval over the value.
+    #[must_use]
+    pub fn statistical_width(&self) -> Option<f64> {
+        let found = &self.percentile;
+        Some((found.upper? - found.lower?) / found.value?)
+    }
+
+    /// Width of the numerical bounds over the value.
+    #[must_use]
+    pub fn numerical_width(&self) -> Option<f64> {
+        Some((self.highest? - self.lowest?) / self.percentile.value?)
+    }
+}
+
+/// The distribution of a quantity in one scenario.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DistributionReport {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Half width of the 95 % band, a probability.
+    pub half_width: Option<f64>,
+    /// Value, share of smaller ones, lower and upper edge of the band.
+    pub points: Vec<[f64; 4]>,
+    /// Percentiles with their bounds.
+    pub percentiles: Vec<Percentile>,
+    /// Laws fitted to it.
+    pub fits: Vec<TailFit>,
+    /// The generalised extreme value law drawn: value and share of smaller ones.
+    pub law: Vec<[f64; 2]>,
+}
+
+/// The wheels of a group that were solved again.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "wheels", rename_all = "snake_case")]
+pub enum Wheels {
+    /// They were.
+    Solved(Box<WheelReport>),
+    /// They were not, and why.
+    NotSolved {
+        /// Why.
+        reason: String,
+    },
+}

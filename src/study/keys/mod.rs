@@ -1,0 +1,11 @@
+//! Every key of a study file: what `blisk explain`, the JSON Schema and docs/study-file.md say of it.
+
+mod key;
+mod model_keys;
+mod schema;
+mod study_keys;
+mod value;
+
+pub use key::{KeySpec, keys, keys_below, nearest_keys};
+pub use schema::study_schema;
+pub use value::{Range, Value};

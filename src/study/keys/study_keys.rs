@@ -1,0 +1,369 @@
+//! The keys of a study file except those of its model.
+
+use super::Value::{Ascending, Either, Flag, List, Name, Number, Table, Text, Whole};
+use super::key::{Entry, REQUIRED, entry};
+use super::{Range, Value};
+
+/// Parameters that `[contact.variation]` can let vary.
+pub(super) const CONTACT_PARAMETERS: [&str; 4] = [
+    "friction_coefficient",
+    "tangential_stiffness",
+    "normal_stiffness",
+    "normal_load",
+];
+
+const ABOVE_ZERO: Value = Number(Range::above(0.0));
+const SHARE: Value = Number(Range::above(0.0).below(1.0));
+const MODES: Value = Whole(1, 1000);
+const TRUNCATION: Value = Number(Range::from_to(0.1, 10.0));
+const DEVIATION: Value = Number(Range::from_to(0.0, 0.5));
+const AUTO: Value = Name(&["auto"]);
+
+/// What stands before the model.
+pub(super) const LEADING_KEYS: &[Entry] = &[
+    entry("schema", Whole(1, 1), REQUIRED, "version of the study file"),
+    entry("study", Table, REQUIRED, "what the study is"),
+    entry(
+        "study.name",
+        Text("letters, digits, `-`, `_`, the first a letter or digit, at most 100"),
+        REQUIRED,
+        "names the results folder",
+    ),
+    entry(
+        "study.seed",
+        Whole(0, i64::MAX),
+        REQUIRED,
+        "patterns follow from it and their id alone",
+    ),
+    entry(
+        "study.patterns",
+        Whole(1, i32::MAX as i64),
+        "required with a distribution; the number in the file with `mistuning.file`",
+        "a total: raise it and run again, and only the new patterns are solved",
+    ),
+];
+
+/// What stands after the model.
+pub(super) const STUDY_KEYS: &[Entry] = &[
+    entry("reduction", Table, "", "the reduced model"),
+    entry(
+        "reduction.basis",
+        Name(&[
+            "auto",
+            "stick_slide",
+            "stick_partial_slide",
+            "stick_attachment",
+        ]),
+        "`\"auto\"`",
+        "family of the basis ([formulation.md](formulation.md))",
+    ),
+    entry(
+        "reduction.error",
+        Number(Range::above(0.0).up_to(0.5)),
+        "0.001",
+        "wanted relative error of the tuned peak, by which the number of modes is chosen where it is not fixed",
+    ),
+    entry(
+        "reduction.stick_modes",
+        MODES,
+        "chosen; 2 with `stick_partial_slide`",
+        "not with `auto`; with `stick_slide` only beside `slide_modes`",
+    ),
+    entry(
+        "reduction.slide_modes",
+        MODES,
+        "chosen; 1 with `stick_partial_slide`",
+        "with `stick_slide`, beside `stick_modes`, or `stick_partial_slide`",
+    ),
+    entry(
+        "reduction.partial_modes",
+        MODES,
+        "1 with `stick_partial_slide`",
+        "modes at each of two contact stiffnesses between sliding and sticking; only with `stick_partial_slide`",
+    ),
+    entry(
+        "reduction.craig_bampton_modes",
+        MODES,
+        "chosen: 25 or more",
+        "fixed-interface modes per nodal diameter; without it so many that half as many more change no tuned peak by more than `error`",
+    ),
+    entry(
+        "reduction.sensitivity_vectors",
+        Whole(0, 1000),
+        "2 where a standard deviation (or the root mean square of the file) reaches 0.05, else 0",
+        "per nodal diameter",
+    ),
+    entry("contact", Table, "", "the contact between blisk and ring"),
+    entry(
+        "contact.law",
+        Name(&["simplified_3d", "coulomb_3d", "macro_slip_1d"]),
+        "`\"simplified_3d\"`",
+        "`coulomb_3d` has the friction circle ([formulation.md](formulation.md))",
+    ),
+    entry(
+        "contact.friction_coefficient",
+        Number(Range::from_to(0.0, 10.0)),
+        REQUIRED,
+        "",
+    ),
+    entry(
+        "contact.tangential_stiffness_n_per_m",
+        ABOVE_ZERO,
+        REQUIRED,
+        "N/m per sector, shared out over the pairs by weight",
+    ),
+    entry(
+        "contact.normal_stiffness_n_per_m",
+        ABOVE_ZERO,
+        "required for `simplified_3d` and `coulomb_3d`; none for `macro_slip_1d`",
+        "N/m per sector, shared out likewise",
+    ),
+    entry(
+        "contact.ring",
+        Name(&["locked", "creeping"]),
+        "`\"locked\"`",
+        "`creeping`: a ring that is free drifts so that friction has no mean along its rigid motions; not with `coulomb_3d` ([formulation.md](formulation.md))",
+    ),
+    entry(
+        "contact.variation",
+        Table,
+        "",
+        "what of the contact is random besides the blades",
+    ),
+    entry(
+        "contact.variation.*",
+        Table,
+        "",
+        "a factor on the nominal value",
+    ),
+    entry(
+        "contact.variation.*.kind",
+        Name(&["normal", "uniform", "truncated_normal", "lognormal"]),
+        REQUIRED,
+        "factor `1 + s z` with z of unit standard deviation; `lognormal`: factor `exp(s z)`, median 1",
+    ),
+    entry(
+        "contact.variation.*.standard_deviation",
+        Number(Range::above(0.0).up_to(2.0)),
+        REQUIRED,
+        "s: up to 0.5; `lognormal` up to 2",
+    ),
+    entry(
+        "contact.variation.*.truncation",
+        TRUNCATION,
+        "required for `truncated_normal` only",
+        "standard deviations of the normal law",
+    ),
+    entry(
+        "contact.variation.*.per",
+        Name(&["wheel", "sector", "pair"]),
+        "`\"wheel\"`",
+        "what has a value of its own",
+    ),
+    entry(
+        "damping",
+        Table,
+        REQUIRED,
+        "exactly one model of damping of the structure",
+    ),
+    entry(
+        "damping.structural_loss_factor",
+        SHARE,
+        "none",
+        "`K (1 + i eta)`, mistuning included",
+    ),
+    entry(
+        "damping.modal_ratio",
+        SHARE,
+        "none",
+        "viscous, `2 zeta omega_r` on the tuned contact-free modes, unchanged by mistuning",
+    ),
+    entry(
+        "damping.rayleigh",
+        Table,
+        "none",
+        "`C = a M + b K` of the tuned wheel; one of a and b above 0",
+    ),
+    entry(
+        "damping.rayleigh.mass_per_s",
+        Number(Range::at_least(0.0)),
+        REQUIRED,
+        "a, 1/s",
+    ),
+    entry(
+        "damping.rayleigh.stiffness_s",
+        Number(Range::at_least(0.0)),
+        REQUIRED,
+        "b, s",
+    ),
+    entry("excitation", Table, REQUIRED, "the rotating force"),
+    entry(
+        "excitation.engine_orders",
+        List(&Whole(0, 10_000)),
+        REQUIRED,
+        "one scenario each, never simultaneous",
+    ),
+    entry(
+        "excitation.amplitude_n",
+        ABOVE_ZERO,
+        "1.0",
+        "multiplies the model's force vector",
+    ),
+    entry("mistuning", Table, REQUIRED, "the random blades"),
+    entry(
+        "mistuning.quantity",
+        Name(&["blade_stiffness"]),
+        "`\"blade_stiffness\"`",
+        "a relative deviation delta of the blade's stiffness; the deviation in frequency is about delta/2",
+    ),
+    entry(
+        "mistuning.projection",
+        Name(&["exact", "cantilever_modes"]),
+        "`\"exact\"`",
+        "`cantilever_modes`: the classical component mode mistuning; required for deviations per mode",
+    ),
+    entry(
+        "mistuning.cantilever_mode_count",
+        MODES,
+        "10",
+        "only with `cantilever_modes`",
+    ),
+    entry(
+        "mistuning.distribution",
+        Table,
+        "required without `mistuning.file`",
+        "the law of the deviations",
+    ),
+    entry(
+        "mistuning.distribution.kind",
+        Name(&["normal", "uniform", "truncated_normal"]),
+        REQUIRED,
+        "",
+    ),
+    entry(
+        "mistuning.distribution.truncation",
+        TRUNCATION,
+        "required for `truncated_normal`",
+        "in standard deviations of the normal law before it is cut",
+    ),
+    entry(
+        "mistuning.distribution.standard_deviation",
+        DEVIATION,
+        "in `[sweep]`",
+        "of the law after truncation",
+    ),
+    entry(
+        "mistuning.file",
+        Text("`.parquet`, or anything else as CSV"),
+        "none",
+        "instead of a distribution: columns `pattern`, `blade`, `deviation` and optionally `mode`",
+    ),
+    entry("sweep", Table, REQUIRED, "the scenarios"),
+    entry(
+        "sweep.normal_load_n",
+        List(&Either(&[
+            Number(Range::at_least(0.0)),
+            Name(&["stuck", "slide", "free"]),
+        ])),
+        REQUIRED,
+        "N per sector, and the linear limits; only `free` for a model without contact",
+    ),
+    entry(
+        "sweep.standard_deviation",
+        List(&DEVIATION),
+        "in the distribution",
+        "not with `mistuning.file`",
+    ),
+    entry("solver", Table, "", "the solution of a row"),
+    entry(
+        "solver.harmonics",
+        Either(&[AUTO, Ascending(&Whole(0, 100), None)]),
+        "`\"auto\"`",
+        "`auto`: per engine order and load, by the tuned full contact model ([formulation.md](formulation.md)); a list has 1 among them",
+    ),
+    entry(
+        "solver.harmonic_tolerance",
+        Number(Range::from_to(1e-6, 1.0)),
+        "0.02",
+        "wanted relative error of the amplitude by the harmonics left out; `auto` chooses by it, rows beyond it are marked",
+    ),
+    entry(
+        "solver.rows_beyond_tolerance",
+        Name(&["flag", "resolve"]),
+        "`\"flag\"`",
+        "`resolve`: with automatic harmonics, such rows are solved again with the set of a quarter of the tolerance",
+    ),
+    entry(
+        "solver.samples_per_period",
+        Whole(16, 65_536),
+        "128",
+        "at least 4 times the highest harmonic; an automatic set takes at least 16 per period of its highest harmonic",
+    ),
+    entry(
+        "solver.residual_tolerance",
+        Number(Range::from_to(1e-13, 1e-2)),
+        "1e-8",
+        "residual force relative to the excitation",
+    ),
+    entry(
+        "solver.peak_tolerance",
+        Number(Range::from_to(1e-10, 0.1)),
+        "1e-3",
+        "relative, of the peak amplitude",
+    ),
+    entry(
+        "solver.amplitude",
+        Name(&["fundamental", "time_maximum"]),
+        "`\"fundamental\"`",
+        "`fundamental`: norm over r, theta, z of the complex amplitude of harmonic 1; `time_maximum`: largest norm over a period, harmonic 0 left out",
+    ),
+    entry(
+        "solver.time_samples",
+        Whole(16, 65_536),
+        "1024",
+        "instants for `time_maximum`",
+    ),
+    entry(
+        "solver.frequency_band_hz",
+        Either(&[AUTO, Ascending(&ABOVE_ZERO, Some(2))]),
+        "`\"auto\"`",
+        "where peaks are sought, Hz",
+    ),
+    entry(
+        "stop",
+        Table,
+        "",
+        "when a study may end before all patterns",
+    ),
+    entry(
+        "stop.percentile",
+        Number(Range::above(0.0).below(100.0)),
+        REQUIRED,
+        "in percent; `study.patterns` must allow it an interval (72 for 95, 368 for 99)",
+    ),
+    entry(
+        "stop.relative_width",
+        Number(Range::above(0.0).up_to(1.0)),
+        REQUIRED,
+        "width of the interval over the percentile",
+    ),
+    entry(
+        "stop.quantity",
+        Name(&["peak_amplitude_m", "amplification_factor"]),
+        "`\"peak_amplitude_m\"`",
+        "",
+    ),
+    entry("output", Table, "", "what is written, and how"),
+    entry(
+        "output.patterns",
+        Flag,
+        "true up to 10,000 patterns",
+        "whether `patterns.parquet` is written",
+    ),
+    entry(
+        "output.compression",
+        Name(&["zstd", "snappy"]),
+        "`\"zstd\"`",
+        "",
+    ),
+];

@@ -1,0 +1,186 @@
+//! What a key of a study file accepts.
+
+use std::fmt;
+
+use serde_json::{Value as Json, json};
+
+/// Ends of a range of numbers; an end is included if its flag says so.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Lower end, and whether it is included.
+    pub low: Option<(f64, bool)>,
+    /// Upper end, and whether it is included.
+    pub high: Option<(f64, bool)>,
+}
+
+impl Range {
+    /// Any finite number.
+    pub const ANY: Self = Self {
+        low: None,
+        high: None,
+    };
+
+    /// Above `low`.
+    #[must_use]
+    pub const fn above(low: f64) -> Self {
+        Self {
+            low: Some((low, false)),
+            high: None,
+        }
+    }
+
+    /// At least `low`.
+    #[must_use]
+    pub const fn at_least(low: f64) -> Self {
+        Self {
+            low: Some((low, true)),
+            high: None,
+        }
+    }
+
+    /// From `low` to `high`, both included.
+    #[must_use]
+    pub const fn from_to(low: f64, high: f64) -> Self {
+        Self {
+            low: Some((low, true)),
+            high: Some((high, true)),
+        }
+    }
+
+    /// At most `high`.
+    #[must_use]
+    pub const fn up_to(self, high: f64) -> Self {
+        Self {
+            high: Some((high, true)),
+            ..self
+        }
+    }
+
+    /// Below `high`.
+    #[must_use]
+    pub const fn below(self, high: f64) -> Self {
+        Self {
+            high: Some((high, false)),
+            ..self
+        }
+    }
+}
+
+/// What a key accepts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value {
+    /// A table with keys of its own.
+    Table,
+    /// A finite number.
+    Number(Range),
+    /// A whole number from the first to the second.
+    Whole(i64, i64),
+    /// A text, and what it must be.
+    Text(&'static str),
+    /// `true` or `false`.
+    Flag,
+    /// One of these names.
+    Name(&'static [&'static str]),
+    /// A list of different values, at least one.
+    List(&'static Value),
+    /// An ascending list of this many values, or of any number from one.
+    Ascending(&'static Value, Option<u64>),
+    /// Any of these.
+    Either(&'static [Value]),
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.low, self.high) {
+            (None, None) => write!(f, "any finite number"),
+            (Some((low, true)), None) => write!(f, "at least {low}"),
+            (Some((low, false)), None) => write!(f, "above {low}"),
+            (None, Some((high, true))) => write!(f, "up to {high}"),
+            (None, Some((high, false))) => write!(f, "below {high}"),
+            (Some((low, true)), Some((high, true))) => write!(f, "{} to {}", said(low), said(high)),
+            (Some((low, from)), Some((high, to))) => {
+                let from = if from { "at least" } else { "above" };
+                let to = if to { "at most" } else { "below" };
+                write!(f, "{from} {}, {to} {}", said(low), said(high))
+            }
+        }
+    }
+}
+
+/// Small numbers as powers of ten.
+fn said(number: f64) -> String {
+    if number != 0.0 && number.abs() < 1e-3 {
+        format!("{number:e}")
+    } else {
+        number.to_string()
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Table => write!(f, "a table"),
+            Self::Number(range) => write!(f, "{range}"),
+            Self::Whole(low, high) => write!(f, "whole number, {low} to {high}"),
+            Self::Text(what) => write!(f, "{what}"),
+            Self::Flag => write!(f, "`true`, `false`"),
+            Self::Name(names) => {
+                let names: Vec<String> = names.iter().map(|name| format!("`\"{name}\"`")).collect();
+                write!(f, "{}", names.join(", "))
+            }
+            Self::List(value) => write!(f, "list of different values: {value}"),
+            Self::Ascending(value, None) => write!(f, "ascending list: {value}"),
+            Self::Ascending(value, Some(count)) => write!(f, "{count} ascending values: {value}"),
+            Self::Either(values) => {
+                let values: Vec<String> = values.iter().map(ToString::to_string).collect();
+                write!(f, "{}", values.join("; or "))
+            }
+        }
+    }
+}
+
+impl Value {
+    /// The value in JSON Schema.
+    #[must_use]
+    pub fn schema(&self) -> Json {
+        match self {
+            Self::Table => json!({ "type": "object", "additionalProperties": false }),
+            Self::Number(range) => {
+                let mut schema = json!({ "type": "number" });
+                let ends = [
+                    (range.low, ["minimum", "exclusiveMinimum"]),
+                    (range.high, ["maximum", "exclusiveMaximum"]),
+                ];
+                for (end, [included, excluded]) in ends {
+                    if let Some((value, is_included)) = end {
+                        schema[if is_included { included } else { excluded }] = json!(value);
+                    }
+                }
+                schema
+            }
+            Self::Whole(low, high) => {
+                json!({ "type": "integer", "minimum": low, "maximum": high })
+            }
+            Self::Text(_) => json!({ "type": "string" }),
+            Self::Flag => json!({ "type": "boolean" }),
+            Self::Name(names) => json!({ "enum": names }),
+            Self::List(value) => json!({
+                "type": "array", "items": value.schema(), "minItems": 1, "uniqueItems": true,
+            }),
+            Self::Ascending(value, count) => {
+                let mut schema = json!({
+                    "type": "array", "items": value.schema(), "minItems": count.unwrap_or(1),
+                    "uniqueItems": true,
+                });
+                if let Some(count) = count {
+                    schema["maxItems"] = json!(count);
+                }
+                schema
+            }
+            Self::Either(values) => {
+                let values: Vec<Json> = values.iter().map(Self::schema).collect();
+                json!({ "anyOf": values })
+            }
+        }
+    }
+}

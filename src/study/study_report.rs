@@ -1,0 +1,286 @@
+//! The numbers of the report on a finished results folder.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use super::compare::best_loads;
+use super::report_wheels::solve_wheels;
+use super::{EngineSource, PipelineError, ResultColumns, ScenarioColumns, StoredStudy, summarise};
+use crate::population::monte_carlo::ResponseRow;
+use crate::population::statistics::{
+    CONFIDENCE, DistributionBand, FitStatus, Quantity, RESAMPLES, TailLaw, fit_extreme_value,
+    fit_tails, percentile_at, smallest_sample,
+};
+use crate::population::table::{AccuracyLadder, ResponseReader};
+use crate::report::{
+    ComparedScenario, DistributionReport, ErrorRows, GroupReport, LoadChoice, Provenance,
+    ScenarioErrors, StudyReport, Wheels,
+};
+
+/// Percentiles that a load is chosen by, in percent, the first with a value before the others.
+const CHOSEN_BY: [f64; 3] = [99.0, 95.0, 50.0];
+/// Percentiles of a distribution that its figure marks, in percent.
+const MARKED: [f64; 4] = [5.0, 50.0, 95.0, 99.0];
+/// Points at which a fitted law is drawn.
+const LAW_POINTS: u32 = 200;
+
+/// What a report is wanted of.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReportRequest {
+    /// The results folder.
+    pub results: PathBuf,
+    /// The study file beside which the inputs lie now; none = that of the last run.
+    pub study_file: Option<PathBuf>,
+    /// Whether wheels are solved again for their response curves.
+    pub curves: bool,
+}
+
+/// Collects the report of a finished study.
+///
+/// A study whose inputs are gone or have changed has no curves, and the report says why.
+///
+/// # Errors
+/// The folder holds no finished study, or a file of it is damaged.
+pub fn report(
+    request: &ReportRequest,
+    source: &dyn EngineSource,
+) -> Result<StudyReport, PipelineError> {
+    let summary = summarise(&request.results)?;
+    let columns = ResultColumns::read(&request.results)?;
+    let rows = stated_errors(&request.results, columns.scenarios.len())?;
+    let mut groups: Vec<GroupReport> = groups_of(&columns)
+        .into_iter()
+        .map(|group| group_report(&columns, &rows, group))
+        .collect();
+    if request.curves {
+        add_wheels(request, source, &columns, &mut groups)?;
+    }
+    let manifest = columns.manifest;
+    Ok(StudyReport {
+        summary,
+        groups,
+        accuracy_ladder: AccuracyLadder::read(&request.results)?,
+        provenance: Provenance {
+            version: manifest.version,
+            generator: manifest.generator,
+            inputs: manifest.inputs,
+            tables: manifest.tables,
+            study: manifest.study,
+            chosen: manifest.chosen,
+        },
+    })
+}
+
+/// Errors of the rows of every scenario.
+fn stated_errors(results: &Path, scenarios: usize) -> Result<Vec<ErrorRows>, PipelineError> {
+    let mut errors = vec![ErrorRows::default(); scenarios];
+    let mut reader = ResponseReader::open(&results.join("responses.parquet"))?;
+    loop {
+        let batch: Vec<ResponseRow> = reader.next_batch()?;
+        if batch.is_empty() {
+            return Ok(errors);
+        }
+        for row in &batch {
+            errors[row.scenario].add(row);
+        }
+    }
+}
+
+/// Scenarios of one engine order and standard deviation stand beside each other.
+fn groups_of(columns: &ResultColumns) -> Vec<Range<usize>> {
+    let mut start = 0;
+    columns
+        .scenarios
+        .chunk_by(|a, b| {
+            a.scenario.engine_order == b.scenario.engine_order
+                && a.scenario.standard_deviation == b.scenario.standard_deviation
+        })
+        .map(|group| {
+            let range = start..start + group.len();
+            start = range.end;
+            range
+        })
+        .collect()
+}
+
+fn group_report(columns: &ResultColumns, rows: &[ErrorRows], group: Range<usize>) -> GroupReport {
+    let manifest = &columns.manifest;
+    let confidence = manifest
+        .stop
+        .as_ref()
+        .map_or(CONFIDENCE, |stop| stop.confidence);
+    let scenarios = &columns.scenarios[group.clone()];
+    let choices: Vec<LoadChoice> = CHOSEN_BY
+        .iter()
+        .map(|&percent| choice(scenarios, percent, manifest.seed))
+        .collect();
+    let shown = choices
+        .iter()
+        .find_map(|choice| choice.lowest)
+        .unwrap_or_else(|| lowest_tuned(columns, group.clone()));
+    let errors = group
+        .clone()
+        .map(|scenario| ScenarioErrors {
+            scenario,
+            rows: rows[scenario].spread(),
+            percentiles: CHOSEN_BY
+                .iter()
+                .map(|&percent| rows[scenario].percentile(percent, confidence))
+                .collect(),
+        })
+        .collect();
+    GroupReport {
+        engine_order: scenarios[0].scenario.engine_order,
+        standard_deviation: scenarios[0].scenario.standard_deviation,
+        scenarios: group.collect(),
+        choices,
+        errors,
+        shown,
+        distributions: Quantity::ALL
+            .iter()
+            .enumerate()
+            .map(|(place, &quantity)| {
+                let topic = (2 * shown + place) as u32;
+                distribution(
+                    &columns.scenarios[shown],
+                    quantity,
+                    (manifest.seed, topic),
+                    confidence,
+                )
+            })
+            .collect(),
+        wheels: Wheels::NotSolved {
+            reason: "not asked for".to_owned(),
+        },
+    }
+}
+
+/// The scenario with the lowest tuned peak, where too few patterns or too many failures give no percentile.
+fn lowest_tuned(columns: &ResultColumns, group: Range<usize>) -> usize {
+    let tuned = |scenario: usize| columns.manifest.scenarios[scenario].tuned_amplitude_m;
+    let first = group.start;
+    group
+        .filter_map(|scenario| Some((scenario, tuned(scenario)?)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map_or(first, |(scenario, _)| scenario)
+}
+
+/// The load with the lowest percentile of the peak amplitude, and which others could be.
+fn choice(group: &[ScenarioColumns], percent: f64, seed: u64) -> LoadChoice {
+    let named: Vec<_> = group
+        .iter()
+        .map(|load| {
+            let name = ComparedScenario::new(0, &load.scenario);
+            (name, load.values(Quantity::PeakAmplitudeM))
+        })
+        .collect();
+    let best = (group.len() > 1)
+        .then(|| best_loads(&named, percent, seed))
+        .flatten();
+    let alone = |load: &ScenarioColumns| {
+        let (sorted, failed) = load.sorted(Quantity::PeakAmplitudeM);
+        let found = percentile_at(&sorted, failed, percent, CONFIDENCE);
+        found.value.map(|_| load.scenario.index)
+    };
+    let lowest = match (&best, group) {
+        (Some(best), _) => best.lowest,
+        (None, [only]) => alone(only),
+        _ => None,
+    };
+    let load_of = |load: &ScenarioColumns| load.scenario.contact.normal_load_n();
+    let chosen = group
+        .iter()
+        .find(|load| Some(load.scenario.index) == lowest)
+        .and_then(load_of);
+    let loads = || group.iter().filter_map(load_of);
+    LoadChoice {
+        percent,
+        best,
+        needed_patterns: smallest_sample(percent / 100.0, CONFIDENCE),
+        lowest,
+        enclosed: chosen.is_some_and(|chosen| {
+            loads().any(|load| load < chosen) && loads().any(|load| load > chosen)
+        }),
+    }
+}
+
+/// The distribution of a quantity with its band, percentiles and fitted laws; resamples come from the
+/// streams of `topic` under `seed`.
+fn distribution(
+    load: &ScenarioColumns,
+    quantity: Quantity,
+    (seed, topic): (u64, u32),
+    confidence: f64,
+) -> DistributionReport {
+    let (sorted, failed) = load.sorted(quantity);
+    let band = DistributionBand::at(&sorted, failed, confidence);
+    let fits = fit_tails(&sorted, failed, RESAMPLES, seed, topic);
+    let converged = fits.iter().any(|fit| {
+        fit.law == TailLaw::GeneralisedExtremeValue && fit.status == FitStatus::Converged
+    });
+    let law = fit_extreme_value(&sorted).ok().filter(|_| converged);
+    DistributionReport {
+        quantity,
+        half_width: band.half_width,
+        points: band
+            .points
+            .iter()
+            .map(|point| [point.value, point.cumulative, point.lower, point.upper])
+            .collect(),
+        percentiles: MARKED
+            .iter()
+            .map(|&percent| percentile_at(&sorted, failed, percent, confidence))
+            .collect(),
+        fits: fits.into(),
+        law: law.map_or_else(Vec::new, |law| {
+            law_probabilities().map(|p| [law.quantile(p), p]).collect()
+        }),
+    }
+}
+
+/// Probabilities spaced evenly in the reduced variate `-ln(-ln p)` of Gumbel's law.
+fn law_probabilities() -> impl Iterator<Item = f64> {
+    let [low, high] = [1e-3_f64, 0.9999].map(|p| -(-p.ln()).ln());
+    (0..=LAW_POINTS).map(move |step| {
+        let reduced = low + (high - low) * f64::from(step) / f64::from(LAW_POINTS);
+        (-(-reduced).exp()).exp()
+    })
+}
+
+/// Solves the wheels of every group, unless what they are made from is no longer there.
+fn add_wheels(
+    request: &ReportRequest,
+    source: &dyn EngineSource,
+    columns: &ResultColumns,
+    groups: &mut [GroupReport],
+) -> Result<(), PipelineError> {
+    let solved =
+        StoredStudy::open(&request.results, request.study_file.as_deref()).and_then(|stored| {
+            let model = stored.model()?;
+            let engine = stored.engine(&model, source)?;
+            let shown = groups.iter().map(|group| group.shown);
+            shown
+                .map(|scenario| {
+                    let (stored, engine) = (&stored, engine.as_ref());
+                    let columns = &columns.scenarios[scenario];
+                    solve_wheels(stored, &model, engine, columns)
+                })
+                .collect::<Result<Vec<Wheels>, PipelineError>>()
+        });
+    match solved {
+        Ok(solved) => {
+            for (group, wheels) in groups.iter_mut().zip(solved) {
+                group.wheels = wheels;
+            }
+        }
+        Err(PipelineError::Table(error)) => return Err(error.into()),
+        Err(error) => {
+            for group in groups {
+                group.wheels = Wheels::NotSolved {
+                    reason: error.to_string(),
+                };
+            }
+        }
+    }
+    Ok(())
+}

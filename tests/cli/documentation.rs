@@ -1,0 +1,183 @@
+//! Every command that README.md and docs/*.md show is one that the program knows, and those that can be are run.
+
+use std::path::Path;
+
+use clap::Parser;
+
+use crate::blisk::{GOOD, Place};
+
+/// Pages with commands.
+fn pages() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut paths = vec![
+        root.join("README.md"),
+        root.join("results/README.md"),
+        root.join("studies/calculix/README.md"),
+    ];
+    for entry in std::fs::read_dir(root.join("docs")).expect("docs") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_some_and(|ending| ending == "md") {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    let read = |path: &Path| std::fs::read_to_string(path).expect("a page");
+    let name = |path: &Path| {
+        path.strip_prefix(root)
+            .expect("inside")
+            .display()
+            .to_string()
+    };
+    paths.iter().map(|path| (name(path), read(path))).collect()
+}
+
+/// What begins a command line of the program.
+const PROGRAM: [&str; 2] = ["blisk ", "cargo run --release -- "];
+
+/// The arguments of every command of a page: between backticks, or as a line of its own.
+fn commands(page: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut of = |text: &str| {
+        for program in PROGRAM {
+            if let Some(arguments) = text.strip_prefix(program) {
+                found.push(arguments.to_owned());
+            }
+        }
+    };
+    for line in page.lines() {
+        // A comment, or where the output goes, is the shell's.
+        let line = line.trim_start().split("  #").next().unwrap_or_default();
+        of(line.split(" > ").next().unwrap_or_default().trim_end());
+    }
+    let flowing = page.replace('\n', " ");
+    for code in flowing.split('`').skip(1).step_by(2) {
+        of(code.split(" > ").next().unwrap_or_default().trim());
+    }
+    found
+}
+
+/// A command line with values in the place of what stands for them: alternatives by their first, options in
+/// brackets included.
+fn with_values(command: &str) -> Vec<String> {
+    let plain = command
+        .replace("\\|", "|")
+        .replace(['[', ']'], " ")
+        .replace("...", " ");
+    let mut words: Vec<String> = Vec::new();
+    for word in plain.split_whitespace() {
+        let first = if word.starts_with("--") {
+            word
+        } else {
+            word.split('|').next().expect("a word")
+        };
+        let before = words.last().map(String::as_str);
+        let value = match (first, before) {
+            ("DIR" | "BUNDLE", _) => "results/small",
+            ("FILE", Some("--out")) => "out.csv",
+            ("STUDY" | "FILE.toml" | "FILE", _) => "study.toml",
+            ("FIGURE", _) => "amplitude",
+            ("SHELL", _) => "bash",
+            ("KEY", _) => "solver",
+            ("NAME", _) => "quickstart",
+            ("START:STOP:COUNT", _) => "300:400:3",
+            ("LOW:HIGH", _) => "30:300",
+            ("k/n", _) => "1/2",
+            ("T", _) => "01:00:00",
+            ("tuned", Some("--pattern")) => "tuned",
+            ("I" | "ID" | "N" | "S" | "M", _) => "5",
+            ("P", _) => "95",
+            ("R", _) => "0.1",
+            ("Q", _) => "peak_amplitude_m",
+            (other, _) => other,
+        };
+        words.push(value.to_owned());
+    }
+    words
+}
+
+#[test]
+fn every_command_of_the_documentation_is_one_of_the_program() {
+    let mut count = 0;
+    for (name, page) in pages() {
+        for command in commands(&page) {
+            // A command that is only named lacks what it needs.
+            let words = with_values(&command);
+            let line = ["blisk".to_owned()].into_iter().chain(words.clone());
+            if let Err(error) = blisk::cli::Arguments::try_parse_from(line) {
+                let lacks = error.kind() == clap::error::ErrorKind::MissingRequiredArgument;
+                let shortened = words.len() < 3 || command.contains("...");
+                assert!(lacks && shortened, "{name}: blisk {command}\n{error}");
+            }
+            count += 1;
+        }
+    }
+    assert!(count > 60, "{count}");
+}
+
+#[test]
+fn the_commands_of_the_readme_run_on_a_small_study() {
+    let study = GOOD.replace("patterns = 10", "patterns = 75");
+    let place = Place::with(&study);
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+    let (_, readme) = pages()
+        .into_iter()
+        .find(|(name, _)| name == "README.md")
+        .expect("README.md");
+    let mut run = Vec::new();
+    for line in readme.lines().filter(|line| line.starts_with("| `blisk ")) {
+        let command = commands(line).into_iter().next().expect("a command");
+        // What is in brackets may be left out; what needs a cluster, an import or another folder is tested elsewhere.
+        let mut short = command;
+        while let (Some(start), Some(end)) = (short.find('['), short.find(']')) {
+            short.replace_range(start..=end, "");
+        }
+        let mut words = with_values(&short);
+        let name = words[0].clone();
+        if ["import", "slurm", "merge", "estimate"].contains(&name.as_str()) {
+            continue;
+        }
+        if name == "init" {
+            words.extend(["--out", "new.toml"].map(str::to_owned));
+        }
+        // The folder is not in the place that the name of the study says.
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let words: Vec<&str> = match words.as_slice() {
+            ["replay", ..] => vec![
+                "replay",
+                "results/small",
+                "--scenario",
+                "1",
+                "--pattern",
+                "5",
+            ],
+            // The sample and the threads of a short run, so that the test is one.
+            ["plan", ..] => vec!["plan", "study.toml", "--pilot", "3"],
+            ["verify", "study.toml"] => vec!["verify", "study.toml", "--sample", "2"],
+            ["verify", "study.toml", "--dense-sweep"] => {
+                vec!["verify", "study.toml", "--dense-sweep", "--sample", "1"]
+            }
+            ["optimum", ..] => vec![
+                "optimum",
+                "study.toml",
+                "--between",
+                "30:300",
+                "--resolution",
+                "0.5",
+            ],
+            all => all.to_vec(),
+        };
+        let ended = place.run(&words);
+        // A verification may find something to say about this study.
+        let fine = ended.code == 0 || words[0] == "verify" && ended.code == 11;
+        assert!(
+            fine,
+            "blisk {}: {} {}{}",
+            words.join(" "),
+            ended.code,
+            ended.stdout,
+            ended.stderr
+        );
+        run.push(name);
+    }
+    assert!(run.len() >= 18, "{run:?}");
+}

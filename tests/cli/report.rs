@@ -1,0 +1,361 @@
+//! The report: its numbers are those of the tables, its page stands alone, and its figures are drawn.
+
+use std::fmt::Write;
+
+use serde_json::Value;
+
+use crate::blisk::{GOOD, Place};
+
+/// Friction between both linear limits, enough patterns for a P95.
+fn study() -> String {
+    GOOD.replace("patterns = 10", "patterns = 80").replace(
+        "[\"slide\", 50, \"stuck\"]",
+        "[\"slide\", 50, 100, 200, \"stuck\"]",
+    )
+}
+
+/// A finished study in `results/small`.
+fn finished(study: &str) -> Place {
+    let place = Place::with(study);
+    let run = place.run(&["run", "study.toml"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    place
+}
+
+fn json(place: &Place, arguments: &[&str]) -> Value {
+    let ended = place.run(arguments);
+    assert_eq!(ended.code, 0, "{arguments:?}: {}", ended.stderr);
+    serde_json::from_str(&ended.stdout).expect("JSON")
+}
+
+fn read(place: &Place, name: &str) -> String {
+    std::fs::read_to_string(place.path(name)).expect("a file")
+}
+
+/// Every element that is opened is closed in order, and there is no stray `<` or `&`.
+fn assert_well_formed(markup: &str) {
+    const VOID: [&str; 2] = ["meta", "link"];
+    let mut open: Vec<&str> = Vec::new();
+    let body = markup.split_once("<html").map_or(markup, |(_, rest)| {
+        open.push("html");
+        rest.split_once('>').expect("an end").1
+    });
+    // Style sheets are no markup.
+    let mut pieces = body.split('<');
+    pieces.next();
+    for piece in pieces {
+        let (tag, text) = piece
+            .split_once('>')
+            .unwrap_or_else(|| panic!("no end: {piece}"));
+        let name = tag.split_whitespace().next().expect("a name");
+        if let Some(closed) = name.strip_prefix('/') {
+            assert_eq!(open.pop(), Some(closed), "{piece}");
+        } else if !tag.ends_with('/') && !VOID.contains(&name) {
+            open.push(name);
+        }
+        let in_style = open.last() == Some(&"style");
+        assert!(in_style || !text.contains('>'), "{piece}");
+        for entity in text.split('&').skip(1) {
+            let name = entity.split(';').next().expect("a part");
+            let known = ["amp", "lt", "gt", "quot", "#39"].contains(&name);
+            assert!(in_style || known, "{entity}");
+        }
+    }
+    assert!(open.is_empty(), "{open:?}");
+}
+
+#[test]
+fn a_report_is_one_page_that_needs_nothing_else() {
+    let place = finished(&study());
+    let ended = place.run(&["report", "results/small"]);
+    assert_eq!(ended.code, 0, "{}", ended.stderr);
+    assert!(ended.stdout.contains("wrote results/small/report.html"));
+    let page = read(&place, "results/small/report.html");
+    assert_well_formed(&page);
+    // Nothing is fetched and nothing runs.
+    for outside in ["http", "<script", "url(", "@import", "src="] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    for id in [
+        "amplitude-0",
+        "amplification-factor-0",
+        "amplitude-distribution-0",
+        "amplification-factor-distribution-0",
+        "uncertainty-0",
+        "median-response-0",
+        "worst-response-0",
+        "worst-blades-0",
+        "contact-0",
+    ] {
+        assert!(page.contains(&format!("<figure id=\"{id}\">")), "{id}");
+    }
+    for none in ["NaN", "\"inf", ",inf", ">inf", " inf ", "-inf"] {
+        assert!(!page.contains(none), "{none}");
+    }
+    // The same results give the same bytes, and the report leaves the results as they are.
+    assert_eq!(
+        place
+            .run(&["report", "results/small", "--out", "again.html"])
+            .code,
+        0
+    );
+    assert_eq!(page, read(&place, "again.html"));
+    assert_eq!(place.run(&["stats", "results/small"]).code, 0);
+}
+
+#[test]
+fn the_numbers_of_a_report_are_those_of_the_other_commands() {
+    let place = finished(&study());
+    let report = json(&place, &["report", "results/small", "--json"]);
+    assert!(!place.path("results/small/report.html").exists());
+    assert_eq!(
+        report["summary"],
+        json(&place, &["stats", "results/small", "--json"])
+    );
+    let group = &report["groups"][0];
+    let choices = group["choices"].as_array().expect("a list");
+    // 80 patterns give no P99, but a P95.
+    assert!(choices[0]["best"].is_null() && choices[0]["lowest"].is_null());
+    assert_eq!(
+        (&choices[0]["percent"], &choices[0]["needed_patterns"]),
+        (&99.0.into(), &368.into())
+    );
+    let compared = json(&place, &["compare", "results/small", "--json"]);
+    assert_eq!(choices[1]["best"], compared["quantities"][0]["best"][0]);
+    assert_eq!(choices[1]["enclosed"], true);
+    let shown = group["shown"].as_u64().expect("a scenario") as usize;
+    assert_eq!(choices[1]["lowest"], shown);
+    let scenario = &report["summary"]["scenarios"][shown];
+    for (place, quantity) in ["peak_amplitude_m", "amplification_factor"]
+        .iter()
+        .enumerate()
+    {
+        let drawn = group["distributions"][place]["percentiles"]
+            .as_array()
+            .expect("a list");
+        let all = scenario[quantity]["percentiles"]
+            .as_array()
+            .expect("a list");
+        assert!(
+            drawn.iter().all(|percentile| all.contains(percentile)),
+            "{quantity}"
+        );
+    }
+}
+
+#[test]
+fn errors_bound_the_percentile_of_the_rows_that_state_them() {
+    let place = finished(&study());
+    let report = json(
+        &place,
+        &["report", "results/small", "--no-curves", "--json"],
+    );
+    for errors in report["groups"][0]["errors"].as_array().expect("a list") {
+        let of_p95 = &errors["percentiles"][1];
+        let value = of_p95["percentile"]["value"].as_f64().expect("a value");
+        let [lowest, highest] =
+            ["lowest", "highest"].map(|end| of_p95[end].as_f64().expect("a bound"));
+        assert!(lowest < value && value < highest);
+        // No percentile moves further than the row that states most.
+        let stated = errors["rows"]["stated"]["largest"]
+            .as_f64()
+            .expect("an error");
+        assert!(lowest >= value / (1.0 + stated) && highest <= value / (1.0 - stated));
+    }
+}
+
+#[test]
+fn the_wheels_of_a_report_are_those_that_were_delivered() {
+    let place = finished(&study());
+    let report = json(&place, &["report", "results/small", "--json"]);
+    let wheels = &report["groups"][0]["wheels"];
+    assert_eq!(wheels["wheels"], "solved");
+    let scenario = wheels["scenario"].as_u64().expect("a scenario");
+    let statistics = &report["summary"]["scenarios"][scenario as usize]["peak_amplitude_m"];
+    let median = statistics["percentiles"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .find(|p| p["percent"] == 50.0);
+    assert_eq!(
+        wheels["median"]["peak_amplitude_m"],
+        median.expect("P50")["value"]
+    );
+    for which in ["median", "worst"] {
+        let wheel = &wheels[which];
+        let id = wheel["pattern"].to_string();
+        let row = json(
+            &place,
+            &[
+                "replay",
+                "results/small",
+                "--scenario",
+                &scenario.to_string(),
+                "--pattern",
+                &id,
+                "--json",
+            ],
+        );
+        assert_eq!(
+            row["delivered"]["peak_amplitude_m"],
+            wheel["peak_amplitude_m"]
+        );
+        // The curve passes the delivered peak, and nothing on it is higher.
+        let peak = wheel["peak_amplitude_m"].as_f64().expect("an amplitude");
+        let curve = wheel["full"]["amplitude_m"].as_array().expect("a list");
+        let highest = curve.iter().filter_map(Value::as_f64).fold(0.0, f64::max);
+        assert!(
+            (highest / peak - 1.0).abs() < 1e-3,
+            "{which}: {highest} {peak}"
+        );
+        // Welded and frictionless contact resonate more sharply than friction at its best load.
+        for limit in ["stuck", "slide"] {
+            let curve = wheel[limit]["amplitude_m"].as_array().expect("a list");
+            assert!(curve.iter().filter_map(Value::as_f64).fold(0.0, f64::max) > peak);
+        }
+    }
+    let state = &wheels["state"];
+    let amplitudes = state["amplitude_m"].as_array().expect("a list");
+    let blade = wheels["worst"]["peak_blade"].as_u64().expect("a blade") as usize;
+    let peak = wheels["worst"]["peak_amplitude_m"]
+        .as_f64()
+        .expect("an amplitude");
+    assert!((amplitudes[blade].as_f64().expect("an amplitude") / peak - 1.0).abs() < 1e-6);
+    assert_eq!(amplitudes.len(), 6);
+    assert_eq!(state["contact"].as_array().expect("a list").len(), 6);
+    let deviations = state["deviation"].as_array().expect("a list");
+    assert!(
+        deviations
+            .iter()
+            .all(|d| d.as_f64().expect("a number").abs() < 0.2)
+    );
+}
+
+#[test]
+fn a_report_without_the_inputs_says_so_and_has_no_curves() {
+    let of_file = GOOD
+        .replace("patterns = 10\n", "")
+        .replace(
+            "distribution = { kind = \"normal\" }",
+            "file = \"patterns.csv\"",
+        )
+        .replace("standard_deviation = [0.03]\n", "");
+    let place = Place::with(&of_file);
+    let mut table = "pattern,blade,deviation\n".to_owned();
+    for pattern in 0..20 {
+        for blade in 0..6 {
+            let deviation = 0.03 * f64::from((7 * pattern + 5 * blade) % 11 - 5) / 5.0;
+            writeln!(table, "{pattern},{blade},{deviation}").expect("a line");
+        }
+    }
+    place.write("patterns.csv", &table);
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+    let with_inputs = place.run(&["report", "results/small"]);
+    assert_eq!((with_inputs.code, with_inputs.stderr.as_str()), (0, ""));
+    assert!(read(&place, "results/small/report.html").contains("worst-response-0"));
+    place.write("patterns.csv", &table.replace("-0.03", "-0.02"));
+    let without = place.run(&["report", "results/small"]);
+    assert_eq!(without.code, 0);
+    assert!(
+        without.stderr.contains("no response curves: "),
+        "{}",
+        without.stderr
+    );
+    let page = read(&place, "results/small/report.html");
+    assert!(page.contains("No wheels were solved again: "));
+    assert!(!page.contains("worst-response-0"));
+    // A figure of wheels has nothing to draw then.
+    let plot = place.run(&["plot", "results/small", "worst-response"]);
+    assert_eq!(plot.code, 2);
+    assert!(plot.stderr.contains("mistuning.file"), "{}", plot.stderr);
+    let not_asked = place.run(&["report", "results/small", "--no-curves"]);
+    assert_eq!((not_asked.code, not_asked.stderr.as_str()), (0, ""));
+    let page = read(&place, "results/small/report.html");
+    assert!(page.contains("No wheels were solved again: not asked for."));
+}
+
+#[test]
+fn a_report_of_damaged_or_unfinished_results_is_refused() {
+    let place = finished(&study());
+    let path = place.path("results/small/responses.parquet");
+    let mut bytes = std::fs::read(&path).expect("a table");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(&path, bytes).expect("write");
+    assert_eq!(place.run(&["report", "results/small"]).code, 8);
+    assert_eq!(place.run(&["report", "nowhere"]).code, 7);
+}
+
+#[test]
+fn single_figures_are_written_as_svg_files_of_their_own() {
+    let place = finished(&study());
+    for figure in [
+        "amplitude",
+        "amplification-factor",
+        "uncertainty",
+        "amplitude-distribution",
+        "worst-response",
+        "worst-blades",
+        "contact",
+    ] {
+        let ended = place.run(&["plot", "results/small", figure]);
+        assert_eq!(ended.code, 0, "{figure}: {}", ended.stderr);
+        let drawing = read(&place, &format!("{figure}.svg"));
+        assert_well_formed(&drawing);
+        assert!(drawing.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\""));
+        for part in ["<title", "<desc", "<style", "viewBox"] {
+            assert!(drawing.contains(part), "{figure}: {part}");
+        }
+        // Not every program knows variables of style sheets.
+        assert!(!drawing.contains("var("), "{figure}");
+    }
+    let ended = place.run(&["plot", "results/small", "nothing"]);
+    assert_eq!(ended.code, 2);
+    assert!(ended.stderr.contains("worst-blades"), "{}", ended.stderr);
+    let ended = place.run(&["plot", "results/small", "amplitude", "--out", "a.png"]);
+    assert_eq!(ended.code, 2);
+    assert!(ended.stderr.contains(".svg"), "{}", ended.stderr);
+}
+
+#[test]
+fn several_engine_orders_are_sections_of_their_own_and_failures_are_accounted_for() {
+    let several = study()
+        .replace("engine_orders = [2]", "engine_orders = [1, 2]")
+        .replace(
+            "standard_deviation = [0.03]",
+            "standard_deviation = [0.05, 0.5]",
+        )
+        .replace("[\"slide\", 50, 100, 200, \"stuck\"]", "[50]");
+    let place = Place::with(&several);
+    // Blades lose their stiffness in some patterns.
+    assert_eq!(place.run(&["run", "study.toml"]).code, 5);
+    let report = json(&place, &["report", "results/small", "--json"]);
+    let groups = report["groups"].as_array().expect("a list");
+    assert_eq!(groups.len(), 4);
+    assert_eq!(groups[3]["scenarios"], serde_json::json!([3]));
+    assert_eq!(place.run(&["report", "results/small"]).code, 0);
+    let page = read(&place, "results/small/report.html");
+    assert_well_formed(&page);
+    assert!(page.contains("invalid_pattern"));
+    assert!(page.contains("engine order 1, standard deviation 50 %"));
+    assert!(page.contains("Too many rows failed"));
+    let ended = place.run(&["plot", "results/small", "amplitude"]);
+    assert_eq!(ended.code, 2);
+    assert!(
+        ended
+            .stderr
+            .contains("--engine-order 2 --standard-deviation 0.5"),
+        "{}",
+        ended.stderr
+    );
+    let chosen = [
+        "plot",
+        "results/small",
+        "amplitude",
+        "--engine-order",
+        "2",
+        "--standard-deviation",
+        "0.05",
+    ];
+    assert_eq!(place.run(&chosen).code, 0);
+}
