@@ -7,7 +7,7 @@ use clap::Parser;
 
 use super::{
     Arguments, Command, ExitStatus, check, compare, estimate, import, init, merge, model, optimum,
-    output, plan, replay, response, run, slurm, stats, status, verify,
+    output, plan, replay, response, run, slurm, stats, status, tradeoff, verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).
@@ -103,6 +103,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         }),
         Command::Compare(arguments) => compare::command(&arguments),
         Command::Optimum(arguments) => optimum::command(&arguments),
+        Command::Tradeoff(arguments) => tradeoff::command(&arguments),
         Command::Estimate(arguments) => estimate::command(&arguments),
         Command::Stats(arguments) => stats::command(&arguments),
     };

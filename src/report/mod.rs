@@ -12,6 +12,7 @@ mod summary_text;
 mod tail_report;
 mod text_table;
 mod time_domain;
+mod tradeoff;
 mod verification;
 mod warning;
 
@@ -27,5 +28,6 @@ pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, Planned
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use tail_report::StatisticsReport;
 pub use time_domain::{StepReport, TimeDomainReport};
+pub use tradeoff::{FullContactCheck, TradeoffChoice, TradeoffReference, TradeoffReport};
 pub use verification::{ErrorDistribution, RegimeErrors, VerificationContext, VerificationReport};
 pub use warning::Warning;

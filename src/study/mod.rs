@@ -1,5 +1,6 @@
 //! The study file: as written, checked, resolved; and the pipeline that turns it into tables.
 
+mod accuracy;
 mod basis_choice;
 mod compare;
 mod contact_displacement;
@@ -11,6 +12,11 @@ mod fixed_interface;
 mod folder_status;
 mod full_model;
 mod harmonic_choice;
+mod ladder;
+mod ladder_bench;
+mod ladder_measure;
+mod ladder_reference;
+mod ladder_search;
 mod lock;
 mod merge;
 mod mistuning;
@@ -39,6 +45,7 @@ mod tails;
 mod template;
 mod time_domain;
 mod traced_curve;
+mod tradeoff;
 mod validate;
 mod validate_contact;
 mod validate_mistuning;
@@ -46,6 +53,7 @@ mod validate_solver;
 mod validate_stop;
 mod verify;
 
+pub use accuracy::AccuracyOptions;
 pub use compare::{CompareRequest, compare};
 pub use digest::StudyDigest;
 pub use engine::{Engine, EngineSource, SurrogateOf};
@@ -53,6 +61,7 @@ pub use error::{Finding, Problem, StudyError};
 pub use estimate::{EstimateRequest, estimate};
 pub use folder_status::{FolderStatus, Work, status_of_folder};
 pub use full_model::{FullModel, FullRow, FullSettings};
+pub use ladder::{HarmonicLevel, Knob, LadderSetting};
 pub use lock::LockHolder;
 pub use merge::merge;
 pub use mistuning::{Mistuning, MistuningSource};
@@ -76,4 +85,5 @@ pub use tails::fit_result_tails;
 pub use template::STUDY_TEMPLATE;
 pub use time_domain::{TimeDomainRequest, verify_in_time};
 pub use traced_curve::{TracedCurve, TracedFold};
+pub use tradeoff::{TradeoffRequest, tradeoff};
 pub use verify::{VerifyRequest, verify};

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::Mistuning;
 use super::source_map::SourceMap;
+use super::{AccuracyOptions, Mistuning};
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::monte_carlo::Scenario;
@@ -76,6 +76,8 @@ pub struct Study {
     pub standard_deviations: Vec<Option<f64>>,
     /// Settings of the solution.
     pub solver: SolverOptions,
+    /// Error by which the program chooses basis, harmonics and tolerances itself.
+    pub accuracy: Option<AccuracyOptions>,
     /// When the study may stop before all patterns are solved.
     pub stop: Option<StopOptions>,
     /// Settings of the output.

@@ -222,6 +222,7 @@ fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<S
         contacts,
         standard_deviations: mistuning.standard_deviations,
         solver,
+        accuracy: None,
         stop,
         output: OutputOptions {
             patterns: raw.output.patterns,

@@ -45,6 +45,7 @@ fn record(
             harmonics: "1-3".to_owned(),
             nonlinear_solves: 13,
             newton_iterations: 40,
+            factorisations: 4,
             retries: 0,
             residual: good.then_some(1e-9),
             slipping_fraction: good.then_some(0.5),
