@@ -28,6 +28,9 @@ use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::{Pattern, PatternSource};
 
+/// Largest relative change of a tuned peak by more fixed-interface modes.
+const FIXED_INTERFACE_ERROR: f64 = 1e-3;
+
 /// The rows that settings are compared on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LadderSample {
@@ -103,10 +106,13 @@ impl<'a> LadderBench<'a> {
         patterns: Vec<u32>,
         progress: &'a dyn Progress,
     ) -> Result<Self, PipelineError> {
-        let (reduction, fixed_interface) = reduce_sector(study, sector)?;
+        // These modes cost nothing per row, so they are not traded.
+        let mut own = study.clone();
+        own.reduction.error = own.reduction.error.min(FIXED_INTERFACE_ERROR);
+        let (reduction, fixed_interface) = reduce_sector(&own, sector)?;
         let mut bench = Self {
             reductions: vec![(contact_stiffness(study.contact.as_ref()), reduction)],
-            study: study.clone(),
+            study: own,
             sector,
             sample: LadderSample {
                 scenarios: Vec::new(),

@@ -1,6 +1,8 @@
 //! The study file: as written, checked, resolved; and the pipeline that turns it into tables.
 
 mod accuracy;
+mod accuracy_choice;
+mod accurate_engine;
 mod basis_choice;
 mod compare;
 mod contact_displacement;
@@ -47,6 +49,7 @@ mod time_domain;
 mod traced_curve;
 mod tradeoff;
 mod validate;
+mod validate_accuracy;
 mod validate_contact;
 mod validate_mistuning;
 mod validate_solver;
@@ -54,6 +57,7 @@ mod validate_stop;
 mod verify;
 
 pub use accuracy::AccuracyOptions;
+pub use accuracy_choice::{AccuracyChoice, TriedSetting};
 pub use compare::{CompareRequest, compare};
 pub use digest::StudyDigest;
 pub use engine::{Engine, EngineSource, SurrogateOf};

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::source_map::SourceMap;
+use super::validate_accuracy::KEYS_OF_ACCURACY;
 use super::{AccuracyOptions, Mistuning};
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
@@ -157,6 +158,10 @@ impl Study {
             },
             "output": { "patterns": self.output.patterns, "compression": self.output.compression },
         });
+        if let Some(accuracy) = &self.accuracy {
+            study["accuracy"] = json!(accuracy);
+            without(&mut study, &KEYS_OF_ACCURACY);
+        }
         if let Some(stop) = &self.stop {
             study["stop"] = json!(stop);
         }
@@ -195,6 +200,17 @@ impl Study {
             json!({ "normal_load_n": loads })
         } else {
             json!({ "normal_load_n": loads, "standard_deviation": deviations })
+        }
+    }
+}
+
+/// Takes keys of tables out of a study.
+fn without(study: &mut Value, keys: &[&str]) {
+    for key in keys {
+        if let Some((table, key)) = key.split_once('.')
+            && let Some(fields) = study[table].as_object_mut()
+        {
+            fields.remove(key);
         }
     }
 }
