@@ -4,6 +4,7 @@ mod comparison;
 mod comparison_text;
 mod estimate;
 mod model_report;
+mod numerical_error;
 mod optimum;
 mod peak_audit;
 mod plan;
@@ -22,6 +23,7 @@ pub use comparison::{
 };
 pub use estimate::{EstimateReport, QuantityEstimate, ScenarioEstimate};
 pub use model_report::{ModelReport, NodalDiameterFacts};
+pub use numerical_error::NumericalError;
 pub use optimum::OptimumReport;
 pub use peak_audit::PeakAuditReport;
 pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};

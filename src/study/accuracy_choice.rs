@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::ladder::{HarmonicLevel, Knob, LadderSetting, LadderSpace};
-use super::ladder_bench::LadderBench;
+use super::ladder_bench::{LadderBench, most_scenarios};
 use super::ladder_measure::{Compared, Measured, error_bound};
 use super::ladder_reference::{LadderEnds, LadderReference};
 use super::ladder_search::{LadderSearch, Proposal};
@@ -24,8 +24,9 @@ use crate::population::statistics::ErrorBound;
 use crate::response::friction::ContactLaw;
 use crate::response::mistuning::PatternSource;
 
-/// Patterns of the sample.
-const PATTERNS: usize = 6;
+/// Rows that the sample has at least, and fewest patterns of it.
+const ROWS: usize = 18;
+const FEWEST_PATTERNS: usize = 6;
 /// Patterns of these on which single knobs are moved.
 const PROBED: usize = 2;
 /// Share of the accepted error that the harmonics of the reference may leave out.
@@ -113,7 +114,7 @@ impl AccuracyChoice {
     ) -> Result<Self, PipelineError> {
         let keys = StudyDigest::of(study)?.hex();
         // A study with more patterns than the sample has the same sample.
-        let sampled = study.patterns.min(PATTERNS as u32);
+        let sampled = sampled_patterns(study).min(study.patterns as usize);
         let digest = reduction_digest(sector, &format!("accuracy {keys} {sampled}"));
         if let Some(stored) = cache.and_then(|folder| read_cached(folder, &digest)) {
             return Ok(stored);
@@ -133,7 +134,7 @@ impl AccuracyChoice {
         patterns: &PatternSource,
     ) -> Result<Self, PipelineError> {
         let accepted = accuracy.amplitude_error;
-        let ids = sample_of_patterns(study, patterns, PATTERNS);
+        let ids = sample_of_patterns(study, patterns, sampled_patterns(study));
         let mut bench = LadderBench::new(study, sector, ids, &Unwatched)?;
         let tolerance = (REFERENCE_SHARE * accepted).max(FINEST_REFERENCE);
         let ends = LadderEnds::choose(&mut bench, tolerance)?;
@@ -223,6 +224,12 @@ impl AccuracyChoice {
             "evidence": self.evidence,
         })
     }
+}
+
+/// Patterns of the sample.
+fn sampled_patterns(study: &Study) -> usize {
+    let scenarios = most_scenarios(study).max(1);
+    ROWS.div_ceil(scenarios).max(FEWEST_PATTERNS)
 }
 
 /// Levels that are worth trying for an accepted error.

@@ -426,6 +426,19 @@ fn sampled_scenarios(study: &Study, remainders: &[HarmonicChoice]) -> Vec<Scenar
     scenarios
 }
 
+/// Most scenarios that a sample of `study` can have.
+#[must_use]
+pub fn most_scenarios(study: &Study) -> usize {
+    let loads = study.contacts.iter();
+    let loads = loads.filter(|contact| contact.normal_load_n().is_some());
+    let lists = [
+        loads.count(),
+        study.engine_orders.len(),
+        study.standard_deviations.len(),
+    ];
+    lists.into_iter().map(|length| length.min(3)).product()
+}
+
 fn sampled_loads(study: &Study, remainders: &[HarmonicChoice]) -> Vec<f64> {
     let contacts = study.contacts.iter();
     let mut loads: Vec<f64> = contacts

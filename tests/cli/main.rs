@@ -9,4 +9,5 @@ mod imports;
 mod interruption;
 mod runs;
 mod statistics;
+mod tradeoff;
 mod verification;

@@ -3,7 +3,7 @@
 use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
 use blisk::population::statistics::ScenarioAccumulator;
 use blisk::population::table::ScenarioRecord;
-use blisk::report::{BasisSummary, StudySummary, SummaryContext, Warning};
+use blisk::report::{BasisSummary, NumericalError, StudySummary, SummaryContext, Warning};
 use blisk::response::forced_response::{ContactCondition, Harmonics};
 use blisk::response::harmonic_balance::Status;
 
@@ -16,6 +16,7 @@ fn context(harmonics: Harmonics) -> SummaryContext {
         patterns: 400,
         stop: None,
         harmonics,
+        numerical_error: None,
         version: "0".to_owned(),
     }
 }
@@ -240,4 +241,41 @@ fn a_basis_that_cannot_follow_the_contact_and_a_short_reach_of_modes_are_warning
         warnings(0.09, 0.9, 0.001)[..],
         [Warning::CraigBamptonModes { .. }]
     ));
+}
+
+/// The interval of P95 of 400 values 1 + i / 1000 is 17 ranks wide, 1.2 % of the value.
+#[test]
+fn a_numerical_error_is_held_against_the_interval_of_the_wanted_percentile() {
+    let full = ContactCondition::Full {
+        normal_load_n: 50.0,
+    };
+    let warned = |p95_upper: f64| {
+        let context = SummaryContext {
+            numerical_error: Some(NumericalError {
+                accepted: 0.01,
+                p95_upper: Some(p95_upper),
+                met: true,
+            }),
+            ..context(Harmonics::Auto)
+        };
+        let summary = StudySummary::new(&context, &[record(0, full, 1.0, 0, 0.0)]);
+        let found = summary.warnings.iter();
+        let found: Vec<&Warning> = found
+            .filter(|warning| {
+                matches!(
+                    warning,
+                    Warning::NumericalErrorLarge { .. } | Warning::NumericalErrorNeedless { .. }
+                )
+            })
+            .collect();
+        match found[..] {
+            [] => "fine",
+            [Warning::NumericalErrorLarge { .. }] => "large",
+            [Warning::NumericalErrorNeedless { .. }] => "needless",
+            _ => "more than one",
+        }
+    };
+    assert_eq!(warned(2e-3), "large");
+    assert_eq!(warned(5e-4), "fine");
+    assert_eq!(warned(5e-5), "needless");
 }
