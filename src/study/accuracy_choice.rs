@@ -90,8 +90,6 @@ pub struct TriedSetting {
     pub rows: u64,
     /// Largest amplitude error of these.
     pub worst: f64,
-    /// Upper bound of the 95th percentile, where all rows were measured.
-    pub p95_upper: Option<f64>,
     /// Estimated floating-point operations of a row.
     pub operations: f64,
 }
@@ -137,7 +135,7 @@ impl AccuracyChoice {
         let ids = sample_of_patterns(study, patterns, sampled_patterns(study));
         let mut bench = LadderBench::new(study, sector, ids, &Unwatched)?;
         let tolerance = (REFERENCE_SHARE * accepted).max(FINEST_REFERENCE);
-        let ends = LadderEnds::choose(&mut bench, tolerance)?;
+        let ends = LadderEnds::choose(&mut bench, tolerance, accepted)?;
         let craig_bampton_modes = bench.fixed_interface().modes;
         if bench.sample().scenarios.is_empty() {
             // Linear limits know none of these settings but the basis.
@@ -310,8 +308,10 @@ impl Trials {
             if proposal.predicted.worst > beyond {
                 continue;
             }
-            if !self.passes(search, proposal)? {
-                beyond = BETTER * proposal.predicted.worst;
+            if let Some(reached) = self.reached(search, proposal)? {
+                // As much better as this one was too bad, and a little more.
+                let ratio = BETTER.min(BETTER * self.accepted / reached);
+                beyond = ratio * proposal.predicted.worst;
             }
         }
         if self.taken.is_some() {
@@ -324,39 +324,39 @@ impl Trials {
         if let Some(best) = best {
             let measured = search.measure(&best.setting)?;
             self.taken = self
-                .note(search, &measured, true)
+                .note(search, &measured)
                 .map(|errors| (measured, errors));
         }
         Ok(())
     }
 
-    /// Whether a combination is accepted; it is then the one taken if it is the cheapest.
-    fn passes(
+    /// Measures a combination: none if it is accepted, and then the one taken if it is the cheapest; else
+    /// the error that it reached.
+    fn reached(
         &mut self,
         search: &mut LadderSearch<'_, '_>,
         proposal: &Proposal,
-    ) -> Result<bool, PipelineError> {
+    ) -> Result<Option<f64>, PipelineError> {
         let (measured, whole) = search.measure_within(&proposal.setting, self.accepted)?;
-        let errors = self.note(search, &measured, whole);
-        let errors = errors.filter(|errors| errors.p95_upper <= self.accepted);
-        let Some(errors) = errors else {
-            return Ok(false);
+        let Some(errors) = self.note(search, &measured) else {
+            return Ok(Some(f64::INFINITY));
         };
+        if !whole {
+            return Ok(Some(errors.worst));
+        }
+        if errors.p95_upper > self.accepted {
+            return Ok(Some(errors.p95_upper));
+        }
         let own = measured.operations();
         let cheaper = |(taken, _): &(Measured, ErrorBound)| own < taken.operations();
         if self.taken.as_ref().is_none_or(cheaper) {
             self.taken = Some((measured, errors));
         }
-        Ok(true)
+        Ok(None)
     }
 
-    /// Records what was measured; the errors where all rows were.
-    fn note(
-        &mut self,
-        search: &LadderSearch<'_, '_>,
-        measured: &Measured,
-        whole: bool,
-    ) -> Option<ErrorBound> {
+    /// Records what was measured, and gives its errors.
+    fn note(&mut self, search: &LadderSearch<'_, '_>, measured: &Measured) -> Option<ErrorBound> {
         let errors = search.error_of(measured);
         let rows = measured.rows.iter();
         self.operations += rows.map(|row| row.operations).sum::<f64>();
@@ -368,9 +368,8 @@ impl Trials {
             setting: words.join(", "),
             rows: measured.rows.len() as u64,
             worst: errors.map_or(f64::INFINITY, |errors| errors.worst),
-            p95_upper: errors.filter(|_| whole).map(|errors| errors.p95_upper),
             operations: measured.operations(),
         });
-        errors.filter(|_| whole)
+        errors
     }
 }

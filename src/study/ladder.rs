@@ -233,7 +233,7 @@ const SETS: [&[u32]; 6] = [
     &[0, 1, 2, 3, 4, 5],
 ];
 /// Tolerances of automatic sets.
-const AUTOMATIC: [f64; 4] = [0.02, 0.01, 0.005, 0.002];
+const AUTOMATIC: [f64; 3] = [0.02, 0.01, 0.005];
 const SAMPLES: [usize; 4] = [32, 64, 128, 256];
 const RESIDUALS: [f64; 3] = [1e-4, 1e-6, 1e-8];
 const PEAKS: [f64; 4] = [1e-2, 3e-3, 1e-3, 3e-4];

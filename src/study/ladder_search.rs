@@ -75,7 +75,10 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
 
     fn add(&mut self, knob: Knob, level: Measured) {
         self.levels.push(level);
-        self.of_knob[knob as usize].push(self.levels.len() - 1);
+        // The other projection has an error and saves nothing.
+        if knob != Knob::Projection {
+            self.of_knob[knob as usize].push(self.levels.len() - 1);
+        }
     }
 
     /// The base, and every level of a single knob.

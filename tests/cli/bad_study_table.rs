@@ -496,7 +496,7 @@ pub const CASES: &[Case] = &[
         "harmonics = [1, 3]",
         "harmonics = [1, 3]\n[accuracy]\namplitude_error = 0.01",
         &[
-            "study.toml:43:",
+            "study.toml:42:",
             "solver.harmonics",
             "accuracy.amplitude_error chooses it",
         ],
@@ -505,7 +505,7 @@ pub const CASES: &[Case] = &[
         "[solver]\nharmonics = [1, 3]",
         "[accuracy]\namplitude_error = 0.5",
         &[
-            "study.toml:43:",
+            "study.toml:42:",
             "accuracy.amplitude_error = 0.5",
             "a number from 0.001 to 0.2",
         ],
@@ -513,6 +513,6 @@ pub const CASES: &[Case] = &[
     (
         "[solver]\nharmonics = [1, 3]",
         "[accuracy]\n",
-        &["study.toml:42:", "accuracy.amplitude_error", "missing"],
+        &["study.toml:41:", "accuracy.amplitude_error", "missing"],
     ),
 ];

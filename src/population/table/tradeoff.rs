@@ -11,7 +11,7 @@ use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{RowWork, Scenario};
 use crate::population::statistics::ErrorBound;
 
-use ColumnKind::{Boolean, Float64, Int32, String as Text};
+use ColumnKind::{Boolean, Float64, Int32, Int64, String as Text};
 
 /// Accepted amplitude errors for which the cheapest setting is marked.
 pub const TRADEOFF_TARGETS: [f64; 3] = [0.01, 0.003, 0.001];
@@ -133,9 +133,14 @@ pub const TRADEOFF_COLUMNS: &[ColumnSpec] = &[
     ColumnSpec::new("peak_tolerance", Float64, "1", "solver.peak_tolerance"),
     ColumnSpec::new("contact_law", Text, "", "contact.law"),
     ColumnSpec::new("projection", Text, "", "mistuning.projection"),
-    ColumnSpec::new("rows", Int32, "1", "Rows compared with the reference"),
     ColumnSpec::new(
-        "failed",
+        "rows_compared",
+        Int32,
+        "1",
+        "Rows compared with the reference",
+    ),
+    ColumnSpec::new(
+        "rows_failed",
         Int32,
         "1",
         "Rows of these without result; their errors count as infinite",
@@ -219,26 +224,26 @@ pub const TRADEOFF_COLUMNS: &[ColumnSpec] = &[
         "Largest relative error of the 99th percentile of the amplitude over the scenarios; null if not estimable",
     ),
     ColumnSpec::new(
-        "nonlinear_solves",
+        "nonlinear_solves_per_row",
         Float64,
         "1",
         "Mean nonlinear solves of a row",
     ),
     ColumnSpec::new(
-        "newton_iterations",
+        "newton_iterations_per_row",
         Float64,
         "1",
         "Mean Newton iterations of a row",
     ),
     ColumnSpec::new(
-        "factorisations",
+        "factorisations_per_row",
         Float64,
         "1",
         "Mean factorisations of a row",
     ),
     ColumnSpec::new("unknowns", Int32, "1", "Most real unknowns of a scenario"),
     ColumnSpec::new(
-        "operations",
+        "operations_per_row",
         Float64,
         "1",
         "Mean floating-point operations of a row, estimated from its work counts",
@@ -302,9 +307,9 @@ pub const TRADEOFF_ROW_COLUMNS: &[ColumnSpec] = &[
         "1",
         "Amplification factor of the reference",
     ),
-    ColumnSpec::new("nonlinear_solves", Float64, "1", "Nonlinear solves"),
-    ColumnSpec::new("newton_iterations", Float64, "1", "Newton iterations"),
-    ColumnSpec::new("factorisations", Float64, "1", "Factorisations"),
+    ColumnSpec::new("nonlinear_solves", Int64, "1", "Nonlinear solves"),
+    ColumnSpec::new("newton_iterations", Int64, "1", "Newton iterations"),
+    ColumnSpec::new("factorisations", Int64, "1", "Factorisations"),
     ColumnSpec::new(
         "operations",
         Float64,
@@ -419,6 +424,10 @@ pub fn write_tradeoff_rows(
     let floats = |value: &dyn Fn(&TradeoffRow) -> Option<f64>| {
         Values::Float64(rows.iter().map(value).collect())
     };
+    // Counts of a row are whole.
+    let counts = |value: &dyn Fn(&TradeoffRow) -> f64| {
+        Values::Int64(rows.iter().map(|r| Some(value(r) as i64)).collect())
+    };
     let names = |value: &dyn Fn(&TradeoffRow) -> &str| {
         Values::String(rows.iter().map(|r| Some(value(r).to_owned())).collect())
     };
@@ -438,9 +447,9 @@ pub fn write_tradeoff_rows(
         floats(&|r| r.reference[0]),
         floats(&|r| r.reference[1]),
         floats(&|r| r.reference[2]),
-        floats(&|r| Some(r.work.nonlinear_solves)),
-        floats(&|r| Some(r.work.newton_iterations)),
-        floats(&|r| Some(r.work.factorisations)),
+        counts(&|r| r.work.nonlinear_solves),
+        counts(&|r| r.work.newton_iterations),
+        counts(&|r| r.work.factorisations),
         floats(&|r| Some(r.operations)),
     ];
     let mut writer = TableWriter::create(path, TRADEOFF_ROW_COLUMNS, header)?;
