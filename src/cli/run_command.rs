@@ -107,13 +107,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Estimate(arguments) => estimate::command(&arguments),
         Command::Stats(arguments) => stats::command(&arguments),
     };
-    match ended {
-        Ok(status) => status,
-        Err(failure) => {
-            output::message(&format!("error: {}", failure.message));
-            failure.status
-        }
-    }
+    ended.unwrap_or_else(|failure| {
+        output::message(&format!("error: {}", failure.message));
+        failure.status
+    })
 }
 
 /// A command that failed: what to say and how to exit.

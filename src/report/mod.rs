@@ -23,7 +23,7 @@ pub use comparison::{
 };
 pub use estimate::{EstimateReport, QuantityEstimate, ScenarioEstimate};
 pub use model_report::{ModelReport, NodalDiameterFacts};
-pub use numerical_error::NumericalError;
+pub use numerical_error::{NumericalError, NumericalFinding};
 pub use optimum::OptimumReport;
 pub use peak_audit::PeakAuditReport;
 pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};

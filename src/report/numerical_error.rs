@@ -1,5 +1,7 @@
 //! The numerical error of a study whose settings were chosen by it, beside its statistical uncertainty.
 
+use std::fmt;
+
 use serde::Serialize;
 
 use super::Warning;
@@ -21,44 +23,115 @@ pub struct NumericalError {
     pub met: bool,
 }
 
+/// What there is to say of a numerical error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "finding", rename_all = "snake_case")]
+pub enum NumericalFinding {
+    /// The accepted error is not kept.
+    Missed {
+        /// Error accepted.
+        accepted: f64,
+        /// Upper bound of the error of 95 % of the rows at the settings taken; none without a bound.
+        reached: Option<f64>,
+    },
+    /// It is not small beside the statistical uncertainty.
+    Large {
+        /// Upper bound of the error of 95 % of the rows.
+        error: f64,
+        /// The percentile whose interval is meant.
+        percent: f64,
+        /// Relative width of the narrowest of these intervals.
+        width: f64,
+    },
+    /// It is so small beside the statistical uncertainty that it is paid for in vain.
+    Needless {
+        /// Upper bound of the error of 95 % of the rows.
+        error: f64,
+        /// The percentile whose interval is meant.
+        percent: f64,
+        /// Relative width of the narrowest of these intervals.
+        width: f64,
+    },
+}
+
 impl NumericalError {
     /// What there is to say of it beside the intervals of the wanted percentile of the amplitude, one of
     /// each scenario.
     #[must_use]
     pub fn warnings(&self, percentiles: &[Percentile]) -> Vec<Warning> {
-        let mut warnings = Vec::new();
+        let mut found = Vec::new();
         if !self.met {
-            warnings.push(Warning::AccuracyMissed {
+            found.push(NumericalFinding::Missed {
                 accepted: self.accepted,
                 reached: self.p95_upper,
             });
         }
-        let width = |found: &Percentile| Some((found.upper? - found.lower?) / found.value?);
+        let width = |own: &Percentile| Some((own.upper? - own.lower?) / own.value?);
         let widths = percentiles.iter().filter_map(width);
         let narrowest = widths.reduce(f64::min).filter(|&width| width > 0.0);
-        let percent = percentiles.first().map_or(95.0, |found| found.percent);
+        let percent = percentiles.first().map_or(95.0, |own| own.percent);
         if let (Some(error), Some(width)) = (self.p95_upper, narrowest) {
             if error > LARGE_SHARE * width {
-                warnings.push(Warning::NumericalErrorLarge {
+                found.push(NumericalFinding::Large {
                     error,
                     percent,
                     width,
                 });
             } else if error < NEEDLESS_SHARE * width {
-                warnings.push(Warning::NumericalErrorNeedless {
+                found.push(NumericalFinding::Needless {
                     error,
                     percent,
                     width,
                 });
             }
         }
-        warnings
+        found.into_iter().map(Warning::NumericalError).collect()
+    }
+}
+
+impl fmt::Display for NumericalFinding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missed { accepted, reached } => write!(
+                f,
+                "no settings of the ladder keep accuracy.amplitude_error = {accepted}; the most accurate \
+                 were taken ({}); accept a larger error, or see `blisk tradeoff`",
+                reached.map_or("without a bound".to_owned(), |reached| format!(
+                    "95 % of the amplitudes within {:.2} %",
+                    100.0 * reached
+                ))
+            ),
+            Self::Large {
+                error,
+                percent,
+                width,
+            } => write!(
+                f,
+                "the numerical error (95 % of the amplitudes within {:.2} %) is more than a tenth of the \
+                 interval of P{percent} ({:.2} % wide): differences as small as that are no statistics; \
+                 take a smaller accuracy.amplitude_error",
+                100.0 * error,
+                100.0 * width
+            ),
+            Self::Needless {
+                error,
+                percent,
+                width,
+            } => write!(
+                f,
+                "the numerical error (95 % of the amplitudes within {:.3} %) is less than a hundredth of \
+                 the interval of P{percent} ({:.1} % wide): a larger accuracy.amplitude_error is faster \
+                 and would hardly show",
+                100.0 * error,
+                100.0 * width
+            ),
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::NumericalError;
+    use super::{NumericalError, NumericalFinding};
     use crate::population::statistics::percentile;
     use crate::report::Warning;
 
@@ -78,16 +151,16 @@ mod tests {
         };
         assert!(matches!(
             warned(0.11, true)[..],
-            [Warning::NumericalErrorLarge { .. }]
+            [Warning::NumericalError(NumericalFinding::Large { .. })]
         ));
         assert!(warned(0.09, true).is_empty() && warned(0.011, true).is_empty());
         assert!(matches!(
             warned(0.009, true)[..],
-            [Warning::NumericalErrorNeedless { .. }]
+            [Warning::NumericalError(NumericalFinding::Needless { .. })]
         ));
         assert!(matches!(
             warned(0.09, false)[..],
-            [Warning::AccuracyMissed { .. }]
+            [Warning::NumericalError(NumericalFinding::Missed { .. })]
         ));
     }
 }

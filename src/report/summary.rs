@@ -318,7 +318,7 @@ fn warnings(
                 sample
                     .percentiles
                     .iter()
-                    .find(|found| found.percent == percent)
+                    .find(|found| found.percent.total_cmp(&percent).is_eq())
             })
             .copied()
             .collect();

@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::NumericalFinding;
+
 /// A warning about the results of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "warning", rename_all = "snake_case")]
@@ -54,31 +56,8 @@ pub enum Warning {
         /// Error asked for.
         wanted: f64,
     },
-    /// The accepted numerical error is not kept.
-    AccuracyMissed {
-        /// Error accepted.
-        accepted: f64,
-        /// Upper bound of the error of 95 % of the rows at the settings taken; none without a bound.
-        reached: Option<f64>,
-    },
-    /// Numerical error is not small beside the statistical uncertainty.
-    NumericalErrorLarge {
-        /// Upper bound of the error of 95 % of the rows.
-        error: f64,
-        /// The percentile whose interval is meant.
-        percent: f64,
-        /// Relative width of the narrowest of these intervals.
-        width: f64,
-    },
-    /// Numerical error is so small beside the statistical uncertainty that it is paid for in vain.
-    NumericalErrorNeedless {
-        /// Upper bound of the error of 95 % of the rows.
-        error: f64,
-        /// The percentile whose interval is meant.
-        percent: f64,
-        /// Relative width of the narrowest of these intervals.
-        width: f64,
-    },
+    /// The numerical error by which the settings were chosen.
+    NumericalError(NumericalFinding),
     /// Rows without result.
     Failures {
         /// Rows that failed.
@@ -168,39 +147,7 @@ impl fmt::Display for Warning {
                  accept it by a larger reduction.error",
                 100.0 * error
             ),
-            Self::AccuracyMissed { accepted, reached } => write!(
-                f,
-                "no settings of the ladder keep accuracy.amplitude_error = {accepted}; the most accurate \
-                 were taken ({}); accept a larger error, or see `blisk tradeoff`",
-                reached.map_or("without a bound".to_owned(), |reached| format!(
-                    "95 % of the amplitudes within {:.2} %",
-                    100.0 * reached
-                ))
-            ),
-            Self::NumericalErrorLarge {
-                error,
-                percent,
-                width,
-            } => write!(
-                f,
-                "the numerical error (95 % of the amplitudes within {:.2} %) is more than a tenth of the \
-                 interval of P{percent} ({:.2} % wide): differences as small as that are no statistics; \
-                 take a smaller accuracy.amplitude_error",
-                100.0 * error,
-                100.0 * width
-            ),
-            Self::NumericalErrorNeedless {
-                error,
-                percent,
-                width,
-            } => write!(
-                f,
-                "the numerical error (95 % of the amplitudes within {:.3} %) is less than a hundredth of \
-                 the interval of P{percent} ({:.1} % wide): a larger accuracy.amplitude_error is faster \
-                 and would hardly show",
-                100.0 * error,
-                100.0 * width
-            ),
+            Self::NumericalError(finding) => finding.fmt(f),
             Self::Failures { failed, planned } => write!(
                 f,
                 "{failed} of {planned} rows have no result; the bounds take them as infinitely low \

@@ -247,8 +247,10 @@ fn levels(
         },
         // Its springs are others, and its error is beyond anything that is asked for.
         Knob::ContactLaw => setting.law != ContactLaw::MacroSlip1d || setting.law == base.law,
-        Knob::SamplesPerPeriod | Knob::ResidualTolerance | Knob::PeakTolerance => false,
-        Knob::Projection => false,
+        Knob::SamplesPerPeriod
+        | Knob::ResidualTolerance
+        | Knob::PeakTolerance
+        | Knob::Projection => false,
     });
     let loose = LOOSE.into_iter().find(|(error, _)| accepted >= *error);
     for knob in [

@@ -57,7 +57,7 @@ mod validate_stop;
 mod verify;
 
 pub use accuracy::AccuracyOptions;
-pub use accuracy_choice::{AccuracyChoice, TriedSetting};
+pub use accuracy_choice::{AccuracyChoice, AccuracyEvidence, TriedSetting};
 pub use compare::{CompareRequest, compare};
 pub use digest::StudyDigest;
 pub use engine::{Engine, EngineSource, SurrogateOf};

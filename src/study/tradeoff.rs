@@ -432,14 +432,13 @@ fn combinations(search: &mut LadderSearch<'_, '_>) -> Result<Vec<Measured>, Pipe
             let known = known
                 .into_iter()
                 .find(|own| own.setting == proposal.setting);
-            let error = match known {
-                Some(known) => search.error_of(known),
-                None => {
-                    let own = search.measure(&proposal.setting)?;
-                    let error = search.error_of(&own);
-                    measured.push(own);
-                    error
-                }
+            let error = if let Some(known) = known {
+                search.error_of(known)
+            } else {
+                let own = search.measure(&proposal.setting)?;
+                let error = search.error_of(&own);
+                measured.push(own);
+                error
             };
             if error.is_some_and(|error| error.p95_upper <= target) {
                 break;

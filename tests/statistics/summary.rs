@@ -3,7 +3,9 @@
 use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
 use blisk::population::statistics::ScenarioAccumulator;
 use blisk::population::table::ScenarioRecord;
-use blisk::report::{BasisSummary, NumericalError, StudySummary, SummaryContext, Warning};
+use blisk::report::{
+    BasisSummary, NumericalError, NumericalFinding, StudySummary, SummaryContext, Warning,
+};
 use blisk::response::forced_response::{ContactCondition, Harmonics};
 use blisk::response::harmonic_balance::Status;
 
@@ -259,20 +261,15 @@ fn a_numerical_error_is_held_against_the_interval_of_the_wanted_percentile() {
             ..context(Harmonics::Auto)
         };
         let summary = StudySummary::new(&context, &[record(0, full, 1.0, 0, 0.0)]);
-        let found = summary.warnings.iter();
-        let found: Vec<&Warning> = found
-            .filter(|warning| {
-                matches!(
-                    warning,
-                    Warning::NumericalErrorLarge { .. } | Warning::NumericalErrorNeedless { .. }
-                )
-            })
-            .collect();
-        match found[..] {
+        let found = summary.warnings.iter().filter_map(|warning| match warning {
+            Warning::NumericalError(finding) => Some(*finding),
+            _ => None,
+        });
+        match found.collect::<Vec<_>>()[..] {
             [] => "fine",
-            [Warning::NumericalErrorLarge { .. }] => "large",
-            [Warning::NumericalErrorNeedless { .. }] => "needless",
-            _ => "more than one",
+            [NumericalFinding::Large { .. }] => "large",
+            [NumericalFinding::Needless { .. }] => "needless",
+            _ => "something else",
         }
     };
     assert_eq!(warned(2e-3), "large");
