@@ -125,9 +125,12 @@ impl<'a> LadderBench<'a> {
         bench.study.contacts = judged_conditions(&study.contacts);
         let remainders = bench.sets(&row_settings(&alone(study)), None)?;
         let scenarios = sampled_scenarios(study, &remainders);
-        bench.study.contacts = distinct(scenarios.iter().map(|scenario| scenario.contact));
-        bench.study.engine_orders =
-            distinct(scenarios.iter().map(|scenario| scenario.engine_order));
+        // A study of linear limits alone has a basis to choose, by these.
+        if !scenarios.is_empty() {
+            let orders = scenarios.iter().map(|scenario| scenario.engine_order);
+            bench.study.engine_orders = distinct(orders);
+            bench.study.contacts = distinct(scenarios.iter().map(|scenario| scenario.contact));
+        }
         bench.sample.scenarios = scenarios;
         Ok(bench)
     }

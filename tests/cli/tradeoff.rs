@@ -177,6 +177,17 @@ fn an_accepted_error_chooses_settings_once_and_records_the_evidence() {
 }
 
 #[test]
+fn an_accepted_error_of_linear_limits_needs_no_sample() {
+    let study = accurate().replace("\"slide\", 50, \"stuck\"", "\"slide\", \"stuck\"");
+    let place = Place::with(&study);
+    let run = place.run(&["run", "study.toml", "--out", "one"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let chosen = &manifest(&place, "one")["chosen"]["accuracy"];
+    assert_eq!(chosen["met"], true);
+    assert!(chosen["evidence"].is_null());
+}
+
+#[test]
 fn a_longer_study_keeps_the_settings_and_shards_come_to_the_same_bytes() {
     let place = Place::with(&accurate());
     assert_eq!(place.run(&["run", "study.toml", "--out", "grown"]).code, 0);
