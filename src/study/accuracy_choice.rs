@@ -29,8 +29,8 @@ const ROWS: usize = 18;
 const FEWEST_PATTERNS: usize = 6;
 /// Patterns of these on which single knobs are moved.
 const PROBED: usize = 2;
-/// Share of the accepted error that the harmonics of the reference may leave out.
-const REFERENCE_SHARE: f64 = 0.2;
+/// Accepted error over what the harmonics of the reference may leave out.
+const FINER_REFERENCE: f64 = 5.0;
 /// Least tolerance of these harmonics.
 const FINEST_REFERENCE: f64 = 1e-3;
 /// Combinations measured at most.
@@ -134,7 +134,7 @@ impl AccuracyChoice {
         let accepted = accuracy.amplitude_error;
         let ids = sample_of_patterns(study, patterns, sampled_patterns(study));
         let mut bench = LadderBench::new(study, sector, ids, &Unwatched)?;
-        let tolerance = (REFERENCE_SHARE * accepted).max(FINEST_REFERENCE);
+        let tolerance = (accepted / FINER_REFERENCE).max(FINEST_REFERENCE);
         let ends = LadderEnds::choose(&mut bench, tolerance, accepted)?;
         let craig_bampton_modes = bench.fixed_interface().modes;
         if bench.sample().scenarios.is_empty() {
