@@ -158,7 +158,7 @@ impl AccuracyChoice {
             operations: 0.0,
             taken: None,
         };
-        trials.among(&mut search, most_operations(&reference))?;
+        trials.among(&mut search, reference.most_operations())?;
         let Some((measured, amplitude)) = trials.taken else {
             // No row of the sample has a reference: the best that is affordable.
             return Ok(Self {
@@ -273,12 +273,6 @@ fn levels(
         }
     }
     levels
-}
-
-/// Most operations of a row that the reference was made of: nothing dearer is worth a try.
-fn most_operations(reference: &LadderReference) -> f64 {
-    let parts = reference.parts.iter().chain([&reference.base]);
-    parts.map(Measured::operations).fold(0.0, f64::max)
 }
 
 /// Combinations under trial.

@@ -220,4 +220,11 @@ impl LadderReference {
             product_error,
         })
     }
+
+    /// Most operations of a row that the reference was made of: nothing dearer is worth a try.
+    #[must_use]
+    pub fn most_operations(&self) -> f64 {
+        let parts = self.parts.iter().chain([&self.base]);
+        parts.map(Measured::operations).fold(0.0, f64::max)
+    }
 }

@@ -148,7 +148,7 @@ impl Trade {
         let reference = LadderReference::solve(&mut bench, &ends, patterns)?;
         let mut search = LadderSearch::new(&mut bench, patterns, &reference, probed);
         search.measure_levels(levels)?;
-        let combinations = combinations(&mut search)?;
+        let combinations = combinations(&mut search, reference.most_operations())?;
         let mut settings: Vec<Measured> = Vec::new();
         let levels = search.levels().iter();
         // The best levels of single knobs are parts of the reference.
@@ -415,9 +415,14 @@ impl Trade {
     }
 }
 
-/// Combinations between the levels, measured: for each of [`PROPOSED`] the cheapest that promises it.
-fn combinations(search: &mut LadderSearch<'_, '_>) -> Result<Vec<Measured>, PipelineError> {
-    let proposals = search.proposals();
+/// Combinations between the levels, measured: for each of [`PROPOSED`] the cheapest that promises it and
+/// takes no more than `most_operations` a row.
+fn combinations(
+    search: &mut LadderSearch<'_, '_>,
+    most_operations: f64,
+) -> Result<Vec<Measured>, PipelineError> {
+    let mut proposals = search.proposals();
+    proposals.retain(|own| own.operations <= most_operations);
     let mut measured: Vec<Measured> = Vec::new();
     for target in PROPOSED {
         let mut promised = target;
