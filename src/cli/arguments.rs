@@ -20,6 +20,7 @@ use super::run::RunArguments;
 use super::slurm::SlurmArguments;
 use super::stats::StatsArguments;
 use super::status::StatusArguments;
+use super::tradeoff::TradeoffArguments;
 
 /// Forced response of randomly mistuned bladed disks with a friction ring damper.
 #[derive(Debug, Parser)]
@@ -160,6 +161,11 @@ pub enum Command {
     Compare(CompareArguments),
     /// Search for the normal load with the lowest percentile, on the same patterns at every load.
     Optimum(OptimumArguments),
+    /// Measure what accuracy costs: a sample of the study's rows over a ladder of settings.
+    ///
+    /// Errors are against the best settings of the ladder. Writes `tradeoff.parquet`,
+    /// `tradeoff_rows.parquet` and `tradeoff_times.parquet`.
+    Tradeoff(TradeoffArguments),
     /// Mean and percentiles from few solves: a cheap surrogate of every pattern says which to solve.
     Estimate(EstimateArguments),
     /// Show the statistics of a results folder again, from its tables.

@@ -59,6 +59,12 @@ pub struct FidelityArguments {
 impl FidelityArguments {
     /// The study with these harmonics and samples.
     pub(super) fn applied_to(&self, mut study: Study) -> Result<Study, Failure> {
+        if study.accuracy.is_some() && (self.harmonics.is_some() || self.samples.is_some()) {
+            return Err(Failure::usage(
+                "--harmonics and --samples are chosen by [accuracy] of the study; accepted: one of both"
+                    .to_owned(),
+            ));
+        }
         let mut solver = study.solver.clone();
         if let Some(HarmonicsArgument(set)) = &self.harmonics {
             solver.harmonics = Harmonics::Set(set.clone());

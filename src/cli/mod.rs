@@ -24,6 +24,7 @@ mod scheduler;
 mod slurm;
 mod stats;
 mod status;
+mod tradeoff;
 mod verify;
 
 pub use arguments::{Arguments, Command};

@@ -8,7 +8,9 @@ use super::progress::RunProgress;
 use super::run_command::Failure;
 use super::scheduler::{ShardArgument, threads};
 use super::{ExitStatus, interrupt, output};
-use crate::study::{PipelineError, ReducedEngineSource, RunRequest, Study, run, run_shard};
+use crate::study::{
+    AccuracyOptions, PipelineError, ReducedEngineSource, RunRequest, Study, run, run_shard,
+};
 
 /// Arguments of the command.
 #[derive(Debug, Args)]
@@ -27,13 +29,17 @@ pub struct RunArguments {
     /// Kubernetes array.
     #[arg(long, value_name = "k/n|auto", num_args = 0..=1, default_missing_value = "auto")]
     pub shard: Option<ShardArgument>,
+    /// Accepted relative error of the peak amplitude, like 1% or 0.01: the program chooses basis,
+    /// harmonics and tolerances, as with `[accuracy]` in the study.
+    #[arg(long, value_name = "E", value_parser = accuracy)]
+    pub accuracy: Option<AccuracyOptions>,
     /// Print the summary as JSON.
     #[arg(long)]
     pub json: bool,
 }
 
 pub(super) fn command(arguments: RunArguments) -> Result<ExitStatus, Failure> {
-    let study = Study::read(&arguments.study)?;
+    let study = Study::read_with(&arguments.study, arguments.accuracy)?;
     let shard = arguments.shard.map(ShardArgument::shard).transpose()?;
     let out = arguments.out;
     let results = out.unwrap_or_else(|| Path::new("results").join(&study.name));
@@ -81,4 +87,16 @@ pub(super) fn command(arguments: RunArguments) -> Result<ExitStatus, Failure> {
     }
     output::result(arguments.json, &outcome.summary);
     Ok(super::stats::status_of(&outcome.summary))
+}
+
+/// `1%` or `0.01`.
+fn accuracy(text: &str) -> Result<AccuracyOptions, String> {
+    let number: Option<f64> = match text.trim().strip_suffix('%') {
+        Some(percent) => percent.trim().parse().ok().map(|share: f64| share / 100.0),
+        None => text.trim().parse().ok(),
+    };
+    number
+        .filter(|&error| AccuracyOptions::accepts(error))
+        .map(|amplitude_error| AccuracyOptions { amplitude_error })
+        .ok_or_else(|| "accepted: a relative error from 0.1% to 20%, like 1% or 0.01".to_owned())
 }

@@ -7,7 +7,7 @@ use clap::Parser;
 
 use super::{
     Arguments, Command, ExitStatus, check, compare, estimate, explain, import, init, merge, model,
-    optimum, output, plan, replay, report, response, run, slurm, stats, status, verify,
+    optimum, output, plan, replay, report, response, run, slurm, stats, status, tradeoff, verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).
@@ -89,6 +89,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         }),
         Command::Compare(arguments) => compare::command(&arguments),
         Command::Optimum(arguments) => optimum::command(&arguments),
+        Command::Tradeoff(arguments) => tradeoff::command(&arguments),
         Command::Estimate(arguments) => estimate::command(&arguments),
         Command::Stats(arguments) => stats::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
@@ -97,13 +98,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Schema => Ok(explain::schema()),
         Command::Completions(arguments) => Ok(explain::completions(&arguments)),
     };
-    match ended {
-        Ok(status) => status,
-        Err(failure) => {
-            output::message(&format!("error: {}", failure.message));
-            failure.status
-        }
-    }
+    ended.unwrap_or_else(|failure| {
+        output::message(&format!("error: {}", failure.message));
+        failure.status
+    })
 }
 
 /// A command that failed: what to say and how to exit.

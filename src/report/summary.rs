@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Warning;
+use super::{NumericalError, Warning};
 use crate::model::reduction::ContactDisplacementErrors;
 use crate::population::statistics::{
     Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics, StopOutcome,
@@ -28,6 +28,8 @@ pub struct SummaryContext {
     pub harmonics: Harmonics,
     /// Reduction basis in use.
     pub basis: BasisSummary,
+    /// Numerical error by which the settings were chosen, if they were.
+    pub numerical_error: Option<NumericalError>,
     /// Version of the program that made the results.
     pub version: String,
 }
@@ -159,6 +161,8 @@ pub struct StudySummary {
     pub stop: Option<StopOutcome>,
     /// Reduction basis in use.
     pub basis: BasisSummary,
+    /// Numerical error by which the settings were chosen; null: the study says the settings.
+    pub numerical_error: Option<NumericalError>,
     /// Rows by status over all scenarios.
     pub rows: Accounting,
     /// The scenarios, in order.
@@ -186,6 +190,7 @@ impl StudySummary {
             patterns: context.patterns,
             stop: context.stop.clone(),
             basis: context.basis.clone(),
+            numerical_error: context.numerical_error,
             rows,
             best: best_loads(&scenarios),
             warnings: warnings(context, records, &rows),
@@ -300,6 +305,25 @@ fn warnings(
         });
     }
     warnings.extend(context.basis.warnings());
+    if let Some(error) = context.numerical_error {
+        let percent = context
+            .stop
+            .as_ref()
+            .map_or(95.0, |stop| stop.wanted.percentile);
+        let amplitudes = records
+            .iter()
+            .map(|record| &record.statistics.peak_amplitude_m);
+        let found: Vec<Percentile> = amplitudes
+            .filter_map(|sample| {
+                sample
+                    .percentiles
+                    .iter()
+                    .find(|found| found.percent.total_cmp(&percent).is_eq())
+            })
+            .copied()
+            .collect();
+        warnings.extend(error.warnings(&found));
+    }
     if rows.failed() > 0 {
         warnings.push(Warning::Failures {
             failed: rows.failed(),

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::text_table::TextTable;
-use super::{BestLoad, ScenarioSummary, StudySummary};
+use super::{BestLoad, NumericalError, ScenarioSummary, StudySummary};
 use crate::population::statistics::{PointStatus, SampleStatistics, ScenarioLook, StopOutcome};
 
 /// A unit of length in which amplitudes are shown.
@@ -52,6 +52,9 @@ impl fmt::Display for StudySummary {
                 100.0 * error
             )?;
         }
+        if let Some(error) = &self.numerical_error {
+            writeln!(f, "{}", numerical_line(error))?;
+        }
         if let Some(stop) = &self.stop {
             writeln!(f, "{}", stop_line(stop))?;
         }
@@ -83,6 +86,16 @@ impl fmt::Display for StudySummary {
              Amplification factor: peak over the tuned peak of the same normal load."
         )
     }
+}
+
+fn numerical_line(error: &NumericalError) -> String {
+    let bound = error.p95_upper.map_or("no bound".to_owned(), |bound| {
+        format!("95 % of the amplitudes within {:.2} %", 100.0 * bound)
+    });
+    let accepted = 100.0 * error.accepted;
+    format!(
+        "settings chosen by an accepted numerical error of {accepted} %: {bound}, measured on a sample"
+    )
 }
 
 /// What the stopping rule came to, in a line.

@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::NumericalFinding;
+
 /// A warning about the results of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "warning", rename_all = "snake_case")]
@@ -54,6 +56,8 @@ pub enum Warning {
         /// Error asked for.
         wanted: f64,
     },
+    /// The numerical error by which the settings were chosen.
+    NumericalError(NumericalFinding),
     /// Rows without result.
     Failures {
         /// Rows that failed.
@@ -143,6 +147,7 @@ impl fmt::Display for Warning {
                  accept it by a larger reduction.error",
                 100.0 * error
             ),
+            Self::NumericalError(finding) => finding.fmt(f),
             Self::Failures { failed, planned } => write!(
                 f,
                 "{failed} of {planned} rows have no result; the bounds take them as infinitely low \

@@ -8,7 +8,10 @@
 use std::path::{Path, PathBuf};
 
 use super::compare::{best_loads, same_patterns};
-use super::{EngineSource, PipelineError, Progress, ResultColumns, RunRequest, Study, run};
+use super::{
+    AccuracyChoice, EngineSource, PipelineError, Progress, ResultColumns, RunRequest, Study,
+    load_sector_model, run,
+};
 use crate::population::statistics::CONFIDENCE;
 use crate::population::statistics::{Quantity, percentile, smallest_sample};
 use crate::report::{ComparedScenario, OptimumReport};
@@ -50,8 +53,12 @@ pub fn find_optimum(
     progress: &dyn Progress,
 ) -> Result<OptimumReport, PipelineError> {
     refuse(&request)?;
+    let settled = settled(&request)?;
     let mut search = Search {
-        request,
+        request: OptimumRequest {
+            study: &settled,
+            ..request
+        },
         source,
         progress,
         loads: Vec::new(),
@@ -78,6 +85,23 @@ fn refuse(request: &OptimumRequest<'_>) -> Result<(), PipelineError> {
         return Ok(());
     };
     Err(PipelineError::NoOptimum { reason })
+}
+
+/// The study of a search: settings by `[accuracy]` are chosen once, at both ends and between them, so
+/// that every load has the same.
+fn settled(request: &OptimumRequest<'_>) -> Result<Study, PipelineError> {
+    let mut study = request.study.clone();
+    let Some(accuracy) = study.accuracy else {
+        return Ok(study);
+    };
+    let [low, high] = request.between_n;
+    study.contacts = [low, (low * high).sqrt(), high]
+        .map(|normal_load_n| ContactCondition::Full { normal_load_n })
+        .to_vec();
+    let sector = load_sector_model(&study)?;
+    let cache = request.results.join("model");
+    let choice = AccuracyChoice::of(&study, accuracy, &sector, Some(&cache))?;
+    Ok(choice.applied_to(request.study))
 }
 
 /// A load that was solved.

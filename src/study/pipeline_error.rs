@@ -140,6 +140,12 @@ pub enum PipelineError {
         /// Why, and what is accepted.
         reason: String,
     },
+    /// There is no accuracy to trade.
+    #[error("{reason}")]
+    NoTradeoff {
+        /// Why, and what is accepted.
+        reason: String,
+    },
     /// A results folder has no such row.
     #[error(
         "there is no row of scenario {scenario} and pattern {pattern}; accepted: a scenario below {scenarios}, and a pattern of the study"

@@ -69,6 +69,7 @@ impl RowWork<'_> {
                     harmonics: String::new(),
                     nonlinear_solves: 0,
                     newton_iterations: 0,
+                    factorisations: 0,
                     retries: 0,
                     residual: None,
                     slipping_fraction: None,

@@ -327,7 +327,7 @@ impl Drop for Scratch {
 }
 
 /// Time that this thread has had on a processor; none where the system does not say.
-fn thread_cpu_s() -> Option<f64> {
+pub(super) fn thread_cpu_s() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     let nanoseconds: u64 = text.split_whitespace().next()?.parse().ok()?;
     Some(1e-9 * nanoseconds as f64)

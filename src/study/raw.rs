@@ -28,6 +28,7 @@ pub(super) struct RawStudy {
     pub sweep: Option<RawSweep>,
     #[serde(default)]
     pub solver: RawSolver,
+    pub accuracy: Option<RawAccuracy>,
     pub stop: Option<RawStop>,
     #[serde(default)]
     pub output: RawOutput,
@@ -177,6 +178,12 @@ pub(super) struct RawSolver {
     pub amplitude: Option<AmplitudeMeasure>,
     pub time_samples: Option<usize>,
     pub frequency_band_hz: Option<RawBand>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawAccuracy {
+    pub amplitude_error: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]

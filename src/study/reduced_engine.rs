@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use super::accurate_engine::accurate_engine;
 use super::basis_choice::{
     BasisEvidence, Judged, choose_basis, judged_conditions, judged_variations,
 };
@@ -79,6 +80,9 @@ impl EngineSource for ReducedEngineSource {
         model: &SectorModel,
         cache: Option<&Path>,
     ) -> Result<Box<dyn Engine>, PipelineError> {
+        if let Some(accuracy) = study.accuracy {
+            return accurate_engine(study, accuracy, model, cache);
+        }
         let settings = row_settings(study);
         let stiffness = contact_stiffness(study.contact.as_ref());
         let sensitivity = sensitivity_vectors(study);

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::Mistuning;
 use super::source_map::SourceMap;
+use super::validate_accuracy::KEYS_OF_ACCURACY;
+use super::{AccuracyOptions, Mistuning};
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::monte_carlo::Scenario;
@@ -76,6 +77,8 @@ pub struct Study {
     pub standard_deviations: Vec<Option<f64>>,
     /// Settings of the solution.
     pub solver: SolverOptions,
+    /// Error by which the program chooses basis, harmonics and tolerances itself.
+    pub accuracy: Option<AccuracyOptions>,
     /// When the study may stop before all patterns are solved.
     pub stop: Option<StopOptions>,
     /// Settings of the output.
@@ -155,6 +158,10 @@ impl Study {
             },
             "output": { "patterns": self.output.patterns, "compression": self.output.compression },
         });
+        if let Some(accuracy) = &self.accuracy {
+            study["accuracy"] = json!(accuracy);
+            without(&mut study, &KEYS_OF_ACCURACY);
+        }
         if let Some(stop) = &self.stop {
             study["stop"] = json!(stop);
         }
@@ -193,6 +200,17 @@ impl Study {
             json!({ "normal_load_n": loads })
         } else {
             json!({ "normal_load_n": loads, "standard_deviation": deviations })
+        }
+    }
+}
+
+/// Takes keys of tables out of a study.
+fn without(study: &mut Value, keys: &[&str]) {
+    for key in keys {
+        if let Some((table, key)) = key.split_once('.')
+            && let Some(fields) = study[table].as_object_mut()
+        {
+            fields.remove(key);
         }
     }
 }

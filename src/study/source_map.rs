@@ -63,6 +63,11 @@ impl SourceMap {
         self.places.insert(path, Place { key, value });
     }
 
+    /// Whether `key` is written.
+    pub(super) fn holds(&self, key: &str) -> bool {
+        self.places.contains_key(key)
+    }
+
     /// Line of `key`, or of the innermost table above it that is there; 1 if there is none.
     pub(super) fn line(&self, key: &str) -> usize {
         let mut path = key;

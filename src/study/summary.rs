@@ -10,7 +10,7 @@ use crate::population::table::{
     Compression, Manifest, RowSchema, RowStore, RunState, ScenarioEntry, ScenarioRecord,
     TableHeader,
 };
-use crate::report::{BasisSummary, StudySummary, SummaryContext};
+use crate::report::{BasisSummary, NumericalError, StudySummary, SummaryContext};
 use crate::response::forced_response::Harmonics;
 
 /// The summary of what is stored of a study that is not finished.
@@ -144,6 +144,7 @@ pub(super) fn context_of(manifest: &Manifest) -> SummaryContext {
         stop: manifest.stop.clone(),
         harmonics: harmonics.unwrap_or(Harmonics::Auto),
         basis: basis_of(manifest),
+        numerical_error: numerical_error_of(manifest),
         version: manifest.version.clone(),
     }
 }
@@ -167,4 +168,14 @@ fn basis_of(manifest: &Manifest) -> BasisSummary {
         craig_bampton_error: truncation.filter(|_| asked["craig_bampton_modes"].is_u64()),
         wanted_error: asked["error"].as_f64().unwrap_or(f64::INFINITY),
     }
+}
+
+/// What the choice of the settings says of the numerical error, where they were chosen by it.
+fn numerical_error_of(manifest: &Manifest) -> Option<NumericalError> {
+    let choice = &manifest.chosen["accuracy"];
+    Some(NumericalError {
+        accepted: choice["accepted_error"].as_f64()?,
+        p95_upper: choice["evidence"]["amplitude"]["p95_upper"].as_f64(),
+        met: choice["met"].as_bool()?,
+    })
 }

@@ -6,6 +6,7 @@ use super::raw::{
     RawDamping, RawExcitation, RawHead, RawLoad, RawModel, RawModelKind, RawStudy, RawSweep,
 };
 use super::source_map::SourceMap;
+use super::validate_accuracy::accuracy;
 use super::validate_contact::contact_variations;
 use super::validate_mistuning::mistuning;
 use super::validate_solver::solver;
@@ -59,6 +60,10 @@ impl Check<'_> {
         self.findings.push(self.map.finding(key, problem));
     }
 
+    pub(super) fn is_written(&self, key: &str) -> bool {
+        self.map.holds(key)
+    }
+
     /// `value` if `holds`, otherwise a finding and `fallback`.
     pub(super) fn within<T: Copy>(
         &mut self,
@@ -107,11 +112,7 @@ impl Study {
     /// # Errors
     /// The file cannot be read, or everything in it that is not accepted.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
-        let text = std::fs::read_to_string(path).map_err(|source| StudyError::Unreadable {
-            path: path.to_owned(),
-            source,
-        })?;
-        Self::parse(path, &text)
+        Self::read_with(path, None)
     }
 
     /// Checks the text of the study file `path`; files it names are sought beside it.
@@ -201,7 +202,8 @@ fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<S
     let stop = raw
         .stop
         .and_then(|raw| stop(check, &raw, mistuning.patterns));
-    Ok(Some(Study {
+    let accuracy = raw.accuracy.and_then(|raw| accuracy(check, &raw));
+    let study = Study {
         path: path.to_owned(),
         map: SourceMap::default(),
         name,
@@ -218,12 +220,14 @@ fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<S
         contacts,
         standard_deviations: mistuning.standard_deviations,
         solver,
+        accuracy: None,
         stop,
         output: OutputOptions {
             patterns: raw.output.patterns,
             compression: raw.output.compression.unwrap_or_default(),
         },
-    }))
+    };
+    Ok(Some(study.with_accuracy(accuracy)))
 }
 
 fn identity(check: &mut Check, head: &RawHead) -> (String, u64) {

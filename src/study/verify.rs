@@ -107,8 +107,13 @@ fn verify_in(
 
 /// `count` different places of `0..rows`, ascending, all equally likely (Floyd 1987).
 pub(super) fn draw(rows: usize, count: usize, seed: u64) -> Vec<usize> {
+    draw_in(SAMPLE_STREAM, rows, count, seed)
+}
+
+/// The same from a stream of its own.
+pub(super) fn draw_in(stream: u64, rows: usize, count: usize, seed: u64) -> Vec<usize> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    generator.set_stream(SAMPLE_STREAM);
+    generator.set_stream(stream);
     let mut places = BTreeSet::new();
     for last in rows - count.min(rows)..rows {
         let place = generator.random_range(0..=last as u64) as usize;

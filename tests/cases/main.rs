@@ -3,6 +3,7 @@
 // Measured figures are printed for `--nocapture`.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod accuracy;
 mod full_model;
 mod lumped24;
 mod one_dof;

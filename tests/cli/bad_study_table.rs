@@ -491,4 +491,28 @@ pub const CASES: &[Case] = &[
         "[stop]\npercentil = 50\n[mistuning]",
         &["unknown key stop.percentil", "did you mean percentile?"],
     ),
+    // [accuracy] and the keys that it sets.
+    (
+        "harmonics = [1, 3]",
+        "harmonics = [1, 3]\n[accuracy]\namplitude_error = 0.01",
+        &[
+            "study.toml:42:",
+            "solver.harmonics",
+            "accuracy.amplitude_error chooses it",
+        ],
+    ),
+    (
+        "[solver]\nharmonics = [1, 3]",
+        "[accuracy]\namplitude_error = 0.5",
+        &[
+            "study.toml:42:",
+            "accuracy.amplitude_error = 0.5",
+            "a number from 0.001 to 0.2",
+        ],
+    ),
+    (
+        "[solver]\nharmonics = [1, 3]",
+        "[accuracy]\n",
+        &["study.toml:41:", "accuracy.amplitude_error", "missing"],
+    ),
 ];

@@ -12,4 +12,5 @@ mod report;
 mod runs;
 mod statistics;
 mod study_keys;
+mod tradeoff;
 mod verification;

@@ -106,6 +106,7 @@ impl Engine for MockEngine {
                     harmonics: "1".to_owned(),
                     nonlinear_solves: 0,
                     newton_iterations: 7,
+                    factorisations: 2,
                     retries: 0,
                     residual: None,
                     slipping_fraction: None,

@@ -50,6 +50,7 @@ fn row(pattern: u32, scenario: usize) -> ResponseRow {
         harmonics: "0-1-3".to_owned(),
         nonlinear_solves: u64::from(pattern) << 33,
         newton_iterations: 3,
+        factorisations: 2,
         retries: 1,
         residual: good.then_some(1e-300),
         slipping_fraction: None,
@@ -116,7 +117,7 @@ fn columns_are_the_documented_ones_in_order() {
     let documented = "scenario, contact, engine_order, normal_load_n, standard_deviation, pattern, \
                       status, peak_amplitude_m, peak_frequency_hz, peak_blade, amplification_factor, \
                       peak_bracketed, harmonics, nonlinear_solves, newton_iterations, residual, \
-                      slipping_fraction, separated_fraction, shortcut, retries, mean_friction_circumferential_n, \
+                      slipping_fraction, separated_fraction, shortcut, retries, factorisations, mean_friction_circumferential_n, \
                       mean_friction_axial_n, \
                        sampling_error, harmonic_error, stated_error, error_within_tolerance, basis, \
                       friction_coefficient_factor, tangential_stiffness_factor, normal_stiffness_factor, normal_load_factor";

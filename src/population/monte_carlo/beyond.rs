@@ -66,6 +66,7 @@ impl RowSolver {
         solved.then(|| ResponseRow {
             nonlinear_solves: row.nonlinear_solves + again.nonlinear_solves,
             newton_iterations: row.newton_iterations + again.newton_iterations,
+            factorisations: row.factorisations + again.factorisations,
             retries: row.retries + again.retries,
             ..again
         })

@@ -31,6 +31,8 @@ pub struct ResponseRow {
     pub nonlinear_solves: u64,
     /// Newton iterations used.
     pub newton_iterations: u64,
+    /// Jacobians assembled and factored.
+    pub factorisations: u64,
     /// Nonlinear solves that needed more than the first attempt of the retry ladder.
     pub retries: u64,
     /// Residual relative to the excitation at the peak.

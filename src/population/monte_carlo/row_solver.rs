@@ -443,6 +443,7 @@ impl RowSolver {
             ),
             nonlinear_solves: work.nonlinear_solves,
             newton_iterations: work.newton_iterations,
+            factorisations: work.factorisations,
             retries: work.retries,
             residual: good.map(|(_, point)| point.residual),
             slipping_fraction: good.map(|(_, point)| point.shares.slipping),

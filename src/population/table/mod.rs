@@ -22,6 +22,7 @@ mod row_file;
 mod scenarios;
 mod tail_fits;
 mod traced_curve;
+mod tradeoff;
 mod verification;
 mod writer;
 
@@ -45,5 +46,9 @@ pub use row_file::RowFile;
 pub use scenarios::{SCENARIO_COLUMNS, ScenarioRecord, write_scenarios};
 pub use tail_fits::{TAIL_FIT_COLUMNS, TailFitRecord, write_tail_fits};
 pub use traced_curve::{Direction, TRACE_COLUMNS, TracePoint, write_traced_curve};
+pub use tradeoff::{
+    TRADEOFF_COLUMNS, TRADEOFF_ROW_COLUMNS, TRADEOFF_TARGETS, TRADEOFF_TIME_COLUMNS,
+    TradeoffRecord, TradeoffRow, write_tradeoff, write_tradeoff_rows, write_tradeoff_times,
+};
 pub use verification::{VERIFICATION_COLUMNS, VerificationRecord, write_verification};
 pub use writer::{Compression, SCHEMA_VERSION, TableHeader};

@@ -90,6 +90,12 @@ pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
         "Nonlinear solves that needed more than the first attempt of the retry ladder",
     ),
     ColumnSpec::new(
+        "factorisations",
+        Int64,
+        "1",
+        "Jacobians assembled and factored, all attempts",
+    ),
+    ColumnSpec::new(
         "mean_friction_circumferential_n",
         Float64,
         "N",
@@ -282,6 +288,7 @@ fn columns_of(rows: &[ResponseRow], scenarios: &[Scenario]) -> Result<Vec<Values
         floats(&|row| row.separated_fraction),
         names(&|row| row.shortcut.clone()),
         counts(&|row| row.retries),
+        counts(&|row| row.factorisations),
         floats(&|row| row.mean_friction_circumferential_n),
         floats(&|row| row.mean_friction_axial_n),
         floats(&|row| row.sampling_error),
@@ -400,7 +407,7 @@ impl ResponseReader {
         let bracketed = slice.boolean("peak_bracketed")?;
         let mut harmonics = slice.string("harmonics")?;
         let (solves, iterations) = (counts("nonlinear_solves")?, counts("newton_iterations")?);
-        let retries = counts("retries")?;
+        let (retries, factorisations) = (counts("retries")?, counts("factorisations")?);
         let residuals = slice.float64("residual")?;
         let slipping = slice.float64("slipping_fraction")?;
         let separated = slice.float64("separated_fraction")?;
@@ -434,6 +441,7 @@ impl ResponseReader {
                     harmonics: harmonics[i].take().ok_or_else(|| gap(i, "harmonics"))?,
                     nonlinear_solves: solves[i],
                     newton_iterations: iterations[i],
+                    factorisations: factorisations[i],
                     retries: retries[i],
                     residual: residuals[i],
                     slipping_fraction: slipping[i],

@@ -330,6 +330,18 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "where peaks are sought, Hz",
     ),
     entry(
+        "accuracy",
+        Table,
+        "",
+        "basis, harmonics and tolerances by a measured error",
+    ),
+    entry(
+        "accuracy.amplitude_error",
+        Number(Range::from_to(0.001, 0.2)),
+        REQUIRED,
+        "relative error of the peak amplitude that 95 % of the rows are to keep",
+    ),
+    entry(
         "stop",
         Table,
         "",

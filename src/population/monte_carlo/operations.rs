@@ -1,0 +1,164 @@
+//! Floating-point operations of a row, estimated from its work counts: the same on every machine.
+
+use serde::{Deserialize, Serialize};
+
+use super::{ResponseRow, RowSolver, Scenario};
+use crate::response::forced_response::{ContactCondition, Harmonics};
+
+/// Operations per unknown cubed of the eigenvalues and vectors of a symmetric matrix.
+const EIGEN: f64 = 9.0;
+/// Eigenproblems of a pattern: the structure and its two linear limits.
+const EIGENPROBLEMS: f64 = 3.0;
+/// Operations of the contact law for one pair at one sample.
+const LAW: f64 = 40.0;
+/// Evaluations that the check of the harmonics takes.
+const CHECK_ITERATIONS: f64 = 20.0;
+/// Real coefficients of the check: harmonics up to 15.
+const CHECK_COEFFICIENTS: f64 = 31.0;
+/// Samples of the check over those of the solution.
+const CHECK_SAMPLES: f64 = 4.0;
+/// Samples per period of the highest harmonic that an automatic set has at least.
+const SAMPLES_OF_HIGHEST: usize = 16;
+
+/// Work counts of a row.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct RowWork {
+    /// Points solved nonlinearly.
+    pub nonlinear_solves: f64,
+    /// Newton iterations, all attempts.
+    pub newton_iterations: f64,
+    /// Jacobians assembled and factored.
+    pub factorisations: f64,
+}
+
+impl RowWork {
+    /// Of a row.
+    #[must_use]
+    pub fn of(row: &ResponseRow) -> Self {
+        Self {
+            nonlinear_solves: row.nonlinear_solves as f64,
+            newton_iterations: row.newton_iterations as f64,
+            factorisations: row.factorisations as f64,
+        }
+    }
+}
+
+/// Size of the harmonic balance equation of a wheel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SystemSize {
+    /// Coordinates of the wheel.
+    pub coordinates: usize,
+    /// Contact rows of the wheel.
+    pub contact_rows: usize,
+    /// Contact pairs of the wheel.
+    pub pairs: usize,
+    /// Real coefficients of a coordinate: 2 for a harmonic, 1 for harmonic 0.
+    pub coefficients: usize,
+    /// Samples per period.
+    pub samples: usize,
+}
+
+impl SystemSize {
+    /// Real coefficients of a harmonic set.
+    #[must_use]
+    pub fn coefficients_of(harmonics: &[u32]) -> usize {
+        harmonics.iter().map(|&k| if k == 0 { 1 } else { 2 }).sum()
+    }
+
+    /// Real unknowns.
+    #[must_use]
+    pub fn unknowns(&self) -> usize {
+        self.coordinates * self.coefficients
+    }
+
+    /// Assembly of `C^T J C` and the LU factors of the Jacobian: `2 c n^2 + 2/3 n^3`.
+    #[must_use]
+    pub fn per_factorisation(&self) -> f64 {
+        let n = self.unknowns() as f64;
+        2.0 * self.contact_rows as f64 * n * n + 2.0 / 3.0 * n.powi(3)
+    }
+
+    /// Triangular solves, contact displacement and force in modal coordinates, and the alternating
+    /// frequency/time method.
+    #[must_use]
+    pub fn per_iteration(&self) -> f64 {
+        let n = self.unknowns() as f64;
+        2.0 * n * n + self.evaluation(self.coefficients as f64, self.samples as f64)
+    }
+
+    /// One residual with `coefficients` and `samples`.
+    fn evaluation(&self, coefficients: f64, samples: f64) -> f64 {
+        let rows = self.contact_rows as f64;
+        let modal = 4.0 * rows * self.coordinates as f64 * coefficients;
+        let transforms = 4.0 * rows * coefficients * samples;
+        modal + transforms + LAW * self.pairs as f64 * samples
+    }
+
+    /// The check of samples and harmonics that every row has: one finely sampled Jacobian, then
+    /// evaluations with all harmonics up to 15.
+    #[must_use]
+    pub fn check(&self) -> f64 {
+        let samples = CHECK_SAMPLES * self.samples as f64;
+        self.per_factorisation() + CHECK_ITERATIONS * self.evaluation(CHECK_COEFFICIENTS, samples)
+    }
+
+    /// Operations of a row.
+    #[must_use]
+    pub fn operations(&self, work: &RowWork) -> f64 {
+        let eigen = EIGENPROBLEMS * EIGEN * (self.coordinates as f64).powi(3);
+        work.factorisations * self.per_factorisation()
+            + work.newton_iterations * self.per_iteration()
+            + self.check()
+            + eigen
+    }
+}
+
+impl RowSolver {
+    /// Size of the equation of the rows of a scenario.
+    #[must_use]
+    pub fn system_size(&self, scenario: &Scenario) -> SystemSize {
+        let harmonics = self
+            .points(scenario.engine_order, scenario.contact)
+            .harmonics();
+        let model = self.basis().model();
+        let linear = !matches!(scenario.contact, ContactCondition::Full { .. });
+        let options = &self.settings.solver;
+        let highest = harmonics.last().map_or(1, |&k| k as usize);
+        let samples = options.samples_per_period;
+        SystemSize {
+            coordinates: self.basis().size(),
+            contact_rows: self.basis().contact().rows(),
+            pairs: model.contact.weights.len() * model.sectors,
+            coefficients: SystemSize::coefficients_of(harmonics),
+            samples: match options.harmonics {
+                _ if linear => 1,
+                Harmonics::Auto => samples.max(SAMPLES_OF_HIGHEST * highest),
+                Harmonics::Set(_) => samples,
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{RowWork, SystemSize};
+
+    #[test]
+    fn the_cube_of_the_unknowns_leads() {
+        let size = |coordinates| SystemSize {
+            coordinates,
+            contact_rows: 288,
+            pairs: 96,
+            coefficients: SystemSize::coefficients_of(&[0, 1, 3]),
+            samples: 128,
+        };
+        assert_eq!(size(168).unknowns(), 840);
+        let work = RowWork {
+            nonlinear_solves: 20.0,
+            newton_iterations: 200.0,
+            factorisations: 15.0,
+        };
+        let ratio = size(4000).operations(&work) / size(2000).operations(&work);
+        assert!((7.0..8.0).contains(&ratio), "{ratio}");
+    }
+}

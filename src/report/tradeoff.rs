@@ -1,0 +1,295 @@
+//! What accuracy costs, as a table.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::text_table::TextTable;
+use crate::population::statistics::ErrorBound;
+use crate::population::table::TradeoffRecord;
+
+/// A measured trade-off between accuracy and cost.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TradeoffReport {
+    /// Name of the study.
+    pub name: String,
+    /// Its digest.
+    pub study_digest: String,
+    /// Version of the program.
+    pub version: String,
+    /// Seed of the study.
+    pub seed: u64,
+    /// Ids of the patterns of the sample.
+    pub patterns: Vec<u32>,
+    /// Scenarios of the sample.
+    pub scenarios: Vec<usize>,
+    /// Normal load of each, N.
+    pub normal_loads_n: Vec<f64>,
+    /// What all errors refer to.
+    pub reference: TradeoffReference,
+    /// The cheapest setting for each accepted error.
+    pub choices: Vec<TradeoffChoice>,
+    /// Estimated floating-point operations of everything measured here.
+    pub operations: f64,
+    /// The settings.
+    pub settings: Vec<TradeoffRecord>,
+}
+
+/// What the errors refer to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TradeoffReference {
+    /// `joint`: all knobs at their best at once; `by_knobs`: one at a time, ratios multiplied.
+    pub kind: &'static str,
+    /// Rows of the sample.
+    pub rows: u64,
+    /// Rows of these that the reference has no value for; they judge nothing.
+    pub without_value: u64,
+    /// Tolerance of its harmonics.
+    pub harmonic_tolerance: f64,
+    /// Where both kinds are there: largest relative difference of the amplitude between them.
+    pub product_error: Option<f64>,
+    /// Fixed-interface modes, the same at every setting.
+    pub craig_bampton_modes: usize,
+    /// What more of them change the tuned peak by.
+    pub craig_bampton_error: Option<f64>,
+    /// The reference itself against the full-contact model, where asked for.
+    pub full_contact: Vec<FullContactCheck>,
+}
+
+/// One row of the reference on the full-contact model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FullContactCheck {
+    /// Scenario.
+    pub scenario: usize,
+    /// Pattern.
+    pub pattern: u32,
+    /// Harmonic set of the full-contact model.
+    pub harmonics: String,
+    /// How its solution ended.
+    pub status: &'static str,
+    /// Relative error of the reference's amplitude.
+    pub amplitude_error: Option<f64>,
+    /// Of its frequency.
+    pub frequency_error: Option<f64>,
+    /// Of its amplification factor.
+    pub amplification_factor_error: Option<f64>,
+}
+
+/// The cheapest setting for an accepted error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TradeoffChoice {
+    /// Accepted upper bound of the 95th percentile of the amplitude error.
+    pub accepted_error: f64,
+    /// The setting; none where no setting has it.
+    pub setting: Option<u32>,
+}
+
+impl fmt::Display for TradeoffReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let reference = &self.reference;
+        let loads: Vec<String> = self.normal_loads_n.iter().map(f64::to_string).collect();
+        writeln!(
+            f,
+            "study {}: {} patterns x {} scenarios (loads {} N); reference {}, harmonics within {}, \
+             {} of {} rows without reference",
+            self.name,
+            self.patterns.len(),
+            self.scenarios.len(),
+            loads.join(", "),
+            reference.kind,
+            percent(reference.harmonic_tolerance),
+            reference.without_value,
+            reference.rows
+        )?;
+        if let Some(error) = reference.craig_bampton_error.filter(|&error| error > 0.0) {
+            writeln!(
+                f,
+                "{} fixed-interface modes at every setting; more change the tuned peak by {}",
+                reference.craig_bampton_modes,
+                percent(error)
+            )?;
+        }
+        if let Some(error) = reference.product_error {
+            let error = percent(error);
+            writeln!(
+                f,
+                "ratios of single knobs multiplied are within {error} of it"
+            )?;
+        }
+        for check in &reference.full_contact {
+            writeln!(
+                f,
+                "full-contact model, scenario {} pattern {} harmonics {}: {}; amplitude {}, \
+                 frequency {}, amplification factor {}",
+                check.scenario,
+                check.pattern,
+                check.harmonics,
+                check.status,
+                signed(check.amplitude_error),
+                signed(check.frequency_error),
+                signed(check.amplification_factor_error)
+            )?;
+        }
+        let cheapest = self.settings.iter().map(|own| own.operations);
+        let cheapest = cheapest.fold(f64::INFINITY, f64::min);
+        let mut front: Vec<&TradeoffRecord> = self.settings.iter().collect();
+        front.retain(|own| own.on_front || own.chosen.contains(&true));
+        front.sort_by(|a, b| a.operations.total_cmp(&b.operations));
+        writeln!(
+            f,
+            "\nerror of the peak amplitude against cost, the best of each:\n"
+        )?;
+        self.table(f, &front, cheapest)?;
+        let mut knobs: Vec<&TradeoffRecord> = self.settings.iter().collect();
+        knobs.retain(|own| own.knob.is_some());
+        writeln!(
+            f,
+            "\nsingle knobs, the others as in the base; own = change by this knob alone:\n"
+        )?;
+        self.knob_table(f, &knobs)?;
+        writeln!(
+            f,
+            "\nP95 <=: upper bound of the 95th percentile over all rows, 95 % confidence; cost: estimated \
+             floating-point operations of a row; CPU: this machine, now."
+        )?;
+        for choice in &self.choices {
+            let accepted = percent(choice.accepted_error);
+            match choice.setting {
+                Some(setting) => writeln!(f, "cheapest within {accepted}: setting {setting}")?,
+                None => writeln!(f, "no setting is within {accepted}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl TradeoffReport {
+    fn table(
+        &self,
+        f: &mut fmt::Formatter<'_>,
+        settings: &[&TradeoffRecord],
+        cheapest: f64,
+    ) -> fmt::Result {
+        let mut table = TextTable::new(&[
+            "setting",
+            "basis",
+            "harmonics",
+            "samples",
+            "residual",
+            "peak",
+            "law",
+            "median",
+            "P95",
+            "P95 <=",
+            "worst",
+            "factor P95",
+            "Gflop",
+            "cost",
+            "CPU ms",
+            "chosen",
+        ]);
+        for own in settings {
+            let error = |of: fn(&ErrorBound) -> f64| shown(own.amplitude.as_ref().map(of));
+            let factor = own.amplification_factor.map(|errors| errors.p95);
+            let chosen: Vec<String> = self
+                .choices
+                .iter()
+                .filter(|choice| choice.setting == Some(own.setting))
+                .map(|choice| percent(choice.accepted_error))
+                .collect();
+            table.row(vec![
+                own.setting.to_string(),
+                own.basis.clone(),
+                own.harmonics.clone(),
+                own.samples_per_period.to_string(),
+                format!("{:e}", own.residual_tolerance),
+                format!("{:e}", own.peak_tolerance),
+                own.contact_law.to_owned(),
+                error(|errors| errors.median),
+                error(|errors| errors.p95),
+                error(|errors| errors.p95_upper),
+                error(|errors| errors.worst),
+                shown(factor),
+                format!("{:.3}", 1e-9 * own.operations),
+                format!("{:.1}", own.operations / cheapest),
+                format!("{:.0}", 1e3 * own.cpu_s),
+                chosen.join(", "),
+            ]);
+        }
+        write!(f, "{table}")
+    }
+
+    fn knob_table(&self, f: &mut fmt::Formatter<'_>, settings: &[&TradeoffRecord]) -> fmt::Result {
+        let base = self.settings.iter().find(|own| own.role == "base");
+        let base = base.map_or(f64::NAN, |base| base.operations);
+        let mut table = TextTable::new(&[
+            "setting",
+            "knob",
+            "level",
+            "own median",
+            "own P95",
+            "own worst",
+            "P95",
+            "failed",
+            "cost of base",
+            "solves",
+            "Newton",
+            "LU",
+            "CPU ms",
+        ]);
+        for own in settings {
+            let single = |of: fn(&ErrorBound) -> f64| shown(own.knob_amplitude.as_ref().map(of));
+            table.row(vec![
+                own.setting.to_string(),
+                own.knob.unwrap_or_default().to_owned(),
+                level(own),
+                single(|errors| errors.median),
+                single(|errors| errors.p95),
+                single(|errors| errors.worst),
+                shown(own.amplitude.map(|errors| errors.p95)),
+                own.amplitude.map_or(0, |errors| errors.failed).to_string(),
+                format!("{:.2}", own.operations / base),
+                format!("{:.1}", own.work.nonlinear_solves),
+                format!("{:.0}", own.work.newton_iterations),
+                format!("{:.1}", own.work.factorisations),
+                format!("{:.0}", 1e3 * own.cpu_s),
+            ]);
+        }
+        write!(f, "{table}")
+    }
+}
+
+/// The level of the knob that a setting moves.
+fn level(own: &TradeoffRecord) -> String {
+    match own.knob {
+        Some("basis") => own.basis.clone(),
+        Some("harmonics") => own.harmonics.clone(),
+        Some("samples_per_period") => own.samples_per_period.to_string(),
+        Some("residual_tolerance") => format!("{:e}", own.residual_tolerance),
+        Some("peak_tolerance") => format!("{:e}", own.peak_tolerance),
+        Some("contact_law") => own.contact_law.to_owned(),
+        Some("projection") => own.projection.to_owned(),
+        _ => String::new(),
+    }
+}
+
+fn percent(share: f64) -> String {
+    let digits = format!("{:.3}", 100.0 * share);
+    let digits = digits.trim_end_matches('0').trim_end_matches('.');
+    format!("{digits} %")
+}
+
+fn shown(share: Option<f64>) -> String {
+    match share {
+        None => "-".to_owned(),
+        Some(share) if share.is_finite() => format!("{:.3} %", 100.0 * share),
+        Some(_) => "inf".to_owned(),
+    }
+}
+
+fn signed(share: Option<f64>) -> String {
+    share.map_or_else(
+        || "-".to_owned(),
+        |share| format!("{:+.3} %", 100.0 * share),
+    )
+}

@@ -1,0 +1,37 @@
+//! `[accuracy]`: how much numerical error a study accepts.
+
+use std::fmt::Write;
+
+use serde::{Deserialize, Serialize};
+
+/// What a user says of the accuracy instead of the settings that make it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AccuracyOptions {
+    /// Accepted relative error of the peak amplitude of 95 % of the rows.
+    pub amplitude_error: f64,
+}
+
+impl AccuracyOptions {
+    /// Errors that can be asked for, in words.
+    pub const ACCEPTED: &str = "a number from 0.001 to 0.2, relative error of the peak amplitude";
+
+    /// Whether an error can be asked for.
+    #[must_use]
+    pub fn accepts(amplitude_error: f64) -> bool {
+        (1e-3..=0.2).contains(&amplitude_error)
+    }
+
+    /// The text of a study file with these at its end.
+    #[must_use]
+    pub(super) fn appended_to(self, text: &str) -> String {
+        let mut text = text.to_owned();
+        // Writing to a string cannot fail.
+        let _ = write!(
+            text,
+            "\n[accuracy]\namplitude_error = {:e}\n",
+            self.amplitude_error
+        );
+        text
+    }
+}

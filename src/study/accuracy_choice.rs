@@ -1,0 +1,371 @@
+//! The choice of settings by an accepted error: the cheapest of the ladder, with the evidence.
+//!
+//! A few patterns of the study are solved at reference settings. Single knobs are moved on fewer of them,
+//! which proposes combinations, the cheapest first by estimated operations. These are measured pattern by
+//! pattern and given up at the first row beyond the accepted error, which no bound can be below, so that
+//! bad settings cost little. Taken is the cheapest whose upper bound of the 95th percentile of the
+//! amplitude error is accepted.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::ladder::{HarmonicLevel, Knob, LadderSetting, LadderSpace};
+use super::ladder_bench::{LadderBench, most_scenarios};
+use super::ladder_measure::{Compared, Measured, error_bound};
+use super::ladder_reference::{LadderEnds, LadderReference};
+use super::ladder_search::{LadderSearch, Proposal};
+use super::tradeoff::sample_of_patterns;
+use super::{AccuracyOptions, PipelineError, Progress, Study, StudyDigest, pattern_source};
+use crate::model::sector::SectorModel;
+use crate::model::{read_cached, reduction_digest, write_cached};
+use crate::population::statistics::ErrorBound;
+use crate::response::friction::ContactLaw;
+use crate::response::mistuning::PatternSource;
+
+/// Rows that the sample has at least, and fewest patterns of it.
+const ROWS: usize = 18;
+const FEWEST_PATTERNS: usize = 6;
+/// Patterns of these on which single knobs are moved.
+const PROBED: usize = 2;
+/// Accepted error over what the harmonics of the reference may leave out.
+const FINER_REFERENCE: f64 = 5.0;
+/// Least tolerance of these harmonics.
+const FINEST_REFERENCE: f64 = 1e-3;
+/// Combinations measured at most.
+const MOST_MEASURED: usize = 8;
+/// Share of the predicted error of a combination that failed, above which others are not measured.
+const BETTER: f64 = 0.9;
+/// Tolerances that are tried instead of those of the base where the accepted error is at least so large:
+/// samples, residual, peak.
+const LOOSE: [(f64, (usize, f64, f64)); 2] = [(0.01, (64, 1e-4, 3e-3)), (0.003, (64, 1e-6, 1e-3))];
+
+/// The settings chosen for an accepted error.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AccuracyChoice {
+    /// Error accepted.
+    pub accepted: f64,
+    /// The settings.
+    pub setting: LadderSetting,
+    /// Fixed-interface modes.
+    pub craig_bampton_modes: usize,
+    /// Whether the upper bound of the 95th percentile of the amplitude error is accepted.
+    pub met: bool,
+    /// Errors on the sample; none where nothing was to be measured.
+    pub evidence: Option<AccuracyEvidence>,
+}
+
+/// What a choice was made by.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AccuracyEvidence {
+    /// Ids of the patterns of the sample.
+    pub patterns: Vec<u32>,
+    /// Normal loads of its scenarios, N.
+    pub normal_loads_n: Vec<f64>,
+    /// Tolerance of the harmonics of the reference.
+    pub reference_tolerance: f64,
+    /// `joint` or `by_knobs`.
+    pub reference: String,
+    /// Errors of the peak amplitude.
+    pub amplitude: ErrorBound,
+    /// Errors of its frequency.
+    pub frequency: Option<ErrorBound>,
+    /// Errors of the amplification factor.
+    pub amplification_factor: Option<ErrorBound>,
+    /// Estimated floating-point operations of a row at the settings chosen.
+    pub operations_per_row: f64,
+    /// Those of the whole choice: reference, single knobs and combinations.
+    pub operations_of_choice: f64,
+    /// Combinations measured, in order.
+    pub tried: Vec<TriedSetting>,
+}
+
+/// A combination that was measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TriedSetting {
+    /// The setting, in words.
+    pub setting: String,
+    /// Rows measured before it was taken or given up.
+    pub rows: u64,
+    /// Largest amplitude error of these.
+    pub worst: f64,
+    /// Estimated floating-point operations of a row.
+    pub operations: f64,
+}
+
+/// Nobody watches: the choice is a part of the reduction.
+struct Unwatched;
+
+impl Progress for Unwatched {}
+
+impl AccuracyChoice {
+    /// The choice for `study`, from the folder `cache` if it was made there before.
+    ///
+    /// # Errors
+    /// The model cannot be reduced, or the cache not be written.
+    pub fn of(
+        study: &Study,
+        accuracy: AccuracyOptions,
+        sector: &SectorModel,
+        cache: Option<&Path>,
+    ) -> Result<Self, PipelineError> {
+        let keys = StudyDigest::of(study)?.hex();
+        // A study with more patterns than the sample has the same sample.
+        let sampled = sampled_patterns(study).min(study.patterns as usize);
+        let digest = reduction_digest(sector, &format!("accuracy {keys} {sampled}"));
+        if let Some(stored) = cache.and_then(|folder| read_cached(folder, &digest)) {
+            return Ok(stored);
+        }
+        let patterns = pattern_source(study, sector)?;
+        let choice = Self::make(study, accuracy, sector, &patterns)?;
+        if let Some(folder) = cache {
+            write_cached(folder, &digest, &choice)?;
+        }
+        Ok(choice)
+    }
+
+    fn make(
+        study: &Study,
+        accuracy: AccuracyOptions,
+        sector: &SectorModel,
+        patterns: &PatternSource,
+    ) -> Result<Self, PipelineError> {
+        let accepted = accuracy.amplitude_error;
+        let ids = sample_of_patterns(study, patterns, sampled_patterns(study));
+        let mut bench = LadderBench::new(study, sector, ids, &Unwatched)?;
+        let tolerance = (accepted / FINER_REFERENCE).max(FINEST_REFERENCE);
+        let ends = LadderEnds::choose(&mut bench, tolerance, accepted)?;
+        let craig_bampton_modes = bench.fixed_interface().modes;
+        if bench.sample().scenarios.is_empty() {
+            // Linear limits know none of these settings but the basis.
+            return Ok(Self {
+                accepted,
+                setting: ends.base,
+                craig_bampton_modes,
+                met: true,
+                evidence: None,
+            });
+        }
+        let reference = LadderReference::solve(&mut bench, &ends, patterns)?;
+        let space = bench.space(ends.best.basis);
+        let sample = bench.sample().clone();
+        let mut search = LadderSearch::new(&mut bench, patterns, &reference, PROBED);
+        search.measure_levels(levels(&space, &ends.base, accepted, tolerance))?;
+        let mut trials = Trials {
+            accepted,
+            tried: Vec::new(),
+            operations: 0.0,
+            taken: None,
+        };
+        trials.among(&mut search, reference.most_operations())?;
+        let Some((measured, amplitude)) = trials.taken else {
+            // No row of the sample has a reference: the best that is affordable.
+            return Ok(Self {
+                accepted,
+                setting: ends.base,
+                craig_bampton_modes,
+                met: false,
+                evidence: None,
+            });
+        };
+        let of_measured = |own: &Measured| own.rows.iter().map(|row| row.operations).sum::<f64>();
+        let of_reference = reference.parts.iter().chain([&reference.base]);
+        let values = measured.values();
+        let bound = |quantity| error_bound(&values, &reference.values, quantity);
+        Ok(Self {
+            accepted,
+            craig_bampton_modes,
+            met: amplitude.p95_upper <= accepted,
+            evidence: Some(AccuracyEvidence {
+                patterns: sample.patterns,
+                normal_loads_n: sample
+                    .scenarios
+                    .iter()
+                    .filter_map(|scenario| scenario.contact.normal_load_n())
+                    .collect(),
+                reference_tolerance: tolerance,
+                reference: reference.kind.name().to_owned(),
+                amplitude,
+                frequency: bound(Compared::Frequency),
+                amplification_factor: bound(Compared::AmplificationFactor),
+                operations_per_row: measured.operations(),
+                operations_of_choice: trials.operations
+                    + of_reference.map(of_measured).sum::<f64>()
+                    + search.levels().iter().map(of_measured).sum::<f64>(),
+                tried: trials.tried,
+            }),
+            setting: measured.setting,
+        })
+    }
+
+    /// The study at the settings chosen.
+    #[must_use]
+    pub fn applied_to(&self, study: &Study) -> Study {
+        let mut own = self.setting.applied_to(study);
+        own.reduction.craig_bampton_modes = Some(self.craig_bampton_modes);
+        own
+    }
+
+    /// The choice for the manifest.
+    #[must_use]
+    pub fn facts(&self) -> Value {
+        let setting: Vec<(&str, Value)> = Knob::ALL
+            .into_iter()
+            .map(|knob| (knob.name(), json!(self.setting.level(knob))))
+            .collect();
+        json!({
+            "accepted_error": self.accepted,
+            "met": self.met,
+            "craig_bampton_modes": self.craig_bampton_modes,
+            "setting": setting.into_iter().collect::<std::collections::BTreeMap<_, _>>(),
+            "evidence": self.evidence,
+        })
+    }
+}
+
+/// Patterns of the sample.
+fn sampled_patterns(study: &Study) -> usize {
+    let scenarios = most_scenarios(study).max(1);
+    ROWS.div_ceil(scenarios).max(FEWEST_PATTERNS)
+}
+
+/// Levels that are worth trying for an accepted error.
+fn levels(
+    space: &LadderSpace,
+    base: &LadderSetting,
+    accepted: f64,
+    finest: f64,
+) -> Vec<(Knob, LadderSetting)> {
+    let mut levels = space.one_at_a_time(base, finest);
+    levels.retain(|(knob, setting)| match knob {
+        Knob::Basis => true,
+        // An automatic set of a tolerance beyond what is accepted is a set of the list.
+        Knob::Harmonics => match &setting.harmonics {
+            HarmonicLevel::Set(_) => true,
+            HarmonicLevel::Automatic(tolerance) => *tolerance <= accepted,
+        },
+        // Its springs are others, and its error is beyond anything that is asked for.
+        Knob::ContactLaw => setting.law != ContactLaw::MacroSlip1d || setting.law == base.law,
+        Knob::SamplesPerPeriod
+        | Knob::ResidualTolerance
+        | Knob::PeakTolerance
+        | Knob::Projection => false,
+    });
+    let loose = LOOSE.into_iter().find(|(error, _)| accepted >= *error);
+    for knob in [
+        Knob::SamplesPerPeriod,
+        Knob::ResidualTolerance,
+        Knob::PeakTolerance,
+    ] {
+        levels.push((knob, base.clone()));
+        if let Some((_, (samples, residual, peak))) = loose {
+            let other = LadderSetting {
+                samples_per_period: samples,
+                residual_tolerance: residual,
+                peak_tolerance: peak,
+                ..base.clone()
+            };
+            let moved = base.with(knob, &other);
+            if moved != *base {
+                levels.push((knob, moved));
+            }
+        }
+    }
+    levels
+}
+
+/// Combinations under trial.
+struct Trials {
+    accepted: f64,
+    tried: Vec<TriedSetting>,
+    /// Operations of all rows measured.
+    operations: f64,
+    /// The best so far with its errors: the cheapest of those accepted, else the most accurate.
+    taken: Option<(Measured, ErrorBound)>,
+}
+
+impl Trials {
+    fn among(
+        &mut self,
+        search: &mut LadderSearch<'_, '_>,
+        most_operations: f64,
+    ) -> Result<(), PipelineError> {
+        let mut proposals = search.proposals();
+        proposals.retain(|own| own.operations <= most_operations);
+        let mut beyond = self.accepted;
+        for proposal in &proposals {
+            let cheapest = self.taken.as_ref().map(|(taken, _)| taken.operations());
+            if self.tried.len() >= MOST_MEASURED
+                || cheapest.is_some_and(|cheapest| proposal.operations >= cheapest)
+            {
+                break;
+            }
+            if proposal.predicted.worst > beyond {
+                continue;
+            }
+            if let Some(reached) = self.reached(search, proposal)? {
+                // As much better as this one was too bad, and a little more.
+                let ratio = BETTER.min(BETTER * self.accepted / reached);
+                beyond = ratio * proposal.predicted.worst;
+            }
+        }
+        if self.taken.is_some() {
+            return Ok(());
+        }
+        // None is accepted: the most accurate one.
+        let best = proposals
+            .iter()
+            .min_by(|a, b| a.predicted.worst.total_cmp(&b.predicted.worst));
+        if let Some(best) = best {
+            let measured = search.measure(&best.setting)?;
+            self.taken = self
+                .note(search, &measured)
+                .map(|errors| (measured, errors));
+        }
+        Ok(())
+    }
+
+    /// Measures a combination: none if it is accepted, and then the one taken if it is the cheapest; else
+    /// the error that it reached.
+    fn reached(
+        &mut self,
+        search: &mut LadderSearch<'_, '_>,
+        proposal: &Proposal,
+    ) -> Result<Option<f64>, PipelineError> {
+        let (measured, whole) = search.measure_within(&proposal.setting, self.accepted)?;
+        let Some(errors) = self.note(search, &measured) else {
+            return Ok(Some(f64::INFINITY));
+        };
+        if !whole {
+            return Ok(Some(errors.worst));
+        }
+        if errors.p95_upper > self.accepted {
+            return Ok(Some(errors.p95_upper));
+        }
+        let own = measured.operations();
+        let cheaper = |(taken, _): &(Measured, ErrorBound)| own < taken.operations();
+        if self.taken.as_ref().is_none_or(cheaper) {
+            self.taken = Some((measured, errors));
+        }
+        Ok(None)
+    }
+
+    /// Records what was measured, and gives its errors.
+    fn note(&mut self, search: &LadderSearch<'_, '_>, measured: &Measured) -> Option<ErrorBound> {
+        let errors = search.error_of(measured);
+        let rows = measured.rows.iter();
+        self.operations += rows.map(|row| row.operations).sum::<f64>();
+        let words: Vec<String> = Knob::ALL
+            .into_iter()
+            .map(|knob| measured.setting.level(knob))
+            .collect();
+        self.tried.push(TriedSetting {
+            setting: words.join(", "),
+            rows: measured.rows.len() as u64,
+            worst: errors.map_or(f64::INFINITY, |errors| errors.worst),
+            operations: measured.operations(),
+        });
+        errors
+    }
+}

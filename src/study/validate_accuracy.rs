@@ -1,0 +1,87 @@
+//! The checks of the table `[accuracy]`, and of the keys that it stands for.
+
+use std::path::Path;
+
+use super::raw::RawAccuracy;
+use super::source_map::SourceMap;
+use super::validate::Check;
+use super::{AccuracyOptions, Finding, Problem, Study, StudyError};
+
+/// Keys that the program sets itself under `[accuracy]`.
+pub(super) const KEYS_OF_ACCURACY: [&str; 11] = [
+    "reduction.basis",
+    "reduction.error",
+    "reduction.stick_modes",
+    "reduction.slide_modes",
+    "reduction.partial_modes",
+    "solver.harmonics",
+    "solver.harmonic_tolerance",
+    "solver.rows_beyond_tolerance",
+    "solver.samples_per_period",
+    "solver.residual_tolerance",
+    "solver.peak_tolerance",
+];
+
+/// The accepted error; none where the number is missing or refused.
+pub(super) fn accuracy(check: &mut Check, raw: &RawAccuracy) -> Option<AccuracyOptions> {
+    const KEY: &str = "accuracy.amplitude_error";
+    for key in KEYS_OF_ACCURACY {
+        if check.is_written(key) {
+            let reason = format!("{KEY} chooses it; accepted: one of the two keys");
+            check.conflict(key, &reason);
+        }
+    }
+    let amplitude_error = check.given(
+        KEY,
+        raw.amplitude_error,
+        AccuracyOptions::accepts,
+        AccuracyOptions::ACCEPTED,
+    )?;
+    Some(AccuracyOptions { amplitude_error })
+}
+
+impl Study {
+    /// Reads and checks the study file `path` as if it had these `[accuracy]`, if there are any.
+    ///
+    /// # Errors
+    /// The file cannot be read, or everything in it that is not accepted.
+    pub fn read_with(path: &Path, accuracy: Option<AccuracyOptions>) -> Result<Self, StudyError> {
+        let text = std::fs::read_to_string(path).map_err(|source| StudyError::Unreadable {
+            path: path.to_owned(),
+            source,
+        })?;
+        match accuracy {
+            None => Self::parse(path, &text),
+            Some(accuracy) => {
+                // A file that is no TOML is described when it is parsed.
+                let written = SourceMap::new(&text).ok();
+                let line = written
+                    .filter(|map| map.holds("accuracy"))
+                    .map(|map| map.line("accuracy"));
+                if let Some(line) = line {
+                    let reason = "--accuracy is given too; accepted: one of the two".to_owned();
+                    return Err(StudyError::Invalid {
+                        path: path.to_owned(),
+                        findings: vec![Finding {
+                            line,
+                            key: "accuracy".to_owned(),
+                            problem: Problem::Conflict { reason },
+                            excerpt: None,
+                        }],
+                    });
+                }
+                Self::parse(path, &accuracy.appended_to(&text))
+            }
+        }
+    }
+
+    /// The study with the accepted error in the place of its own tolerances.
+    pub(super) fn with_accuracy(mut self, accuracy: Option<AccuracyOptions>) -> Self {
+        self.accuracy = accuracy;
+        if let Some(AccuracyOptions { amplitude_error }) = accuracy {
+            self.reduction.error = amplitude_error;
+            self.solver.harmonic_tolerance = amplitude_error;
+        }
+        self
+    }
+}

@@ -1,0 +1,262 @@
+//! `blisk tradeoff`, `[accuracy]` and `run --accuracy`.
+
+use serde_json::Value;
+
+use crate::blisk::{GOOD, Place};
+
+/// The good study without the settings that `[accuracy]` chooses.
+fn open() -> String {
+    GOOD.replace("[solver]\nharmonics = [1, 3]\n", "")
+}
+
+fn accurate() -> String {
+    format!("{}[accuracy]\namplitude_error = 0.01\n", open())
+}
+
+fn read(place: &Place, file: &str) -> Vec<u8> {
+    std::fs::read(place.path(file)).expect(file)
+}
+
+fn manifest(place: &Place, results: &str) -> Value {
+    let bytes = read(place, &format!("{results}/manifest.json"));
+    serde_json::from_slice(&bytes).expect("JSON")
+}
+
+#[test]
+fn a_trade_off_names_the_cheapest_settings_and_writes_the_same_tables_with_any_threads() {
+    let place = Place::with(GOOD);
+    let command = |out: &str, threads: &str| {
+        let ended = place.run(&[
+            "tradeoff",
+            "study.toml",
+            "--out",
+            out,
+            "--threads",
+            threads,
+            "--json",
+        ]);
+        assert_eq!(ended.code, 0, "{}", ended.stderr);
+        serde_json::from_str::<Value>(&ended.stdout).expect("JSON")
+    };
+    let report = command("one", "1");
+    command("two", "2");
+    for table in ["tradeoff.parquet", "tradeoff_rows.parquet"] {
+        let [one, two] = ["one", "two"].map(|out| read(&place, &format!("{out}/{table}")));
+        assert!(one == two, "{table}");
+    }
+    assert!(place.path("one/tradeoff_times.parquet").exists());
+    assert_eq!(report["reference"]["kind"], "joint");
+    assert_eq!(report["reference"]["without_value"], 0);
+    let settings = report["settings"].as_array().expect("a list");
+    let number = |setting: &Value, path: &str| setting.pointer(path).and_then(Value::as_f64);
+    for choice in report["choices"].as_array().expect("a list") {
+        let accepted = choice["accepted_error"].as_f64().expect("a number");
+        let chosen = choice["setting"].as_u64().expect("a setting") as usize;
+        let upper = number(&settings[chosen], "/amplitude/p95_upper").expect("a bound");
+        assert!(upper <= accepted, "{accepted}: {upper}");
+        // Nothing that is cheaper is as good.
+        for other in settings {
+            let cheaper = other["operations"].as_f64() < settings[chosen]["operations"].as_f64();
+            let upper = number(other, "/amplitude/p95_upper").unwrap_or(f64::INFINITY);
+            assert!(!cheaper || upper > accepted, "{other}");
+        }
+    }
+    // Under a constant normal load, harmonics 1 and 3 leave out more than they do with 5.
+    let error = |harmonics: &str| {
+        let of_set = |own: &&Value| own["harmonics"] == harmonics && own["knob"] == "harmonics";
+        let setting = settings.iter().find(of_set).expect("a level");
+        number(setting, "/knob_amplitude/p95").expect("an error")
+    };
+    assert!(error("1") > error("1-3-5") && error("1-3-5") > error("1-3-5-7"));
+    let shown = place.run(&["tradeoff", "study.toml", "--patterns", "4"]);
+    assert!(
+        shown.stdout.contains("cheapest within 1 %: setting"),
+        "{}",
+        shown.stdout
+    );
+}
+
+#[test]
+fn the_full_contact_model_confirms_the_reference() {
+    let place = Place::with(GOOD);
+    let ended = place.run(&[
+        "tradeoff",
+        "study.toml",
+        "--reference",
+        "full",
+        "--patterns",
+        "2",
+        "--json",
+    ]);
+    let report: Value = serde_json::from_str(&ended.stdout).expect("JSON");
+    let check = &report["reference"]["full_contact"][0];
+    assert_eq!(check["status"], "ok");
+    let error = check["amplitude_error"].as_f64().expect("a number");
+    assert!(error.abs() < 3e-4, "{error}");
+}
+
+#[test]
+fn linear_limits_alone_have_nothing_to_trade() {
+    let place = Place::with(&GOOD.replace("\"slide\", 50, \"stuck\"", "\"slide\", \"stuck\""));
+    let ended = place.run(&["tradeoff", "study.toml"]);
+    assert_eq!(ended.code, 2);
+    assert!(
+        ended.stderr.contains("sweep.normal_load_n"),
+        "{}",
+        ended.stderr
+    );
+}
+
+#[test]
+fn an_accepted_error_chooses_settings_once_and_records_the_evidence() {
+    let place = Place::with(&accurate());
+    let run = place.run(&["run", "study.toml", "--out", "one", "--threads", "1"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(
+        run.stdout.contains("accepted numerical error of 1 %"),
+        "{}",
+        run.stdout
+    );
+    let chosen = &manifest(&place, "one")["chosen"]["accuracy"];
+    assert_eq!(chosen["met"], true);
+    let upper = chosen["evidence"]["amplitude"]["p95_upper"].as_f64();
+    assert!(upper.expect("a bound") <= 0.01);
+    assert!(
+        !chosen["evidence"]["tried"]
+            .as_array()
+            .expect("a list")
+            .is_empty()
+    );
+    // The rows are those of the settings written by hand.
+    let setting = &chosen["setting"];
+    let harmonics = setting["harmonics"]
+        .as_str()
+        .expect("a set")
+        .replace('-', ", ");
+    let text = |key: &str| setting[key].as_str().expect("a number").to_owned();
+    let by_hand = format!(
+        "{}[solver]\nharmonics = [{harmonics}]\nsamples_per_period = {}\nresidual_tolerance = {}\n\
+         peak_tolerance = {}\n",
+        open(),
+        text("samples_per_period"),
+        text("residual_tolerance"),
+        text("peak_tolerance"),
+    );
+    place.write("by-hand.toml", &by_hand);
+    assert_eq!(
+        place.run(&["run", "by-hand.toml", "--out", "by-hand"]).code,
+        0
+    );
+    let amplitudes = |results: &str| {
+        let stats = place.run(&["stats", results, "--json"]);
+        let value: Value = serde_json::from_str(&stats.stdout).expect("JSON");
+        value["scenarios"].clone()
+    };
+    assert_eq!(amplitudes("one"), amplitudes("by-hand"));
+    // The same with any number of threads, from the command line, and solved again.
+    let two = place.run(&["run", "study.toml", "--out", "two", "--threads", "2"]);
+    assert_eq!(two.stdout, run.stdout);
+    place.write("open.toml", &open());
+    let three = place.run(&["run", "open.toml", "--out", "three", "--accuracy", "1%"]);
+    assert_eq!(three.code, 0, "{}", three.stderr);
+    for other in ["two", "three"] {
+        for table in ["responses.parquet", "scenarios.parquet", "manifest.json"] {
+            let same =
+                read(&place, &format!("one/{table}")) == read(&place, &format!("{other}/{table}"));
+            assert!(same, "{table} of {other}");
+        }
+    }
+    let again = place.run(&["run", "study.toml", "--out", "one"]);
+    assert!(
+        again.stderr.contains("nothing to solve"),
+        "{}",
+        again.stderr
+    );
+    let replay = place.run(&["replay", "one", "--scenario", "1", "--pattern", "3"]);
+    assert!(replay.stdout.contains("bit-identical"), "{}", replay.stdout);
+}
+
+#[test]
+fn an_accepted_error_of_linear_limits_needs_no_sample() {
+    let study = accurate().replace("\"slide\", 50, \"stuck\"", "\"slide\", \"stuck\"");
+    let place = Place::with(&study);
+    let run = place.run(&["run", "study.toml", "--out", "one"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let chosen = &manifest(&place, "one")["chosen"]["accuracy"];
+    assert_eq!(chosen["met"], true);
+    assert!(chosen["evidence"].is_null());
+}
+
+#[test]
+fn a_longer_study_keeps_the_settings_and_shards_come_to_the_same_bytes() {
+    let place = Place::with(&accurate());
+    assert_eq!(place.run(&["run", "study.toml", "--out", "grown"]).code, 0);
+    place.write(
+        "study.toml",
+        &accurate().replace("patterns = 10", "patterns = 25"),
+    );
+    assert_eq!(place.run(&["run", "study.toml", "--out", "grown"]).code, 0);
+    assert_eq!(place.run(&["run", "study.toml", "--out", "whole"]).code, 0);
+    for share in ["1/2", "2/2"] {
+        let shard = place.run(&["run", "study.toml", "--out", "cut", "--shard", share]);
+        assert_eq!(shard.code, 0, "{}", shard.stderr);
+        // The next one finds no choice, and makes the same.
+        std::fs::remove_dir_all(place.path("cut/model")).expect("a cache");
+    }
+    let merged = place.run(&[
+        "merge",
+        "cut/shards/1-of-2",
+        "cut/shards/2-of-2",
+        "--out",
+        "merged",
+    ]);
+    assert_eq!(merged.code, 0, "{}", merged.stderr);
+    for results in ["grown", "merged"] {
+        for table in ["responses.parquet", "scenarios.parquet"] {
+            let same = read(&place, &format!("{results}/{table}"))
+                == read(&place, &format!("whole/{table}"));
+            assert!(same, "{table} of {results}");
+        }
+    }
+}
+
+#[test]
+fn an_accepted_error_and_a_setting_exclude_each_other() {
+    let place = Place::with(GOOD);
+    let both = place.run(&["run", "study.toml", "--accuracy", "1%"]);
+    assert_eq!(both.code, 3);
+    for fragment in [
+        "study.toml:42:",
+        "solver.harmonics",
+        "accuracy.amplitude_error",
+    ] {
+        assert!(both.stderr.contains(fragment), "{}", both.stderr);
+    }
+    for refused in ["2", "0%", "x"] {
+        assert_eq!(
+            place
+                .run(&["run", "study.toml", "--accuracy", refused])
+                .code,
+            2
+        );
+    }
+    let place = Place::with(&accurate());
+    let twice = place.run(&["run", "study.toml", "--accuracy", "0.01"]);
+    assert_eq!(twice.code, 3);
+    assert!(twice.stderr.contains("--accuracy"), "{}", twice.stderr);
+    let response = place.run(&[
+        "response",
+        "study.toml",
+        "--pattern",
+        "0",
+        "--load",
+        "50",
+        "--frequencies",
+        "340:380:3",
+        "--out",
+        "r.csv",
+        "--harmonics",
+        "1",
+    ]);
+    assert_eq!(response.code, 2, "{}", response.stderr);
+}
