@@ -92,18 +92,22 @@ impl Chosen {
         assert_eq!(again, self.evidence.amplitude);
     }
 
-    /// Of wheels that the choice did not see at least 95 % are within the claimed 95th percentile, and
-    /// none beyond three times the claimed worst.
-    fn holds_on(&self, fresh: &[u32]) {
+    /// Whether of wheels that the choice did not see at least 95 % are within the claimed 95th
+    /// percentile, and none beyond three times the claimed worst.
+    fn holds_on(&self, fresh: &[u32]) -> bool {
         assert!(fresh.iter().all(|id| !self.evidence.patterns.contains(id)));
         let found = self.errors(fresh);
         let claimed = self.evidence.amplitude;
         let within = |error: &&Option<f64>| error.is_some_and(|e| e.abs() <= claimed.p95_upper);
         let share = found.iter().filter(within).count() as f64 / found.len() as f64;
         let seen = ErrorBound::of(&found).unwrap();
+        let size = |row: &usize| found[*row].map_or(f64::INFINITY, f64::abs);
+        let worst = (0..found.len())
+            .max_by(|a, b| size(a).total_cmp(&size(b)))
+            .unwrap();
         println!(
             "accepted {}: claimed P95 <= {:.3e} (worst {:.3e}, {} rows); of {} fresh rows {:.2} % within; \
-             P95 {:.3e}, worst {:.3e}",
+             P95 {:.3e}, worst {:.3e} (pattern {})",
             self.accepted,
             claimed.p95_upper,
             claimed.worst,
@@ -112,9 +116,9 @@ impl Chosen {
             100.0 * share,
             seen.p95,
             seen.worst,
+            fresh[worst / self.own.study.contacts.len()],
         );
-        assert!(share >= 0.95);
-        assert!(seen.worst <= 3.0 * claimed.worst);
+        share >= 0.95 && seen.worst <= 3.0 * claimed.worst
     }
 }
 
@@ -122,14 +126,15 @@ impl Chosen {
 fn claimed_errors_are_those_of_delivered_rows_and_hold_on_wheels_that_were_not_seen() {
     let chosen = Chosen::new(&lumped(12, 16), 0.02);
     chosen.is_made_of_delivered_rows();
-    chosen.holds_on(&(6..16).collect::<Vec<u32>>());
+    assert!(chosen.holds_on(&(6..16).collect::<Vec<u32>>()));
 }
 
 #[test]
 #[ignore = "minutes: cargo test --release --test cases claimed_errors_hold_on_500 -- --ignored --nocapture"]
 fn claimed_errors_hold_on_500_wheels_that_were_not_seen() {
-    for accepted in [0.05, 0.01, 0.003] {
-        let fresh: Vec<u32> = (6..506).collect();
-        Chosen::new(&lumped(24, 506), accepted).holds_on(&fresh);
-    }
+    let fresh: Vec<u32> = (6..506).collect();
+    // All are shown before any is judged.
+    let held = [0.05, 0.01, 0.003]
+        .map(|accepted| Chosen::new(&lumped(24, 506), accepted).holds_on(&fresh));
+    assert_eq!(held, [true; 3]);
 }
