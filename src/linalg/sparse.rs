@@ -147,6 +147,14 @@ struct Lanes {
 
 impl Lanes {
     fn add_product(&mut self, factor: Complex64, x: &Self) {
+        // Only what couples a sector to its neighbour is complex.
+        if factor.im == 0.0 {
+            for lane in 0..LANES {
+                self.re[lane] += factor.re * x.re[lane];
+                self.im[lane] += factor.re * x.im[lane];
+            }
+            return;
+        }
         for lane in 0..LANES {
             self.re[lane] += factor.re * x.re[lane] - factor.im * x.im[lane];
             self.im[lane] += factor.re * x.im[lane] + factor.im * x.re[lane];
