@@ -24,7 +24,7 @@ const COLUMNS: &[ColumnSpec] = &[
     column("amplitude_error_median", Float64),
     column("amplitude_error_p95", Float64),
     column("amplitude_error_p95_upper", Float64),
-    column("operations", Float64),
+    column("operations_per_row", Float64),
     column("on_front", Boolean),
 ];
 
@@ -80,7 +80,7 @@ impl AccuracyLadder {
         let median = rows.float64("amplitude_error_median")?;
         let p95 = rows.float64("amplitude_error_p95")?;
         let p95_upper = rows.float64("amplitude_error_p95_upper")?;
-        let operations = rows.float64("operations")?;
+        let operations = rows.float64("operations_per_row")?;
         let on_front = rows.boolean("on_front")?;
         let settings = (0..table.rows())
             .map(|row| MeasuredSetting {
