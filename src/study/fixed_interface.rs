@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use super::basis_choice::judged_conditions;
 use super::full_model::reference_settings;
-use super::reduced_engine::{contact_stiffness, row_settings, sensitivity_vectors};
-use super::{PipelineError, Study};
+use super::reduced_engine::{contact_stiffness, row_settings};
+use super::{MistuningSource, PipelineError, Study};
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::model::reduction::{BasisChoice, Reduction, ReductionOptions};
@@ -37,6 +37,10 @@ const PEAK_TOLERANCE: f64 = 1e-4;
 const EVALUATIONS: usize = 100;
 /// Half-bandwidths on either side of a known peak in which that of more modes is sought first.
 const NEAR: f64 = 1.0;
+/// Standard deviation from which on sensitivity vectors are added by default.
+const LARGE_MISTUNING: f64 = 0.05;
+/// Sensitivity vectors added by default to a large mistuning.
+const SENSITIVITY_VECTORS: usize = 2;
 
 /// The number of fixed-interface modes that was taken, and the evidence for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -302,4 +306,25 @@ fn sought(plan: &SearchPlan, expected_hz: Option<f64>) -> ((f64, f64), Vec<f64>)
     let (low, high) = plan.band_hz;
     let band = (low.max(expected - near), high.min(expected + near));
     (band, vec![band.0, expected, band.1])
+}
+
+/// Sensitivity vectors to blade stiffness per nodal diameter: as the study says, or by the size of its mistuning.
+pub(super) fn sensitivity_vectors(study: &Study) -> usize {
+    let largest = study
+        .standard_deviations
+        .iter()
+        .flatten()
+        .copied()
+        .fold(0.0, f64::max);
+    let of_file = match &study.mistuning.source {
+        MistuningSource::Law(_) => 0.0,
+        MistuningSource::File { records, .. } => records.root_mean_square(),
+    };
+    study.reduction.sensitivity_vectors.unwrap_or(
+        if f64::max(largest, of_file) >= LARGE_MISTUNING {
+            SENSITIVITY_VECTORS
+        } else {
+            0
+        },
+    )
 }

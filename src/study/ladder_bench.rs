@@ -10,11 +10,12 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::basis_choice::judged_conditions;
+use super::fixed_interface::sensitivity_vectors;
 use super::fixed_interface::{FixedInterface, reduce_sector};
 use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::ladder::{HarmonicLevel, LadderSetting, LadderSpace};
 use super::plan::thread_cpu_s;
-use super::reduced_engine::{contact_stiffness, row_settings, sensitivity_vectors};
+use super::reduced_engine::{contact_stiffness, row_settings};
 use super::{PipelineError, Progress, Study};
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, ContactStiffness, Reduction};

@@ -10,9 +10,9 @@ use super::accurate_engine::accurate_engine;
 use super::basis_choice::{
     BasisEvidence, Judged, choose_basis, judged_conditions, judged_variations,
 };
-use super::fixed_interface::{FixedInterface, reduce_sector};
+use super::fixed_interface::{FixedInterface, reduce_sector, sensitivity_vectors};
 use super::harmonic_choice::{choose_harmonics, with_separation};
-use super::{Engine, EngineSource, MistuningSource, PipelineError, Study, SurrogateOf};
+use super::{Engine, EngineSource, PipelineError, Study, SurrogateOf};
 use crate::model::reduction::{Basis, BasisChoice, ContactStiffness, Reduction, ReductionOptions};
 use crate::model::sector::SectorModel;
 use crate::model::{ReducedModel, read_cached, reduction_digest, write_cached};
@@ -31,10 +31,6 @@ use crate::response::time_integration::{PointComparison, TimeOptions};
 const FIRST_HARMONICS: [u32; 1] = [1];
 /// Share of the harmonic tolerance by which the set for rows beyond it is chosen.
 const BEYOND_TOLERANCE: f64 = 0.25;
-/// Standard deviation from which on sensitivity vectors are added by default.
-const LARGE_MISTUNING: f64 = 0.05;
-/// Sensitivity vectors added by default to a large mistuning.
-const SENSITIVITY_VECTORS: usize = 2;
 
 /// Reduces a model for a study with the basis that the study asks for.
 #[derive(Debug, Clone, Copy, Default)]
@@ -462,27 +458,6 @@ pub(super) fn contact_stiffness(contact: Option<&ContactOptions>) -> ContactStif
             ContactLaw::Simplified3d | ContactLaw::Coulomb3d => tangential,
         },
     }
-}
-
-/// As the study says, or by the size of its mistuning.
-pub(super) fn sensitivity_vectors(study: &Study) -> usize {
-    let largest = study
-        .standard_deviations
-        .iter()
-        .flatten()
-        .copied()
-        .fold(0.0, f64::max);
-    let of_file = match &study.mistuning.source {
-        MistuningSource::Law(_) => 0.0,
-        MistuningSource::File { records, .. } => records.root_mean_square(),
-    };
-    study.reduction.sensitivity_vectors.unwrap_or(
-        if f64::max(largest, of_file) >= LARGE_MISTUNING {
-            SENSITIVITY_VECTORS
-        } else {
-            0
-        },
-    )
 }
 
 /// Digest of the reduced models and the errors that their rows state.

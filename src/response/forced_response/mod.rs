@@ -1,6 +1,7 @@
 //! Linear limits, sweep, peak search, and the one definition of the amplification factor.
 
 mod a_posteriori;
+mod attempt;
 mod branch;
 mod dense_sweep;
 mod excited;

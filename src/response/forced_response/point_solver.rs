@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use super::attempt::Attempt;
 use super::excited::Excited;
 use super::options::ContactCondition;
 use super::point_settings::PointSettings;
@@ -451,35 +452,6 @@ fn norm(x: &[f64]) -> f64 {
 
 /// Share of the frequency within which a point at which most pairs slip tells more than the stuck solution.
 const NEAR: f64 = 0.002;
-
-/// Attempts at one point, in order.
-#[derive(Debug, Clone, Copy)]
-enum Attempt {
-    /// From what the converged points beside it lead one to expect, or from the stuck solution, with
-    /// accelerated steps; those of all others are plain.
-    Neighbours,
-    /// From the line between the points beside it, or from the stuck solution if there is none.
-    Line,
-    /// From the stuck solution.
-    Stuck,
-    /// Arc-length continuation in frequency from the nearest converged point.
-    Continuation,
-    /// Homotopy in contact stiffness.
-    StiffnessHomotopy,
-    /// Homotopy in normal load.
-    LoadHomotopy,
-}
-
-impl Attempt {
-    const LADDER: [Self; 6] = [
-        Self::Neighbours,
-        Self::Line,
-        Self::Stuck,
-        Self::Continuation,
-        Self::StiffnessHomotopy,
-        Self::LoadHomotopy,
-    ];
-}
 
 /// The polynomial through the solutions of `points`, of different frequencies, at `frequency_hz`.
 fn interpolated(points: &[&Point], frequency_hz: f64) -> Vec<f64> {
