@@ -20,6 +20,7 @@ pub(super) fn by_cost(report: &StudyReport) -> Option<Figure> {
         .filter_map(|setting| {
             let error = setting
                 .amplitude_error_p95_upper
+                .filter(|bound| bound.is_finite())
                 .or(setting.amplitude_error_p95)?;
             let operations = setting.operations?;
             let drawn = error > 0.0 && error.is_finite() && operations > 0.0;
@@ -87,7 +88,7 @@ pub(super) fn by_cost(report: &StudyReport) -> Option<Figure> {
         setting: format!("{} settings", placed.len()),
         caption: format!(
             "Settings measured on a sample of rows: upper bound of the error that 95 % of the amplitudes \
-             keep, against floating-point operations of a row.{other}"
+             keep (that of the sample where it is too small for a bound), against floating-point operations of a row.{other}"
         ),
         height: HEIGHT,
         body: svg.into_body(),
