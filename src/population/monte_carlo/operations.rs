@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ResponseRow, RowSolver, Scenario};
 use crate::response::forced_response::{ContactCondition, Harmonics};
+use crate::response::harmonic_balance::LARGEST_WHOLE_JACOBIAN;
 
 /// Operations per unknown cubed of the eigenvalues and vectors of a symmetric matrix.
 const EIGEN: f64 = 9.0;
@@ -12,7 +13,9 @@ const EIGENPROBLEMS: f64 = 3.0;
 /// Operations of the contact law for one pair at one sample.
 const LAW: f64 = 40.0;
 /// Evaluations that the check of the harmonics takes.
-const CHECK_ITERATIONS: f64 = 20.0;
+const CHECK_ITERATIONS: f64 = 14.0;
+/// Harmonics that the check has besides those of the set, each with a complex block.
+const CHECK_BLOCKS: f64 = 14.0;
 /// Real coefficients of the check: harmonics up to 15.
 const CHECK_COEFFICIENTS: f64 = 31.0;
 /// Samples of the check over those of the solution.
@@ -71,11 +74,37 @@ impl SystemSize {
         self.coordinates * self.coefficients
     }
 
-    /// Assembly of `C^T J C` and the LU factors of the Jacobian: `2 c n^2 + 2/3 n^3`.
+    /// Assembly of `C^T J C` and the LU factors of the Jacobian: `2 c n^2 + 2/3 n^3`, or its lower block triangle
+    /// with the factors of one block a harmonic.
     #[must_use]
     pub fn per_factorisation(&self) -> f64 {
+        if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
+            return self.whole_jacobian();
+        }
+        let factors = |size: f64| 2.0 / 3.0 * size.powi(3);
+        let blocks: f64 = self.blocks().map(factors).sum();
+        2.0 * self.contact_rows as f64 * self.lower_triangle() + blocks
+    }
+
+    fn whole_jacobian(&self) -> f64 {
         let n = self.unknowns() as f64;
         2.0 * self.contact_rows as f64 * n * n + 2.0 / 3.0 * n.powi(3)
+    }
+
+    /// Unknowns of each harmonic.
+    fn blocks(&self) -> impl Iterator<Item = f64> {
+        let coordinates = self.coordinates;
+        let mean = self.coefficients % 2;
+        let harmonics = (0..self.coefficients / 2).map(move |_| 2 * coordinates);
+        let all = (0..mean).map(move |_| coordinates).chain(harmonics);
+        all.map(|size| size as f64)
+    }
+
+    /// Entries on and below the diagonal blocks.
+    fn lower_triangle(&self) -> f64 {
+        let n = self.unknowns() as f64;
+        let diagonal: f64 = self.blocks().map(|size| size * size).sum();
+        0.5 * (n * n + diagonal)
     }
 
     /// Triangular solves, contact displacement and force in modal coordinates, and the alternating
@@ -83,7 +112,12 @@ impl SystemSize {
     #[must_use]
     pub fn per_iteration(&self) -> f64 {
         let n = self.unknowns() as f64;
-        2.0 * n * n + self.evaluation(self.coefficients as f64, self.samples as f64)
+        let entries = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
+            n * n
+        } else {
+            self.lower_triangle()
+        };
+        2.0 * entries + self.evaluation(self.coefficients as f64, self.samples as f64)
     }
 
     /// One residual with `coefficients` and `samples`.
@@ -94,12 +128,16 @@ impl SystemSize {
         modal + transforms + LAW * self.pairs as f64 * samples
     }
 
-    /// The check of samples and harmonics that every row has: one finely sampled Jacobian, then
-    /// evaluations with all harmonics up to 15.
+    /// The check of samples and harmonics that every row has: the whole Jacobian and a complex block of each
+    /// harmonic besides, then evaluations with all harmonics up to 15.
     #[must_use]
     pub fn check(&self) -> f64 {
         let samples = CHECK_SAMPLES * self.samples as f64;
-        self.per_factorisation() + CHECK_ITERATIONS * self.evaluation(CHECK_COEFFICIENTS, samples)
+        let coordinates = self.coordinates as f64;
+        let block =
+            4.0 * self.contact_rows as f64 * coordinates.powi(2) + 8.0 / 3.0 * coordinates.powi(3);
+        let evaluation = self.evaluation(CHECK_COEFFICIENTS, samples);
+        self.whole_jacobian() + CHECK_BLOCKS * block + CHECK_ITERATIONS * evaluation
     }
 
     /// Operations of a row.

@@ -29,8 +29,8 @@ const ACCELERATED: Serves = Serves {
     longer: 2.0,
 };
 
-/// Unknowns up to which the whole Jacobian costs next to nothing.
-const SMALL: usize = 400;
+/// Unknowns up to which accelerated steps take the whole Jacobian: it costs next to nothing there.
+pub const LARGEST_WHOLE_JACOBIAN: usize = 400;
 
 /// Earlier iterates that the acceleration combines.
 const DEPTH: usize = 16;
@@ -170,7 +170,7 @@ impl Equation for FixedFrequency<'_> {
             .system
             .residual(self.omega, x, residual, true, self.workspace);
         // Contact that opens couples the harmonics closely.
-        let whole = self.system.unknowns() <= SMALL || shares.separated > 0.0;
+        let whole = self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN || shares.separated > 0.0;
         if whole || !self.accelerated {
             self.jacobian
                 .factor_whole(self.system, self.omega, self.workspace)
