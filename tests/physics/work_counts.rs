@@ -83,5 +83,12 @@ fn a_peak_of_a_wheel_of_few_unknowns_takes_the_work_known_for_it() {
         amplitude_n: 10.0,
         ..Wheel::lumped24()
     };
-    assert_work(&wheel, &[(25.0, [0; 3]), (50.0, [0; 3]), (150.0, [0; 3])]);
+    assert_work(
+        &wheel,
+        &[
+            (25.0, [19, 224, 25]),
+            (50.0, [19, 283, 31]),
+            (150.0, [25, 188, 26]),
+        ],
+    );
 }
