@@ -10,8 +10,7 @@ use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::population::table::write_atomically;
 use crate::report::{
-    Answer, FIGURES, FigureName, GroupReport, StudyReport, Wheels, answers, figure, html_report,
-    setting,
+    Answer, FIGURES, GroupReport, StudyReport, Wheels, answers, figure, html_report, setting,
 };
 use crate::study::{ReducedEngineSource, ReportRequest, report};
 
@@ -109,14 +108,14 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<ExitStatus, Failure> {
         &ReportRequest {
             results: arguments.results.clone(),
             study_file: arguments.study.clone(),
-            curves: of_wheels(name),
+            curves: name.is_of_wheels(),
         },
         &ReducedEngineSource,
     )?;
     let group = chosen(&found, arguments)?;
     let Some(drawn) = figure(&found, group, name) else {
         let reason = match &group.wheels {
-            Wheels::NotSolved { reason } if of_wheels(name) => format!(": {reason}"),
+            Wheels::NotSolved { reason } if name.is_of_wheels() => format!(": {reason}"),
             _ => String::new(),
         };
         return Err(Failure::usage(format!(
@@ -137,17 +136,6 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<ExitStatus, Failure> {
 fn has_ending(path: &Path, ending: &str) -> bool {
     path.extension()
         .is_some_and(|own| own.eq_ignore_ascii_case(ending))
-}
-
-/// Whether a figure needs wheels that are solved again.
-fn of_wheels(name: FigureName) -> bool {
-    matches!(
-        name,
-        FigureName::MedianResponse
-            | FigureName::WorstResponse
-            | FigureName::WorstBlades
-            | FigureName::Contact
-    )
 }
 
 /// The group that the arguments name, or the only one.

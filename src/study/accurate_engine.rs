@@ -9,7 +9,7 @@ use super::{
     Study, SurrogateOf,
 };
 use crate::model::sector::SectorModel;
-use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use crate::population::monte_carlo::{ResponseRow, RowSolver, Scenario, TunedReference};
 use crate::population::table::CurvePoint;
 use crate::report::ModelReport;
 use crate::response::forced_response::{ResponseTrace, SearchPlan};
@@ -76,6 +76,10 @@ impl Engine for AccurateEngine {
         tuned: &TunedReference,
     ) -> Option<SurrogateOf<'a>> {
         self.engine.surrogate(scenario, tuned)
+    }
+
+    fn row_solver(&self) -> Option<&RowSolver> {
+        self.engine.row_solver()
     }
 
     fn search_plan(

@@ -85,6 +85,15 @@ pub const FIGURES: [(FigureName, &str, &str); 10] = [
 ];
 
 impl FigureName {
+    /// Whether it shows single wheels, which are solved again for it.
+    #[must_use]
+    pub fn is_of_wheels(self) -> bool {
+        matches!(
+            self,
+            Self::MedianResponse | Self::WorstResponse | Self::WorstBlades | Self::Contact
+        )
+    }
+
     /// Its name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {

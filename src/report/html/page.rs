@@ -118,15 +118,6 @@ fn figures_of(report: &StudyReport, group: &GroupReport, place: usize) -> String
         }
     };
     let mut html = String::new();
-    let single = |name: FigureName| {
-        matches!(
-            name,
-            FigureName::MedianResponse
-                | FigureName::WorstResponse
-                | FigureName::WorstBlades
-                | FigureName::Contact
-        )
-    };
     for (words, wheels) in [("The population", false), ("Single wheels", true)] {
         let _ = writeln!(html, "<section>\n<h2>{}</h2>", escaped(&heading(words)));
         if let (true, Wheels::NotSolved { reason }) = (wheels, &group.wheels) {
@@ -140,7 +131,7 @@ fn figures_of(report: &StudyReport, group: &GroupReport, place: usize) -> String
         for (name, words, _) in FIGURES {
             // The ladder is of the study, not of one of its sections.
             let again = name == FigureName::Accuracy && place > 0;
-            if single(name) != wheels || again {
+            if name.is_of_wheels() != wheels || again {
                 continue;
             }
             if let Some(drawn) = figure(report, group, name) {
