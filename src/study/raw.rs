@@ -170,6 +170,7 @@ pub(super) struct RawSweep {
 #[serde(deny_unknown_fields)]
 pub(super) struct RawSolver {
     pub harmonics: Option<RawHarmonics>,
+    pub search_harmonics: Option<RawHarmonics>,
     pub harmonic_tolerance: Option<f64>,
     pub rows_beyond_tolerance: Option<RowsBeyondTolerance>,
     pub samples_per_period: Option<usize>,

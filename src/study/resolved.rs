@@ -12,7 +12,9 @@ use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::monte_carlo::Scenario;
 use crate::population::statistics::StopOptions;
 use crate::population::table::Compression;
-use crate::response::forced_response::{ContactCondition, FrequencyBand, Harmonics, SolverOptions};
+use crate::response::forced_response::{
+    ContactCondition, FrequencyBand, Harmonics, SearchHarmonics, SolverOptions,
+};
 use crate::response::friction::ContactOptions;
 use crate::response::harmonic_balance::Damping;
 use crate::response::mistuning::{ContactVariation, Distribution, FactorLaw};
@@ -143,6 +145,11 @@ impl Study {
                 "harmonics": match &self.solver.harmonics {
                     Harmonics::Auto => json!("auto"),
                     Harmonics::Set(harmonics) => json!(harmonics),
+                },
+                "search_harmonics": match &self.solver.search_harmonics {
+                    SearchHarmonics::Auto => json!("auto"),
+                    SearchHarmonics::All => json!("all"),
+                    SearchHarmonics::Set(harmonics) => json!(harmonics),
                 },
                 "harmonic_tolerance": self.solver.harmonic_tolerance,
                 "rows_beyond_tolerance": self.solver.rows_beyond_tolerance,

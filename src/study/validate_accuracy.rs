@@ -8,13 +8,14 @@ use super::validate::Check;
 use super::{AccuracyOptions, Finding, Problem, Study, StudyError};
 
 /// Keys that the program sets itself under `[accuracy]`.
-pub(super) const KEYS_OF_ACCURACY: [&str; 11] = [
+pub(super) const KEYS_OF_ACCURACY: [&str; 12] = [
     "reduction.basis",
     "reduction.error",
     "reduction.stick_modes",
     "reduction.slide_modes",
     "reduction.partial_modes",
     "solver.harmonics",
+    "solver.search_harmonics",
     "solver.harmonic_tolerance",
     "solver.rows_beyond_tolerance",
     "solver.samples_per_period",

@@ -2,7 +2,7 @@
 
 use super::raw::{RawBand, RawHarmonics, RawSolver};
 use super::validate::Check;
-use crate::response::forced_response::{FrequencyBand, Harmonics, SolverOptions};
+use crate::response::forced_response::{FrequencyBand, Harmonics, SearchHarmonics, SolverOptions};
 
 /// Highest harmonic accepted.
 const MAX_HARMONIC: u32 = 100;
@@ -21,6 +21,7 @@ pub(super) fn solver(check: &mut Check, raw: RawSolver) -> SolverOptions {
     let instants = raw.time_samples.unwrap_or(default.time_samples);
     let left_out = raw.harmonic_tolerance.unwrap_or(default.harmonic_tolerance);
     SolverOptions {
+        search_harmonics: search_harmonics(check, raw.search_harmonics),
         harmonic_tolerance: check.within(
             "solver.harmonic_tolerance",
             left_out,
@@ -67,13 +68,7 @@ fn harmonics(check: &mut Check, raw: Option<RawHarmonics>) -> Harmonics {
     match raw {
         None => Harmonics::Auto,
         Some(RawHarmonics::Name(name)) if name == "auto" => Harmonics::Auto,
-        Some(RawHarmonics::List(set))
-            if set.contains(&1)
-                && set.is_sorted_by(|a, b| a < b)
-                && set.last() <= Some(&MAX_HARMONIC) =>
-        {
-            Harmonics::Set(set)
-        }
+        Some(RawHarmonics::List(set)) if is_set(&set) => Harmonics::Set(set),
         Some(_) => {
             check.refuse(
                 "solver.harmonics",
@@ -82,6 +77,29 @@ fn harmonics(check: &mut Check, raw: Option<RawHarmonics>) -> Harmonics {
             Harmonics::Auto
         }
     }
+}
+
+fn search_harmonics(check: &mut Check, raw: Option<RawHarmonics>) -> SearchHarmonics {
+    match raw {
+        None => SearchHarmonics::Auto,
+        Some(RawHarmonics::Name(name)) if name == "auto" => SearchHarmonics::Auto,
+        Some(RawHarmonics::Name(name)) if name == "all" => SearchHarmonics::All,
+        Some(RawHarmonics::List(set)) if is_set(&set) => SearchHarmonics::Set(set),
+        Some(_) => {
+            check.refuse(
+                "solver.search_harmonics",
+                "\"auto\", \"all\" or an ascending list of harmonics from 0 to 100 that contains 1, like [1, 3]",
+            );
+            SearchHarmonics::Auto
+        }
+    }
+}
+
+/// Whether harmonics are a set that has the fundamental.
+fn is_set(harmonics: &[u32]) -> bool {
+    harmonics.contains(&1)
+        && harmonics.is_sorted_by(|a, b| a < b)
+        && harmonics.last() <= Some(&MAX_HARMONIC)
 }
 
 fn band(check: &mut Check, raw: Option<RawBand>) -> FrequencyBand {

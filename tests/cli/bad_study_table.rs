@@ -311,6 +311,11 @@ pub const CASES: &[Case] = &[
     ),
     (
         "[1, 3]",
+        "[1]\nsearch_harmonics = [3]",
+        &["solver.search_harmonics = [3]", "\"all\"", "contains 1"],
+    ),
+    (
+        "[1, 3]",
         "[1]\nharmonic_tolerance = 2",
         &["solver.harmonic_tolerance = 2", "1e-6"],
     ),

@@ -4,6 +4,7 @@ mod beyond;
 mod blocks;
 mod curves;
 mod harmonic_choice;
+mod mistuned_peak;
 mod operations;
 mod parallel;
 mod row;

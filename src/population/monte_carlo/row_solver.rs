@@ -11,9 +11,8 @@ use super::{
 use crate::linalg::Matrix;
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
-    ContactCondition, ErrorEstimate, Excited, FrequencyBand, LimitsWanted, Peak, Point,
-    PointSettings, Screening, SolverOptions, Wheel, Window, estimate_errors, mistuned_window, peak,
-    screen, tuned_span, wheel_force,
+    ContactCondition, ErrorEstimate, Excited, LimitsWanted, Peak, Point, PointSettings, Screening,
+    SolverOptions, Wheel, Window, peak, screen, wheel_force,
 };
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{Damping, Status, TransformError};
@@ -271,7 +270,7 @@ impl RowSolver {
     }
 
     /// The tuned wheel with the contact of every sector multiplied by `factors`.
-    fn tuned_waves_with(
+    pub(super) fn tuned_waves_with(
         &self,
         factors: &ContactFactors,
         engine_order: u32,
@@ -344,68 +343,6 @@ impl RowSolver {
                 })
             }
         }
-    }
-
-    /// Where the peak of a mistuned wheel is sought.
-    pub(super) fn window(
-        &self,
-        pattern: &Pattern,
-        scenario: &Scenario,
-        tuned_hz: Option<f64>,
-    ) -> Result<Window, Status> {
-        let band = self.settings.solver.frequency_band;
-        Ok(match band {
-            FrequencyBand::Auto => {
-                let waves = self.tuned_excited(scenario.engine_order, scenario.contact);
-                let span = tuned_span(&waves, scenario.contact, tuned_hz);
-                let mut span = span.ok_or(Status::NotBracketed)?;
-                if let Some(means) = pattern.contact.means() {
-                    // Other contact springs move the resonances of all blades alike.
-                    let pairs = self.basis.model().contact.weights.len();
-                    let varied = self.tuned_waves_with(
-                        &ContactFactors::new(vec![means; pairs]),
-                        scenario.engine_order,
-                        scenario.contact,
-                        &[1],
-                    );
-                    let own = tuned_span(&varied, scenario.contact, None);
-                    let own = own.ok_or(Status::NotBracketed)?;
-                    span = (span.0.min(own.0), span.1.max(own.1));
-                }
-                mistuned_window(span, pattern.largest_deviation(), band)
-            }
-            FrequencyBand::Fixed { .. } => Window {
-                resonances_hz: None,
-                band,
-            },
-        })
-    }
-
-    fn mistuned_peak(
-        &self,
-        modes: &StructuralModes,
-        wheel: &Wheel,
-        pattern: &Pattern,
-        scenario: &Scenario,
-        tuned: &TunedReference,
-    ) -> Result<(Peak, Option<ErrorEstimate>), Status> {
-        let window = self.window(pattern, scenario, tuned.frequency_hz)?;
-        let engine_order = scenario.engine_order;
-        let points = self.points_of(pattern, engine_order, scenario.contact);
-        let excited = self.wheel_excited(modes, wheel, engine_order, points.harmonics());
-        let found = peak(
-            &excited,
-            scenario.contact,
-            &points,
-            window,
-            self.settings.solver.peak_tolerance,
-        );
-        let errors = found.point.as_ref().and_then(|point| {
-            let enlarged =
-                self.wheel_excited(modes, wheel, engine_order, points.errors().harmonics());
-            estimate_errors(&excited, scenario.contact, &points, point, &enlarged.blocks)
-        });
-        Ok((found, errors))
     }
 
     fn row(

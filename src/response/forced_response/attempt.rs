@@ -1,10 +1,17 @@
 //! The ways to a solution at one frequency.
 
+use crate::response::harmonic_balance::Steps;
+
 /// Attempts at one point, in order.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Attempt {
+    /// From what a solution with fewer harmonics and the converged points lead one to expect, with the derivatives
+    /// of harmonics by themselves.
+    ByHarmonic,
+    /// The same with the whole Jacobian, found once.
+    Once,
     /// From what the converged points beside it lead one to expect, or from the stuck solution, with
-    /// accelerated steps; those of all others are plain.
+    /// accelerated steps; those of all that follow are plain.
     Neighbours,
     /// From the line between the points beside it, or from the stuck solution if there is none.
     Line,
@@ -18,14 +25,31 @@ pub(super) enum Attempt {
     LoadHomotopy,
 }
 
+/// In the order in which they are made; the first two only beside a solution with fewer harmonics.
+const LADDER: [Attempt; 8] = [
+    Attempt::ByHarmonic,
+    Attempt::Once,
+    Attempt::Neighbours,
+    Attempt::Line,
+    Attempt::Stuck,
+    Attempt::Continuation,
+    Attempt::StiffnessHomotopy,
+    Attempt::LoadHomotopy,
+];
+
 impl Attempt {
-    /// In the order in which they are made.
-    pub(super) const LADDER: [Self; 6] = [
-        Self::Neighbours,
-        Self::Line,
-        Self::Stuck,
-        Self::Continuation,
-        Self::StiffnessHomotopy,
-        Self::LoadHomotopy,
-    ];
+    /// The attempts, with or without a solution with fewer harmonics.
+    pub(super) fn ladder(refines: bool) -> &'static [Self] {
+        if refines { &LADDER } else { &LADDER[2..] }
+    }
+
+    /// How the steps of Newton's method are made.
+    pub(super) fn steps(self) -> Steps {
+        match self {
+            Self::ByHarmonic => Steps::ByHarmonic,
+            Self::Once => Steps::Once,
+            Self::Neighbours => Steps::Accelerated,
+            _ => Steps::Plain,
+        }
+    }
 }

@@ -14,7 +14,9 @@ mod peak;
 mod peak_search;
 mod point_settings;
 mod point_solver;
+mod refined_peak;
 mod samples;
+mod starts;
 mod summit;
 
 pub use a_posteriori::{ErrorEstimate, ErrorSettings, Screening, estimate_errors, screen};
@@ -25,9 +27,10 @@ pub use linear_peaks::LinearPeak;
 pub use observed_amplitude::ObservedAmplitude;
 pub use options::{
     AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, RowsBeyondTolerance,
-    SolverOptions,
+    SearchHarmonics, SolverOptions,
 };
 pub use peak::{Peak, SearchPlan, Window, mistuned_window, peak, search_plan, tuned_span};
 pub use peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
 pub use point_settings::PointSettings;
 pub use point_solver::{Point, PointSolver, Work};
+pub use refined_peak::{Search, refined_peak};

@@ -11,6 +11,17 @@ pub enum Harmonics {
     Set(Vec<u32>),
 }
 
+/// Harmonics with which the tops of a row are sought, before the whole set is solved there.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SearchHarmonics {
+    /// Harmonic 1 where the equation of the whole set is large, else all.
+    Auto,
+    /// The whole set, without a search before.
+    All,
+    /// Those of this set, ascending and with 1, that are in the set of the row.
+    Set(Vec<u32>),
+}
+
 /// What becomes of a row whose error exceeds its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -50,6 +61,8 @@ pub enum FrequencyBand {
 pub struct SolverOptions {
     /// Harmonic set. Default auto.
     pub harmonics: Harmonics,
+    /// Harmonics of the search. Default auto.
+    pub search_harmonics: SearchHarmonics,
     /// Wanted relative error of the amplitude by the harmonics left out. Default 0.02.
     pub harmonic_tolerance: f64,
     /// What becomes of a row beyond it. Default flag.
@@ -73,6 +86,7 @@ impl Default for SolverOptions {
     fn default() -> Self {
         Self {
             harmonics: Harmonics::Auto,
+            search_harmonics: SearchHarmonics::Auto,
             harmonic_tolerance: 0.02,
             rows_beyond_tolerance: RowsBeyondTolerance::Flag,
             samples_per_period: 128,

@@ -13,10 +13,10 @@ use crate::response::harmonic_balance::Status;
 /// Tolerance of peaks of linear limits, which cost almost nothing.
 const LINEAR_PEAK_TOLERANCE: f64 = 4e-11;
 /// Largest number of points of one row.
-const EVALUATIONS: usize = 1500;
+pub(super) const EVALUATIONS: usize = 1500;
 /// Precision of the amplitudes that the search compares, over its tolerance: far below the share of it that a
 /// summit may be missed by.
-const SEARCH_PRECISION: f64 = 0.01;
+pub(super) const SEARCH_PRECISION: f64 = 0.01;
 /// Starting points between the dominant stuck and slide peaks.
 const STARTS_BETWEEN: usize = 5;
 /// Times the automatic band is widened while the largest value lies at its end.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::a_posteriori::ErrorSettings;
 use super::observed_amplitude::ObservedAmplitude;
-use super::options::{Harmonics, SolverOptions};
+use super::options::{Harmonics, SearchHarmonics, SolverOptions};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{HarmonicTransform, NewtonBounds, TransformError};
@@ -25,6 +25,8 @@ pub struct PointSettings {
     pub(super) ring: Ring,
     pub(super) geometry: ContactGeometry,
     pub(super) factors: ContactFactors,
+    /// The same with the harmonics of the search, where these are fewer.
+    search: Option<Box<Self>>,
 }
 
 impl PointSettings {
@@ -42,7 +44,16 @@ impl PointSettings {
         let set: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
         let samples = samples_per_period(options, harmonics);
         let law = contact.map(|(law, _)| law);
+        let sought = sought(&options.search_harmonics, harmonics);
+        let search = match &sought {
+            Some(sought) if contact.is_some() => {
+                let search = Self::new(options, sought, contact, geometry.clone())?;
+                Some(Box::new(search))
+            }
+            _ => None,
+        };
         Ok(Self {
+            search,
             harmonics: harmonics.to_vec(),
             transform: Arc::new(HarmonicTransform::new(&set, samples)?),
             amplitude: ObservedAmplitude::new(options.amplitude, harmonics, options.time_samples)?,
@@ -58,7 +69,11 @@ impl PointSettings {
     /// The same with what a free ring does under mean friction; locked at first.
     #[must_use]
     pub fn with_ring(self, ring: Ring) -> Self {
-        Self { ring, ..self }
+        Self {
+            ring,
+            search: self.search.map(|search| Box::new(search.with_ring(ring))),
+            ..self
+        }
     }
 
     /// The same for a wheel whose contact differs from the nominal one by `factors`.
@@ -66,6 +81,10 @@ impl PointSettings {
     pub fn with_factors(&self, factors: &ContactFactors) -> Self {
         Self {
             factors: factors.clone(),
+            search: self
+                .search
+                .as_ref()
+                .map(|search| Box::new(search.with_factors(factors))),
             ..self.clone()
         }
     }
@@ -76,11 +95,30 @@ impl PointSettings {
         &self.harmonics
     }
 
+    /// Settings of a search with fewer harmonics, if there is one, see [`super::refined_peak`].
+    #[must_use]
+    pub fn search(&self) -> Option<&Self> {
+        self.search.as_deref()
+    }
+
     /// How the errors of a solution are estimated.
     #[must_use]
     pub fn errors(&self) -> &ErrorSettings {
         &self.errors
     }
+}
+
+/// Harmonics of the search for tops of rows with `harmonics`; none where all of them are sought with.
+fn sought(search: &SearchHarmonics, harmonics: &[u32]) -> Option<Vec<u32>> {
+    let sought: Vec<u32> = match search {
+        SearchHarmonics::All => return None,
+        SearchHarmonics::Auto => vec![1],
+        SearchHarmonics::Set(set) => {
+            let own = harmonics.iter().filter(|harmonic| set.contains(harmonic));
+            own.copied().collect()
+        }
+    };
+    (sought.len() < harmonics.len()).then_some(sought)
 }
 
 /// Those asked for; where the set is automatic, at least [`SAMPLES_OF_HIGHEST`] per period of the highest

@@ -7,11 +7,12 @@ use super::attempt::Attempt;
 use super::excited::Excited;
 use super::options::ContactCondition;
 use super::point_settings::PointSettings;
+use super::starts::between;
 use crate::linalg::{Complex64, LuWorkspace};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{
-    ContactInterface, ContactShares, HarmonicSystem, NewtonWorkspace, PairContact, Status,
-    Structure, linear_response, solve, solve_creeping,
+    ContactInterface, ContactShares, HarmonicBlock, HarmonicSystem, NewtonWorkspace, PairContact,
+    Status, Structure, linear_response, solve, solve_creeping,
 };
 
 /// Work done for a row.
@@ -27,6 +28,20 @@ pub struct Work {
     pub retries: u64,
     /// Folds of the response curve passed by continuation.
     pub folds: u64,
+}
+
+impl Work {
+    /// Both together.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            nonlinear_solves: self.nonlinear_solves + other.nonlinear_solves,
+            newton_iterations: self.newton_iterations + other.newton_iterations,
+            factorisations: self.factorisations + other.factorisations,
+            retries: self.retries + other.retries,
+            folds: self.folds + other.folds,
+        }
+    }
 }
 
 /// A converged point.
@@ -75,7 +90,9 @@ pub struct PointSolver<'a> {
     pub(super) settings: &'a PointSettings,
     pub(super) linear: LuWorkspace<Complex64>,
     pub(super) nonlinear: Option<(HarmonicSystem, NewtonWorkspace)>,
-    points: Vec<Point>,
+    pub(super) points: Vec<Point>,
+    /// Points with fewer harmonics, in the unknowns of this solver; none unless it refines them.
+    pub(super) coarse: Vec<Point>,
     failures: Vec<(f64, Status)>,
     /// Relative precision of the amplitudes at which a point may end before its residual is met.
     precision: Option<f64>,
@@ -119,6 +136,7 @@ impl<'a> PointSolver<'a> {
             linear: LuWorkspace::new(excited.linear.structure.size()),
             nonlinear,
             points: Vec::new(),
+            coarse: Vec::new(),
             failures: Vec::new(),
             precision: None,
             work: Work::default(),
@@ -184,6 +202,42 @@ impl<'a> PointSolver<'a> {
             precision: Some(precision),
             ..self
         }
+    }
+
+    /// The same for points beside those of a solver with fewer harmonics.
+    #[must_use]
+    pub(super) fn refining(self, coarse: &PointSolver<'_>) -> Self {
+        let coarse = coarse.points.iter().map(|point| Point {
+            solution: self.embedded(coarse.excited, &point.solution),
+            ..point.clone()
+        });
+        Self {
+            coarse: coarse.collect(),
+            ..self
+        }
+    }
+
+    /// A solution of `excited`, whose harmonics are among those of this solver, in the unknowns of this one.
+    fn embedded(&self, excited: &Excited, solution: &[f64]) -> Vec<f64> {
+        let size = |block: &HarmonicBlock| {
+            block.structure.size() * if block.harmonic == 0 { 1 } else { 2 }
+        };
+        let mut all = Vec::new();
+        for block in &self.excited.blocks {
+            let mut from = 0;
+            let mut found = None;
+            for own in &excited.blocks {
+                if own.harmonic == block.harmonic {
+                    found = Some(from..from + size(own));
+                }
+                from += size(own);
+            }
+            match found {
+                Some(place) => all.extend_from_slice(&solution[place]),
+                None => all.resize(all.len() + size(block), 0.0),
+            }
+        }
+        all
     }
 
     /// The point at `frequency_hz` again, to the tolerance of the residual.
@@ -271,11 +325,12 @@ impl<'a> PointSolver<'a> {
     fn solve_nonlinear(&mut self, frequency_hz: f64) -> Result<Point, Status> {
         self.work.nonlinear_solves += 1;
         let mut last = Status::IterationLimit;
-        for (rung, attempt) in Attempt::LADDER.into_iter().enumerate() {
+        let ladder = Attempt::ladder(!self.coarse.is_empty());
+        for (rung, attempt) in ladder.iter().enumerate() {
             if let Some((_, workspace)) = &mut self.nonlinear {
-                workspace.set_accelerated(rung == 0);
+                workspace.set_steps(attempt.steps());
             }
-            match self.attempt(attempt, frequency_hz) {
+            match self.attempt(*attempt, frequency_hz) {
                 Ok(point) => {
                     self.work.retries += u64::from(rung > 0);
                     return Ok(point);
@@ -289,12 +344,16 @@ impl<'a> PointSolver<'a> {
 
     fn attempt(&mut self, attempt: Attempt, frequency_hz: f64) -> Result<Point, Status> {
         match attempt {
+            Attempt::ByHarmonic | Attempt::Once => {
+                let start = self.expected_from_coarse(frequency_hz)?;
+                self.newton(frequency_hz, start, None)
+            }
             Attempt::Neighbours => {
                 let start = self.expected(frequency_hz)?;
                 self.newton(frequency_hz, start, None)
             }
             Attempt::Line => {
-                let mut starts = self.between(frequency_hz);
+                let mut starts = between(&self.points, frequency_hz);
                 starts.push(self.stuck_start(frequency_hz)?);
                 self.newton(frequency_hz, starts.swap_remove(0), None)
             }
@@ -312,73 +371,6 @@ impl<'a> PointSolver<'a> {
         }
     }
 
-    /// The start with the smallest residual: what the converged points beside the frequency lead one to expect,
-    /// or the stuck solution, which is the answer itself where nothing slips.
-    fn expected(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
-        let nearest = self.nearest(frequency_hz).map(|point| {
-            let distance = (point.frequency_hz - frequency_hz).abs();
-            (distance <= NEAR * frequency_hz, point.shares)
-        });
-        let mut starts = self.between(frequency_hz);
-        match nearest {
-            // Contact that opens folds the curve: the straight line stays on its branch most often.
-            Some((_, shares)) if shares.separated > 0.0 => starts.truncate(1),
-            Some((true, shares)) if shares.slipping > 0.5 => {}
-            _ => starts.push(self.stuck_start(frequency_hz)?),
-        }
-        if let [_] = starts[..] {
-            return Ok(starts.remove(0));
-        }
-        let Some((system, workspace)) = &mut self.nonlinear else {
-            return Err(Status::SingularJacobian);
-        };
-        let mut residual = vec![0.0; system.unknowns()];
-        let mut best: Option<(f64, Vec<f64>)> = None;
-        for start in starts {
-            let buffers = workspace.system_mut();
-            let (norm, _) =
-                system.residual(TAU * frequency_hz, &start, &mut residual, false, buffers);
-            if best.as_ref().is_none_or(|(least, _)| norm < *least) {
-                best = Some((norm, start));
-            }
-        }
-        best.map(|(_, start)| start).ok_or(Status::NonFinite)
-    }
-
-    /// The nearest converged point, and the polynomials through the two and three nearest with points on
-    /// either side.
-    fn between(&self, frequency_hz: f64) -> Vec<Vec<f64>> {
-        let distance = |point: &Point| (point.frequency_hz - frequency_hz).abs();
-        let mut near: Vec<&Point> = self.points.iter().collect();
-        near.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let Some(&first) = near.first() else {
-            return Vec::new();
-        };
-        let below = first.frequency_hz <= frequency_hz;
-        let other = near[1..]
-            .iter()
-            .find(|point| (point.frequency_hz <= frequency_hz) != below);
-        let Some(&second) = other else {
-            return vec![first.solution.clone()];
-        };
-        let mut starts = vec![interpolated(&[first, second], frequency_hz)];
-        let third = near[1..].iter().find(|point| {
-            let differs = |other: &Point| point.frequency_hz.total_cmp(&other.frequency_hz).is_ne();
-            differs(first) && differs(second)
-        });
-        if let Some(&third) = third {
-            starts.push(interpolated(&[first, second, third], frequency_hz));
-        }
-        starts
-    }
-
-    pub(super) fn nearest(&self, frequency_hz: f64) -> Option<&Point> {
-        self.points.iter().min_by(|a, b| {
-            let distance = |point: &Point| (point.frequency_hz - frequency_hz).abs();
-            distance(a).total_cmp(&distance(b))
-        })
-    }
-
     /// Newton's method from `start`; on another system than that of the row where one is given.
     pub(super) fn newton(
         &mut self,
@@ -392,6 +384,7 @@ impl<'a> PointSolver<'a> {
         let mut x = start;
         let omega = TAU * frequency_hz;
         let bounds = self.settings.bounds;
+        let bounds = workspace.steps().bounds(bounds);
         let (outcome, ring_drift_m) = if let Some(other) = other {
             // On the way the ring is locked.
             let outcome = solve(other, omega, &mut x, bounds, None, workspace);
@@ -448,26 +441,6 @@ fn structures(excited: &Excited) -> Vec<(u32, &Structure)> {
 
 fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
-/// Share of the frequency within which a point at which most pairs slip tells more than the stuck solution.
-const NEAR: f64 = 0.002;
-
-/// The polynomial through the solutions of `points`, of different frequencies, at `frequency_hz`.
-fn interpolated(points: &[&Point], frequency_hz: f64) -> Vec<f64> {
-    let mut sum = vec![0.0; points[0].solution.len()];
-    for (at, point) in points.iter().enumerate() {
-        let others = points.iter().enumerate().filter(|(other, _)| *other != at);
-        let share: f64 = others
-            .map(|(_, other)| {
-                (frequency_hz - other.frequency_hz) / (point.frequency_hz - other.frequency_hz)
-            })
-            .product();
-        for (sum, x) in sum.iter_mut().zip(&point.solution) {
-            *sum += share * x;
-        }
-    }
-    sum
 }
 
 fn real_parts(x: &[Complex64]) -> Vec<f64> {

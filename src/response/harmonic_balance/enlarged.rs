@@ -7,6 +7,8 @@
 //! P = J    or    P = [J_ss, 0; 0, diag_k (part of J_kk linear in complex unknowns)]
 //! ```
 //!
+//! (where `J_ss` itself is large, only its leading harmonics whole, see [`super::kept_jacobian`])
+//!
 //! is solved by the fixed-point iteration `x <- x - P^-1 R(x)` with Anderson's acceleration (Anderson
 //! 1965; Walker & Ni 2011, SIAM J. Numer. Anal. 49(4)). P is the whole enlarged Jacobian where that is
 //! small (one sector of a tuned wheel): the first step is then Newton's. On a wheel it would cost more
@@ -17,9 +19,10 @@
 use std::sync::Arc;
 
 use super::anderson::Anderson;
+use super::kept_jacobian::{KeptJacobian, solve_complex};
 use super::{
-    HarmonicBlock, HarmonicSystem, HarmonicTransform, NewtonWorkspace, SystemWorkspace,
-    TransformError,
+    HarmonicBlock, HarmonicSystem, HarmonicTransform, LARGEST_WHOLE_JACOBIAN, NewtonWorkspace,
+    SystemWorkspace, TransformError,
 };
 use crate::linalg::{Complex64, LuWorkspace};
 
@@ -46,8 +49,9 @@ const NEGLIGIBLE: f64 = 5e-5;
 #[derive(Debug, Clone)]
 pub struct EnlargedSet {
     harmonics: Vec<u32>,
-    /// The set itself, sampled more finely.
+    /// The set itself, sampled more finely, and as the enlarged set is.
     fine: Arc<HarmonicTransform>,
+    alone: Arc<HarmonicTransform>,
     enlarged: Arc<HarmonicTransform>,
     linearised: Arc<HarmonicTransform>,
 }
@@ -71,9 +75,11 @@ impl EnlargedSet {
         };
         let highest = harmonics.last().map_or(1, |&k| k as usize);
         let of_highest = |least: usize, per_period: usize| least.max(per_period * highest);
+        let of_enlarged = of_highest(SAMPLES, SAMPLES_OF_HIGHEST);
         Ok(Self {
             fine: transform(set, samples)?,
-            enlarged: transform(&harmonics, of_highest(SAMPLES, SAMPLES_OF_HIGHEST))?,
+            alone: transform(set, of_enlarged)?,
+            enlarged: transform(&harmonics, of_enlarged)?,
             linearised: transform(
                 &harmonics,
                 of_highest(LINEARISED_SAMPLES, LINEARISED_SAMPLES_OF_HIGHEST),
@@ -94,7 +100,8 @@ impl EnlargedSet {
 pub struct Enlarged {
     /// The solution, zero outside of the set.
     pub before: Vec<f64>,
-    /// After one Newton correction at the finer sampling, in the set alone.
+    /// After one Newton correction at the finer sampling, in the set alone, or as many accelerated steps as bring it
+    /// about where the Jacobian is not to be had.
     pub resampled: Vec<f64>,
     /// The same at the sampling of the enlarged set: what `after` would be without harmonics outside.
     pub alone: Vec<f64>,
@@ -124,13 +131,17 @@ struct Enlargement<'a> {
     /// Place in the set of each enlarged block.
     places: Vec<Option<usize>>,
     omega: f64,
-    outside: Outside,
+    factors: Factors,
 }
 
-/// Factors of P but for those of `J_ss`.
-enum Outside {
+/// Factors of P.
+enum Factors {
+    /// Of J.
     Whole(LuWorkspace<f64>),
+    /// But for those of `J_ss`, which are in the workspace of the set.
     Blocks(Vec<Option<LuWorkspace<Complex64>>>),
+    /// Of every harmonic by itself.
+    ByHarmonic(KeptJacobian),
 }
 
 /// Corrects the solution `x` of `system` at `omega` towards that of the enlarged set; `blocks` are
@@ -146,9 +157,6 @@ pub fn enlarge(
     x: &[f64],
     wanted: Effects,
 ) -> Option<Enlarged> {
-    if !workspace.factor_at(system, omega, x) {
-        return None;
-    }
     let with = |blocks: &[HarmonicBlock], transform: &Arc<HarmonicTransform>| {
         let mut enlarged = HarmonicSystem::new(
             blocks.to_vec(),
@@ -167,33 +175,41 @@ pub fn enlarge(
     };
     let places: Vec<Option<usize>> = blocks.iter().map(same).collect();
     let before = embed(system, &enlarged, &places, x);
-    let outside = Outside::factor(&with(blocks, &set.linearised), &places, omega, &before)?;
-    let mut correction = vec![0.0; x.len()];
-    fine.residual(omega, x, &mut correction, false, &mut fine.workspace());
-    workspace.solve_linear(&mut correction);
-    let resampled: Vec<f64> = x.iter().zip(&correction).map(|(x, c)| x - c).collect();
-    let resampled = embed(system, &enlarged, &places, &resampled);
-    Enlargement {
+    let linearised = with(blocks, &set.linearised);
+    let factors = if system.unknowns() > LARGEST_WHOLE_JACOBIAN && system.is_shared() {
+        Factors::by_harmonic(&linearised, omega, &before)?
+    } else {
+        if !workspace.factor_at(system, omega, x) {
+            return None;
+        }
+        Factors::of(&linearised, &places, omega, &before)?
+    };
+    let mut enlargement = Enlargement {
         buffers: enlarged.workspace(),
         system,
         workspace,
         enlarged,
         places,
         omega,
-        outside,
-    }
-    .correct(before, resampled, wanted)
+        factors,
+    };
+    let resampled = enlargement.in_set_of(&fine, x)?;
+    let alone = if set.alone.n_samples() == set.fine.n_samples() {
+        resampled.clone()
+    } else {
+        enlargement.in_set_of(&with(system.blocks(), &set.alone), x)?
+    };
+    enlargement.correct(before, [resampled, alone], wanted)
 }
 
 impl Enlargement<'_> {
     fn correct(
         mut self,
         before: Vec<f64>,
-        resampled: Vec<f64>,
+        [resampled, alone]: [Vec<f64>; 2],
         wanted: Effects,
     ) -> Option<Enlarged> {
         let mut step = self.step(&before);
-        let alone = self.alone(&before);
         let scale = self.in_set(&before);
         let mut acceleration = Anderson::new(before.len(), DEPTH);
         let mut iterate = before.clone();
@@ -244,18 +260,20 @@ impl Enlargement<'_> {
     /// `-P^-1 R(x)`.
     fn step(&mut self, x: &[f64]) -> Vec<f64> {
         let mut step = self.residual(x);
-        if let Outside::Whole(factors) = &mut self.outside {
-            factors.solve(&mut step);
-        } else {
-            let own = self.set_step(&step);
-            let Outside::Blocks(blocks) = &mut self.outside else {
-                return own;
-            };
-            for (index, factors) in blocks.iter_mut().enumerate() {
-                let place = range(&self.enlarged, index);
-                match factors {
-                    Some(factors) => solve_complex(factors, &mut step[place]),
-                    None => step[place.clone()].copy_from_slice(&own[place]),
+        let own = match &self.factors {
+            Factors::Blocks(_) => self.set_step(&step),
+            _ => Vec::new(),
+        };
+        match &mut self.factors {
+            Factors::Whole(factors) => factors.solve(&mut step),
+            Factors::ByHarmonic(factors) => factors.solve(&mut step),
+            Factors::Blocks(blocks) => {
+                for (index, factors) in blocks.iter_mut().enumerate() {
+                    let place = range(&self.enlarged, index);
+                    match factors {
+                        Some(factors) => solve_complex(factors, &mut step[place]),
+                        None => step[place.clone()].copy_from_slice(&own[place]),
+                    }
                 }
             }
         }
@@ -265,24 +283,60 @@ impl Enlargement<'_> {
         step
     }
 
-    /// `J_ss^-1 residual_s`, zero outside of the set.
+    /// `J_ss^-1 residual_s`, or what stands for it, zero outside of the set.
     fn set_step(&mut self, residual: &[f64]) -> Vec<f64> {
-        let mut own = vec![0.0; self.system.unknowns()];
-        for (index, place) in self.places.iter().enumerate() {
-            if let Some(place) = *place {
-                own[range(self.system, place)]
-                    .copy_from_slice(&residual[range(&self.enlarged, index)]);
+        if let Factors::ByHarmonic(factors) = &mut self.factors {
+            let mut step = residual.to_vec();
+            factors.solve(&mut step);
+            for (index, place) in self.places.iter().enumerate() {
+                if place.is_none() {
+                    step[range(&self.enlarged, index)].fill(0.0);
+                }
             }
+            return step;
         }
+        let mut own = self.restricted(residual);
         self.workspace.solve_linear(&mut own);
         embed(self.system, &self.enlarged, &self.places, &own)
     }
 
-    /// One Newton correction in the set at the sampling of the enlarged set.
-    fn alone(&mut self, before: &[f64]) -> Vec<f64> {
-        let residual = self.residual(before);
-        let step = self.set_step(&residual);
-        before.iter().zip(step).map(|(x, s)| x - s).collect()
+    /// The solution of `other`, which has the harmonics of the set, near its solution `x` at another sampling, in the
+    /// unknowns of the enlarged system: by one Newton correction, or by accelerated steps. None if they diverge.
+    fn in_set_of(&mut self, other: &HarmonicSystem, x: &[f64]) -> Option<Vec<f64>> {
+        let newton = !matches!(self.factors, Factors::ByHarmonic(_));
+        let evaluations = if newton { 1 } else { EVALUATIONS };
+        let mut buffers = other.workspace();
+        let mut acceleration = Anderson::new(self.enlarged.unknowns(), DEPTH);
+        let mut iterate = embed(self.system, &self.enlarged, &self.places, x);
+        let scale = self.in_set(&iterate);
+        let (mut next, mut residual) = (iterate.clone(), vec![0.0; x.len()]);
+        for _ in 0..evaluations {
+            let own = self.restricted(&iterate);
+            other.residual(self.omega, &own, &mut residual, false, &mut buffers);
+            let residual = embed(self.system, &self.enlarged, &self.places, &residual);
+            let step: Vec<f64> = self.set_step(&residual).iter().map(|s| -s).collect();
+            if !step.iter().all(|s| s.is_finite()) {
+                return None;
+            }
+            let left = self.in_set(&step) / scale;
+            acceleration.next(&iterate, &step, &mut next);
+            std::mem::swap(&mut iterate, &mut next);
+            if left <= NEGLIGIBLE {
+                break;
+            }
+        }
+        Some(iterate)
+    }
+
+    /// The unknowns of the set.
+    fn restricted(&self, x: &[f64]) -> Vec<f64> {
+        let mut own = vec![0.0; self.system.unknowns()];
+        for (index, place) in self.places.iter().enumerate() {
+            if let Some(place) = *place {
+                own[range(self.system, place)].copy_from_slice(&x[range(&self.enlarged, index)]);
+            }
+        }
+        own
     }
 
     /// One Newton correction in the set of `after` less each harmonic outside.
@@ -322,22 +376,6 @@ impl Enlargement<'_> {
     }
 }
 
-/// Solves for the unknowns of one harmonic, in place: real parts, then imaginary ones where it is not harmonic 0.
-fn solve_complex(factors: &mut LuWorkspace<Complex64>, unknowns: &mut [f64]) {
-    let n = factors.dimension();
-    let imaginary = |i: usize| unknowns.get(n + i).copied().unwrap_or(0.0);
-    let mut right: Vec<Complex64> = (0..n)
-        .map(|i| Complex64::new(unknowns[i], imaginary(i)))
-        .collect();
-    factors.solve(&mut right);
-    for (i, solution) in right.iter().enumerate() {
-        unknowns[i] = solution.re;
-        if let Some(imaginary) = unknowns.get_mut(n + i) {
-            *imaginary = solution.im;
-        }
-    }
-}
-
 fn range(system: &HarmonicSystem, block: usize) -> std::ops::Range<usize> {
     system.start[block]..system.start[block + 1]
 }
@@ -358,8 +396,20 @@ fn embed(
     all
 }
 
-impl Outside {
-    fn factor(
+impl Factors {
+    /// Of every harmonic of `system` by itself at `x`; none if one is singular.
+    fn by_harmonic(system: &HarmonicSystem, omega: f64, x: &[f64]) -> Option<Self> {
+        let mut buffers = system.workspace();
+        system.couple_leading(&mut buffers);
+        let mut residual = vec![0.0; system.unknowns()];
+        system.residual(omega, x, &mut residual, true, &mut buffers);
+        let mut factors = KeptJacobian::new();
+        let regular = factors.factor_by_harmonic(system, omega, &mut buffers);
+        regular.then_some(Self::ByHarmonic(factors))
+    }
+
+    /// The others.
+    fn of(
         system: &HarmonicSystem,
         places: &[Option<usize>],
         omega: f64,

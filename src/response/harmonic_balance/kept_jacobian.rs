@@ -9,9 +9,16 @@
 //!
 //! and comes in through the residual alone: a step with P takes one LU factorisation a harmonic instead of one
 //! of all together, and half of the couplings need not be assembled.
+//!
+//! Near a solution less will do: `J_cc` of the leading harmonics c, 0 and 1, whole, and of every other harmonic k
+//! by itself the part of `J_kk` that is linear in complex unknowns, all couplings between left out:
+//!
+//! ```text
+//! P = [J_cc, 0; 0, diag_k (part of J_kk)]
+//! ```
 
 use super::{HarmonicSystem, SystemWorkspace};
-use crate::linalg::{LuWorkspace, add_times};
+use crate::linalg::{Complex64, LuWorkspace, add_times};
 
 /// Which factors are at hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,6 +26,7 @@ enum Held {
     Nothing,
     Whole,
     Triangle,
+    ByHarmonic,
 }
 
 /// Factors of the Jacobian of one system.
@@ -29,6 +37,9 @@ pub(super) struct KeptJacobian {
     /// A block column of J before it is taken apart.
     assembled: Vec<f64>,
     negative: Vec<f64>,
+    /// `J_cc` and the blocks of the harmonics beyond.
+    leading: Option<LuWorkspace<f64>>,
+    beyond: Vec<LuWorkspace<Complex64>>,
 }
 
 /// The column of one harmonic in P.
@@ -47,7 +58,14 @@ impl KeptJacobian {
             triangle: Vec::new(),
             assembled: Vec::new(),
             negative: Vec::new(),
+            leading: None,
+            beyond: Vec::new(),
         }
+    }
+
+    /// Lets go of the factors at hand.
+    pub(super) fn forget(&mut self) {
+        self.held = Held::Nothing;
     }
 
     /// Whether there are factors, of this or of an earlier point.
@@ -106,6 +124,39 @@ impl KeptJacobian {
         self.hold(Held::Triangle, regular)
     }
 
+    /// Factors the leading harmonics and every other one by itself, see [`self`], at the same point, for which the
+    /// derivatives of pairs are those of [`HarmonicSystem::couple_leading`]; false if a block is singular.
+    pub(super) fn factor_by_harmonic(
+        &mut self,
+        system: &HarmonicSystem,
+        omega: f64,
+        workspace: &mut SystemWorkspace,
+    ) -> bool {
+        let (count, leading) = (system.blocks.len(), system.leading());
+        let factors = self
+            .leading
+            .get_or_insert_with(|| LuWorkspace::new(system.start[leading]));
+        system.jacobian_of(
+            0..leading,
+            0..leading,
+            omega,
+            workspace,
+            factors.matrix_mut(),
+        );
+        let mut regular = factors.factor();
+        if self.beyond.is_empty() {
+            let size = |index: usize| system.blocks[index].structure.size();
+            self.beyond = (leading..count)
+                .map(|index| LuWorkspace::new(size(index)))
+                .collect();
+        }
+        for (index, factors) in (leading..count).zip(&mut self.beyond) {
+            system.complex_jacobian_of(index, omega, workspace, factors.matrix_mut());
+            regular &= factors.factor();
+        }
+        self.hold(Held::ByHarmonic, regular)
+    }
+
     fn hold(&mut self, held: Held, regular: bool) -> bool {
         self.held = if regular { held } else { Held::Nothing };
         regular
@@ -115,6 +166,19 @@ impl KeptJacobian {
     pub(super) fn solve(&mut self, residual: &mut [f64]) {
         match (self.held, &mut self.whole) {
             (Held::Whole, Some(whole)) => whole.solve(residual),
+            (Held::ByHarmonic, _) => {
+                let mut rest = residual;
+                if let Some(factors) = &mut self.leading {
+                    let (own, beyond) = rest.split_at_mut(factors.dimension());
+                    factors.solve(own);
+                    rest = beyond;
+                }
+                for factors in &mut self.beyond {
+                    let (own, beyond) = rest.split_at_mut(2 * factors.dimension());
+                    solve_complex(factors, own);
+                    rest = beyond;
+                }
+            }
             (Held::Triangle, _) => {
                 let mut rest = residual;
                 for column in &mut self.triangle {
@@ -140,6 +204,22 @@ impl BlockColumn {
         Self {
             diagonal: LuWorkspace::new(size),
             below: vec![0.0; below * size],
+        }
+    }
+}
+
+/// Solves for the unknowns of one harmonic, in place: real parts, then imaginary ones where it is not harmonic 0.
+pub(super) fn solve_complex(factors: &mut LuWorkspace<Complex64>, unknowns: &mut [f64]) {
+    let n = factors.dimension();
+    let imaginary = |i: usize| unknowns.get(n + i).copied().unwrap_or(0.0);
+    let mut right: Vec<Complex64> = (0..n)
+        .map(|i| Complex64::new(unknowns[i], imaginary(i)))
+        .collect();
+    factors.solve(&mut right);
+    for (i, solution) in right.iter().enumerate() {
+        unknowns[i] = solution.re;
+        if let Some(imaginary) = unknowns.get_mut(n + i) {
+            *imaginary = solution.im;
         }
     }
 }

@@ -30,7 +30,7 @@ pub use convergence::NewtonBounds;
 pub use damping::Damping;
 pub use enlarged::{Effects, Enlarged, EnlargedSet, enlarge};
 pub use linear::linear_response;
-pub use newton::{LARGEST_WHOLE_JACOBIAN, NewtonOutcome, NewtonWorkspace, Settled, solve};
+pub use newton::{LARGEST_WHOLE_JACOBIAN, NewtonOutcome, NewtonWorkspace, Settled, Steps, solve};
 pub use pair_harmonics::{PairHarmonics, PairJacobian};
 pub use ring_drift::solve_creeping;
 pub use status::Status;

@@ -5,6 +5,41 @@ use super::anderson::Anderson;
 use super::kept_jacobian::KeptJacobian;
 use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
 
+/// How the steps of a solve are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Steps {
+    /// Newton's, damped; the whole Jacobian is kept while simplified steps shrink by themselves.
+    Plain,
+    /// Simplified steps combined by Anderson's acceleration, with a Jacobian (its lower block triangle where it is
+    /// large) that is renewed where they shrink too slowly.
+    Accelerated,
+    /// From a good start: the acceleration alone, with the derivatives of the harmonics by themselves, see
+    /// [`KeptJacobian`], found once. Steps may grow on the way.
+    ByHarmonic,
+    /// The same with the whole Jacobian.
+    Once,
+}
+
+impl Steps {
+    /// Whether one Jacobian is to do.
+    fn keep_jacobian(self) -> bool {
+        matches!(self, Self::ByHarmonic | Self::Once)
+    }
+
+    /// `bounds` for steps of this kind: what costs a small part may be more.
+    #[must_use]
+    pub fn bounds(self, bounds: NewtonBounds) -> NewtonBounds {
+        NewtonBounds {
+            iterations: if self.keep_jacobian() {
+                4 * bounds.iterations
+            } else {
+                bounds.iterations
+            },
+            ..bounds
+        }
+    }
+}
+
 /// When a Jacobian serves on: by the length of a simplified step over that of an earlier one.
 #[derive(Clone, Copy)]
 struct Serves {
@@ -14,6 +49,8 @@ struct Serves {
     two_steps: f64,
     /// The step before is taken up to this.
     longer: f64,
+    /// Steps after which it is renewed anyway.
+    steps: usize,
 }
 
 /// Of simplified steps by themselves.
@@ -21,12 +58,22 @@ const PLAIN: Serves = Serves {
     one_step: 0.6,
     two_steps: 0.0,
     longer: 0.75,
+    steps: usize::MAX,
 };
 /// Of accelerated ones, which cost a small part of what a new Jacobian does.
 const ACCELERATED: Serves = Serves {
     one_step: 0.9,
     two_steps: 0.8,
     longer: 2.0,
+    steps: usize::MAX,
+};
+/// Of accelerated ones with a Jacobian that leaves out much: what is left out is learned from the steps, all of
+/// them, so that a new Jacobian would throw away more than it brings.
+const ONCE: Serves = Serves {
+    one_step: 3.0,
+    two_steps: 3.0,
+    longer: 1e3,
+    steps: 130,
 };
 
 /// Unknowns up to which accelerated steps take the whole Jacobian: it costs next to nothing there.
@@ -34,6 +81,8 @@ pub const LARGEST_WHOLE_JACOBIAN: usize = 400;
 
 /// Earlier iterates that the acceleration combines.
 const DEPTH: usize = 16;
+/// The same where all are needed, see [`ONCE`].
+const DEPTH_OF_ONCE: usize = 120;
 
 /// Outcome of one nonlinear solve; the solution itself is left in the caller's vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,8 +130,7 @@ pub(super) struct NewtonBuffers {
     trial: Vec<f64>,
     trial_step: Vec<f64>,
     acceleration: Option<Anderson>,
-    /// Whether there is to be acceleration where there is room for it.
-    accelerated: bool,
+    steps: Steps,
 }
 
 impl NewtonBuffers {
@@ -94,14 +142,14 @@ impl NewtonBuffers {
             trial: vec![0.0; n],
             trial_step: vec![0.0; n],
             acceleration: None,
-            accelerated: true,
+            steps: Steps::Accelerated,
         }
     }
 
     /// The same with room to accelerate simplified steps.
-    fn accelerated(n: usize) -> Self {
+    fn accelerated(n: usize, depth: usize) -> Self {
         Self {
-            acceleration: Some(Anderson::new(n, DEPTH)),
+            acceleration: Some(Anderson::new(n, depth)),
             ..Self::new(n)
         }
     }
@@ -123,7 +171,7 @@ impl NewtonWorkspace {
         Self {
             system: system.workspace(),
             jacobian: KeptJacobian::new(),
-            buffers: NewtonBuffers::accelerated(n),
+            buffers: NewtonBuffers::accelerated(n, DEPTH),
         }
     }
 
@@ -132,9 +180,29 @@ impl NewtonWorkspace {
         &mut self.system
     }
 
-    /// Whether simplified steps are accelerated from now on; at first they are.
-    pub fn set_accelerated(&mut self, accelerated: bool) {
-        self.buffers.accelerated = accelerated;
+    /// How steps are made.
+    #[must_use]
+    pub fn steps(&self) -> Steps {
+        self.buffers.steps
+    }
+
+    /// How steps are made from now on; at first they are accelerated.
+    pub fn set_steps(&mut self, steps: Steps) {
+        if self.buffers.steps == steps {
+            return;
+        }
+        if steps.keep_jacobian() || self.buffers.steps.keep_jacobian() {
+            // Factors of another kind are of no use.
+            self.jacobian.forget();
+            let depth = if steps.keep_jacobian() {
+                DEPTH_OF_ONCE
+            } else {
+                DEPTH
+            };
+            let n = self.buffers.step.len();
+            self.buffers = NewtonBuffers::accelerated(n, depth);
+        }
+        self.buffers.steps = steps;
     }
 
     /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
@@ -155,7 +223,7 @@ struct FixedFrequency<'a> {
     omega: f64,
     workspace: &'a mut SystemWorkspace,
     jacobian: &'a mut KeptJacobian,
-    accelerated: bool,
+    steps: Steps,
     settled: Option<Settled<'a>>,
 }
 
@@ -166,17 +234,32 @@ impl Equation for FixedFrequency<'_> {
     }
 
     fn linearise(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
+        let small = self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN || !self.system.is_shared();
+        let by_harmonic = self.steps == Steps::ByHarmonic && !small;
+        if by_harmonic {
+            self.system.couple_leading(self.workspace);
+        } else {
+            self.system.couple_all(self.workspace);
+        }
         let (_, shares) = self
             .system
             .residual(self.omega, x, residual, true, self.workspace);
+        let (system, omega) = (self.system, self.omega);
         // Contact that opens couples the harmonics closely.
-        let whole = self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN || shares.separated > 0.0;
-        if whole || !self.accelerated {
-            self.jacobian
-                .factor_whole(self.system, self.omega, self.workspace)
-        } else {
-            self.jacobian
-                .factor_triangle(self.system, self.omega, self.workspace)
+        if by_harmonic && shares.separated > 0.0 {
+            self.system.couple_all(self.workspace);
+            system.residual(omega, x, residual, true, self.workspace);
+        }
+        let whole = small || shares.separated > 0.0;
+        match self.steps {
+            Steps::ByHarmonic if !whole => {
+                self.jacobian
+                    .factor_by_harmonic(system, omega, self.workspace)
+            }
+            Steps::Accelerated if !whole => {
+                self.jacobian.factor_triangle(system, omega, self.workspace)
+            }
+            _ => self.jacobian.factor_whole(system, omega, self.workspace),
         }
     }
 
@@ -208,7 +291,7 @@ pub fn solve(
         omega,
         workspace: &mut workspace.system,
         jacobian: &mut workspace.jacobian,
-        accelerated: workspace.buffers.accelerated,
+        steps: workspace.buffers.steps,
         settled,
     };
     iterate(&mut equation, x, bounds, &mut workspace.buffers)
@@ -235,8 +318,9 @@ pub(super) fn iterate(
         trial,
         trial_step,
         acceleration,
-        accelerated,
+        steps,
     } = buffers;
+    let once = steps.keep_jacobian();
     if let Some(acceleration) = acceleration {
         acceleration.begin();
     }
@@ -256,6 +340,8 @@ pub(super) fn iterate(
         negative_step(equation, residual, step);
     }
     let mut before_last = 0.0;
+    let mut served = 0;
+    let mut settled_before = !once;
     loop {
         if let Some(status) = bounds.judge(first, state.residual, state.iterations as usize) {
             // Forces of a pair without a periodic state prove nothing, however small the residual.
@@ -272,14 +358,18 @@ pub(super) fn iterate(
                 acceleration.begin();
             }
             before_last = 0.0;
+            served = 0;
         }
         state.iterations += 1;
+        served += 1;
         let length = norm_of(step);
         // Contact that opens folds the curve, and a step that is too long ends on another branch of it.
         let serves = match acceleration {
-            Some(acceleration) if *accelerated && state.shares.separated == 0.0 => {
+            Some(acceleration) if *steps != Steps::Plain && state.shares.separated == 0.0 => {
                 acceleration.next(u, step, trial);
-                ACCELERATED
+                // A step of such a Jacobian is as good as the first.
+                kept |= once;
+                if once { ONCE } else { ACCELERATED }
             }
             _ => {
                 add_scaled(trial, u, 1.0, step);
@@ -309,11 +399,14 @@ pub(super) fn iterate(
                 (state.residual, state.shares) = (norm, shares);
                 // Where contact opens, a step tells little of what is left.
                 let proven = shares.separated == 0.0 && shares.unclosed == 0.0;
-                if proven && equation.is_settled(u, trial_step) {
+                let settled = proven && equation.is_settled(u, trial_step);
+                if settled && settled_before {
                     return ended(state, Status::Ok);
                 }
-                kept = contraction <= serves.one_step
-                    || contraction * length <= serves.two_steps * before_last;
+                settled_before = settled || !once;
+                kept = served < serves.steps
+                    && (contraction <= serves.one_step
+                        || contraction * length <= serves.two_steps * before_last);
                 before_last = length;
                 if kept {
                     std::mem::swap(step, trial_step);

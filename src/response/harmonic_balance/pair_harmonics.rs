@@ -84,8 +84,9 @@ pub struct PairHarmonics {
     history: ContactHistory,
     /// Growth of the tangential displacement per period, m.
     drift_m: [f64; 2],
-    /// Whether derivatives of one harmonic by another are left out.
-    decoupled: bool,
+    /// Coefficients, the first ones, whose derivatives by each other are wanted; of the others only those by
+    /// their own harmonic.
+    coupled_first: usize,
     sums: ClipSums,
     coupled: CoupledDerivative,
 }
@@ -102,7 +103,7 @@ impl PairHarmonics {
             displacement: vec![0.0; 3 * n_samples],
             history: ContactHistory::new(n_samples),
             drift_m: [0.0; 2],
-            decoupled: false,
+            coupled_first: usize::MAX,
             sums: ClipSums::new(n_coefficients, n_samples),
             coupled: CoupledDerivative::new(n_coefficients),
             transform,
@@ -127,10 +128,10 @@ impl PairHarmonics {
         self.drift_m = drift_m;
     }
 
-    /// Leaves out the derivatives of one harmonic by another from now on (not under `coulomb_3d`): they
-    /// remain zero.
-    pub(super) fn decouple(&mut self) {
-        self.decoupled = true;
+    /// From now on derivatives of one harmonic by another are left out (not under `coulomb_3d`), they remain
+    /// zero; but for those of the first `coefficients` by each other.
+    pub(super) fn couple_first(&mut self, coefficients: usize) {
+        self.coupled_first = coefficients;
     }
 
     /// Corrections of one pair, and where wanted their derivative.
@@ -250,7 +251,7 @@ impl PairHarmonics {
         if self.law.has_variable_load() && self.history.state().separated {
             self.sums
                 .gather_separated(&self.transform, self.history.normal_load_n());
-            let wanted = |c| wanted(&self.transform, self.decoupled, c);
+            let wanted = |c| wanted(&self.transform, self.coupled_first, c);
             self.sums
                 .fill_normal(-kn, wanted, &mut jacobian.normal_normal);
         }
@@ -273,7 +274,7 @@ impl PairHarmonics {
             }
             self.sums
                 .gather_clips(&self.transform, slider.clip_samples(), slider.clip_signs());
-            let wanted = |c| wanted(&self.transform, self.decoupled, c);
+            let wanted = |c| wanted(&self.transform, self.coupled_first, c);
             let factors = [-kt, limit_slope];
             self.sums
                 .fill_tangential(factors, wanted, by_tangential, by_normal);
@@ -322,11 +323,12 @@ impl PairHarmonics {
     }
 }
 
-/// Coefficients by which the derivatives of coefficient `c` are wanted: all, or those of its harmonic.
-fn wanted(transform: &HarmonicTransform, decoupled: bool, c: usize) -> Range<usize> {
+/// Coefficients by which the derivatives of coefficient `c` are wanted: all `coupled` ones, or those of its
+/// harmonic.
+fn wanted(transform: &HarmonicTransform, coupled: usize, c: usize) -> Range<usize> {
     let mean = usize::from(transform.has_mean());
-    if !decoupled {
-        0..transform.n_coefficients()
+    if c < coupled {
+        0..coupled.min(transform.n_coefficients())
     } else if c < mean {
         0..mean
     } else {

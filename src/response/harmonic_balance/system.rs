@@ -220,11 +220,35 @@ impl HarmonicSystem {
         }
     }
 
-    /// [`Self::workspace`] for derivatives of every harmonic by itself, see [`PairHarmonics::decouple`].
+    /// [`Self::workspace`] for derivatives of every harmonic by itself, see [`PairHarmonics::couple_first`].
     pub(super) fn decoupled_workspace(&self) -> SystemWorkspace {
         let mut workspace = self.workspace();
-        workspace.pairs.decouple();
+        workspace.pairs.couple_first(0);
         workspace
+    }
+
+    /// Whether all harmonics have the same real matrices.
+    pub(super) fn is_shared(&self) -> bool {
+        self.shared
+    }
+
+    /// Number of the leading harmonics, 0 and 1: those that the others are small beside.
+    pub(super) fn leading(&self) -> usize {
+        self.fundamental() + 1
+    }
+
+    /// From now on derivatives of pairs are those of the leading harmonics, and of every other one by itself.
+    pub(super) fn couple_leading(&self, workspace: &mut SystemWorkspace) {
+        let coefficients = self.coefficient.get(self.leading());
+        let all = self.transform.n_coefficients();
+        workspace
+            .pairs
+            .couple_first(coefficients.copied().unwrap_or(all));
+    }
+
+    /// From now on derivatives of pairs are those of all harmonics again.
+    pub(super) fn couple_all(&self, workspace: &mut SystemWorkspace) {
+        workspace.pairs.couple_first(usize::MAX);
     }
 
     /// Residual at `x` into `residual`; returns its norm relative to the excitation and the

@@ -282,6 +282,12 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "`auto`: per engine order and load, by the tuned full contact model ([formulation.md](formulation.md)); a list has 1 among them",
     ),
     entry(
+        "solver.search_harmonics",
+        Either(&[Name(&["auto", "all"]), Ascending(&Whole(0, 100), None)]),
+        "`\"auto\"`",
+        "tops are sought with these, then solved with `harmonics` ([formulation.md](formulation.md)); `auto`: 1 where the equation is large; `all`: sought with `harmonics`",
+    ),
+    entry(
         "solver.harmonic_tolerance",
         Number(Range::from_to(1e-6, 1.0)),
         "0.02",

@@ -1,0 +1,124 @@
+//! Where Newton's method starts at a frequency of a row: from what is known beside it.
+
+use std::f64::consts::TAU;
+
+use super::point_solver::{Point, PointSolver};
+use crate::response::harmonic_balance::Status;
+
+/// Share of the frequency within which a point at which most pairs slip tells more than the stuck solution.
+const NEAR: f64 = 0.002;
+
+impl PointSolver<'_> {
+    /// The start with the smallest residual: what the converged points beside the frequency lead one to expect,
+    /// or the stuck solution, which is the answer itself where nothing slips.
+    pub(super) fn expected(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
+        let nearest = self.nearest(frequency_hz).map(|point| {
+            let distance = (point.frequency_hz - frequency_hz).abs();
+            (distance <= NEAR * frequency_hz, point.shares)
+        });
+        let mut starts = between(&self.points, frequency_hz);
+        match nearest {
+            // Contact that opens folds the curve: the straight line stays on its branch most often.
+            Some((_, shares)) if shares.separated > 0.0 => starts.truncate(1),
+            Some((true, shares)) if shares.slipping > 0.5 => {}
+            _ => starts.push(self.stuck_start(frequency_hz)?),
+        }
+        self.of_least_residual(starts, frequency_hz)
+    }
+
+    /// The start with the smallest residual among the curve with fewer harmonics, moved to the nearest converged point,
+    /// and the polynomials through converged points on either side.
+    pub(super) fn expected_from_coarse(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
+        let coarse = |frequency_hz: f64| between(&self.coarse, frequency_hz).into_iter().next();
+        let mut start = coarse(frequency_hz).ok_or(Status::SingularJacobian)?;
+        let mut starts = Vec::new();
+        if let Some(near) = nearest(&self.points, frequency_hz) {
+            let there = coarse(near.frequency_hz).ok_or(Status::SingularJacobian)?;
+            for ((x, fine), coarse) in start.iter_mut().zip(&near.solution).zip(&there) {
+                *x += fine - coarse;
+            }
+            starts = between(&self.points, frequency_hz);
+        }
+        starts.push(start);
+        self.of_least_residual(starts, frequency_hz)
+    }
+
+    fn of_least_residual(
+        &mut self,
+        mut starts: Vec<Vec<f64>>,
+        frequency_hz: f64,
+    ) -> Result<Vec<f64>, Status> {
+        if let [_] = starts[..] {
+            return Ok(starts.remove(0));
+        }
+        let Some((system, workspace)) = &mut self.nonlinear else {
+            return Err(Status::SingularJacobian);
+        };
+        let mut residual = vec![0.0; system.unknowns()];
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for start in starts {
+            let buffers = workspace.system_mut();
+            let (norm, _) =
+                system.residual(TAU * frequency_hz, &start, &mut residual, false, buffers);
+            if best.as_ref().is_none_or(|(least, _)| norm < *least) {
+                best = Some((norm, start));
+            }
+        }
+        best.map(|(_, start)| start).ok_or(Status::NonFinite)
+    }
+
+    pub(super) fn nearest(&self, frequency_hz: f64) -> Option<&Point> {
+        nearest(&self.points, frequency_hz)
+    }
+}
+
+fn nearest(points: &[Point], frequency_hz: f64) -> Option<&Point> {
+    points.iter().min_by(|a, b| {
+        let distance = |point: &Point| (point.frequency_hz - frequency_hz).abs();
+        distance(a).total_cmp(&distance(b))
+    })
+}
+
+/// The solution of the nearest point, and the polynomials through the two and three nearest with points on
+/// either side.
+pub(super) fn between(points: &[Point], frequency_hz: f64) -> Vec<Vec<f64>> {
+    let distance = |point: &Point| (point.frequency_hz - frequency_hz).abs();
+    let mut near: Vec<&Point> = points.iter().collect();
+    near.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let Some(&first) = near.first() else {
+        return Vec::new();
+    };
+    let below = first.frequency_hz <= frequency_hz;
+    let other = near[1..]
+        .iter()
+        .find(|point| (point.frequency_hz <= frequency_hz) != below);
+    let Some(&second) = other else {
+        return vec![first.solution.clone()];
+    };
+    let mut starts = vec![interpolated(&[first, second], frequency_hz)];
+    let third = near[1..].iter().find(|point| {
+        let differs = |other: &Point| point.frequency_hz.total_cmp(&other.frequency_hz).is_ne();
+        differs(first) && differs(second)
+    });
+    if let Some(&third) = third {
+        starts.push(interpolated(&[first, second, third], frequency_hz));
+    }
+    starts
+}
+
+/// The polynomial through the solutions of `points`, of different frequencies, at `frequency_hz`.
+fn interpolated(points: &[&Point], frequency_hz: f64) -> Vec<f64> {
+    let mut sum = vec![0.0; points[0].solution.len()];
+    for (at, point) in points.iter().enumerate() {
+        let others = points.iter().enumerate().filter(|(other, _)| *other != at);
+        let share: f64 = others
+            .map(|(_, other)| {
+                (frequency_hz - other.frequency_hz) / (point.frequency_hz - other.frequency_hz)
+            })
+            .product();
+        for (sum, x) in sum.iter_mut().zip(&point.solution) {
+            *sum += share * x;
+        }
+    }
+    sum
+}
