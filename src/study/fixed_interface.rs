@@ -274,6 +274,7 @@ impl Compared {
             tolerance: PEAK_TOLERANCE,
             evaluations: EVALUATIONS,
             extensions: plan.extensions,
+            rivals_from: 1.0,
         };
         let found = find_peak(
             band_hz,

@@ -18,6 +18,7 @@ mod mistuning;
 mod peaks;
 mod reduction;
 mod reference;
+mod refined_peak;
 mod sector_sources;
 mod separation;
 mod surrogate;

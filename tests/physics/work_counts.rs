@@ -15,7 +15,7 @@ use super::wheels::{Wheel, full};
 
 /// Solid elements, six stick and six slide modes per nodal diameter: 1152 unknowns with two harmonics, enough
 /// for factors without the couplings to lower harmonics.
-fn wheel24() -> Wheel {
+pub fn wheel24() -> Wheel {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/wheel24");
     Wheel::of(
         &bundle::read(&folder).unwrap(),

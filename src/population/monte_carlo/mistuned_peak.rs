@@ -45,7 +45,7 @@ impl RowSolver {
     }
 
     /// Settings of a search with fewer harmonics, where rows with `points` have one.
-    fn search<'a>(&self, points: &'a PointSettings) -> Option<&'a PointSettings> {
+    pub(super) fn search<'a>(&self, points: &'a PointSettings) -> Option<&'a PointSettings> {
         let coordinates: usize = 2 * points.harmonics().len() * self.basis().size();
         let pays = self.settings.solver.search_harmonics != SearchHarmonics::Auto
             || coordinates > LARGEST_WHOLE_JACOBIAN;

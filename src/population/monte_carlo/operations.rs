@@ -59,6 +59,8 @@ pub struct SystemSize {
     pub coefficients: usize,
     /// Samples per period.
     pub samples: usize,
+    /// Whether tops are sought with fewer harmonics, so that the set is solved by its harmonics.
+    pub in_stages: bool,
 }
 
 impl SystemSize {
@@ -75,20 +77,32 @@ impl SystemSize {
     }
 
     /// Assembly of `C^T J C` and the LU factors of the Jacobian: `2 c n^2 + 2/3 n^3`, or its lower block triangle
-    /// with the factors of one block a harmonic.
+    /// with the factors of one block a harmonic. In two stages those of its harmonics by themselves, all of them, though
+    /// the first stage has fewer.
     #[must_use]
     pub fn per_factorisation(&self) -> f64 {
         if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
-            return self.whole_jacobian();
+            return self.whole_jacobian(self.unknowns());
+        }
+        if self.in_stages {
+            return self.by_harmonic(self.coefficients as f64 / 2.0 - 1.0);
         }
         let factors = |size: f64| 2.0 / 3.0 * size.powi(3);
         let blocks: f64 = self.blocks().map(factors).sum();
         2.0 * self.contact_rows as f64 * self.lower_triangle() + blocks
     }
 
-    fn whole_jacobian(&self) -> f64 {
-        let n = self.unknowns() as f64;
+    fn whole_jacobian(&self, unknowns: usize) -> f64 {
+        let n = unknowns as f64;
         2.0 * self.contact_rows as f64 * n * n + 2.0 / 3.0 * n.powi(3)
+    }
+
+    /// The whole Jacobian of harmonic 1 and a complex block of every harmonic `beyond`.
+    fn by_harmonic(&self, beyond: f64) -> f64 {
+        let coordinates = self.coordinates as f64;
+        let block =
+            4.0 * self.contact_rows as f64 * coordinates.powi(2) + 8.0 / 3.0 * coordinates.powi(3);
+        self.whole_jacobian(2 * self.coordinates) + beyond * block
     }
 
     /// Unknowns of each harmonic.
@@ -114,6 +128,8 @@ impl SystemSize {
         let n = self.unknowns() as f64;
         let entries = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
             n * n
+        } else if self.in_stages {
+            self.blocks().map(|size| size * size).sum()
         } else {
             self.lower_triangle()
         };
@@ -128,16 +144,18 @@ impl SystemSize {
         modal + transforms + LAW * self.pairs as f64 * samples
     }
 
-    /// The check of samples and harmonics that every row has: the whole Jacobian and a complex block of each
-    /// harmonic besides, then evaluations with all harmonics up to 15.
+    /// The check of samples and harmonics that every row has: the whole Jacobian, or in its place that of harmonic 1, and
+    /// a complex block of each harmonic besides, then evaluations with all harmonics up to 15.
     #[must_use]
     pub fn check(&self) -> f64 {
         let samples = CHECK_SAMPLES * self.samples as f64;
-        let coordinates = self.coordinates as f64;
-        let block =
-            4.0 * self.contact_rows as f64 * coordinates.powi(2) + 8.0 / 3.0 * coordinates.powi(3);
         let evaluation = self.evaluation(CHECK_COEFFICIENTS, samples);
-        self.whole_jacobian() + CHECK_BLOCKS * block + CHECK_ITERATIONS * evaluation
+        let factors = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
+            self.by_harmonic(CHECK_BLOCKS) + self.whole_jacobian(self.unknowns())
+        } else {
+            self.by_harmonic(CHECK_BLOCKS)
+        };
+        factors + CHECK_ITERATIONS * evaluation
     }
 
     /// Operations of a row.
@@ -168,6 +186,9 @@ impl RowSolver {
             contact_rows: self.basis().contact().rows(),
             pairs: model.contact.weights.len() * model.sectors,
             coefficients: SystemSize::coefficients_of(harmonics),
+            in_stages: self
+                .search(self.points(scenario.engine_order, scenario.contact))
+                .is_some(),
             samples: match options.harmonics {
                 _ if linear => 1,
                 Harmonics::Auto => samples.max(SAMPLES_OF_HIGHEST * highest),
@@ -189,6 +210,7 @@ mod tests {
             pairs: 96,
             coefficients: SystemSize::coefficients_of(&[0, 1, 3]),
             samples: 128,
+            in_stages: false,
         };
         assert_eq!(size(168).unknowns(), 840);
         let work = RowWork {

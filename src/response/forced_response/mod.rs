@@ -15,6 +15,7 @@ mod peak_search;
 mod point_settings;
 mod point_solver;
 mod refined_peak;
+mod rivals;
 mod samples;
 mod starts;
 mod summit;

@@ -186,6 +186,7 @@ pub fn peak(
         },
         evaluations: EVALUATIONS,
         extensions: plan.extensions,
+        rivals_from: 1.0,
     };
     let precision = SEARCH_PRECISION * search.tolerance;
     let mut solver = PointSolver::new(excited, condition, settings).with_precision(precision);

@@ -46,6 +46,8 @@ pub struct SearchSettings {
     pub evaluations: usize,
     /// Largest number of times that the band is widened while the largest value lies at its end.
     pub extensions: usize,
+    /// Share of the best that other tops are found from: 1, unless what they are worth is decided elsewhere.
+    pub rivals_from: f64,
 }
 
 /// Why a search ended.
@@ -151,16 +153,16 @@ pub fn find_peak(
 
 /// Share of the tolerance that the summit may lie above the best: what a polynomial predicts is an
 /// estimate, no bound, and must leave room within the tolerance.
-const VERTEX_SHARE: f64 = 0.125;
+pub(super) const VERTEX_SHARE: f64 = 0.125;
 /// Share of the trusted distance below which cubics tell nothing but rounding errors.
-const NEAR: f64 = 0.1;
+pub(super) const NEAR: f64 = 0.1;
 /// A summit nearer to its sample than this share of the samples' span is the sample.
-const RESOLVED: f64 = 1e-3;
+pub(super) const RESOLVED: f64 = 1e-3;
 
-struct Search {
-    samples: Samples,
+pub(super) struct Search {
+    pub(super) samples: Samples,
     envelope: Envelope,
-    settings: SearchSettings,
+    pub(super) settings: SearchSettings,
     evaluations: usize,
 }
 
@@ -205,21 +207,27 @@ impl Search {
 
     /// The middle of the widest interval that could hide a peak higher than the best.
     fn hidden(&self, best: usize) -> Next {
-        let height = self.samples.0[best].largest * (1.0 + self.settings.tolerance);
-        let gamma = self.envelope.half_bandwidth(height);
+        let top = self.samples.0[best].largest;
+        let over = 1.0 + self.settings.tolerance;
+        let gamma = self.envelope.half_bandwidth(over * top);
         let good: Vec<usize> = (0..self.samples.0.len())
             .filter(|&i| !self.samples.0[i].amplitudes.is_empty())
             .collect();
-        // Distance at which a peak of this height and width would read what was seen.
-        let reach = |a: f64| gamma * ((height / a).powi(2) - 1.0).max(0.0).sqrt();
+        // Distance at which a peak of the height that counts between two samples, at least as high as they, and of this
+        // width would read what was seen.
+        let reach = |a: f64, other: f64| {
+            let height = over * f64::max(self.settings.rivals_from * top, a.max(other));
+            gamma * ((height / a).powi(2) - 1.0).max(0.0).sqrt()
+        };
         let mut widest: Option<(f64, f64)> = None;
         let mut hole = false;
         if let (Some(&first), Some(&last)) = (good.first(), good.last()) {
             // Out to the ends of the band all points failed.
             let all = &self.samples.0;
             let (start, stop) = (&all[0], &all[all.len() - 1]);
-            hole |= all[first].frequency_hz - reach(all[first].largest) > start.frequency_hz;
-            hole |= all[last].frequency_hz + reach(all[last].largest) < stop.frequency_hz;
+            let alone = |at: usize| reach(all[at].largest, 0.0);
+            hole |= all[first].frequency_hz - alone(first) > start.frequency_hz;
+            hole |= all[last].frequency_hz + alone(last) < stop.frequency_hz;
         }
         for pair in good.windows(2) {
             let (left, right) = (&self.samples.0[pair[0]], &self.samples.0[pair[1]]);
@@ -230,8 +238,8 @@ impl Search {
                     continue;
                 }
             }
-            let from = left.frequency_hz + reach(left.largest);
-            let to = right.frequency_hz - reach(right.largest);
+            let from = left.frequency_hz + reach(left.largest, right.largest);
+            let to = right.frequency_hz - reach(right.largest, left.largest);
             if to <= from {
                 continue;
             }
@@ -283,11 +291,16 @@ impl Search {
         let between = |frequency: f64| frequency.clamp(x0 + 0.1 * left_gap, x2 - 0.1 * right_gap);
         if gain <= tolerance && left_gap.max(right_gap) <= trusted {
             let told = left_gap.max(right_gap) > NEAR * trusted;
-            let skewed = self
-                .samples
-                .skewed_summits(best)
-                .into_iter()
-                .reduce(higher)?;
+            let skewed = self.samples.skewed_summits(best);
+            if told && !self.samples.has_fourth(best) {
+                // Three points say nothing of how skewed the top is.
+                return Some(if points[2].1 < points[0].1 {
+                    x2 + right_gap
+                } else {
+                    x0 - left_gap
+                });
+            }
+            let skewed = skewed.into_iter().reduce(higher)?;
             return (told && skewed.amplitude > (1.0 + tolerance) * self.samples.0[best].largest)
                 .then(|| between(skewed.frequency_hz));
         }
@@ -319,55 +332,12 @@ impl Search {
 
     /// Distance d of neighbours within which their parabola is trusted: the cubic term it neglects,
     /// about `0.1 (d/gamma)^3`, is below the tolerance.
-    fn trusted(&self, gamma: f64) -> f64 {
+    pub(super) fn trusted(&self, gamma: f64) -> f64 {
         gamma * (10.0 * self.settings.tolerance).cbrt()
-    }
-
-    /// The summit of another local maximum that may be higher than the best.
-    fn rival(&self, best: usize) -> Option<f64> {
-        let height = (1.0 + VERTEX_SHARE * self.settings.tolerance) * self.samples.0[best].largest;
-        let mut highest: Option<(f64, f64)> = None;
-        for at in (0..self.samples.0.len()).filter(|&at| at != best) {
-            let Some((left, right)) = self
-                .samples
-                .neighbours(at)
-                .filter(|_| self.samples.bracketed(at))
-            else {
-                continue;
-            };
-            let points = self
-                .samples
-                .points([left, at, right], self.samples.0[at].blade);
-            let summits = || {
-                self.samples
-                    .skewed_summits(at)
-                    .into_iter()
-                    .chain(summit::of_parabola(points))
-                    .filter(|summit| summit.amplitude.is_finite())
-            };
-            let Some(summit) = summits().reduce(higher) else {
-                continue;
-            };
-            let trusted = self.trusted(summit.half_bandwidth_hz);
-            let gap = (points[2].0 - points[1].0).max(points[1].0 - points[0].0);
-            // Where parabola and cubics differ, the truth may lie as far on the other side.
-            let lowest = summits().fold(f64::INFINITY, |low, other| low.min(other.amplitude));
-            let reach = 2.0 * summit.amplitude - lowest;
-            let resolved = (points[2].0 - points[0].0) * RESOLVED;
-            let away = (summit.frequency_hz - points[1].0).abs();
-            if reach > height
-                && away > resolved
-                && gap > NEAR * trusted
-                && highest.is_none_or(|(_, top)| reach > top)
-            {
-                highest = Some((summit.frequency_hz, reach));
-            }
-        }
-        highest.map(|(frequency, _)| frequency)
     }
 }
 
-fn higher(a: Summit, b: Summit) -> Summit {
+pub(super) fn higher(a: Summit, b: Summit) -> Summit {
     if b.amplitude > a.amplitude { b } else { a }
 }
 
@@ -379,6 +349,7 @@ mod tests {
         tolerance: 1e-4,
         evaluations: 100,
         extensions: 5,
+        rivals_from: 1.0,
     };
 
     /// Sum of complex resonances, one blade per row of residues.

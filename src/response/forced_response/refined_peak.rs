@@ -20,6 +20,8 @@ use crate::response::harmonic_balance::Status;
 
 /// Least tolerance of the first search: what it finds is only where to look.
 const COARSE_TOLERANCE: f64 = 0.02;
+/// Precision of the amplitudes of all harmonics that are compared, over the tolerance.
+const REFINED_PRECISION: f64 = 0.05;
 /// Share that harmonics may change the height of one top more than that of another.
 const MADE_UP: f64 = 0.05;
 /// First neighbours of a top, in half-bandwidths: the distance at which a parabola is trusted at 0.5 %.
@@ -73,6 +75,7 @@ pub fn refined_peak(
             tolerance: coarse_tolerance,
             evaluations: EVALUATIONS,
             extensions: plan.extensions,
+            rivals_from: 1.0 - MADE_UP,
         },
         |hz| amplitudes(&mut coarse, hz),
     );
@@ -83,7 +86,7 @@ pub fn refined_peak(
     let certain = found.end == SearchEnd::Found && found.bracketed && !opens;
     let refined = certain.then(|| {
         let solver = PointSolver::new(excited, condition, settings)
-            .with_precision(SEARCH_PRECISION * peak_tolerance)
+            .with_precision(REFINED_PRECISION * peak_tolerance)
             .refining(&coarse);
         highest(
             solver,
@@ -153,6 +156,7 @@ fn highest(
         tolerance,
         evaluations: POINTS_OF_TOP,
         extensions: EXTENSIONS,
+        rivals_from: 1.0,
     };
     // Height and place of the highest so far, and its height over that with few harmonics.
     let mut best: Option<(f64, f64, f64)> = None;

@@ -76,6 +76,13 @@ impl Samples {
         })
     }
 
+    /// Whether there is a sample beyond the neighbours of one.
+    pub fn has_fourth(&self, at: usize) -> bool {
+        self.neighbours(at).is_some_and(|(left, right)| {
+            self.neighbours(left).is_some() || self.neighbours(right).is_some()
+        })
+    }
+
     /// Summits near a sample by cubics, of every blade that is the largest there or beside it.
     pub fn skewed_summits(&self, at: usize) -> Vec<Summit> {
         let Some((left, right)) = self.neighbours(at) else {

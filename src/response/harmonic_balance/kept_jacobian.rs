@@ -223,3 +223,146 @@ pub(super) fn solve_complex(factors: &mut LuWorkspace<Complex64>, unknowns: &mut
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::linalg::Matrix;
+    use crate::model::cyclic::ContactGeometry;
+    use crate::response::friction::{ContactLaw, PairParameters};
+    use crate::response::harmonic_balance::{
+        ContactInterface, Damping, HarmonicBlock, HarmonicTransform, Structure,
+    };
+    use crate::response::mistuning::{ModalRows, StructuralModes};
+
+    const OMEGA: f64 = 1.1;
+    const HARMONICS: [usize; 3] = [1, 2, 3];
+
+    /// Two modes, two pairs with normal motion that slip at [`displacement`].
+    fn system() -> HarmonicSystem {
+        let rows = |count, factor: f64| ModalRows {
+            real: Matrix::from_fn(count, 2, |i, j| (factor * (1 + i + 3 * j) as f64).sin()),
+            imaginary: None,
+        };
+        let structure = Arc::new(Structure::new(
+            StructuralModes {
+                eigenvalues: vec![1.0, 3.5],
+                tuned_eigenvalues: vec![1.0, 3.5],
+                rotation: None,
+                contact: rows(4, 1.0),
+                observed: rows(3, 2.0),
+                sectors: 1,
+            },
+            Damping::ModalRatio(0.02),
+        ));
+        let stuck = Arc::new(structure.contact_stiffness(&[0.7, 0.9]));
+        let blocks = HARMONICS.map(|harmonic| HarmonicBlock {
+            harmonic: harmonic as u32,
+            structure: Arc::clone(&structure),
+            stuck: Arc::clone(&stuck),
+        });
+        let pair = PairParameters {
+            normal_load_n: 2.0,
+            normal_stiffness_n_per_m: 0.7,
+            tangential_stiffness_n_per_m: 0.9,
+            friction_coefficient: 0.3,
+        };
+        let interface = ContactInterface {
+            law: ContactLaw::Simplified3d,
+            geometry: ContactGeometry {
+                weights: vec![0.5; 2],
+                rows: vec![[Some(0), Some(1), None], [Some(2), Some(3), None]],
+                ring_motion: vec![[[0.0; 2]; 2]; 2],
+                ring_free: [false; 2],
+            },
+            pairs: vec![pair; 2],
+        };
+        let force = vec![Complex64::new(1.0, 0.0), Complex64::new(0.3, 0.2)];
+        let transform = Arc::new(HarmonicTransform::new(&HARMONICS, 64).unwrap());
+        HarmonicSystem::new(blocks.to_vec(), force, interface, transform)
+    }
+
+    fn displacement() -> Vec<f64> {
+        (0..12)
+            .map(|i| 2.0 * (0.7 + 1.3 * f64::from(i)).sin() / (1.0 + f64::from(i / 4)))
+            .collect()
+    }
+
+    /// The whole Jacobian, column-major, and the buffers with the derivatives of the pairs.
+    fn jacobian(system: &HarmonicSystem) -> (Vec<f64>, SystemWorkspace) {
+        let mut workspace = system.workspace();
+        let mut residual = vec![0.0; 12];
+        let (_, shares) =
+            system.residual(OMEGA, &displacement(), &mut residual, true, &mut workspace);
+        assert!(
+            shares.slipping > 0.9 && shares.separated == 0.0,
+            "{shares:?}"
+        );
+        let mut jacobian = vec![0.0; 144];
+        system.jacobian(OMEGA, &mut workspace, &mut jacobian);
+        (jacobian, workspace)
+    }
+
+    /// `matrix x - right`, largest entry.
+    fn missed(matrix: &[f64], x: &[f64], right: &[f64]) -> f64 {
+        (0..12)
+            .map(|i| (0..12).map(|j| matrix[12 * j + i] * x[j]).sum::<f64>() - right[i])
+            .fold(0.0, |worst: f64, d| worst.max(d.abs()))
+    }
+
+    #[test]
+    fn the_triangle_leaves_out_what_higher_harmonics_do_to_lower_ones_and_nothing_else() {
+        let system = system();
+        let (mut expected, mut workspace) = jacobian(&system);
+        for column in 0..12 {
+            expected[12 * column..][..4 * (column / 4)].fill(0.0);
+        }
+        let right = displacement();
+        let mut x = right.clone();
+        let mut kept = KeptJacobian::new();
+        assert!(kept.factor_triangle(&system, OMEGA, &mut workspace));
+        kept.solve(&mut x);
+        assert!(missed(&expected, &x, &right) < 1e-12);
+    }
+
+    #[test]
+    fn by_harmonic_the_first_is_whole_and_the_others_are_what_is_linear_in_complex_unknowns() {
+        let system = system();
+        let (whole, _) = jacobian(&system);
+        let mut expected = vec![0.0; 144];
+        for (column, entries) in whole.chunks_exact(12).enumerate() {
+            let block = 4 * (column / 4)..4 * (column / 4) + 4;
+            expected[12 * column..][block.clone()].copy_from_slice(&entries[block]);
+        }
+        // Of [A, B; C, D] the part [a, -b; b, a] with a = (A + D) / 2, b = (C - B) / 2.
+        for first in [4, 8] {
+            for i in 0..2 {
+                for j in 0..2 {
+                    let at = |row: usize, column: usize| {
+                        12 * (first + 2 * column + j) + first + 2 * row + i
+                    };
+                    let a = 0.5 * (whole[at(0, 0)] + whole[at(1, 1)]);
+                    let b = 0.5 * (whole[at(1, 0)] - whole[at(0, 1)]);
+                    (expected[at(0, 0)], expected[at(1, 1)]) = (a, a);
+                    (expected[at(1, 0)], expected[at(0, 1)]) = (b, -b);
+                }
+            }
+        }
+        let mut workspace = system.workspace();
+        system.couple_leading(&mut workspace);
+        let mut residual = vec![0.0; 12];
+        system.residual(OMEGA, &displacement(), &mut residual, true, &mut workspace);
+        let right = displacement();
+        let mut x = right.clone();
+        let mut kept = KeptJacobian::new();
+        assert!(kept.factor_by_harmonic(&system, OMEGA, &mut workspace));
+        kept.solve(&mut x);
+        assert!(missed(&expected, &x, &right) < 1e-12);
+        // It is not the whole.
+        assert!(missed(&whole, &x, &right) > 1e-3);
+        kept.forget();
+        assert!(!kept.is_factored());
+    }
+}

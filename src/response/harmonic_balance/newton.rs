@@ -70,8 +70,8 @@ const ACCELERATED: Serves = Serves {
 /// Of accelerated ones with a Jacobian that leaves out much: what is left out is learned from the steps, all of
 /// them, so that a new Jacobian would throw away more than it brings.
 const ONCE: Serves = Serves {
-    one_step: 3.0,
-    two_steps: 3.0,
+    one_step: 1e3,
+    two_steps: 1e3,
     longer: 1e3,
     steps: 130,
 };

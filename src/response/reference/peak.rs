@@ -72,6 +72,7 @@ pub fn reference_peak(
         tolerance: MARGIN * solver.settings().peak_tolerance,
         evaluations: EVALUATIONS,
         extensions: plan.extensions,
+        rivals_from: 1.0,
     };
     let result = find_peak(
         plan.band_hz,

@@ -212,6 +212,7 @@ fn failed_points_out_to_an_end_of_the_band_leave_the_search_incomplete() {
         tolerance: 1e-4,
         evaluations: 100,
         extensions: 5,
+        rivals_from: 1.0,
     };
     for (failed_below, end, peak) in [
         (98.0, SearchEnd::Incomplete, 105.0),

@@ -1,0 +1,97 @@
+//! Peaks in two stages are those of one search with all harmonics.
+
+use blisk::response::forced_response::{
+    FrequencyBand, Harmonics, Peak, PointSettings, Search, SearchHarmonics, SolverOptions,
+    mistuned_window, peak, refined_peak, tuned_span,
+};
+use blisk::response::friction::Ring;
+use blisk::response::harmonic_balance::Status;
+
+use super::contact::random::Random;
+use super::wheels::{Wheel, full, relative};
+use super::work_counts::wheel24;
+
+const SET: [u32; 3] = [1, 3, 5];
+
+/// Peak of a wheel by one search, and after a search with harmonic 1.
+fn both(wheel: &Wheel, deviations: &[f64], load: f64) -> [Peak; 2] {
+    let options = SolverOptions {
+        harmonics: Harmonics::Set(SET.to_vec()),
+        search_harmonics: SearchHarmonics::Set(vec![1]),
+        ..SolverOptions::default()
+    };
+    let contact = Some((wheel.law, wheel.sector));
+    let settings = PointSettings::new(&options, &SET, contact, wheel.model.contact.clone())
+        .unwrap()
+        .with_ring(wheel.ring);
+    let span = tuned_span(&wheel.tuned(&SET), full(load), None).unwrap();
+    let largest = deviations.iter().fold(0.0, |a: f64, d| a.max(d.abs()));
+    let window = mistuned_window(span, largest, FrequencyBand::Auto);
+    let excited = wheel.mistuned(deviations, &SET);
+    let coarse = wheel.mistuned(deviations, &[1]);
+    let search = Search {
+        excited: &coarse,
+        settings: settings.search().unwrap(),
+    };
+    let (load, tolerance) = (full(load), options.peak_tolerance);
+    [
+        peak(&excited, load, &settings, window, tolerance),
+        refined_peak(&excited, search, load, &settings, window, tolerance),
+    ]
+}
+
+fn amplitude(peak: &Peak) -> f64 {
+    assert_eq!(peak.status, Status::Ok);
+    peak.amplitude_m().unwrap()
+}
+
+#[test]
+fn a_peak_of_a_large_equation_is_the_same_in_two_stages_for_less_work() {
+    let wheel = wheel24();
+    let mut random = Random(11);
+    for load in [160.0, 320.0, 1280.0] {
+        let deviations = wheel.deviations(&mut random, 0.03);
+        let [one, two] = both(&wheel, &deviations, load);
+        let error = relative(amplitude(&two), amplitude(&one));
+        println!("{load} N: {error:.1e}; {:?}, {:?}", one.work, two.work);
+        assert!(error < 5e-4, "{load} N: {error}");
+        let [one, two] = [one, two].map(|peak| peak.point.unwrap());
+        assert!(two.residual <= 1e-8 && one.residual <= 1e-8);
+        assert!(relative(two.frequency_hz, one.frequency_hz) < 2e-4);
+    }
+}
+
+/// A small equation has its whole Jacobian: the two stages without its simplification.
+#[test]
+fn a_peak_of_a_small_equation_is_the_same_in_two_stages() {
+    let wheel = Wheel {
+        amplitude_n: 10.0,
+        ..Wheel::lumped24()
+    };
+    let mut random = Random(5);
+    for load in [15.0, 25.0, 50.0, 75.0, 150.0, 1e6] {
+        let deviations = wheel.deviations(&mut random, 0.03);
+        let [one, two] = both(&wheel, &deviations, load);
+        let error = relative(amplitude(&two), amplitude(&one));
+        println!("{load} N: {error:.1e}");
+        assert!(error < 5e-4, "{load} N: {error}");
+    }
+}
+
+/// Contact that opens and a ring that creeps are searched with the whole set.
+#[test]
+fn where_few_harmonics_mislead_the_search_is_made_with_all() {
+    let opening = Wheel::wheel8();
+    let creeping = Wheel {
+        ring: Ring::Creeping,
+        ..Wheel::wheel8()
+    };
+    for (wheel, load) in [(opening, 60.0), (creeping, 400.0)] {
+        let deviations = wheel.deviations(&mut Random(3), 0.03);
+        let [one, two] = both(&wheel, &deviations, load);
+        assert_eq!(one.status, two.status, "{load} N");
+        assert_eq!(one.point, two.point, "{load} N");
+        let separates = one.point.unwrap().shares.separated > 0.0;
+        assert_eq!(separates, load < 100.0);
+    }
+}
