@@ -232,25 +232,6 @@ impl HarmonicSystem {
         self.shared
     }
 
-    /// Number of the leading harmonics, 0 and 1: those that the others are small beside.
-    pub(super) fn leading(&self) -> usize {
-        self.fundamental() + 1
-    }
-
-    /// From now on derivatives of pairs are those of the leading harmonics, and of every other one by itself.
-    pub(super) fn couple_leading(&self, workspace: &mut SystemWorkspace) {
-        let coefficients = self.coefficient.get(self.leading());
-        let all = self.transform.n_coefficients();
-        workspace
-            .pairs
-            .couple_first(coefficients.copied().unwrap_or(all));
-    }
-
-    /// From now on derivatives of pairs are those of all harmonics again.
-    pub(super) fn couple_all(&self, workspace: &mut SystemWorkspace) {
-        workspace.pairs.couple_first(usize::MAX);
-    }
-
     /// Residual at `x` into `residual`; returns its norm relative to the excitation and the
     /// shares of slipping and separated pairs. With `derivative`, the pair Jacobians are kept in
     /// the workspace for [`Self::jacobian`].
