@@ -87,6 +87,10 @@ impl From<&StudyError> for ExitStatus {
             | StudyError::PatternTable(PatternParquetError::Table(TableError::Io { .. })) => {
                 Self::InputOutput
             }
+            StudyError::Model(error) if matches!(**error, ModelError::File { .. }) => {
+                Self::InputOutput
+            }
+            StudyError::Model(_) => Self::ModelInvalid,
             StudyError::Invalid { .. } | StudyError::Patterns(_) | StudyError::PatternTable(_) => {
                 Self::StudyInvalid
             }

@@ -5,6 +5,8 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, SeqAccess, Visitor};
 
+use super::LoadShare;
+use crate::model::cyclic::Hoop;
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::statistics::Quantity;
@@ -73,8 +75,26 @@ pub(super) struct RawContact {
     pub tangential_stiffness_n_per_m: Option<f64>,
     pub normal_stiffness_n_per_m: Option<f64>,
     pub ring: Option<Ring>,
+    pub normal_load: Option<RawNormalLoad>,
     #[serde(default)]
     pub variation: RawContactVariation,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum RawLoadSource {
+    Rotation,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawNormalLoad {
+    pub from: Option<RawLoadSource>,
+    pub speed_rpm: Option<RawSpeeds>,
+    pub hoop: Option<Hoop>,
+    pub share: Option<LoadShare>,
+    pub ring_mass_factor: Option<f64>,
+    pub ring_radius_m: Option<f64>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -208,6 +228,13 @@ pub(super) enum RawLoad {
     Name(String),
 }
 
+/// One speed or several, revolutions per minute.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum RawSpeeds {
+    One(f64),
+    List(Vec<f64>),
+}
+
 /// `"auto"` or a list of harmonics.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum RawHarmonics {
@@ -251,6 +278,42 @@ impl Visitor<'_> for LoadVisitor {
 impl<'de> Deserialize<'de> for RawLoad {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(LoadVisitor)
+    }
+}
+
+struct SpeedsVisitor;
+
+impl<'de> Visitor<'de> for SpeedsVisitor {
+    type Value = RawSpeeds;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a speed in revolutions per minute or a list like [3000, 6000]")
+    }
+
+    fn visit_f64<E: de::Error>(self, value: f64) -> Result<RawSpeeds, E> {
+        Ok(RawSpeeds::One(value))
+    }
+
+    fn visit_i64<E: de::Error>(self, value: i64) -> Result<RawSpeeds, E> {
+        Ok(RawSpeeds::One(value as f64))
+    }
+
+    fn visit_u64<E: de::Error>(self, value: u64) -> Result<RawSpeeds, E> {
+        Ok(RawSpeeds::One(value as f64))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<RawSpeeds, A::Error> {
+        let mut speeds = Vec::new();
+        while let Some(speed) = list.next_element()? {
+            speeds.push(speed);
+        }
+        Ok(RawSpeeds::List(speeds))
+    }
+}
+
+impl<'de> Deserialize<'de> for RawSpeeds {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(SpeedsVisitor)
     }
 }
 

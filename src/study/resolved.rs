@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::source_map::SourceMap;
 use super::validate_accuracy::KEYS_OF_ACCURACY;
-use super::{AccuracyOptions, Mistuning};
+use super::{AccuracyOptions, Mistuning, RotationLoad};
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::monte_carlo::Scenario;
@@ -71,7 +71,9 @@ pub struct Study {
     pub amplitude_n: f64,
     /// Mistuning and its source.
     pub mistuning: Mistuning,
-    /// Contact conditions of the sweep, as written.
+    /// Normal loads by rotation; none where all are written in newtons.
+    pub rotation: Option<RotationLoad>,
+    /// Contact conditions of the sweep, as written, then those by rotation.
     pub contacts: Vec<ContactCondition>,
     /// Standard deviations of the sweep, as written; one `None` for patterns from a file.
     pub standard_deviations: Vec<Option<f64>>,
@@ -167,6 +169,9 @@ impl Study {
         }
         if let Some(contact) = &self.contact {
             study["contact"] = json!(contact);
+            if let Some(rotation) = &self.rotation {
+                study["contact"]["normal_load"] = rotation.resolved();
+            }
             if !self.contact_variations.is_empty() {
                 study["contact"]["variation"] = variation_value(&self.contact_variations);
             }
@@ -187,9 +192,14 @@ impl Study {
     }
 
     fn sweep_value(&self) -> Value {
+        let by_rotation = |contact: &ContactCondition| {
+            let rotation = self.rotation.as_ref();
+            rotation.is_some_and(|rotation| rotation.speed_rpm(*contact).is_some())
+        };
         let loads: Vec<Value> = self
             .contacts
             .iter()
+            .filter(|contact| !by_rotation(contact))
             .map(|contact| match contact {
                 ContactCondition::Full { normal_load_n } => json!(normal_load_n),
                 limit => json!(limit.name()),

@@ -2,20 +2,18 @@
 
 use std::path::Path;
 
-use super::raw::{
-    RawDamping, RawExcitation, RawHead, RawLoad, RawModel, RawModelKind, RawStudy, RawSweep,
-};
+use super::raw::{RawExcitation, RawHead, RawModel, RawModelKind, RawStudy};
 use super::source_map::SourceMap;
 use super::validate_accuracy::accuracy;
 use super::validate_contact::contact_variations;
+use super::validate_damping::damping;
+use super::validate_loads::{contacts, rotation};
 use super::validate_mistuning::mistuning;
 use super::validate_solver::solver;
 use super::validate_stop::stop;
-use super::{Finding, ModelSource, OutputOptions, Problem, Study, StudyError};
+use super::{Finding, ModelSource, OutputOptions, Problem, RotationOptions, Study, StudyError};
 use crate::model::reduction::{Basis, ReductionOptions};
-use crate::response::forced_response::ContactCondition;
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
-use crate::response::harmonic_balance::Damping;
 
 /// Version of the study file.
 pub(super) const SCHEMA: u64 = 1;
@@ -95,7 +93,7 @@ impl Check<'_> {
     }
 
     /// The same with a stand-in.
-    fn required(
+    pub(super) fn required(
         &mut self,
         key: &str,
         value: Option<f64>,
@@ -133,9 +131,9 @@ impl Study {
         };
         let study = resolve(&mut check, path, raw)?;
         match study {
-            Some(study) if check.findings.is_empty() => {
+            Some((study, rotation)) if check.findings.is_empty() => {
                 let map = map.clone();
-                Ok(Self { map, ..study })
+                Self { map, ..study }.pressed_by(rotation)
             }
             _ => {
                 check.findings.sort_by_key(|finding| finding.line);
@@ -146,7 +144,11 @@ impl Study {
 }
 
 /// None where a study cannot even be put together; the findings then say why.
-fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<Study>, StudyError> {
+fn resolve(
+    check: &mut Check,
+    path: &Path,
+    mut raw: RawStudy,
+) -> Result<Option<(Study, Option<RotationOptions>)>, StudyError> {
     match raw.schema {
         Some(SCHEMA) => {}
         Some(_) => check.refuse("schema", "1"),
@@ -159,7 +161,9 @@ fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<S
     let damping = damping(check, raw.damping);
     let (engine_orders, amplitude_n) = excitation(check, raw.excitation.unwrap_or_default());
     let sweep = raw.sweep.unwrap_or_default();
-    let contacts = contacts(check, &sweep);
+    let normal_load = raw.contact.as_mut().and_then(|raw| raw.normal_load.take());
+    let contacts = contacts(check, &sweep, normal_load.is_some());
+    let rotation = normal_load.and_then(|raw| rotation(check, &raw));
     let solver = solver(check, raw.solver);
     let variation = raw
         .contact
@@ -216,6 +220,7 @@ fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<S
         damping,
         engine_orders,
         amplitude_n,
+        rotation: None,
         mistuning: mistuning.mistuning,
         contacts,
         standard_deviations: mistuning.standard_deviations,
@@ -227,7 +232,7 @@ fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<S
             compression: raw.output.compression.unwrap_or_default(),
         },
     };
-    Ok(Some(study.with_accuracy(accuracy)))
+    Ok(Some((study.with_accuracy(accuracy), rotation)))
 }
 
 fn identity(check: &mut Check, head: &RawHead) -> (String, u64) {
@@ -390,59 +395,6 @@ fn normal_stiffness(check: &mut Check, contact: &ContactOptions) {
     }
 }
 
-fn damping(check: &mut Check, raw: Option<RawDamping>) -> Option<Damping> {
-    let accepted = "exactly one of structural_loss_factor, modal_ratio and rayleigh";
-    let Some(raw) = raw else {
-        check.missing("damping", accepted);
-        return None;
-    };
-    let ratio = |value: f64| value > 0.0 && value < 1.0;
-    let in_words = "a number above 0 and below 1; a wheel without damping has no bounded resonance";
-    match (raw.structural_loss_factor, raw.modal_ratio, raw.rayleigh) {
-        (Some(factor), None, None) => Some(Damping::StructuralLossFactor(check.within(
-            "damping.structural_loss_factor",
-            factor,
-            ratio(factor),
-            in_words,
-        ))),
-        (None, Some(zeta), None) => Some(Damping::ModalRatio(check.within(
-            "damping.modal_ratio",
-            zeta,
-            ratio(zeta),
-            in_words,
-        ))),
-        (None, None, Some(rayleigh)) => {
-            let factor = |value: f64| value.is_finite() && value >= 0.0;
-            let mut required = |key: &str, value: Option<f64>| {
-                check.required(key, value, factor, "a finite number of at least 0")
-            };
-            let mass_per_s = required("damping.rayleigh.mass_per_s", rayleigh.mass_per_s);
-            let stiffness_s = required("damping.rayleigh.stiffness_s", rayleigh.stiffness_s);
-            if mass_per_s == 0.0 && stiffness_s == 0.0 {
-                check.refuse(
-                    "damping.rayleigh",
-                    "mass_per_s or stiffness_s above 0; a wheel without damping has no bounded resonance",
-                );
-            }
-            Some(Damping::Rayleigh {
-                mass_per_s,
-                stiffness_s,
-            })
-        }
-        (None, None, None) => {
-            check.missing("damping", accepted);
-            None
-        }
-        _ => {
-            check.conflict(
-                "damping",
-                &format!("several models of damping; accepted: {accepted}"),
-            );
-            None
-        }
-    }
-}
-
 fn excitation(check: &mut Check, raw: RawExcitation) -> (Vec<u32>, f64) {
     let key = "excitation.engine_orders";
     let accepted = "a list of different whole numbers from 0 to 10000, at least one";
@@ -463,37 +415,4 @@ fn excitation(check: &mut Check, raw: RawExcitation) -> (Vec<u32>, f64) {
         "a finite number above 0, in N",
     );
     (orders, amplitude)
-}
-
-fn contacts(check: &mut Check, sweep: &RawSweep) -> Vec<ContactCondition> {
-    let key = "sweep.normal_load_n";
-    let accepted = "a list of different normal loads per sector: numbers of at least 0 in N, \
-                    \"stuck\", \"slide\" or \"free\"; at least one";
-    let Some(loads) = &sweep.normal_load_n else {
-        check.missing(key, accepted);
-        return Vec::new();
-    };
-    if loads.is_empty() {
-        check.refuse(key, accepted);
-    }
-    let mut contacts: Vec<ContactCondition> = Vec::new();
-    for (place, load) in loads.iter().enumerate() {
-        let contact = match load {
-            RawLoad::Number(value) if value.is_finite() && *value >= 0.0 => {
-                // The sum turns -0.0 into 0.0.
-                Some(ContactCondition::Full {
-                    normal_load_n: value + 0.0,
-                })
-            }
-            RawLoad::Name(name) if name == "stuck" => Some(ContactCondition::Stuck),
-            RawLoad::Name(name) if name == "slide" => Some(ContactCondition::Slide),
-            RawLoad::Name(name) if name == "free" => Some(ContactCondition::Free),
-            _ => None,
-        };
-        match contact {
-            Some(contact) if !contacts.contains(&contact) => contacts.push(contact),
-            _ => check.refuse(&format!("{key}[{place}]"), accepted),
-        }
-    }
-    contacts
 }

@@ -286,6 +286,7 @@ fn oscillator(
         law: ContactLaw::MacroSlip1d,
         geometry: ContactGeometry {
             weights: vec![1.0],
+            load_weights: vec![1.0],
             rows: vec![[None, Some(0), None]],
             ring_motion: vec![[[1.0, 0.0], [0.0, 1.0]]],
             ring_free: [false; 2],

@@ -61,6 +61,7 @@ fn oscillator(
         law,
         geometry: ContactGeometry {
             weights: vec![1.0],
+            load_weights: vec![1.0],
             rows: vec![[None, Some(0), None]],
             ring_motion: vec![[[1.0, 0.0], [0.0, 1.0]]],
             ring_free: [false; 2],

@@ -46,6 +46,7 @@ impl OneDof {
                 law: ContactLaw::MacroSlip1d,
                 geometry: ContactGeometry {
                     weights: vec![1.0],
+                    load_weights: vec![1.0],
                     rows: vec![[None, Some(0), None]],
                     ring_motion: vec![[[0.0; 2]; 2]],
                     ring_free: [false; 2],

@@ -50,6 +50,7 @@ impl OneDof {
                 law: ContactLaw::Simplified3d,
                 geometry: ContactGeometry {
                     weights: vec![1.0],
+                    load_weights: vec![1.0],
                     rows: vec![directions],
                     ring_motion: vec![[[0.0; 2]; 2]],
                     ring_free: [false; 2],
