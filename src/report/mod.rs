@@ -12,6 +12,7 @@ mod optimum;
 mod peak_audit;
 mod plan;
 mod plot;
+mod rotation;
 mod stated_errors;
 mod study_report;
 mod summary;
@@ -38,6 +39,7 @@ pub use numerical_error::{NumericalError, NumericalFinding};
 pub use optimum::OptimumReport;
 pub use peak_audit::PeakAuditReport;
 pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};
+pub use rotation::RotationFacts;
 pub use stated_errors::{ErrorRows, ErrorSpread, StatedErrors};
 pub use study_report::{
     DistributionReport, GroupReport, LoadChoice, PercentileError, Provenance, ScenarioErrors,

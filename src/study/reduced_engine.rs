@@ -156,6 +156,7 @@ impl Engine for ReducedEngine {
             craig_bampton_modes: self.fixed_interface.modes,
             craig_bampton_error: self.fixed_interface.error,
             craig_bampton_reach,
+            rotation: None,
             warnings: summary.warnings(),
             memory_bytes: model.memory_bytes(),
             digest: self.digest.clone(),

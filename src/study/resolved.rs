@@ -34,12 +34,14 @@ pub enum ModelSource {
 }
 
 /// What is written beside the statistics, and how.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct OutputOptions {
     /// Whether `patterns.parquet` is written; absent: up to 10,000 patterns.
     pub patterns: Option<bool>,
     /// Compression of the tables.
     pub compression: Compression,
+    /// Stress per amplitude of the observed node, Pa/m.
+    pub stress_pa_per_m: Option<f64>,
 }
 
 /// A study that has been read, checked and filled in.
@@ -158,7 +160,7 @@ impl Study {
                     FrequencyBand::Fixed { start_hz, stop_hz } => json!([start_hz, stop_hz]),
                 },
             },
-            "output": { "patterns": self.output.patterns, "compression": self.output.compression },
+            "output": self.output_value(),
         });
         if let Some(accuracy) = &self.accuracy {
             study["accuracy"] = json!(accuracy);
@@ -177,6 +179,19 @@ impl Study {
             }
         }
         study
+    }
+
+    fn output_value(&self) -> Value {
+        let OutputOptions {
+            patterns,
+            compression,
+            stress_pa_per_m,
+        } = self.output;
+        let mut output = json!({ "patterns": patterns, "compression": compression });
+        if let Some(scale) = stress_pa_per_m {
+            output["stress_pa_per_m"] = json!(scale);
+        }
+        output
     }
 
     fn model_value(&self) -> Value {
@@ -206,11 +221,14 @@ impl Study {
             })
             .collect();
         let deviations: Vec<f64> = self.standard_deviations.iter().flatten().copied().collect();
-        if deviations.is_empty() {
-            json!({ "normal_load_n": loads })
-        } else {
-            json!({ "normal_load_n": loads, "standard_deviation": deviations })
+        let mut sweep = json!({});
+        if !loads.is_empty() {
+            sweep["normal_load_n"] = json!(loads);
         }
+        if !deviations.is_empty() {
+            sweep["standard_deviation"] = json!(deviations);
+        }
+        sweep
     }
 }
 

@@ -10,6 +10,7 @@ use super::{Problem, Study, StudyError};
 use crate::linalg::SymmetricSparse;
 use crate::model::cyclic::{CentrifugalContact, CentrifugalError, Hoop, centrifugal_contact};
 use crate::model::sector::{Body, SectorModel};
+use crate::report::RotationFacts;
 use crate::response::forced_response::ContactCondition;
 
 /// Table of the study that asks for it.
@@ -100,15 +101,15 @@ impl RotationLoad {
 
     /// What it came to, for reports.
     #[must_use]
-    pub fn facts(&self) -> Value {
-        json!({
-            "speed_rpm": self.options.speeds_rpm,
-            "normal_load_n": self.normal_loads_n,
-            "ring_mass_kg": self.contact.ring_mass_kg,
-            "ring_radius_m": self.contact.ring_radius_m(),
-            "contact_fraction": self.contact_fraction(),
-            "pair_load_kg_m": self.contact.pair_loads_kg_m,
-        })
+    pub fn facts(&self) -> RotationFacts {
+        RotationFacts {
+            speed_rpm: self.options.speeds_rpm.clone(),
+            normal_load_n: self.normal_loads_n.clone(),
+            ring_mass_kg: self.contact.ring_mass_kg,
+            ring_radius_m: self.contact.ring_radius_m(),
+            contact_fraction: self.contact_fraction(),
+            pair_load_kg_m: self.contact.pair_loads_kg_m.clone(),
+        }
     }
 
     /// The sector as the study has it: the mass of its ring, and the shares of the load.

@@ -230,6 +230,14 @@ fn resolve(
         output: OutputOptions {
             patterns: raw.output.patterns,
             compression: raw.output.compression.unwrap_or_default(),
+            stress_pa_per_m: raw.output.stress_pa_per_m.map(|scale| {
+                check.within(
+                    "output.stress_pa_per_m",
+                    scale,
+                    scale.is_finite() && scale > 0.0,
+                    "a finite number above 0, in Pa/m",
+                )
+            }),
         },
     };
     Ok(Some((study.with_accuracy(accuracy), rotation)))
