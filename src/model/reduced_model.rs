@@ -73,6 +73,8 @@ pub struct CantileverModes {
 pub struct ReducedNodalDiameter {
     /// Eigenvalues of the tuned contact-free structure, (rad/s)^2, ascending, length `n_modes`.
     pub eigenvalues: Vec<f64>,
+    /// Viscous damping of each mode besides the damping model of the structure, 1/s, length `n_modes`.
+    pub added_damping_per_s: Vec<f64>,
     /// Relative motion at the contact rows of a sector, `n_rows x n_modes`.
     pub contact: Matrix<Complex64>,
     /// Displacement r, theta, z of the first observed node, `3 x n_modes`; zero where it has none.
@@ -171,7 +173,7 @@ impl ReducedModel {
             .nodal_diameters
             .iter()
             .map(|nd| {
-                8 * nd.eigenvalues.len()
+                16 * nd.eigenvalues.len()
                     + complex(nd.contact.as_slice().len() + nd.observed.as_slice().len())
                     + complex(2 * nd.eigenvalues.len())
             })
@@ -188,6 +190,7 @@ impl ReducedModel {
         }
         ReducedNodalDiameter {
             eigenvalues: nd.eigenvalues.clone(),
+            added_damping_per_s: nd.added_damping_per_s.clone(),
             contact: nd.contact.conjugate(),
             observed: nd.observed.conjugate(),
             force: nd.conjugate_force.clone(),

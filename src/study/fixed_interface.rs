@@ -134,7 +134,8 @@ impl<'a> Rung<'a> {
             contact_stiffness(study.contact.as_ref()),
             modes,
             sensitivity_vectors(study),
-        );
+        )
+        .with_damping(study.added_damping());
         Self { modes, reduction }
     }
 

@@ -245,7 +245,8 @@ impl<'a> LadderBench<'a> {
             stiffness,
             self.fixed_interface.modes,
             sensitivity_vectors(&self.study),
-        )?;
+        )?
+        .with_damping(self.study.added_damping());
         self.reductions.push((stiffness, reduction));
         Ok(self.reductions.len() - 1)
     }

@@ -7,7 +7,7 @@ use serde::de::{self, Deserializer, SeqAccess, Visitor};
 
 use super::LoadShare;
 use crate::model::cyclic::Hoop;
-use crate::model::reduction::ReductionOptions;
+use crate::model::reduction::{DampedModes, ReductionOptions};
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::statistics::Quantity;
 use crate::population::table::Compression;
@@ -25,6 +25,7 @@ pub(super) struct RawStudy {
     pub reduction: ReductionOptions,
     pub contact: Option<RawContact>,
     pub damping: Option<RawDamping>,
+    pub nodal_diameter_damping: Option<RawNodalDiameterDamping>,
     pub excitation: Option<RawExcitation>,
     pub mistuning: Option<RawMistuning>,
     pub sweep: Option<RawSweep>,
@@ -130,6 +131,13 @@ pub(super) struct RawDamping {
     pub structural_loss_factor: Option<f64>,
     pub modal_ratio: Option<f64>,
     pub rayleigh: Option<RawRayleigh>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawNodalDiameterDamping {
+    pub damping_ratios: Option<Vec<(u32, f64)>>,
+    pub modes: Option<DampedModes>,
 }
 
 #[derive(Debug, Deserialize)]

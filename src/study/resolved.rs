@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::source_map::SourceMap;
 use super::validate_accuracy::KEYS_OF_ACCURACY;
-use super::{AccuracyOptions, Mistuning, RotationLoad};
+use super::{AccuracyOptions, Mistuning, NodalDiameterTable, RotationLoad};
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::monte_carlo::Scenario;
@@ -67,6 +67,8 @@ pub struct Study {
     pub contact_variations: Vec<ContactVariation>,
     /// Damping of the structure.
     pub damping: Damping,
+    /// Damping of the tuned modes by nodal diameter, besides.
+    pub nodal_diameter_damping: Option<NodalDiameterTable>,
     /// Engine orders, as written.
     pub engine_orders: Vec<u32>,
     /// Factor on the model's force vector.
@@ -165,6 +167,9 @@ impl Study {
         if let Some(accuracy) = &self.accuracy {
             study["accuracy"] = json!(accuracy);
             without(&mut study, &KEYS_OF_ACCURACY);
+        }
+        if let Some(table) = &self.nodal_diameter_damping {
+            study["nodal_diameter_damping"] = table.resolved();
         }
         if let Some(stop) = &self.stop {
             study["stop"] = json!(stop);

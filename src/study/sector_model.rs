@@ -17,6 +17,7 @@ pub fn load_sector_model(study: &Study) -> Result<SectorModel, PipelineError> {
         error => PipelineError::Study(error),
     })?;
     check_contact(study, &model)?;
+    study.check_nodal_diameters(&model)?;
     Ok(match &study.rotation {
         Some(rotation) => rotation.applied_to(model),
         None => model,

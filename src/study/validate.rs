@@ -6,7 +6,7 @@ use super::raw::{RawExcitation, RawHead, RawModel, RawModelKind, RawStudy};
 use super::source_map::SourceMap;
 use super::validate_accuracy::accuracy;
 use super::validate_contact::contact_variations;
-use super::validate_damping::damping;
+use super::validate_damping::{damping, nodal_diameter_damping};
 use super::validate_loads::{contacts, rotation};
 use super::validate_mistuning::mistuning;
 use super::validate_solver::solver;
@@ -159,6 +159,9 @@ fn resolve(
     let model = model(check, path, raw.model.unwrap_or_default());
     reduction(check, &raw.reduction);
     let damping = damping(check, raw.damping);
+    let nodal_diameter_damping = raw
+        .nodal_diameter_damping
+        .and_then(|raw| nodal_diameter_damping(check, raw));
     let (engine_orders, amplitude_n) = excitation(check, raw.excitation.unwrap_or_default());
     let sweep = raw.sweep.unwrap_or_default();
     let normal_load = raw.contact.as_mut().and_then(|raw| raw.normal_load.take());
@@ -218,6 +221,7 @@ fn resolve(
         contact,
         contact_variations,
         damping,
+        nodal_diameter_damping,
         engine_orders,
         amplitude_n,
         rotation: None,

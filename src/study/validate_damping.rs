@@ -1,6 +1,7 @@
 //! The checks of the table `[damping]`.
 
-use super::raw::RawDamping;
+use super::NodalDiameterTable;
+use super::raw::{RawDamping, RawNodalDiameterDamping};
 use super::validate::Check;
 use crate::response::harmonic_balance::Damping;
 
@@ -56,4 +57,34 @@ pub(super) fn damping(check: &mut Check, raw: Option<RawDamping>) -> Option<Damp
             None
         }
     }
+}
+
+/// Highest nodal diameter of the largest wheel.
+const MOST_NODAL_DIAMETERS: u32 = 5000;
+
+/// Damping by nodal diameter; none where it cannot be told.
+pub(super) fn nodal_diameter_damping(
+    check: &mut Check,
+    raw: RawNodalDiameterDamping,
+) -> Option<NodalDiameterTable> {
+    let key = "nodal_diameter_damping.damping_ratios";
+    let accepted = "a list of [nodal diameter, damping ratio] like [[3, 0.0012], [4, 0.0009]]: nodal diameters \
+                    from 0 to 5000, each once, ratios of at least 0 and below 1";
+    let Some(ratios) = raw.damping_ratios else {
+        check.missing(key, accepted);
+        return None;
+    };
+    if ratios.is_empty() {
+        check.refuse(key, accepted);
+    }
+    for (place, &(h, ratio)) in ratios.iter().enumerate() {
+        let twice = ratios[..place].iter().any(|&(other, _)| other == h);
+        if twice || h > MOST_NODAL_DIAMETERS || !(0.0..1.0).contains(&ratio) {
+            check.refuse(&format!("{key}[{place}]"), accepted);
+        }
+    }
+    Some(NodalDiameterTable {
+        ratios,
+        modes: raw.modes.unwrap_or_default(),
+    })
 }

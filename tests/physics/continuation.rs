@@ -38,6 +38,7 @@ mod oscillator {
         let modes = StructuralModes {
             eigenvalues: vec![STIFFNESS],
             tuned_eigenvalues: vec![STIFFNESS],
+            added_damping_per_s: vec![0.0],
             rotation: None,
             contact: rows(1.0, 1),
             observed: rows(1.0, 3),

@@ -18,6 +18,7 @@ pub struct WheelBasis {
     model: Arc<ReducedModel>,
     waves: Vec<Wave>,
     eigenvalues: Vec<f64>,
+    added_damping_per_s: Vec<f64>,
     contact: Matrix<f64>,
     observed: Matrix<f64>,
 }
@@ -40,6 +41,7 @@ impl WheelBasis {
         let sectors = model.sectors;
         let mut waves = Vec::new();
         let mut eigenvalues = Vec::new();
+        let mut added_damping_per_s = Vec::new();
         for (h, nd) in model.nodal_diameters.iter().enumerate() {
             let phases: Vec<Complex64> = (0..sectors).map(|n| phase(h, n, sectors)).collect();
             let standing = model.is_standing(h);
@@ -52,6 +54,7 @@ impl WheelBasis {
                 imaginary: phases.iter().map(|p| -scale * p.im).collect(),
             };
             eigenvalues.extend_from_slice(&nd.eigenvalues);
+            added_damping_per_s.extend_from_slice(&nd.added_damping_per_s);
             waves.push(cosine);
             if !standing {
                 let sine = Wave {
@@ -61,6 +64,7 @@ impl WheelBasis {
                     imaginary: phases.iter().map(|p| scale * p.re).collect(),
                 };
                 eigenvalues.extend_from_slice(&nd.eigenvalues);
+                added_damping_per_s.extend_from_slice(&nd.added_damping_per_s);
                 waves.push(sine);
             }
         }
@@ -68,6 +72,7 @@ impl WheelBasis {
             model,
             waves,
             eigenvalues,
+            added_damping_per_s,
             contact: Matrix::zeros(0, 0),
             observed: Matrix::zeros(0, 0),
         };
@@ -93,6 +98,12 @@ impl WheelBasis {
     #[must_use]
     pub fn eigenvalues(&self) -> &[f64] {
         &self.eigenvalues
+    }
+
+    /// Damping of the coordinates besides the damping model of the structure, 1/s.
+    #[must_use]
+    pub fn added_damping_per_s(&self) -> &[f64] {
+        &self.added_damping_per_s
     }
 
     /// Relative motion at the contact rows, sector after sector, `N n_rows x size`.

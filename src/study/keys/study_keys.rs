@@ -1,6 +1,6 @@
 //! The keys of a study file except those of its model.
 
-use super::Value::{Ascending, Either, Flag, List, Name, Number, Table, Text, Whole};
+use super::Value::{Ascending, Either, Flag, List, Name, Number, Pairs, Table, Text, Whole};
 use super::key::{Entry, REQUIRED, entry};
 use super::{Range, Value};
 
@@ -238,6 +238,28 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         Number(Range::at_least(0.0)),
         REQUIRED,
         "b, s",
+    ),
+    entry(
+        "nodal_diameter_damping",
+        Table,
+        "",
+        "damping of the tuned modes by nodal diameter, besides",
+    ),
+    entry(
+        "nodal_diameter_damping.damping_ratios",
+        Pairs(
+            ["nodal diameter", "damping ratio"],
+            [0, 5000],
+            Range::at_least(0.0).below(1.0),
+        ),
+        REQUIRED,
+        "each nodal diameter once, up to N/2; those left out have none",
+    ),
+    entry(
+        "nodal_diameter_damping.modes",
+        Name(&["blade", "all"]),
+        "`\"blade\"`",
+        "`blade`: each mode by the share of its strain energy in the blade; `all`: every mode of the nodal diameter alike",
     ),
     entry("excitation", Table, REQUIRED, "the rotating force"),
     entry(

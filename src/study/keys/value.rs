@@ -85,6 +85,8 @@ pub enum Value {
     List(&'static Value),
     /// An ascending list of this many values, or of any number from one.
     Ascending(&'static Value, Option<u64>),
+    /// A list of lists of two: these names, the first a whole number from the two, the second a number.
+    Pairs([&'static str; 2], [i64; 2], Range),
     /// Any of these.
     Either(&'static [Value]),
 }
@@ -131,6 +133,10 @@ impl fmt::Display for Value {
             Self::List(value) => write!(f, "list of different values: {value}"),
             Self::Ascending(value, None) => write!(f, "ascending list: {value}"),
             Self::Ascending(value, Some(count)) => write!(f, "{count} ascending values: {value}"),
+            Self::Pairs([first, second], [low, high], range) => write!(
+                f,
+                "list of `[{first}, {second}]`: whole number, {low} to {high}; {range}"
+            ),
             Self::Either(values) => {
                 let values: Vec<String> = values.iter().map(ToString::to_string).collect();
                 write!(f, "{}", values.join("; or "))
@@ -177,6 +183,13 @@ impl Value {
                 }
                 schema
             }
+            // Draft 7 has no short way to say what each of the two is.
+            Self::Pairs(..) => json!({
+                "type": "array", "minItems": 1, "uniqueItems": true,
+                "items": {
+                    "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2,
+                },
+            }),
             Self::Either(values) => {
                 let values: Vec<Json> = values.iter().map(Self::schema).collect();
                 json!({ "anyOf": values })

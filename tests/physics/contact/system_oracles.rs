@@ -42,6 +42,7 @@ fn oscillator(
     let modes = StructuralModes {
         eigenvalues: vec![1.0],
         tuned_eigenvalues: vec![1.0],
+        added_damping_per_s: vec![0.0],
         rotation: None,
         contact: rows(1),
         observed: rows(3),

@@ -28,6 +28,7 @@ impl OneDof {
         let modes = StructuralModes {
             eigenvalues: vec![stiffness],
             tuned_eigenvalues: vec![stiffness],
+            added_damping_per_s: vec![0.0],
             rotation: None,
             contact: rows(Matrix::identity(1)),
             observed: rows(Matrix::from_fn(3, 1, |i, _| f64::from(u8::from(i == 0)))),
