@@ -70,6 +70,7 @@ impl From<&PipelineError> for ExitStatus {
             | PipelineError::NoScenario { .. }
             | PipelineError::NoOptimum { .. }
             | PipelineError::NoEstimate { .. }
+            | PipelineError::NoCampbell { .. }
             | PipelineError::NoTradeoff { .. }
             | PipelineError::NoTimeDomain { .. }
             | PipelineError::NoContact { .. } => Self::Usage,

@@ -1,6 +1,7 @@
 //! The numbers of a report as one struct, warnings with advice, and the summary as text.
 
 mod answers;
+mod campbell;
 mod comparison;
 mod comparison_text;
 mod estimate;
@@ -27,6 +28,7 @@ mod wheel_report;
 mod words;
 
 pub use answers::{Answer, answers};
+pub use campbell::{CampbellCrossing, CampbellMode, CampbellReport};
 pub use comparison::{
     BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet, QuantityComparison,
     ScenarioComparison,

@@ -4,6 +4,7 @@ mod accuracy;
 mod accuracy_choice;
 mod accurate_engine;
 mod basis_choice;
+mod campbell;
 mod compare;
 mod contact_displacement;
 mod digest;
@@ -66,6 +67,7 @@ mod verify;
 
 pub use accuracy::AccuracyOptions;
 pub use accuracy_choice::{AccuracyChoice, AccuracyEvidence, TriedSetting};
+pub use campbell::{CampbellRequest, campbell};
 pub use compare::{CompareRequest, compare};
 pub use digest::StudyDigest;
 pub use engine::{Engine, EngineSource, SurrogateOf};

@@ -4,6 +4,7 @@
 
 mod bounds;
 mod calculix_sector;
+mod campbell;
 mod contact;
 mod contact_variation;
 mod continuation;
@@ -15,9 +16,11 @@ mod harmonic_balance;
 mod imports;
 mod limits;
 mod mistuning;
+mod nodal_diameter_damping;
 mod peaks;
 mod reduction;
 mod reference;
+mod rotation;
 mod sector_sources;
 mod separation;
 mod surrogate;
