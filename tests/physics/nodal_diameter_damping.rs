@@ -368,24 +368,29 @@ fn the_wheel_does_the_same_in_time() {
         .iter()
         .map(|(hz, point)| (*hz, largest(point.as_ref().unwrap())));
     let (frequency_hz, _) = heights.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
-    let solver = SolverOptions {
+    let settings = SolverOptions {
         samples_per_period: 1024,
         ..SolverOptions::default()
     };
-    let case = PointCase {
-        basis: &basis,
+    let factors = ContactFactors::default();
+    let bare = Reduction::new(&sector, springs(law, contact()), 25, 0).unwrap();
+    let bare = WheelBasis::new(Arc::new(
+        bare.reduce(BasisChoice::CraigBampton, None).unwrap(),
+    ));
+    let case = |basis, normal_load_n| PointCase {
+        basis,
         stiffness_change: Some(&change),
         damping,
         engine_order: 1,
         amplitude_n: 10.0,
         law,
         sector: PairParameters {
-            normal_load_n: 1000.0,
+            normal_load_n,
             ..contact()
         },
-        factors: &ContactFactors::default(),
+        factors: &factors,
         harmonics: &[1, 3, 5, 7, 9, 11, 13, 15],
-        solver: &solver,
+        solver: &settings,
         frequency_hz,
     };
     let options = TimeOptions {
@@ -393,22 +398,13 @@ fn the_wheel_does_the_same_in_time() {
         minimum_periods: 60,
         ..TimeOptions::default()
     };
-    let found = compare_point(&case, &options).unwrap();
-    assert_eq!(found.status, Status::Ok, "{:?}", found.steps);
-    assert!(found.reached(2e-4), "{}", found.largest_difference());
-    // Without the added damping the wheel answers otherwise, so that the agreement means something.
-    let bare = Reduction::new(&sector, springs(law, contact()), 25, 0).unwrap();
-    let bare = WheelBasis::new(Arc::new(
-        bare.reduce(BasisChoice::CraigBampton, None).unwrap(),
-    ));
-    let without = compare_point(
-        &PointCase {
-            basis: &bare,
-            ..case
-        },
-        &options,
-    )
-    .unwrap();
-    let ratio = largest(&found.time_m) / largest(&without.time_m);
-    assert!(ratio < 0.95, "{ratio}");
+    // Slipping and hardly slipping; friction hides damping under the first load, not under the second.
+    for (normal_load_n, hidden) in [(1000.0, true), (2000.0, false)] {
+        let found = compare_point(&case(&basis, normal_load_n), &options).unwrap();
+        assert_eq!(found.status, Status::Ok, "{:?}", found.steps);
+        assert!(found.reached(2e-4), "{}", found.largest_difference());
+        let without = compare_point(&case(&bare, normal_load_n), &options).unwrap();
+        let ratio = largest(&found.time_m) / largest(&without.time_m);
+        assert!(hidden || ratio < 0.8, "{ratio}");
+    }
 }
