@@ -128,11 +128,23 @@ pub struct ReducedModel {
     pub blade_gram: Matrix<f64>,
     /// Cantilevered-blade modes, where the study projects through them.
     pub cantilever: Option<CantileverModes>,
+    /// Factors on the force vector under single engine orders; 1 under the others.
+    pub force_factors: Vec<(u32, f64)>,
     /// What the reduction came to, per nodal diameter.
     pub report: Vec<NodalDiameterReport>,
 }
 
 impl ReducedModel {
+    /// Factor on the force vector under an engine order.
+    #[must_use]
+    pub fn force_factor(&self, engine_order: u32) -> f64 {
+        let of = |&&(own, _): &&(u32, f64)| own == engine_order;
+        self.force_factors
+            .iter()
+            .find(of)
+            .map_or(1.0, |&(_, factor)| factor)
+    }
+
     /// Number of real modal coordinates of the wheel: every nodal diameter but 0 and N/2 twice.
     #[must_use]
     pub fn wheel_size(&self) -> usize {

@@ -170,7 +170,7 @@ impl<'a> ContactMotion<'a> {
         let wave = model.wave(wave);
         let mut force = wave.contact.adjoint_times_vector(&motion.correction);
         let excitation = if motion.harmonic == 1 {
-            self.settings.amplitude_n
+            self.settings.amplitude_n * model.force_factor(self.engine_order)
         } else {
             0.0
         };

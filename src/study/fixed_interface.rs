@@ -135,7 +135,8 @@ impl<'a> Rung<'a> {
             modes,
             sensitivity_vectors(study),
         )
-        .with_damping(study.added_damping());
+        .with_damping(study.added_damping())
+        .with_force_factors(study.force_factors());
         Self { modes, reduction }
     }
 

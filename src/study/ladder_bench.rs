@@ -246,7 +246,8 @@ impl<'a> LadderBench<'a> {
             self.fixed_interface.modes,
             sensitivity_vectors(&self.study),
         )?
-        .with_damping(self.study.added_damping());
+        .with_damping(self.study.added_damping())
+        .with_force_factors(self.study.force_factors());
         self.reductions.push((stiffness, reduction));
         Ok(self.reductions.len() - 1)
     }

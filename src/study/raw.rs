@@ -91,7 +91,7 @@ pub(super) enum RawLoadSource {
 #[serde(deny_unknown_fields)]
 pub(super) struct RawNormalLoad {
     pub from: Option<RawLoadSource>,
-    pub speed_rpm: Option<RawSpeeds>,
+    pub speed_rpm: Option<RawNumbers>,
     pub hoop: Option<Hoop>,
     pub share: Option<LoadShare>,
     pub ring_mass_factor: Option<f64>,
@@ -151,7 +151,7 @@ pub(super) struct RawRayleigh {
 #[serde(deny_unknown_fields)]
 pub(super) struct RawExcitation {
     pub engine_orders: Option<Vec<u32>>,
-    pub amplitude_n: Option<f64>,
+    pub amplitude_n: Option<RawNumbers>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -237,9 +237,9 @@ pub(super) enum RawLoad {
     Name(String),
 }
 
-/// One speed or several, revolutions per minute.
+/// One number or a list.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum RawSpeeds {
+pub(super) enum RawNumbers {
     One(f64),
     List(Vec<f64>),
 }
@@ -290,39 +290,39 @@ impl<'de> Deserialize<'de> for RawLoad {
     }
 }
 
-struct SpeedsVisitor;
+struct NumbersVisitor;
 
-impl<'de> Visitor<'de> for SpeedsVisitor {
-    type Value = RawSpeeds;
+impl<'de> Visitor<'de> for NumbersVisitor {
+    type Value = RawNumbers;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a speed in revolutions per minute or a list like [3000, 6000]")
+        f.write_str("a number or a list of numbers")
     }
 
-    fn visit_f64<E: de::Error>(self, value: f64) -> Result<RawSpeeds, E> {
-        Ok(RawSpeeds::One(value))
+    fn visit_f64<E: de::Error>(self, value: f64) -> Result<RawNumbers, E> {
+        Ok(RawNumbers::One(value))
     }
 
-    fn visit_i64<E: de::Error>(self, value: i64) -> Result<RawSpeeds, E> {
-        Ok(RawSpeeds::One(value as f64))
+    fn visit_i64<E: de::Error>(self, value: i64) -> Result<RawNumbers, E> {
+        Ok(RawNumbers::One(value as f64))
     }
 
-    fn visit_u64<E: de::Error>(self, value: u64) -> Result<RawSpeeds, E> {
-        Ok(RawSpeeds::One(value as f64))
+    fn visit_u64<E: de::Error>(self, value: u64) -> Result<RawNumbers, E> {
+        Ok(RawNumbers::One(value as f64))
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<RawSpeeds, A::Error> {
-        let mut speeds = Vec::new();
-        while let Some(speed) = list.next_element()? {
-            speeds.push(speed);
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<RawNumbers, A::Error> {
+        let mut numbers = Vec::new();
+        while let Some(number) = list.next_element()? {
+            numbers.push(number);
         }
-        Ok(RawSpeeds::List(speeds))
+        Ok(RawNumbers::List(numbers))
     }
 }
 
-impl<'de> Deserialize<'de> for RawSpeeds {
+impl<'de> Deserialize<'de> for RawNumbers {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(SpeedsVisitor)
+        deserializer.deserialize_any(NumbersVisitor)
     }
 }
 

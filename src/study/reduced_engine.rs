@@ -85,13 +85,14 @@ impl EngineSource for ReducedEngineSource {
         // Everything the stored models and sets depend on besides the sector: also what their
         // errors are judged by.
         let key = format!(
-            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?} {:?}",
+            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?} {:?} {:?}",
             study.reduction,
             study.mistuning.cantilever_mode_count,
             study.engine_orders,
             study.contacts,
             study.contact_variations,
-            study.nodal_diameter_damping
+            study.nodal_diameter_damping,
+            study.amplitudes_n
         );
         let digest = reduction_digest(model, &key);
         let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));

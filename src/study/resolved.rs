@@ -73,6 +73,8 @@ pub struct Study {
     pub engine_orders: Vec<u32>,
     /// Factor on the model's force vector.
     pub amplitude_n: f64,
+    /// Factors of the engine orders in their order, each besides `amplitude_n`; empty: all alike.
+    pub amplitudes_n: Vec<f64>,
     /// Mistuning and its source.
     pub mistuning: Mistuning,
     /// Normal loads by rotation; none where all are written in newtons.
@@ -111,6 +113,16 @@ impl Study {
         scenarios
     }
 
+    /// Factors on the force vector of engine orders that have one of their own.
+    #[must_use]
+    pub fn force_factors(&self) -> Vec<(u32, f64)> {
+        let orders = self.engine_orders.iter();
+        orders
+            .zip(&self.amplitudes_n)
+            .map(|(&engine_order, &factor)| (engine_order, factor))
+            .collect()
+    }
+
     /// Whether a scenario is under the nonlinear contact law.
     #[must_use]
     pub fn has_friction(&self) -> bool {
@@ -142,7 +154,14 @@ impl Study {
                     json!({ "rayleigh": { "mass_per_s": mass_per_s, "stiffness_s": stiffness_s } })
                 }
             },
-            "excitation": { "engine_orders": self.engine_orders, "amplitude_n": self.amplitude_n },
+            "excitation": {
+                "engine_orders": self.engine_orders,
+                "amplitude_n": if self.amplitudes_n.is_empty() {
+                    json!(self.amplitude_n)
+                } else {
+                    json!(self.amplitudes_n)
+                },
+            },
             "mistuning": self.mistuning.resolved(),
             "sweep": self.sweep_value(),
             "solver": {

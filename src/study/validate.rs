@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::raw::{RawExcitation, RawHead, RawModel, RawModelKind, RawStudy};
+use super::raw::{RawExcitation, RawHead, RawModel, RawModelKind, RawNumbers, RawStudy};
 use super::source_map::SourceMap;
 use super::validate_accuracy::accuracy;
 use super::validate_contact::contact_variations;
@@ -162,7 +162,8 @@ fn resolve(
     let nodal_diameter_damping = raw
         .nodal_diameter_damping
         .and_then(|raw| nodal_diameter_damping(check, raw));
-    let (engine_orders, amplitude_n) = excitation(check, raw.excitation.unwrap_or_default());
+    let (engine_orders, (amplitude_n, amplitudes_n)) =
+        excitation(check, raw.excitation.unwrap_or_default());
     let sweep = raw.sweep.unwrap_or_default();
     let normal_load = raw.contact.as_mut().and_then(|raw| raw.normal_load.take());
     let contacts = contacts(check, &sweep, normal_load.is_some());
@@ -224,6 +225,7 @@ fn resolve(
         nodal_diameter_damping,
         engine_orders,
         amplitude_n,
+        amplitudes_n,
         rotation: None,
         mistuning: mistuning.mistuning,
         contacts,
@@ -407,7 +409,7 @@ fn normal_stiffness(check: &mut Check, contact: &ContactOptions) {
     }
 }
 
-fn excitation(check: &mut Check, raw: RawExcitation) -> (Vec<u32>, f64) {
+fn excitation(check: &mut Check, raw: RawExcitation) -> (Vec<u32>, (f64, Vec<f64>)) {
     let key = "excitation.engine_orders";
     let accepted = "a list of different whole numbers from 0 to 10000, at least one";
     let orders = raw.engine_orders.unwrap_or_default();
@@ -419,12 +421,29 @@ fn excitation(check: &mut Check, raw: RawExcitation) -> (Vec<u32>, f64) {
     } else if orders.is_empty() || sorted.len() < orders.len() || sorted.last() > Some(&10_000) {
         check.refuse(key, accepted);
     }
-    let amplitude = raw.amplitude_n.unwrap_or(1.0);
-    let amplitude = check.within(
-        "excitation.amplitude_n",
-        amplitude,
-        amplitude.is_finite() && amplitude > 0.0,
-        "a finite number above 0, in N",
-    );
-    (orders, amplitude)
+    let amplitudes = amplitudes(check, raw.amplitude_n, orders.len());
+    (orders, amplitudes)
+}
+
+/// Factor on the force vector, and those of the engine orders where each has its own.
+fn amplitudes(check: &mut Check, raw: Option<RawNumbers>, orders: usize) -> (f64, Vec<f64>) {
+    let key = "excitation.amplitude_n";
+    let possible = |amplitude: &f64| amplitude.is_finite() && *amplitude > 0.0;
+    match raw {
+        None => (1.0, Vec::new()),
+        Some(RawNumbers::One(amplitude)) => {
+            let accepted = "a finite number above 0, in N, or a list of one per engine order";
+            let amplitude = check.within(key, amplitude, possible(&amplitude), accepted);
+            (amplitude, Vec::new())
+        }
+        Some(RawNumbers::List(amplitudes)) => {
+            if amplitudes.len() != orders || !amplitudes.iter().all(possible) {
+                let accepted = format!(
+                    "a finite number above 0, in N, or a list of {orders}, one per engine order"
+                );
+                check.refuse(key, &accepted);
+            }
+            (1.0, amplitudes)
+        }
+    }
 }

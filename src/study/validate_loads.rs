@@ -1,7 +1,7 @@
 //! The checks of the normal loads: newtons and limits of `[sweep]`, rotation of `[contact.normal_load]`.
 
 use super::RotationOptions;
-use super::raw::{RawLoad, RawNormalLoad, RawSpeeds, RawSweep};
+use super::raw::{RawLoad, RawNormalLoad, RawNumbers, RawSweep};
 use super::validate::Check;
 use crate::response::forced_response::ContactCondition;
 
@@ -82,7 +82,7 @@ pub(super) fn rotation(check: &mut Check, raw: &RawNormalLoad) -> Option<Rotatio
     })
 }
 
-fn speeds(check: &mut Check, raw: Option<&RawSpeeds>) -> Option<Vec<f64>> {
+fn speeds(check: &mut Check, raw: Option<&RawNumbers>) -> Option<Vec<f64>> {
     let key = "contact.normal_load.speed_rpm";
     let accepted =
         "a speed above 0 in revolutions per minute, at most 1e6, or a list of different ones";
@@ -91,8 +91,8 @@ fn speeds(check: &mut Check, raw: Option<&RawSpeeds>) -> Option<Vec<f64>> {
             check.missing(key, accepted);
             return None;
         }
-        Some(RawSpeeds::One(speed)) => vec![*speed],
-        Some(RawSpeeds::List(speeds)) => speeds.clone(),
+        Some(RawNumbers::One(speed)) => vec![*speed],
+        Some(RawNumbers::List(speeds)) => speeds.clone(),
     };
     let possible = |speed: &f64| *speed > 0.0 && *speed <= 1e6;
     let twice = |place: usize| speeds[..place].contains(&speeds[place]);

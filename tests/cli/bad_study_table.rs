@@ -460,6 +460,11 @@ pub const CASES: &[Case] = &[
         &["damping_ratios[0] = [1, -0.001]", "at least 0 and below 1"],
     ),
     (
+        "amplitude_n = 10.0",
+        "amplitude_n = [10.0, 20.0]",
+        &["excitation.amplitude_n = [10.0, 20.0]", "a list of 1"],
+    ),
+    (
         "[1, 3]",
         "[1]\n[output]\nstress_pa_per_m = 0",
         &["output.stress_pa_per_m = 0", "Pa/m"],

@@ -162,3 +162,38 @@ fn a_campbell_table_has_the_frequencies_and_crossings_of_a_study() {
         assert!(refused.stderr.contains(part), "{}", refused.stderr);
     }
 }
+
+#[test]
+fn every_engine_order_can_have_its_own_amplitude() {
+    let study = |orders: &str, amplitudes: &str| {
+        GOOD.replace("engine_orders = [2]", &format!("engine_orders = {orders}"))
+            .replace("amplitude_n = 10.0", &format!("amplitude_n = {amplitudes}"))
+    };
+    let both = Place::with(&study("[2, 1]", "[10.0, 25.0]"));
+    let run = both.run(&["run", "study.toml"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let mut alone = Vec::new();
+    for (order, amplitude) in [("[2]", "10.0"), ("[1]", "25.0")] {
+        let place = Place::with(&study(order, amplitude));
+        assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+        for name in ["tuned_amplitude_m", "peak_amplitude_m_mean"] {
+            alone.push(column(&place, name));
+        }
+    }
+    for (index, name) in ["tuned_amplitude_m", "peak_amplitude_m_mean"]
+        .into_iter()
+        .enumerate()
+    {
+        let expected = alone[index].iter().chain(&alone[index + 2]);
+        for (found, expected) in column(&both, name).iter().zip(expected) {
+            let (found, expected) = (found.expect("a value"), expected.expect("a value"));
+            assert!(
+                (found / expected - 1.0).abs() < 1e-6,
+                "{name}: {found} {expected}"
+            );
+        }
+    }
+    // The same force on the full-contact model, whose amplitudes are its own.
+    let verified = both.run(&["verify", "study.toml", "--sample", "4"]);
+    assert_eq!(verified.code, 0, "{}{}", verified.stdout, verified.stderr);
+}

@@ -29,6 +29,7 @@ pub struct Reduction<'a> {
     craig_bampton_modes: usize,
     sensitivity_vectors: usize,
     damping: NodalDiameterDamping,
+    force_factors: Vec<(u32, f64)>,
     models: Vec<OnceLock<CraigBampton>>,
 }
 
@@ -84,6 +85,7 @@ impl<'a> Reduction<'a> {
             craig_bampton_modes,
             sensitivity_vectors,
             damping: NodalDiameterDamping::default(),
+            force_factors: Vec::new(),
             models: (0..=model.sectors / 2).map(|_| OnceLock::new()).collect(),
         }
     }
@@ -92,6 +94,15 @@ impl<'a> Reduction<'a> {
     #[must_use]
     pub fn with_damping(self, damping: NodalDiameterDamping) -> Self {
         Self { damping, ..self }
+    }
+
+    /// The same with the force vector multiplied by a factor of its own under these engine orders.
+    #[must_use]
+    pub fn with_force_factors(self, force_factors: Vec<(u32, f64)>) -> Self {
+        Self {
+            force_factors,
+            ..self
+        }
     }
 
     /// Number of sectors N.
@@ -224,6 +235,7 @@ impl<'a> Reduction<'a> {
             springs: self.springs.clone(),
             blade_gram: Matrix::zeros(0, 0),
             cantilever: None,
+            force_factors: self.force_factors.clone(),
             report,
         };
         Ok((model, bases))

@@ -123,6 +123,7 @@ impl WheelBasis {
     pub fn force(&self, engine_order: u32) -> Vec<Complex64> {
         let sectors = self.model.sectors;
         let excited = nodal_diameter_of(1, engine_order, sectors).index;
+        let factor = self.model.force_factor(engine_order);
         let mut force = vec![Complex64::default(); self.size()];
         for wave in self
             .waves
@@ -136,12 +137,13 @@ impl WheelBasis {
                 let (adjoint, plain) = (nd.force[(mode, 0)], nd.conjugate_force[(mode, 0)]);
                 let real_part = (adjoint + plain) * 0.5;
                 let imaginary_part = (plain - adjoint) * Complex64::new(0.0, -0.5);
-                force[wave.start + mode] = (0..sectors)
+                let sum: Complex64 = (0..sectors)
                     .map(|n| {
                         let turn = phase(engine_order as usize % sectors, n, sectors);
                         (real_part * wave.real[n] + imaginary_part * wave.imaginary[n]) * turn
                     })
                     .sum();
+                force[wave.start + mode] = sum * factor;
             }
         }
         force

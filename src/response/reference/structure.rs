@@ -111,6 +111,7 @@ pub(super) fn force(
     mistuned: bool,
 ) -> Vec<Complex64> {
     let excited = nodal_diameter_of(1, engine_order, model.sectors);
+    let amplitude_n = amplitude_n * model.force_factor(engine_order);
     let wave = model.wave(excited).force;
     let of_wave = |scale: f64| wave.column(0).iter().map(move |f| f * scale);
     if !mistuned {

@@ -1,6 +1,8 @@
 //! The keys of a study file except those of its model.
 
-use super::Value::{Ascending, Either, Flag, List, Name, Number, Pairs, Table, Text, Whole};
+use super::Value::{
+    Ascending, Either, Flag, List, Name, Number, Numbers, Pairs, Table, Text, Whole,
+};
 use super::key::{Entry, REQUIRED, entry};
 use super::{Range, Value};
 
@@ -270,9 +272,9 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
     ),
     entry(
         "excitation.amplitude_n",
-        ABOVE_ZERO,
+        Either(&[ABOVE_ZERO, Numbers(Range::above(0.0))]),
         "1.0",
-        "multiplies the model's force vector",
+        "multiplies the model's force vector; a list: one per engine order, in their order",
     ),
     entry("mistuning", Table, REQUIRED, "the random blades"),
     entry(

@@ -83,6 +83,8 @@ pub enum Value {
     Name(&'static [&'static str]),
     /// A list of different values, at least one.
     List(&'static Value),
+    /// A list of numbers of which some may be the same.
+    Numbers(Range),
     /// An ascending list of this many values, or of any number from one.
     Ascending(&'static Value, Option<u64>),
     /// A list of lists of two: these names, the first a whole number from the two, the second a number.
@@ -131,6 +133,7 @@ impl fmt::Display for Value {
                 write!(f, "{}", names.join(", "))
             }
             Self::List(value) => write!(f, "list of different values: {value}"),
+            Self::Numbers(range) => write!(f, "list: {range}"),
             Self::Ascending(value, None) => write!(f, "ascending list: {value}"),
             Self::Ascending(value, Some(count)) => write!(f, "{count} ascending values: {value}"),
             Self::Pairs([first, second], [low, high], range) => write!(
@@ -172,6 +175,9 @@ impl Value {
             Self::Name(names) => json!({ "enum": names }),
             Self::List(value) => json!({
                 "type": "array", "items": value.schema(), "minItems": 1, "uniqueItems": true,
+            }),
+            Self::Numbers(range) => json!({
+                "type": "array", "items": Self::Number(*range).schema(), "minItems": 1,
             }),
             Self::Ascending(value, count) => {
                 let mut schema = json!({
