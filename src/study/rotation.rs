@@ -65,12 +65,11 @@ impl RotationOptions {
             "speed_rpm": self.speeds_rpm,
             "ring_mass_factor": self.ring_mass_factor,
         });
-        match self.ring_radius_m {
-            Some(radius_m) => value["ring_radius_m"] = json!(radius_m),
-            None => {
-                value["hoop"] = json!(self.hoop);
-                value["share"] = json!(self.share);
-            }
+        if let Some(radius_m) = self.ring_radius_m {
+            value["ring_radius_m"] = json!(radius_m);
+        } else {
+            value["hoop"] = json!(self.hoop);
+            value["share"] = json!(self.share);
         }
         value
     }
@@ -88,7 +87,7 @@ impl RotationLoad {
         let load_n = contact.normal_load_n()?;
         let loads = self.normal_loads_n.iter().zip(&self.options.speeds_rpm);
         loads
-            .filter(|(own, _)| own.total_cmp(&&load_n).is_eq())
+            .filter(|(own, _)| own.total_cmp(&load_n).is_eq())
             .map(|(_, &speed)| speed)
             .next()
     }
@@ -262,9 +261,6 @@ fn ring_of_masses(model: &SectorModel, radius_m: f64) -> CentrifugalContact {
 
 /// The model with the mass of its ring multiplied by `factor`.
 fn with_ring_mass(model: SectorModel, factor: f64) -> SectorModel {
-    if factor == 1.0 {
-        return model;
-    }
     let scaled: Vec<_> = model
         .mass
         .lower_entries()

@@ -198,17 +198,7 @@ impl Equilibrium {
             .collect();
         let mut pressed = vec![true; rows.len()];
         for _ in 0..ROUNDS {
-            let contact = rows
-                .iter()
-                .zip(springs.iter().zip(&pressed))
-                .filter(|(_, (_, pressed))| **pressed)
-                .flat_map(|(row, (&spring, _))| {
-                    row.iter().flat_map(move |&(i, a)| {
-                        row.iter()
-                            .map(move |&(j, b)| (i, j, Complex64::from(spring * a * b)))
-                    })
-                });
-            let contact = HermitianSparse::from_triplets(self.size, contact);
+            let contact = self.contact(&rows, &springs, &pressed);
             let factor = held
                 .plus(1.0, &contact)
                 .factor()
@@ -221,15 +211,33 @@ impl Equilibrium {
             let next: Vec<bool> = closing.iter().map(|&closing: &f64| closing > 0.0).collect();
             if next == pressed {
                 let loads = closing.iter().zip(&springs).zip(&pressed);
-                let load = |((closing, spring), &pressed)| match pressed {
-                    true => spring * closing,
-                    false => 0.0,
+                let load = |((closing, spring), pressed): ((&f64, &f64), &bool)| {
+                    if *pressed { spring * closing } else { 0.0 }
                 };
                 return Ok(loads.map(load).collect());
             }
             pressed = next;
         }
         Err(CentrifugalError::NotSettled)
+    }
+
+    /// `C_n^T diag(springs) C_n` over the pairs that are pressed.
+    fn contact(
+        &self,
+        rows: &[Vec<(usize, f64)>],
+        springs: &[f64],
+        pressed: &[bool],
+    ) -> HermitianSparse {
+        let pairs = rows.iter().zip(springs).zip(pressed);
+        let entries = pairs
+            .filter(|(_, pressed)| **pressed)
+            .flat_map(|((row, &spring), _)| {
+                row.iter().flat_map(move |&(i, a)| {
+                    row.iter()
+                        .map(move |&(j, b)| (i, j, Complex64::from(spring * a * b)))
+                })
+            });
+        HermitianSparse::from_triplets(self.size, entries)
     }
 
     /// Relative motion of each pair along its normal, in these coordinates.
