@@ -32,11 +32,11 @@ distribution = { kind = "normal", standard_deviation = 0.03 }
 normal_load_n = ["free"]
 "#;
 
-const CONTACT: &str = r#"[contact]
+const CONTACT: &str = r"[contact]
 friction_coefficient = 0.3
 tangential_stiffness_n_per_m = 8.0e5
 normal_stiffness_n_per_m = 8.0e5
-"#;
+";
 
 fn study(text: &str) -> Study {
     Study::parse(Path::new("study.toml"), text).unwrap()

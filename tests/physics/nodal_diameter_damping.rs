@@ -213,14 +213,15 @@ fn gauss(mut a: Vec<Vec<Complex64>>, mut b: Vec<Complex64>) -> Vec<Complex64> {
             .unwrap();
         a.swap(column, pivot);
         b.swap(column, pivot);
-        for row in column + 1..n {
-            let factor = a[row][column] / a[column][column];
-            for k in column..n {
-                let above = a[column][k];
-                a[row][k] -= factor * above;
+        let (above, below) = a.split_at_mut(column + 1);
+        let own = &above[column];
+        for (place, row) in below.iter_mut().enumerate() {
+            let factor = row[column] / own[column];
+            for (entry, own) in row.iter_mut().zip(own).skip(column) {
+                *entry -= factor * own;
             }
-            let above = b[column];
-            b[row] -= factor * above;
+            let known = b[column];
+            b[column + 1 + place] -= factor * known;
         }
     }
     for row in (0..n).rev() {
