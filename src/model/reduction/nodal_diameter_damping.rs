@@ -43,14 +43,14 @@ impl NodalDiameterDamping {
         h: usize,
         eigenvalues: &[f64],
         shapes: &Matrix<Complex64>,
-        blade_stiffness: &HermitianSparse,
+        blade_stiffness: impl Fn() -> HermitianSparse,
     ) -> Vec<f64> {
         let zeta = self.ratios.get(h).copied().unwrap_or(0.0);
         if zeta == 0.0 {
             return vec![0.0; eigenvalues.len()];
         }
         let loaded = match self.modes {
-            DampedModes::Blade => Some(blade_stiffness.times(shapes)),
+            DampedModes::Blade => Some(blade_stiffness().times(shapes)),
             DampedModes::All => None,
         };
         let share = |mode: usize, lambda: f64| match &loaded {

@@ -260,9 +260,9 @@ impl<'a> Reduction<'a> {
             observed[i].map_or(Complex64::default(), |dof| full[(dof, j)])
         });
         let force = self.sector.force();
-        let blade = self.sector.blade_stiffness();
+        let blade = || self.sector.blade_stiffness();
         let reduced = ReducedNodalDiameter {
-            added_damping_per_s: self.damping.of_modes(h, &eigenvalues, &full, &blade),
+            added_damping_per_s: self.damping.of_modes(h, &eigenvalues, &full, blade),
             contact: model.contact.times(&v),
             observed,
             force: full.adjoint_times(&force),
