@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use super::campbell::CampbellArguments;
 use super::compare::CompareArguments;
 use super::estimate::EstimateArguments;
 use super::explain::{CompletionsArguments, ExplainArguments};
@@ -58,6 +59,11 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Natural frequencies per nodal diameter, and the speeds at which engine orders cross them.
+    #[command(
+        after_help = "Examples:\n  blisk campbell study.toml --engine-orders 1:12 --speed-rpm 0:12000\n  blisk campbell study.toml --at 0=bundle_rest --at 6000=bundle_speed"
+    )]
+    Campbell(CampbellArguments),
     /// Make a sector bundle from the files of a finite-element code.
     ///
     /// The import file names meshes, matrices and sets; docs/import.md has the commands that write

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::run_command::Failure;
 use super::{ExitStatus, output};
-use crate::study::{Study, StudyDigest, load_sector_model, pattern_source};
+use crate::study::{RotationLoad, Study, StudyDigest, load_sector_model, pattern_source};
 
 pub(super) fn command(study: &Path, json: bool) -> Result<ExitStatus, Failure> {
     let study = Study::read(study)?;
@@ -20,6 +20,7 @@ pub(super) fn command(study: &Path, json: bool) -> Result<ExitStatus, Failure> {
             "study_digest": digest.hex(),
             "inputs": digest.inputs,
             "scenarios": scenarios,
+            "rotation": study.rotation.as_ref().map(RotationLoad::facts),
             "rows": scenarios as u64 * u64::from(study.patterns),
         }));
     } else {
@@ -34,6 +35,9 @@ pub(super) fn command(study: &Path, json: bool) -> Result<ExitStatus, Failure> {
             study.patterns,
             scenarios as u64 * u64::from(study.patterns),
         ));
+        if let Some(rotation) = &study.rotation {
+            output::text(&rotation.facts());
+        }
     }
     Ok(ExitStatus::Done)
 }

@@ -70,6 +70,7 @@ impl From<&PipelineError> for ExitStatus {
             | PipelineError::NoScenario { .. }
             | PipelineError::NoOptimum { .. }
             | PipelineError::NoEstimate { .. }
+            | PipelineError::NoCampbell { .. }
             | PipelineError::NoTradeoff { .. }
             | PipelineError::NoTimeDomain { .. }
             | PipelineError::NoContact { .. } => Self::Usage,
@@ -87,6 +88,10 @@ impl From<&StudyError> for ExitStatus {
             | StudyError::PatternTable(PatternParquetError::Table(TableError::Io { .. })) => {
                 Self::InputOutput
             }
+            StudyError::Model(error) if matches!(**error, ModelError::File { .. }) => {
+                Self::InputOutput
+            }
+            StudyError::Model(_) => Self::ModelInvalid,
             StudyError::Invalid { .. } | StudyError::Patterns(_) | StudyError::PatternTable(_) => {
                 Self::StudyInvalid
             }

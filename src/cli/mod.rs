@@ -1,6 +1,7 @@
 //! Command line: definitions, one file per command, progress. The only code that prints.
 
 mod arguments;
+mod campbell;
 mod check;
 mod compare;
 mod estimate;

@@ -5,7 +5,9 @@ use std::path::Path;
 use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::model::sector::bundle;
-use crate::study::{EngineSource, PipelineError, ReducedEngineSource, Study, load_sector_model};
+use crate::study::{
+    EngineSource, PipelineError, ReducedEngineSource, RotationLoad, Study, load_sector_model,
+};
 
 pub(super) fn command(
     study: &Path,
@@ -19,6 +21,8 @@ pub(super) fn command(
         output::message(&format!("wrote the sector bundle {}", folder.display()));
     }
     let engine = ReducedEngineSource.build(&study, &model, None)?;
-    output::result(json, &engine.model_report());
+    let mut report = engine.model_report();
+    report.rotation = study.rotation.as_ref().map(RotationLoad::facts);
+    output::result(json, &report);
     Ok(ExitStatus::Done)
 }

@@ -6,8 +6,9 @@ use std::io::{self, ErrorKind};
 use clap::Parser;
 
 use super::{
-    Arguments, Command, ExitStatus, check, compare, estimate, explain, import, init, merge, model,
-    optimum, output, plan, replay, report, response, run, slurm, stats, status, tradeoff, verify,
+    Arguments, Command, ExitStatus, campbell, check, compare, estimate, explain, import, init,
+    merge, model, optimum, output, plan, replay, report, response, run, slurm, stats, status,
+    tradeoff, verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).
@@ -32,6 +33,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             export,
             json,
         } => model::command(&study, export.as_deref(), json),
+        Command::Campbell(arguments) => campbell::command(&arguments),
         Command::Import(arguments) => import::command(&arguments),
         Command::Plan(arguments) => plan::command(&arguments),
         Command::Run(arguments) => run::command(arguments),

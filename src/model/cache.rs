@@ -10,7 +10,7 @@ use thiserror::Error;
 use super::sector::SectorModel;
 
 /// Layout and meaning of the stored bytes; part of every digest, so that an older file is never misread.
-const LAYOUT: u32 = 4;
+const LAYOUT: u32 = 5;
 
 /// A cache that cannot be written. An unreadable entry is no error: it is made anew.
 #[derive(Debug, Error)]

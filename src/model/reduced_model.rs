@@ -73,6 +73,8 @@ pub struct CantileverModes {
 pub struct ReducedNodalDiameter {
     /// Eigenvalues of the tuned contact-free structure, (rad/s)^2, ascending, length `n_modes`.
     pub eigenvalues: Vec<f64>,
+    /// Viscous damping of each mode besides the damping model of the structure, 1/s, length `n_modes`.
+    pub added_damping_per_s: Vec<f64>,
     /// Relative motion at the contact rows of a sector, `n_rows x n_modes`.
     pub contact: Matrix<Complex64>,
     /// Displacement r, theta, z of the first observed node, `3 x n_modes`; zero where it has none.
@@ -126,11 +128,23 @@ pub struct ReducedModel {
     pub blade_gram: Matrix<f64>,
     /// Cantilevered-blade modes, where the study projects through them.
     pub cantilever: Option<CantileverModes>,
+    /// Factors on the force vector under single engine orders; 1 under the others.
+    pub force_factors: Vec<(u32, f64)>,
     /// What the reduction came to, per nodal diameter.
     pub report: Vec<NodalDiameterReport>,
 }
 
 impl ReducedModel {
+    /// Factor on the force vector under an engine order.
+    #[must_use]
+    pub fn force_factor(&self, engine_order: u32) -> f64 {
+        let of = |&&(own, _): &&(u32, f64)| own == engine_order;
+        self.force_factors
+            .iter()
+            .find(of)
+            .map_or(1.0, |&(_, factor)| factor)
+    }
+
     /// Number of real modal coordinates of the wheel: every nodal diameter but 0 and N/2 twice.
     #[must_use]
     pub fn wheel_size(&self) -> usize {
@@ -171,7 +185,7 @@ impl ReducedModel {
             .nodal_diameters
             .iter()
             .map(|nd| {
-                8 * nd.eigenvalues.len()
+                16 * nd.eigenvalues.len()
                     + complex(nd.contact.as_slice().len() + nd.observed.as_slice().len())
                     + complex(2 * nd.eigenvalues.len())
             })
@@ -188,6 +202,7 @@ impl ReducedModel {
         }
         ReducedNodalDiameter {
             eigenvalues: nd.eigenvalues.clone(),
+            added_damping_per_s: nd.added_damping_per_s.clone(),
             contact: nd.contact.conjugate(),
             observed: nd.observed.conjugate(),
             force: nd.conjugate_force.clone(),

@@ -1,6 +1,7 @@
 //! The numbers of a report as one struct, warnings with advice, and the summary as text.
 
 mod answers;
+mod campbell;
 mod comparison;
 mod comparison_text;
 mod estimate;
@@ -12,6 +13,7 @@ mod optimum;
 mod peak_audit;
 mod plan;
 mod plot;
+mod rotation;
 mod stated_errors;
 mod study_report;
 mod summary;
@@ -26,6 +28,7 @@ mod wheel_report;
 mod words;
 
 pub use answers::{Answer, answers};
+pub use campbell::{CampbellCrossing, CampbellMode, CampbellReport};
 pub use comparison::{
     BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet, QuantityComparison,
     ScenarioComparison,
@@ -38,6 +41,7 @@ pub use numerical_error::{NumericalError, NumericalFinding};
 pub use optimum::OptimumReport;
 pub use peak_audit::PeakAuditReport;
 pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};
+pub use rotation::RotationFacts;
 pub use stated_errors::{ErrorRows, ErrorSpread, StatedErrors};
 pub use study_report::{
     DistributionReport, GroupReport, LoadChoice, PercentileError, Provenance, ScenarioErrors,

@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::RotationFacts;
 use super::text_table::TextTable;
 use super::warning::Warning;
 use crate::model::reduction::{ContactDisplacementError, ContactDisplacementErrors};
@@ -56,6 +57,9 @@ pub struct ModelReport {
     /// Highest fixed-interface frequency over what it should be, 1 is enough; none where no mode
     /// is left out.
     pub craig_bampton_reach: Option<f64>,
+    /// Normal loads by rotation, where the study has such.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<RotationFacts>,
     /// What is not accurate enough.
     pub warnings: Vec<Warning>,
     /// Memory of the reduced model, bytes.
@@ -109,6 +113,9 @@ impl fmt::Display for ModelReport {
                 }
                 None => writeln!(f)?,
             }
+        }
+        if let Some(rotation) = &self.rotation {
+            writeln!(f, "{rotation}")?;
         }
         for warning in &self.warnings {
             writeln!(f, "warning: {warning}")?;

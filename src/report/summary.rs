@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{NumericalError, Warning};
+use super::{NumericalError, RotationFacts, Warning};
 use crate::model::reduction::ContactDisplacementErrors;
 use crate::population::statistics::{
     Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics, StopOutcome,
@@ -30,6 +30,10 @@ pub struct SummaryContext {
     pub basis: BasisSummary,
     /// Numerical error by which the settings were chosen, if they were.
     pub numerical_error: Option<NumericalError>,
+    /// Normal loads by rotation, if there are any.
+    pub rotation: Option<RotationFacts>,
+    /// Stress per amplitude, Pa/m, if the study says it.
+    pub stress_pa_per_m: Option<f64>,
     /// Version of the program that made the results.
     pub version: String,
 }
@@ -163,6 +167,12 @@ pub struct StudySummary {
     pub basis: BasisSummary,
     /// Numerical error by which the settings were chosen; null: the study says the settings.
     pub numerical_error: Option<NumericalError>,
+    /// Normal loads by rotation; absent: all are written in newtons.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<RotationFacts>,
+    /// Stress per amplitude, Pa/m; absent: the study does not say it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stress_pa_per_m: Option<f64>,
     /// Rows by status over all scenarios.
     pub rows: Accounting,
     /// The scenarios, in order.
@@ -191,6 +201,8 @@ impl StudySummary {
             stop: context.stop.clone(),
             basis: context.basis.clone(),
             numerical_error: context.numerical_error,
+            rotation: context.rotation.clone(),
+            stress_pa_per_m: context.stress_pa_per_m,
             rows,
             best: best_loads(&scenarios),
             warnings: warnings(context, records, &rows),

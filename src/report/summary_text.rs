@@ -58,6 +58,12 @@ impl fmt::Display for StudySummary {
         if let Some(stop) = &self.stop {
             writeln!(f, "{}", stop_line(stop))?;
         }
+        if let Some(rotation) = &self.rotation {
+            writeln!(f, "{rotation}")?;
+        }
+        if let Some(scale) = self.stress_pa_per_m {
+            writeln!(f, "{}", stress_line(scale, &self.scenarios))?;
+        }
         let unit = unit_of(&self.scenarios);
         let groups = self.scenarios.chunk_by(|a, b| {
             a.engine_order == b.engine_order && a.standard_deviation == b.standard_deviation
@@ -125,6 +131,22 @@ fn stop_line(stop: &StopOutcome) -> String {
         last.map_or(0, |look| look.patterns),
         stop.most_patterns,
         100.0 * stop.confidence,
+    )
+}
+
+/// The scale, and the largest tuned and P99 amplitudes as stress.
+fn stress_line(pa_per_m: f64, scenarios: &[ScenarioSummary]) -> String {
+    let largest = |of: &dyn Fn(&ScenarioSummary) -> Option<f64>| {
+        let found = scenarios.iter().filter_map(of).max_by(f64::total_cmp);
+        found.map_or("-".to_owned(), |amplitude_m| {
+            format!("{:.4} MPa", 1e-6 * pa_per_m * amplitude_m)
+        })
+    };
+    let p99 = |scenario: &ScenarioSummary| scenario.peak_amplitude_m.percentile(99)?.value;
+    format!(
+        "stress {pa_per_m:e} Pa per m of amplitude: largest tuned {}, largest P99 {}",
+        largest(&|scenario| scenario.tuned_amplitude_m),
+        largest(&p99)
     )
 }
 

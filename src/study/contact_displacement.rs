@@ -170,7 +170,7 @@ impl<'a> ContactMotion<'a> {
         let wave = model.wave(wave);
         let mut force = wave.contact.adjoint_times_vector(&motion.correction);
         let excitation = if motion.harmonic == 1 {
-            self.settings.amplitude_n
+            self.settings.amplitude_n * model.force_factor(self.engine_order)
         } else {
             0.0
         };
@@ -234,7 +234,7 @@ fn corrections(
     let harmonics = law.transform().harmonics().to_vec();
     let coefficients = law.transform().n_coefficients();
     let mut forces = vec![vec![Complex64::default(); model.contact_rows()]; harmonics.len()];
-    for (rows, &weight) in model.contact.rows.iter().zip(&model.contact.weights) {
+    for (rows, pair) in model.contact.rows.iter().zip(sector.pairs(&model.contact)) {
         let mut input = vec![0.0; 3 * coefficients];
         let mut output = vec![0.0; 3 * coefficients];
         let mut place = 0;
@@ -257,7 +257,7 @@ fn corrections(
                 }
             }
         }
-        law.evaluate(&sector.share(weight), &input, &mut output, None);
+        law.evaluate(&pair, &input, &mut output, None);
         for (direction, row) in rows.iter().enumerate() {
             let Some(row) = *row else { continue };
             for (index, &k) in harmonics.iter().enumerate() {

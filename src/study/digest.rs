@@ -29,7 +29,11 @@ const NEUTRAL: [&str; 6] = [
 ];
 
 /// Keys that list the scenarios; a row depends on those of its own alone.
-const OF_SCENARIOS: [&str; 2] = ["sweep.", "excitation.engine_orders"];
+const OF_SCENARIOS: [&str; 3] = [
+    "sweep.",
+    "excitation.engine_orders",
+    "contact.normal_load.speed_rpm",
+];
 
 impl StudyDigest {
     /// The digest of `study`, its input files included.

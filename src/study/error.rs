@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::model::sector::ModelError;
 use crate::population::table::PatternParquetError;
 use crate::response::mistuning::PatternFileError;
 
@@ -33,6 +34,9 @@ pub enum StudyError {
     /// The Parquet file of patterns is not accepted.
     #[error(transparent)]
     PatternTable(#[from] PatternParquetError),
+    /// The model is refused that a number of the study is made from.
+    #[error(transparent)]
+    Model(Box<ModelError>),
     /// An input file that the study names cannot be read.
     #[error("cannot read {}: {source}", path.display())]
     Input {

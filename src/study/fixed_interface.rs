@@ -134,7 +134,9 @@ impl<'a> Rung<'a> {
             contact_stiffness(study.contact.as_ref()),
             modes,
             sensitivity_vectors(study),
-        );
+        )
+        .with_damping(study.added_damping())
+        .with_force_factors(study.force_factors());
         Self { modes, reduction }
     }
 

@@ -245,7 +245,9 @@ impl<'a> LadderBench<'a> {
             stiffness,
             self.fixed_interface.modes,
             sensitivity_vectors(&self.study),
-        )?;
+        )?
+        .with_damping(self.study.added_damping())
+        .with_force_factors(self.study.force_factors());
         self.reductions.push((stiffness, reduction));
         Ok(self.reductions.len() - 1)
     }

@@ -76,6 +76,8 @@ fn refuse(request: &OptimumRequest<'_>) -> Result<(), PipelineError> {
         "a search takes a study with one engine order and one standard deviation".to_owned()
     } else if study.contact.is_none() {
         "the study has no [contact], so there is no normal load to search".to_owned()
+    } else if study.rotation.is_some() {
+        "a search is over newtons; accepted: a study without contact.normal_load".to_owned()
     } else if u64::from(study.patterns) < needed {
         format!(
             "P{} of {} patterns has no interval; accepted: study.patterns from {needed} on",

@@ -110,6 +110,12 @@ pub enum PipelineError {
         /// What is missing, and what is accepted.
         reason: &'static str,
     },
+    /// Models of which there is no Campbell table.
+    #[error("{reason}")]
+    NoCampbell {
+        /// What does not fit, and what is accepted.
+        reason: String,
+    },
     /// The study has no such pattern.
     #[error("there is no pattern {id}; accepted: tuned, or {accepted}")]
     NoPattern {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::results_folder::RESPONSES;
 use super::summary::{context_of, records_of};
@@ -12,8 +12,9 @@ use crate::population::monte_carlo::{Scenario, TunedReference};
 use crate::population::statistics::{Accounting, CONFIDENCE, ScenarioAccumulator, StopOutcome};
 use crate::population::table::{
     EffectRows, Manifest, RowSchema, RowStore, RunState, SCHEMA_VERSION, ScenarioEntry,
-    ScenarioRecord, Shard, Staging, StatusCounts, TableError, TableHeader, write_atomically,
-    write_distribution, write_main_effects, write_patterns, write_percentiles, write_scenarios,
+    ScenarioExtras, ScenarioRecord, Shard, Staging, StatusCounts, TableError, TableHeader,
+    write_atomically, write_distribution, write_main_effects, write_patterns, write_percentiles,
+    write_scenarios,
 };
 use crate::report::StudySummary;
 use crate::response::mistuning::{GENERATOR, PatternSource};
@@ -59,7 +60,7 @@ impl Facts {
                 .map(|scenario| digest.of_rows(scenario, &engine.rows_made_from(scenario)))
                 .collect(),
             chosen: engine.chosen_settings(),
-            reduction: engine.reduction_facts(),
+            reduction: with_rotation(engine.reduction_facts(), study),
         }
     }
 
@@ -95,6 +96,14 @@ impl Facts {
             reduction: manifest.reduction.clone(),
         })
     }
+}
+
+/// Facts about the reduced model with those of the loads by rotation, if there are any.
+fn with_rotation(mut facts: Value, study: &Study) -> Value {
+    if let Some(rotation) = &study.rotation {
+        facts["rotation"] = json!(rotation.facts());
+    }
+    facts
 }
 
 /// All that the tables need beside the rows.
@@ -211,7 +220,12 @@ impl<'a> TableWork<'a> {
         summary: &StudySummary,
     ) -> Result<(), TableError> {
         let header = &self.schema.header;
-        write_scenarios(&staging.table("scenarios.parquet"), records, header)?;
+        let extras = ScenarioExtras {
+            speeds_rpm: self.speeds_rpm(),
+            stress_pa_per_m: self.study.output.stress_pa_per_m,
+        };
+        let table = staging.table("scenarios.parquet");
+        write_scenarios(&table, records, &extras, header)?;
         write_percentiles(&staging.table("percentiles.parquet"), records, header)?;
         write_distribution(&staging.table("distribution.parquet"), records, header)?;
         if Self::writes_patterns_of(self.study, self.ids.len()) {
@@ -226,6 +240,15 @@ impl<'a> TableWork<'a> {
             &staging.table("summary.txt"),
             summary.to_string().as_bytes(),
         )
+    }
+
+    /// Speed of each scenario whose load is by rotation.
+    fn speeds_rpm(&self) -> Vec<Option<f64>> {
+        let rotation = self.study.rotation.as_ref();
+        let scenarios = self.schema.scenarios.iter();
+        scenarios
+            .map(|scenario| rotation?.speed_rpm(scenario.contact))
+            .collect()
     }
 
     /// Whether `patterns.parquet` is part of the results of `study` with that many patterns.

@@ -5,7 +5,9 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, SeqAccess, Visitor};
 
-use crate::model::reduction::ReductionOptions;
+use super::LoadShare;
+use crate::model::cyclic::Hoop;
+use crate::model::reduction::{DampedModes, ReductionOptions};
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::statistics::Quantity;
 use crate::population::table::Compression;
@@ -23,6 +25,7 @@ pub(super) struct RawStudy {
     pub reduction: ReductionOptions,
     pub contact: Option<RawContact>,
     pub damping: Option<RawDamping>,
+    pub nodal_diameter_damping: Option<RawNodalDiameterDamping>,
     pub excitation: Option<RawExcitation>,
     pub mistuning: Option<RawMistuning>,
     pub sweep: Option<RawSweep>,
@@ -73,8 +76,26 @@ pub(super) struct RawContact {
     pub tangential_stiffness_n_per_m: Option<f64>,
     pub normal_stiffness_n_per_m: Option<f64>,
     pub ring: Option<Ring>,
+    pub normal_load: Option<RawNormalLoad>,
     #[serde(default)]
     pub variation: RawContactVariation,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum RawLoadSource {
+    Rotation,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawNormalLoad {
+    pub from: Option<RawLoadSource>,
+    pub speed_rpm: Option<RawNumbers>,
+    pub hoop: Option<Hoop>,
+    pub share: Option<LoadShare>,
+    pub ring_mass_factor: Option<f64>,
+    pub ring_radius_m: Option<f64>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -114,6 +135,13 @@ pub(super) struct RawDamping {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
+pub(super) struct RawNodalDiameterDamping {
+    pub damping_ratios: Option<Vec<(u32, f64)>>,
+    pub modes: Option<DampedModes>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct RawRayleigh {
     pub mass_per_s: Option<f64>,
     pub stiffness_s: Option<f64>,
@@ -123,7 +151,7 @@ pub(super) struct RawRayleigh {
 #[serde(deny_unknown_fields)]
 pub(super) struct RawExcitation {
     pub engine_orders: Option<Vec<u32>>,
-    pub amplitude_n: Option<f64>,
+    pub amplitude_n: Option<RawNumbers>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -200,6 +228,7 @@ pub(super) struct RawStop {
 pub(super) struct RawOutput {
     pub patterns: Option<bool>,
     pub compression: Option<Compression>,
+    pub stress_pa_per_m: Option<f64>,
 }
 
 /// A number of newtons or the name of a linear limit.
@@ -207,6 +236,13 @@ pub(super) struct RawOutput {
 pub(super) enum RawLoad {
     Number(f64),
     Name(String),
+}
+
+/// One number or a list.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum RawNumbers {
+    One(f64),
+    List(Vec<f64>),
 }
 
 /// `"auto"` or a list of harmonics.
@@ -252,6 +288,42 @@ impl Visitor<'_> for LoadVisitor {
 impl<'de> Deserialize<'de> for RawLoad {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(LoadVisitor)
+    }
+}
+
+struct NumbersVisitor;
+
+impl<'de> Visitor<'de> for NumbersVisitor {
+    type Value = RawNumbers;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number or a list of numbers")
+    }
+
+    fn visit_f64<E: de::Error>(self, value: f64) -> Result<RawNumbers, E> {
+        Ok(RawNumbers::One(value))
+    }
+
+    fn visit_i64<E: de::Error>(self, value: i64) -> Result<RawNumbers, E> {
+        Ok(RawNumbers::One(value as f64))
+    }
+
+    fn visit_u64<E: de::Error>(self, value: u64) -> Result<RawNumbers, E> {
+        Ok(RawNumbers::One(value as f64))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<RawNumbers, A::Error> {
+        let mut numbers = Vec::new();
+        while let Some(number) = list.next_element()? {
+            numbers.push(number);
+        }
+        Ok(RawNumbers::List(numbers))
+    }
+}
+
+impl<'de> Deserialize<'de> for RawNumbers {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(NumbersVisitor)
     }
 }
 

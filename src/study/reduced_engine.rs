@@ -85,12 +85,14 @@ impl EngineSource for ReducedEngineSource {
         // Everything the stored models and sets depend on besides the sector: also what their
         // errors are judged by.
         let key = format!(
-            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?}",
+            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?} {:?} {:?}",
             study.reduction,
             study.mistuning.cantilever_mode_count,
             study.engine_orders,
             study.contacts,
-            study.contact_variations
+            study.contact_variations,
+            study.nodal_diameter_damping,
+            study.amplitudes_n
         );
         let digest = reduction_digest(model, &key);
         let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
@@ -156,6 +158,7 @@ impl Engine for ReducedEngine {
             craig_bampton_modes: self.fixed_interface.modes,
             craig_bampton_error: self.fixed_interface.error,
             craig_bampton_reach,
+            rotation: None,
             warnings: summary.warnings(),
             memory_bytes: model.memory_bytes(),
             digest: self.digest.clone(),

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::source_map::SourceMap;
 use super::validate_accuracy::KEYS_OF_ACCURACY;
-use super::{AccuracyOptions, Mistuning};
+use super::{AccuracyOptions, Mistuning, NodalDiameterTable, RotationLoad};
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::monte_carlo::Scenario;
@@ -36,12 +36,14 @@ pub enum ModelSource {
 }
 
 /// What is written beside the statistics, and how.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct OutputOptions {
     /// Whether `patterns.parquet` is written; absent: up to 10,000 patterns.
     pub patterns: Option<bool>,
     /// Compression of the tables.
     pub compression: Compression,
+    /// Stress per amplitude of the observed node, Pa/m.
+    pub stress_pa_per_m: Option<f64>,
 }
 
 /// A study that has been read, checked and filled in.
@@ -67,13 +69,19 @@ pub struct Study {
     pub contact_variations: Vec<ContactVariation>,
     /// Damping of the structure.
     pub damping: Damping,
+    /// Damping of the tuned modes by nodal diameter, besides.
+    pub nodal_diameter_damping: Option<NodalDiameterTable>,
     /// Engine orders, as written.
     pub engine_orders: Vec<u32>,
     /// Factor on the model's force vector.
     pub amplitude_n: f64,
+    /// Factors of the engine orders in their order, each besides `amplitude_n`; empty: all alike.
+    pub amplitudes_n: Vec<f64>,
     /// Mistuning and its source.
     pub mistuning: Mistuning,
-    /// Contact conditions of the sweep, as written.
+    /// Normal loads by rotation; none where all are written in newtons.
+    pub rotation: Option<RotationLoad>,
+    /// Contact conditions of the sweep, as written, then those by rotation.
     pub contacts: Vec<ContactCondition>,
     /// Standard deviations of the sweep, as written; one `None` for patterns from a file.
     pub standard_deviations: Vec<Option<f64>>,
@@ -107,6 +115,16 @@ impl Study {
         scenarios
     }
 
+    /// Factors on the force vector of engine orders that have one of their own.
+    #[must_use]
+    pub fn force_factors(&self) -> Vec<(u32, f64)> {
+        let orders = self.engine_orders.iter();
+        orders
+            .zip(&self.amplitudes_n)
+            .map(|(&engine_order, &factor)| (engine_order, factor))
+            .collect()
+    }
+
     /// Whether a scenario is under the nonlinear contact law.
     #[must_use]
     pub fn has_friction(&self) -> bool {
@@ -138,7 +156,14 @@ impl Study {
                     json!({ "rayleigh": { "mass_per_s": mass_per_s, "stiffness_s": stiffness_s } })
                 }
             },
-            "excitation": { "engine_orders": self.engine_orders, "amplitude_n": self.amplitude_n },
+            "excitation": {
+                "engine_orders": self.engine_orders,
+                "amplitude_n": if self.amplitudes_n.is_empty() {
+                    json!(self.amplitude_n)
+                } else {
+                    json!(self.amplitudes_n)
+                },
+            },
             "mistuning": self.mistuning.resolved(),
             "sweep": self.sweep_value(),
             "solver": {
@@ -163,22 +188,41 @@ impl Study {
                     FrequencyBand::Fixed { start_hz, stop_hz } => json!([start_hz, stop_hz]),
                 },
             },
-            "output": { "patterns": self.output.patterns, "compression": self.output.compression },
+            "output": self.output_value(),
         });
         if let Some(accuracy) = &self.accuracy {
             study["accuracy"] = json!(accuracy);
             without(&mut study, &KEYS_OF_ACCURACY);
+        }
+        if let Some(table) = &self.nodal_diameter_damping {
+            study["nodal_diameter_damping"] = table.resolved();
         }
         if let Some(stop) = &self.stop {
             study["stop"] = json!(stop);
         }
         if let Some(contact) = &self.contact {
             study["contact"] = json!(contact);
+            if let Some(rotation) = &self.rotation {
+                study["contact"]["normal_load"] = rotation.resolved();
+            }
             if !self.contact_variations.is_empty() {
                 study["contact"]["variation"] = variation_value(&self.contact_variations);
             }
         }
         study
+    }
+
+    fn output_value(&self) -> Value {
+        let OutputOptions {
+            patterns,
+            compression,
+            stress_pa_per_m,
+        } = self.output;
+        let mut output = json!({ "patterns": patterns, "compression": compression });
+        if let Some(scale) = stress_pa_per_m {
+            output["stress_pa_per_m"] = json!(scale);
+        }
+        output
     }
 
     fn model_value(&self) -> Value {
@@ -194,20 +238,28 @@ impl Study {
     }
 
     fn sweep_value(&self) -> Value {
+        let by_rotation = |contact: &ContactCondition| {
+            let rotation = self.rotation.as_ref();
+            rotation.is_some_and(|rotation| rotation.speed_rpm(*contact).is_some())
+        };
         let loads: Vec<Value> = self
             .contacts
             .iter()
+            .filter(|contact| !by_rotation(contact))
             .map(|contact| match contact {
                 ContactCondition::Full { normal_load_n } => json!(normal_load_n),
                 limit => json!(limit.name()),
             })
             .collect();
         let deviations: Vec<f64> = self.standard_deviations.iter().flatten().copied().collect();
-        if deviations.is_empty() {
-            json!({ "normal_load_n": loads })
-        } else {
-            json!({ "normal_load_n": loads, "standard_deviation": deviations })
+        let mut sweep = json!({});
+        if !loads.is_empty() {
+            sweep["normal_load_n"] = json!(loads);
         }
+        if !deviations.is_empty() {
+            sweep["standard_deviation"] = json!(deviations);
+        }
+        sweep
     }
 }
 

@@ -16,7 +16,8 @@ use crate::population::table::{
 pub(super) const RESPONSES: &str = "responses.parquet";
 
 /// Lists of the study that may grow while the rows of their former members stay.
-const GROWING: [&str; 3] = [
+const GROWING: [&str; 4] = [
+    "contact.normal_load.speed_rpm",
     "excitation.engine_orders",
     "sweep.standard_deviation",
     "sweep.normal_load_n",

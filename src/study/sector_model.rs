@@ -12,14 +12,26 @@ use crate::response::mistuning::{ContactSource, PatternSource};
 /// # Errors
 /// The model is refused, its files cannot be read, or the study does not fit to it.
 pub fn load_sector_model(study: &Study) -> Result<SectorModel, PipelineError> {
-    let model = match &study.model {
+    let model = sector_of(study).map_err(|error| match error {
+        StudyError::Model(error) => PipelineError::Model(*error),
+        error => PipelineError::Study(error),
+    })?;
+    check_contact(study, &model)?;
+    study.check_nodal_diameters(&model)?;
+    Ok(match &study.rotation {
+        Some(rotation) => rotation.applied_to(model),
+        None => model,
+    })
+}
+
+/// The sector model as its source has it.
+pub(super) fn sector_of(study: &Study) -> Result<SectorModel, StudyError> {
+    match &study.model {
         ModelSource::Parametric(options) => parametric::build(options),
         ModelSource::Lumped(options) => lumped::build(options),
         ModelSource::Bundle { path, .. } => bundle::read(path),
     }
-    .map_err(|error| refused(study, error))?;
-    check_contact(study, &model)?;
-    Ok(model)
+    .map_err(|error| refused(study, error))
 }
 
 /// The patterns of `study` for wheels of `model`.
@@ -55,7 +67,7 @@ pub fn pattern_source(study: &Study, model: &SectorModel) -> Result<PatternSourc
 }
 
 /// A refused option is a mistake of the study file, which has its line.
-fn refused(study: &Study, error: ModelError) -> PipelineError {
+fn refused(study: &Study, error: ModelError) -> StudyError {
     match error {
         ModelError::Option { ref key, .. } | ModelError::NeedsMass { ref key, .. } => {
             StudyError::Invalid {
@@ -67,9 +79,8 @@ fn refused(study: &Study, error: ModelError) -> PipelineError {
                     },
                 )],
             }
-            .into()
         }
-        error => PipelineError::Model(error),
+        error => StudyError::Model(Box::new(error)),
     }
 }
 

@@ -145,6 +145,8 @@ pub(super) fn context_of(manifest: &Manifest) -> SummaryContext {
         harmonics: harmonics.unwrap_or(Harmonics::Auto),
         basis: basis_of(manifest),
         numerical_error: numerical_error_of(manifest),
+        rotation: serde_json::from_value(manifest.reduction["rotation"].clone()).ok(),
+        stress_pa_per_m: manifest.study["output"]["stress_pa_per_m"].as_f64(),
         version: manifest.version.clone(),
     }
 }

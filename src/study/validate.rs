@@ -2,20 +2,18 @@
 
 use std::path::Path;
 
-use super::raw::{
-    RawDamping, RawExcitation, RawHead, RawLoad, RawModel, RawModelKind, RawStudy, RawSweep,
-};
+use super::raw::{RawExcitation, RawHead, RawModel, RawModelKind, RawNumbers, RawStudy};
 use super::source_map::SourceMap;
 use super::validate_accuracy::accuracy;
 use super::validate_contact::contact_variations;
+use super::validate_damping::{damping, nodal_diameter_damping};
+use super::validate_loads::{contacts, rotation};
 use super::validate_mistuning::mistuning;
 use super::validate_solver::solver;
 use super::validate_stop::stop;
-use super::{Finding, ModelSource, OutputOptions, Problem, Study, StudyError};
+use super::{Finding, ModelSource, OutputOptions, Problem, RotationOptions, Study, StudyError};
 use crate::model::reduction::{Basis, ReductionOptions};
-use crate::response::forced_response::ContactCondition;
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
-use crate::response::harmonic_balance::Damping;
 
 /// Version of the study file.
 pub(super) const SCHEMA: u64 = 1;
@@ -95,7 +93,7 @@ impl Check<'_> {
     }
 
     /// The same with a stand-in.
-    fn required(
+    pub(super) fn required(
         &mut self,
         key: &str,
         value: Option<f64>,
@@ -133,9 +131,9 @@ impl Study {
         };
         let study = resolve(&mut check, path, raw)?;
         match study {
-            Some(study) if check.findings.is_empty() => {
+            Some((study, rotation)) if check.findings.is_empty() => {
                 let map = map.clone();
-                Ok(Self { map, ..study })
+                Self { map, ..study }.pressed_by(rotation)
             }
             _ => {
                 check.findings.sort_by_key(|finding| finding.line);
@@ -146,7 +144,11 @@ impl Study {
 }
 
 /// None where a study cannot even be put together; the findings then say why.
-fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<Study>, StudyError> {
+fn resolve(
+    check: &mut Check,
+    path: &Path,
+    mut raw: RawStudy,
+) -> Result<Option<(Study, Option<RotationOptions>)>, StudyError> {
     match raw.schema {
         Some(SCHEMA) => {}
         Some(_) => check.refuse("schema", "1"),
@@ -157,9 +159,15 @@ fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<S
     let model = model(check, path, raw.model.unwrap_or_default());
     reduction(check, &raw.reduction);
     let damping = damping(check, raw.damping);
-    let (engine_orders, amplitude_n) = excitation(check, raw.excitation.unwrap_or_default());
+    let nodal_diameter_damping = raw
+        .nodal_diameter_damping
+        .and_then(|raw| nodal_diameter_damping(check, raw));
+    let (engine_orders, (amplitude_n, amplitudes_n)) =
+        excitation(check, raw.excitation.unwrap_or_default());
     let sweep = raw.sweep.unwrap_or_default();
-    let contacts = contacts(check, &sweep);
+    let normal_load = raw.contact.as_mut().and_then(|raw| raw.normal_load.take());
+    let contacts = contacts(check, &sweep, normal_load.is_some());
+    let rotation = normal_load.and_then(|raw| rotation(check, &raw));
     let solver = solver(check, raw.solver);
     let variation = raw
         .contact
@@ -214,8 +222,11 @@ fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<S
         contact,
         contact_variations,
         damping,
+        nodal_diameter_damping,
         engine_orders,
         amplitude_n,
+        amplitudes_n,
+        rotation: None,
         mistuning: mistuning.mistuning,
         contacts,
         standard_deviations: mistuning.standard_deviations,
@@ -225,9 +236,17 @@ fn resolve(check: &mut Check, path: &Path, mut raw: RawStudy) -> Result<Option<S
         output: OutputOptions {
             patterns: raw.output.patterns,
             compression: raw.output.compression.unwrap_or_default(),
+            stress_pa_per_m: raw.output.stress_pa_per_m.map(|scale| {
+                check.within(
+                    "output.stress_pa_per_m",
+                    scale,
+                    scale.is_finite() && scale > 0.0,
+                    "a finite number above 0, in Pa/m",
+                )
+            }),
         },
     };
-    Ok(Some(study.with_accuracy(accuracy)))
+    Ok(Some((study.with_accuracy(accuracy), rotation)))
 }
 
 fn identity(check: &mut Check, head: &RawHead) -> (String, u64) {
@@ -390,60 +409,7 @@ fn normal_stiffness(check: &mut Check, contact: &ContactOptions) {
     }
 }
 
-fn damping(check: &mut Check, raw: Option<RawDamping>) -> Option<Damping> {
-    let accepted = "exactly one of structural_loss_factor, modal_ratio and rayleigh";
-    let Some(raw) = raw else {
-        check.missing("damping", accepted);
-        return None;
-    };
-    let ratio = |value: f64| value > 0.0 && value < 1.0;
-    let in_words = "a number above 0 and below 1; a wheel without damping has no bounded resonance";
-    match (raw.structural_loss_factor, raw.modal_ratio, raw.rayleigh) {
-        (Some(factor), None, None) => Some(Damping::StructuralLossFactor(check.within(
-            "damping.structural_loss_factor",
-            factor,
-            ratio(factor),
-            in_words,
-        ))),
-        (None, Some(zeta), None) => Some(Damping::ModalRatio(check.within(
-            "damping.modal_ratio",
-            zeta,
-            ratio(zeta),
-            in_words,
-        ))),
-        (None, None, Some(rayleigh)) => {
-            let factor = |value: f64| value.is_finite() && value >= 0.0;
-            let mut required = |key: &str, value: Option<f64>| {
-                check.required(key, value, factor, "a finite number of at least 0")
-            };
-            let mass_per_s = required("damping.rayleigh.mass_per_s", rayleigh.mass_per_s);
-            let stiffness_s = required("damping.rayleigh.stiffness_s", rayleigh.stiffness_s);
-            if mass_per_s == 0.0 && stiffness_s == 0.0 {
-                check.refuse(
-                    "damping.rayleigh",
-                    "mass_per_s or stiffness_s above 0; a wheel without damping has no bounded resonance",
-                );
-            }
-            Some(Damping::Rayleigh {
-                mass_per_s,
-                stiffness_s,
-            })
-        }
-        (None, None, None) => {
-            check.missing("damping", accepted);
-            None
-        }
-        _ => {
-            check.conflict(
-                "damping",
-                &format!("several models of damping; accepted: {accepted}"),
-            );
-            None
-        }
-    }
-}
-
-fn excitation(check: &mut Check, raw: RawExcitation) -> (Vec<u32>, f64) {
+fn excitation(check: &mut Check, raw: RawExcitation) -> (Vec<u32>, (f64, Vec<f64>)) {
     let key = "excitation.engine_orders";
     let accepted = "a list of different whole numbers from 0 to 10000, at least one";
     let orders = raw.engine_orders.unwrap_or_default();
@@ -455,45 +421,29 @@ fn excitation(check: &mut Check, raw: RawExcitation) -> (Vec<u32>, f64) {
     } else if orders.is_empty() || sorted.len() < orders.len() || sorted.last() > Some(&10_000) {
         check.refuse(key, accepted);
     }
-    let amplitude = raw.amplitude_n.unwrap_or(1.0);
-    let amplitude = check.within(
-        "excitation.amplitude_n",
-        amplitude,
-        amplitude.is_finite() && amplitude > 0.0,
-        "a finite number above 0, in N",
-    );
-    (orders, amplitude)
+    let amplitudes = amplitudes(check, raw.amplitude_n, orders.len());
+    (orders, amplitudes)
 }
 
-fn contacts(check: &mut Check, sweep: &RawSweep) -> Vec<ContactCondition> {
-    let key = "sweep.normal_load_n";
-    let accepted = "a list of different normal loads per sector: numbers of at least 0 in N, \
-                    \"stuck\", \"slide\" or \"free\"; at least one";
-    let Some(loads) = &sweep.normal_load_n else {
-        check.missing(key, accepted);
-        return Vec::new();
-    };
-    if loads.is_empty() {
-        check.refuse(key, accepted);
-    }
-    let mut contacts: Vec<ContactCondition> = Vec::new();
-    for (place, load) in loads.iter().enumerate() {
-        let contact = match load {
-            RawLoad::Number(value) if value.is_finite() && *value >= 0.0 => {
-                // The sum turns -0.0 into 0.0.
-                Some(ContactCondition::Full {
-                    normal_load_n: value + 0.0,
-                })
+/// Factor on the force vector, and those of the engine orders where each has its own.
+fn amplitudes(check: &mut Check, raw: Option<RawNumbers>, orders: usize) -> (f64, Vec<f64>) {
+    let key = "excitation.amplitude_n";
+    let possible = |amplitude: &f64| amplitude.is_finite() && *amplitude > 0.0;
+    match raw {
+        None => (1.0, Vec::new()),
+        Some(RawNumbers::One(amplitude)) => {
+            let accepted = "a finite number above 0, in N, or a list of one per engine order";
+            let amplitude = check.within(key, amplitude, possible(&amplitude), accepted);
+            (amplitude, Vec::new())
+        }
+        Some(RawNumbers::List(amplitudes)) => {
+            if amplitudes.len() != orders || !amplitudes.iter().all(possible) {
+                let accepted = format!(
+                    "a finite number above 0, in N, or a list of {orders}, one per engine order"
+                );
+                check.refuse(key, &accepted);
             }
-            RawLoad::Name(name) if name == "stuck" => Some(ContactCondition::Stuck),
-            RawLoad::Name(name) if name == "slide" => Some(ContactCondition::Slide),
-            RawLoad::Name(name) if name == "free" => Some(ContactCondition::Free),
-            _ => None,
-        };
-        match contact {
-            Some(contact) if !contacts.contains(&contact) => contacts.push(contact),
-            _ => check.refuse(&format!("{key}[{place}]"), accepted),
+            (1.0, amplitudes)
         }
     }
-    contacts
 }

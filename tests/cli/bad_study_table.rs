@@ -387,6 +387,93 @@ pub const CASES: &[Case] = &[
         "[1]\n[reduction]\nbasis = \"rigid\"",
         &["reduction.basis = \"rigid\"", "\"auto\""],
     ),
+    // Normal loads by rotation, damping by nodal diameter, stress.
+    (
+        "0.3\n",
+        "0.3\nnormal_load = { from = \"rotation\", speed_rpm = 3000 }\n",
+        &[
+            "contact.normal_load.ring_radius_m is missing",
+            "no radial degree of freedom",
+            "sweep.normal_load_n",
+        ],
+    ),
+    (
+        "0.3\n",
+        "0.3\nnormal_load = { from = \"thrust\", speed_rpm = 3000 }\n",
+        &["contact.normal_load.from = \"thrust\"", "\"rotation\""],
+    ),
+    (
+        "0.3\n",
+        "0.3\nnormal_load = { speed_rpm = 3000, ring_radius_m = 0.2 }\n",
+        &["contact.normal_load.from is missing"],
+    ),
+    (
+        "0.3\n",
+        "0.3\nnormal_load = { from = \"rotation\", ring_radius_m = 0.2 }\n",
+        &["contact.normal_load.speed_rpm is missing", "per minute"],
+    ),
+    (
+        "0.3\n",
+        "0.3\nnormal_load = { from = \"rotation\", speed_rpm = [3000, 3000], ring_radius_m = 0.2 }\n",
+        &["contact.normal_load.speed_rpm = [3000, 3000]", "different"],
+    ),
+    (
+        "0.3\n",
+        "0.3\nnormal_load = { from = \"rotation\", speed_rpm = -1, ring_radius_m = 0.2 }\n",
+        &["contact.normal_load.speed_rpm = -1", "above 0"],
+    ),
+    (
+        "0.3\n",
+        "0.3\nnormal_load = { from = \"rotation\", speed_rpm = 3000, ring_radius_m = 0 }\n",
+        &["contact.normal_load.ring_radius_m = 0", "above 0"],
+    ),
+    (
+        "0.3\n",
+        "0.3\nnormal_load = { from = \"rotation\", speed_rpm = 3000, ring_radius_m = 0.2, hoop = \"split\" }\n",
+        &["contact.normal_load.hoop", "m r Omega^2"],
+    ),
+    (
+        "0.3\n",
+        "0.3\nnormal_load = { from = \"rotation\", speed_rpm = 3000, ring_radius_m = 0.2, ring_mass_factor = 0 }\n",
+        &["contact.normal_load.ring_mass_factor = 0", "1e-3 to 1e3"],
+    ),
+    (
+        "[excitation]",
+        "[nodal_diameter_damping]\n[excitation]",
+        &[
+            "nodal_diameter_damping.damping_ratios is missing",
+            "[[3, 0.0012]",
+        ],
+    ),
+    (
+        "[excitation]",
+        "[nodal_diameter_damping]\ndamping_ratios = [[1, 0.001], [4, 0.001]]\n[excitation]",
+        &[
+            "nodal_diameter_damping.damping_ratios[1] = [4, 0.001]",
+            "from 0 to 3",
+            "6 sectors",
+        ],
+    ),
+    (
+        "[excitation]",
+        "[nodal_diameter_damping]\ndamping_ratios = [[1, 0.001], [1, 0.002]]\n[excitation]",
+        &["damping_ratios[1] = [1, 0.002]", "each once"],
+    ),
+    (
+        "[excitation]",
+        "[nodal_diameter_damping]\ndamping_ratios = [[1, -0.001]]\n[excitation]",
+        &["damping_ratios[0] = [1, -0.001]", "at least 0 and below 1"],
+    ),
+    (
+        "amplitude_n = 10.0",
+        "amplitude_n = [10.0, 20.0]",
+        &["excitation.amplitude_n = [10.0, 20.0]", "a list of 1"],
+    ),
+    (
+        "[1, 3]",
+        "[1]\n[output]\nstress_pa_per_m = 0",
+        &["output.stress_pa_per_m = 0", "Pa/m"],
+    ),
     // What does not go together.
     (
         "[1, 3]",

@@ -81,6 +81,7 @@ fn with_values(command: &str) -> Vec<String> {
             ("NAME", _) => "quickstart",
             ("START:STOP:COUNT", _) => "300:400:3",
             ("LOW:HIGH", _) => "30:300",
+            ("RPM=BUNDLE", _) => "0=bundle",
             ("k/n", _) => "1/2",
             ("T", _) => "01:00:00",
             ("tuned", Some("--pattern")) => "tuned",

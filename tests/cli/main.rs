@@ -9,6 +9,7 @@ mod faults;
 mod imports;
 mod interruption;
 mod report;
+mod rotation;
 mod runs;
 mod statistics;
 mod study_keys;

@@ -38,6 +38,7 @@ mod oscillator {
         let modes = StructuralModes {
             eigenvalues: vec![STIFFNESS],
             tuned_eigenvalues: vec![STIFFNESS],
+            added_damping_per_s: vec![0.0],
             rotation: None,
             contact: rows(1.0, 1),
             observed: rows(1.0, 3),
@@ -59,6 +60,7 @@ mod oscillator {
                 law: ContactLaw::Simplified3d,
                 geometry: ContactGeometry {
                     weights: vec![1.0],
+                    load_weights: vec![1.0],
                     rows: vec![[Some(0), None, None]],
                     ring_motion: vec![[[0.0; 2]; 2]],
                     ring_free: [false; 2],
@@ -219,6 +221,7 @@ fn oscillator_wheel() -> Wheel {
             ring_node: 1,
             normal: [1.0, 0.0, 0.0],
             weight: 1.0,
+            load_weight: None,
         }],
         force: vec![(0, Complex64::new(oscillator::FORCE_N, 0.0))],
         observed: vec![ObservedNode {

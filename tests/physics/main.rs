@@ -4,6 +4,7 @@
 
 mod bounds;
 mod calculix_sector;
+mod campbell;
 mod contact;
 mod contact_variation;
 mod continuation;
@@ -15,10 +16,12 @@ mod harmonic_balance;
 mod imports;
 mod limits;
 mod mistuning;
+mod nodal_diameter_damping;
 mod peaks;
 mod reduction;
 mod reference;
 mod refined_peak;
+mod rotation;
 mod sector_sources;
 mod separation;
 mod surrogate;

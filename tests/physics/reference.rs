@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use blisk::model::ReducedModel;
-use blisk::model::reduction::{BasisChoice, Reduction};
+use blisk::model::reduction::{BasisChoice, DampedModes, NodalDiameterDamping, Reduction};
 use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{AmplitudeMeasure, ContactCondition, SolverOptions};
 use blisk::response::friction::{ContactLaw, Ring};
@@ -347,4 +347,85 @@ fn a_blade_of_no_stiffness_is_a_status() {
         Some(&pattern(&deviations)),
     );
     assert_eq!(refused.err(), Some(Status::InvalidPattern));
+}
+
+#[test]
+fn two_codes_agree_under_damping_by_nodal_diameter() {
+    let mut case = Case::wheel8(
+        Damping::StructuralLossFactor(0.002),
+        &[1, 3],
+        Projection::Exact,
+    );
+    let sector = wheel8_sector();
+    let law = ContactLaw::Simplified3d;
+    let reduction = Reduction::new(&sector, springs(law, wheel8_contact()), 6, 0)
+        .unwrap()
+        .with_damping(NodalDiameterDamping {
+            ratios: vec![0.004, 0.001, 0.003, 0.0015, 0.002],
+            modes: DampedModes::Blade,
+        });
+    case.model = Arc::new(reduction.reduce(BasisChoice::CraigBampton, None).unwrap());
+    for contact in [full(300.0), ContactCondition::Stuck, ContactCondition::Free] {
+        case.assert_same(contact, &pattern(&deviations(8)), &[611.0, 614.0]);
+    }
+}
+
+#[test]
+fn shares_of_the_normal_load_are_factors_on_it() {
+    let even = Case::wheel8(
+        Damping::StructuralLossFactor(0.002),
+        &[0, 1, 2],
+        Projection::Exact,
+    );
+    let mut sector = wheel8_sector();
+    let draws = Random(29).vector(sector.contact_pairs.len(), 0.4);
+    let factor = |place: usize| draws[place].exp();
+    let weights: Vec<f64> = sector
+        .contact_pairs
+        .iter()
+        .map(|pair| pair.weight)
+        .collect();
+    let whole: f64 = (0..draws.len())
+        .map(|place| weights[place] * factor(place))
+        .sum();
+    for (place, pair) in sector.contact_pairs.iter_mut().enumerate() {
+        pair.load_weight = Some(pair.weight * factor(place) / whole);
+    }
+    let law = ContactLaw::Simplified3d;
+    let reduction = Reduction::new(&sector, springs(law, wheel8_contact()), 6, 0).unwrap();
+    let uneven = Case {
+        model: Arc::new(reduction.reduce(BasisChoice::CraigBampton, None).unwrap()),
+        settings: even.settings.clone(),
+    };
+    let frequencies = [611.0, 614.0];
+    uneven.assert_same(full(300.0), &pattern(&deviations(8)), &frequencies);
+    let factors = (0..8 * draws.len()).map(|place| PairFactors {
+        normal_load: factor(place % draws.len()) / whole,
+        ..PairFactors::default()
+    });
+    let varied = Pattern {
+        contact: ContactFactors::new(factors.collect()),
+        ..pattern(&deviations(8))
+    };
+    let curve = |case: &Case, pattern: &Pattern| {
+        let solver = RowSolver::new(Arc::clone(&case.model), case.settings.clone()).unwrap();
+        let points = solver
+            .curve(ENGINE_ORDER, full(300.0), Some(pattern), &frequencies)
+            .unwrap();
+        points
+            .into_iter()
+            .flat_map(|(_, point)| point.unwrap())
+            .collect::<Vec<f64>>()
+    };
+    let nominal = pattern(&deviations(8));
+    let (shared, expected) = (curve(&uneven, &nominal), curve(&even, &varied));
+    let largest = expected.iter().copied().fold(0.0, f64::max);
+    for (own, other) in shared.iter().zip(&expected) {
+        assert!((own - other).abs() < SAME * largest, "{own} {other}");
+    }
+    let changed = curve(&even, &nominal)
+        .iter()
+        .zip(&shared)
+        .any(|(a, b)| (a - b).abs() > 1e-3 * largest);
+    assert!(changed);
 }

@@ -19,6 +19,8 @@ fn context(harmonics: Harmonics) -> SummaryContext {
         stop: None,
         harmonics,
         numerical_error: None,
+        rotation: None,
+        stress_pa_per_m: None,
         version: "0".to_owned(),
     }
 }

@@ -34,8 +34,10 @@ pub struct ContactRow {
 /// The contact interface of one sector.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ContactGeometry {
-    /// Weight of each pair: its share of the sector's stiffness and normal load.
+    /// Weight of each pair: its share of the sector's stiffness.
     pub weights: Vec<f64>,
+    /// Share of each pair of the sector's normal load.
+    pub load_weights: Vec<f64>,
     /// For each pair, the row of its normal, first and second tangential motion; none where the
     /// nodes have no displacement that way.
     pub rows: Vec<[Option<usize>; 3]>,
@@ -148,6 +150,11 @@ pub fn contact_rows(model: &SectorModel) -> (Vec<ContactRow>, ContactGeometry) {
     let mut rows: Vec<ContactRow> = Vec::new();
     let mut geometry = ContactGeometry {
         weights: model.contact_pairs.iter().map(|pair| pair.weight).collect(),
+        load_weights: model
+            .contact_pairs
+            .iter()
+            .map(|pair| pair.load_weight.unwrap_or(pair.weight))
+            .collect(),
         rows: Vec::new(),
         ring_motion: ring_motion(model),
         ring_free: ring_free(model),
@@ -192,6 +199,7 @@ mod tests {
             ring_node: 1,
             normal: [-1.0, 0.0, 0.0],
             weight: 1.0,
+            load_weight: None,
         };
         assert_eq!(
             frame(&pair),

@@ -6,12 +6,14 @@
 //! In a tuned wheel temporal harmonic k therefore lives in nodal diameter `h = k EO mod N` alone.
 //! Components are cylindrical at each node's own angle, so that a face condition is a scalar phase.
 
+mod centrifugal;
 mod contact_rows;
 mod cyclic_sector;
 mod natural_frequencies;
 mod nodal_diameter;
 
+pub use centrifugal::{CentrifugalContact, CentrifugalError, Hoop, centrifugal_contact};
 pub use contact_rows::{ContactGeometry, ContactRow, Direction, ring_free};
 pub use cyclic_sector::CyclicSector;
-pub use natural_frequencies::contact_free_frequencies_hz;
+pub use natural_frequencies::{contact_free_frequencies_hz, natural_frequencies_hz};
 pub use nodal_diameter::{NodalDiameter, nodal_diameter_of, phase};

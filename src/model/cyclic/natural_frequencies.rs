@@ -1,4 +1,4 @@
-//! Natural frequencies of the contact-free sector per nodal diameter, to compare with the code it came from.
+//! Natural frequencies of the sector per nodal diameter, without contact or with linear contact springs.
 
 use std::f64::consts::TAU;
 
@@ -17,10 +17,25 @@ pub fn contact_free_frequencies_hz(
     model: &SectorModel,
     count: usize,
 ) -> Result<Vec<Vec<f64>>, ModelError> {
+    natural_frequencies_hz(model, [0.0; 3], count)
+}
+
+/// The same with contact springs: `per_sector` in the normal, first and second tangential direction, N/m,
+/// shared out over the pairs by weight.
+///
+/// # Errors
+/// As [`contact_free_frequencies_hz`].
+pub fn natural_frequencies_hz(
+    model: &SectorModel,
+    per_sector: [f64; 3],
+    count: usize,
+) -> Result<Vec<Vec<f64>>, ModelError> {
     let sector = CyclicSector::new(model);
+    let contact = sector.contact_stiffness(&sector.contact().springs(per_sector));
     (0..=model.sectors / 2)
         .map(|h| {
-            let (stiffness, mass) = (sector.stiffness(h), sector.mass(h));
+            let stiffness = sector.stiffness(h).plus(1.0, &contact);
+            let mass = sector.mass(h);
             if mass.factor().is_err() {
                 return Err(ModelError::MassNotPositiveDefinite { nodal_diameter: h });
             }

@@ -4,6 +4,7 @@ mod basis;
 mod blade;
 mod craig_bampton;
 mod error;
+mod nodal_diameter_damping;
 mod options;
 mod reduce;
 
@@ -11,5 +12,6 @@ pub use super::reduced_model::{BasisChoice, CantileverModes, ContactSprings};
 pub use blade::blade_gram;
 pub use craig_bampton::CraigBampton;
 pub use error::{ContactDisplacementError, ContactDisplacementErrors, wanted_reach_hz};
+pub use nodal_diameter_damping::{DampedModes, NodalDiameterDamping};
 pub use options::{Basis, ReductionOptions};
 pub use reduce::{ContactStiffness, Reduction};

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::basis::basis_of;
 use super::blade::{blade_gram, cantilever_modes};
 use super::craig_bampton::{CraigBampton, pencil};
+use super::nodal_diameter_damping::NodalDiameterDamping;
 use crate::linalg::{Complex64, Matrix};
 use crate::model::cyclic::CyclicSector;
 use crate::model::reduced_model::{
@@ -27,6 +28,8 @@ pub struct Reduction<'a> {
     springs: ContactSprings,
     craig_bampton_modes: usize,
     sensitivity_vectors: usize,
+    damping: NodalDiameterDamping,
+    force_factors: Vec<(u32, f64)>,
     models: Vec<OnceLock<CraigBampton>>,
 }
 
@@ -81,7 +84,24 @@ impl<'a> Reduction<'a> {
             springs,
             craig_bampton_modes,
             sensitivity_vectors,
+            damping: NodalDiameterDamping::default(),
+            force_factors: Vec::new(),
             models: (0..=model.sectors / 2).map(|_| OnceLock::new()).collect(),
+        }
+    }
+
+    /// The same with modes damped by nodal diameter besides what damps the structure.
+    #[must_use]
+    pub fn with_damping(self, damping: NodalDiameterDamping) -> Self {
+        Self { damping, ..self }
+    }
+
+    /// The same with the force vector multiplied by a factor of its own under these engine orders.
+    #[must_use]
+    pub fn with_force_factors(self, force_factors: Vec<(u32, f64)>) -> Self {
+        Self {
+            force_factors,
+            ..self
         }
     }
 
@@ -215,6 +235,7 @@ impl<'a> Reduction<'a> {
             springs: self.springs.clone(),
             blade_gram: Matrix::zeros(0, 0),
             cantilever: None,
+            force_factors: self.force_factors.clone(),
             report,
         };
         Ok((model, bases))
@@ -239,7 +260,9 @@ impl<'a> Reduction<'a> {
             observed[i].map_or(Complex64::default(), |dof| full[(dof, j)])
         });
         let force = self.sector.force();
+        let blade = || self.sector.blade_stiffness();
         let reduced = ReducedNodalDiameter {
+            added_damping_per_s: self.damping.of_modes(h, &eigenvalues, &full, blade),
             contact: model.contact.times(&v),
             observed,
             force: full.adjoint_times(&force),
@@ -271,6 +294,7 @@ impl Reduction<'_> {
             observed: Matrix::zeros(3, 0),
             force: Matrix::zeros(0, 1),
             conjugate_force: Matrix::zeros(0, 1),
+            added_damping_per_s: Vec::new(),
             eigenvalues: Vec::new(),
         };
         let report = NodalDiameterReport {

@@ -244,6 +244,7 @@ pub fn build(options: &LumpedOptions) -> Result<SectorModel, ModelError> {
             ring_node: 2,
             normal: [-1.0, 0.0, 0.0],
             weight: 1.0,
+            load_weight: None,
         })
         .into_iter()
         .collect();

@@ -53,6 +53,7 @@ pub fn build(options: &ParametricOptions) -> Result<SectorModel, ModelError> {
             ring_node: facing.ring_node,
             normal: [-1.0, 0.0, 0.0],
             weight: facing.weight,
+            load_weight: None,
         })
         .collect();
     let mut force = Vec::new();

@@ -47,8 +47,10 @@ pub struct ContactPair {
     pub ring_node: usize,
     /// Unit outward normal of the blisk's surface (pointing into the ring), in (r, theta, z).
     pub normal: [f64; 3],
-    /// Share of the sector's normal load and contact stiffness; the shares of a sector sum to 1.
+    /// Share of the sector's contact stiffness; the shares of a sector sum to 1.
     pub weight: f64,
+    /// Share of the sector's normal load, likewise; none = that of the stiffness.
+    pub load_weight: Option<f64>,
 }
 
 /// A node whose displacement is reported; the first of a model carries the peak metric.

@@ -43,7 +43,7 @@ pub use percentiles::{PERCENTILE_COLUMNS, write_percentiles};
 pub use publication::{Staging, complete_publication, keep_as_part, set_aside};
 pub use responses::{RESPONSE_COLUMNS, ResponseReader, ResponseWriter};
 pub use row_file::RowFile;
-pub use scenarios::{SCENARIO_COLUMNS, ScenarioRecord, write_scenarios};
+pub use scenarios::{SCENARIO_COLUMNS, ScenarioExtras, ScenarioRecord, write_scenarios};
 pub use tail_fits::{TAIL_FIT_COLUMNS, TailFitRecord, write_tail_fits};
 pub use traced_curve::{Direction, TRACE_COLUMNS, TracePoint, write_traced_curve};
 pub use tradeoff::{

@@ -247,7 +247,46 @@ pub const SCENARIO_COLUMNS: &[ColumnSpec] = &[
         "",
         "Patterns whose sampling or harmonic error exceeds its tolerance",
     ),
+    ColumnSpec::new(
+        "speed_rpm",
+        Float64,
+        "1/min",
+        "Speed that makes the normal load; null for a load in newtons",
+    ),
+    ColumnSpec::new(
+        "tuned_stress_pa",
+        Float64,
+        "Pa",
+        "Peak amplitude of the tuned wheel as stress; null without a stress scale",
+    ),
+    ColumnSpec::new(
+        "peak_stress_pa_p50",
+        Float64,
+        "Pa",
+        "Median of the peak amplitude as stress; null = not estimable, or no stress scale",
+    ),
+    ColumnSpec::new(
+        "peak_stress_pa_p95",
+        Float64,
+        "Pa",
+        "95th percentile of the peak amplitude as stress; null = not estimable, or no stress scale",
+    ),
+    ColumnSpec::new(
+        "peak_stress_pa_p99",
+        Float64,
+        "Pa",
+        "99th percentile of the peak amplitude as stress; null = not estimable, or no stress scale",
+    ),
 ];
+
+/// What the study adds to the scenarios.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ScenarioExtras {
+    /// Speed of each scenario whose normal load is by rotation, revolutions per minute; empty: none is.
+    pub speeds_rpm: Vec<Option<f64>>,
+    /// Stress per amplitude, Pa/m.
+    pub stress_pa_per_m: Option<f64>,
+}
 
 /// Writes `scenarios.parquet`.
 ///
@@ -256,6 +295,7 @@ pub const SCENARIO_COLUMNS: &[ColumnSpec] = &[
 pub fn write_scenarios(
     path: &Path,
     records: &[ScenarioRecord],
+    extras: &ScenarioExtras,
     header: &TableHeader,
 ) -> Result<(), TableError> {
     let ids = |value: &dyn Fn(&ScenarioRecord) -> u64| {
@@ -318,6 +358,16 @@ pub fn write_scenarios(
     }));
     values.push(floats(&|record| record.statistics.largest_stated_error));
     values.push(ids(&|record| record.statistics.beyond_tolerance));
+    let speed = |place: usize| extras.speeds_rpm.get(place).copied().flatten();
+    values.push(Values::Float64((0..records.len()).map(speed).collect()));
+    let stress = |amplitude_m: Option<f64>| Some(extras.stress_pa_per_m? * amplitude_m?);
+    values.push(floats(&|record| stress(record.tuned.amplitude_m)));
+    for percent in [50, 95, 99] {
+        values.push(floats(&|record| {
+            let amplitude = &record.statistics.peak_amplitude_m;
+            stress(amplitude.percentile(percent)?.value)
+        }));
+    }
     let mut writer = TableWriter::create(path, SCENARIO_COLUMNS, header)?;
     writer.write(values)?;
     writer.finish()

@@ -227,6 +227,7 @@ impl Excited {
             })
             .collect();
         let force = model.wave(wave(1)).force;
+        let amplitude_n = amplitude_n * model.force_factor(engine_order);
         Self {
             modes: LimitModes::new(&linear, wanted),
             linear,

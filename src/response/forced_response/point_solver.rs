@@ -112,11 +112,7 @@ impl<'a> PointSolver<'a> {
                 let interface = ContactInterface {
                     law,
                     geometry: settings.geometry.clone(),
-                    pairs: sector.pairs_under(
-                        normal_load_n,
-                        &settings.geometry.weights,
-                        &settings.factors,
-                    ),
+                    pairs: sector.pairs_under(normal_load_n, &settings.geometry, &settings.factors),
                 };
                 let system = HarmonicSystem::new(
                     excited.blocks.clone(),

@@ -5,6 +5,7 @@ use super::{
     ContactLaw, ContactOptions, CoupledSlider, PeriodicSlider, coulomb_3d, macro_slip_1d,
     simplified_3d,
 };
+use crate::model::cyclic::ContactGeometry;
 use crate::response::mistuning::{ContactFactors, PairFactors};
 
 impl ContactLaw {
@@ -55,20 +56,28 @@ impl PairParameters {
         }
     }
 
-    /// The pairs of a sector of these parameters under another normal load, or those of the whole
-    /// wheel where they vary; `weights` are the shares of a sector's pairs.
+    /// The pairs of a sector under this normal load, each with its share of stiffness and load.
+    pub fn pairs(self, geometry: &ContactGeometry) -> impl Iterator<Item = Self> + Clone {
+        let shares = geometry.weights.iter().zip(&geometry.load_weights);
+        shares.map(move |(&weight, &load_weight)| Self {
+            normal_load_n: load_weight * self.normal_load_n,
+            ..self.share(weight)
+        })
+    }
+
+    /// The same under another normal load, or the pairs of the whole wheel where they vary.
     #[must_use]
     pub fn pairs_under(
         self,
         normal_load_n: f64,
-        weights: &[f64],
+        geometry: &ContactGeometry,
         factors: &ContactFactors,
     ) -> Vec<Self> {
         let sector = Self {
             normal_load_n,
             ..self
         };
-        let nominal = weights.iter().map(|&weight| sector.share(weight));
+        let nominal = sector.pairs(geometry);
         if factors.is_nominal() {
             return nominal.collect();
         }

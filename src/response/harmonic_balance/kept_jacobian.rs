@@ -272,6 +272,7 @@ mod tests {
                 eigenvalues: vec![1.0, 3.5],
                 tuned_eigenvalues: vec![1.0, 3.5],
                 rotation: None,
+                added_damping_per_s: Vec::new(),
                 contact: rows(4, 1.0),
                 observed: rows(3, 2.0),
                 sectors: 1,
@@ -294,6 +295,7 @@ mod tests {
             law: ContactLaw::Simplified3d,
             geometry: ContactGeometry {
                 weights: vec![0.5; 2],
+                load_weights: vec![0.5; 2],
                 rows: vec![[Some(0), Some(1), None], [Some(2), Some(3), None]],
                 ring_motion: vec![[[0.0; 2]; 2]; 2],
                 ring_free: [false; 2],

@@ -1,7 +1,7 @@
 //! The linear part of the equation: a structure in its own modes, its damping and contact springs.
 //!
 //! ```text
-//! Z(omega) = diag(lambda) - omega^2 I + i D(omega),    D = eta diag(lambda)  or  omega C_v
+//! Z(omega) = diag(lambda) - omega^2 I + i D(omega),    D = eta diag(lambda) + omega C_v
 //! ```
 //!
 //! with `lambda` the contact-free eigenvalues, mistuning included; contact springs are undamped
@@ -11,15 +11,20 @@ use super::Damping;
 use crate::linalg::{Complex64, Matrix};
 use crate::response::mistuning::{ModalRows, StructuralModes};
 
-/// Damping in modal coordinates.
+/// Damping `D(omega) = eta diag(lambda) + omega C` in modal coordinates.
 #[derive(Debug, Clone, PartialEq)]
-enum ModalDamping {
-    /// `eta diag(lambda)`.
-    Structural(f64),
-    /// `omega diag(c)`, c in 1/s.
-    ViscousDiagonal(Vec<f64>),
-    /// `omega C`, C in 1/s.
-    ViscousFull(Matrix<f64>),
+struct ModalDamping {
+    /// eta.
+    loss_factor: f64,
+    viscous: Viscous,
+}
+
+/// `C`, 1/s.
+#[derive(Debug, Clone, PartialEq)]
+enum Viscous {
+    None,
+    Diagonal(Vec<f64>),
+    Full(Matrix<f64>),
 }
 
 /// A structure in modal coordinates with its contact rows and linear contact springs.
@@ -45,43 +50,25 @@ impl Structure {
     /// Modes with damping. Viscous damping is that of the tuned structure, unchanged by mistuning.
     #[must_use]
     pub fn new(modes: StructuralModes, damping: Damping) -> Self {
-        let tuned_viscous: Option<Vec<f64>> = match damping {
-            Damping::StructuralLossFactor(_) => None,
-            Damping::ModalRatio(zeta) => Some(
-                modes
-                    .tuned_eigenvalues
-                    .iter()
-                    .map(|lambda| 2.0 * zeta * lambda.max(0.0).sqrt())
-                    .collect(),
-            ),
+        let of_mode = |lambda: f64| match damping {
+            Damping::StructuralLossFactor(_) => 0.0,
+            Damping::ModalRatio(zeta) => 2.0 * zeta * lambda.max(0.0).sqrt(),
             Damping::Rayleigh {
                 mass_per_s,
                 stiffness_s,
-            } => Some(
-                modes
-                    .tuned_eigenvalues
-                    .iter()
-                    .map(|lambda| mass_per_s + stiffness_s * lambda)
-                    .collect(),
-            ),
+            } => mass_per_s + stiffness_s * lambda,
         };
-        let damping = match (damping, tuned_viscous, &modes.rotation) {
-            (Damping::StructuralLossFactor(eta), ..) => ModalDamping::Structural(eta),
-            (_, Some(viscous), None) => ModalDamping::ViscousDiagonal(viscous),
-            (_, Some(viscous), Some(_))
-                if viscous
-                    .windows(2)
-                    .all(|pair| pair[0].total_cmp(&pair[1]).is_eq()) =>
-            {
-                ModalDamping::ViscousDiagonal(viscous)
-            }
-            (_, Some(viscous), Some(rotation)) => {
-                let scaled = Matrix::from_fn(rotation.rows(), rotation.columns(), |i, j| {
-                    viscous[i] * rotation[(i, j)]
-                });
-                ModalDamping::ViscousFull(rotation.adjoint_times(&scaled))
-            }
-            (_, None, _) => unreachable!("viscous damping has coefficients"),
+        let tuned = modes.tuned_eigenvalues.iter();
+        let viscous: Vec<f64> = tuned
+            .zip(&modes.added_damping_per_s)
+            .map(|(&lambda, added)| of_mode(lambda) + added)
+            .collect();
+        let damping = ModalDamping {
+            loss_factor: match damping {
+                Damping::StructuralLossFactor(eta) => eta,
+                Damping::ModalRatio(_) | Damping::Rayleigh { .. } => 0.0,
+            },
+            viscous: Viscous::of(viscous, modes.rotation.as_ref()),
         };
         Self {
             eigenvalues: modes.eigenvalues,
@@ -98,9 +85,10 @@ impl Structure {
     #[must_use]
     pub fn with_viscous_damping(&self, omega: f64) -> Self {
         let mut structure = self.clone();
-        if let ModalDamping::Structural(eta) = self.damping {
-            let viscous = self.eigenvalues.iter().map(|lambda| eta * lambda / omega);
-            structure.damping = ModalDamping::ViscousDiagonal(viscous.collect());
+        let eta = std::mem::take(&mut structure.damping.loss_factor);
+        if eta != 0.0 {
+            let added = self.eigenvalues.iter().map(|lambda| eta * lambda / omega);
+            structure.damping.viscous.add_diagonal(added.collect());
         }
         structure
     }
@@ -108,7 +96,7 @@ impl Structure {
     /// Whether the damping is viscous, `D(omega) = omega C`.
     #[must_use]
     pub fn is_viscous(&self) -> bool {
-        !matches!(self.damping, ModalDamping::Structural(_))
+        self.damping.loss_factor == 0.0
     }
 
     /// Number of modes.
@@ -144,65 +132,62 @@ impl Structure {
     /// Whether `Z` is diagonal.
     #[must_use]
     pub fn is_diagonal(&self) -> bool {
-        !matches!(self.damping, ModalDamping::ViscousFull(_))
+        !matches!(self.damping.viscous, Viscous::Full(_))
     }
 
     /// Diagonal entry of the damping `D(omega)`, (rad/s)^2.
     #[must_use]
     pub fn damping_diagonal(&self, mode: usize, omega: f64) -> f64 {
-        match &self.damping {
-            ModalDamping::Structural(eta) => eta * self.eigenvalues[mode],
-            ModalDamping::ViscousDiagonal(viscous) => omega * viscous[mode],
-            ModalDamping::ViscousFull(viscous) => omega * viscous[(mode, mode)],
-        }
+        let viscous = match &self.damping.viscous {
+            Viscous::None => 0.0,
+            Viscous::Diagonal(viscous) => viscous[mode],
+            Viscous::Full(viscous) => viscous[(mode, mode)],
+        };
+        self.damping.loss_factor * self.eigenvalues[mode] + omega * viscous
     }
 
     /// `v^T D(omega) v` for a real vector: the damping of a mode shape given in these modes.
     #[must_use]
     pub fn damping_of(&self, shape: &[f64], omega: f64) -> f64 {
-        match &self.damping {
-            ModalDamping::ViscousFull(viscous) => {
+        let diagonal = |of: &dyn Fn(usize) -> f64| -> f64 {
+            let shape = shape.iter().enumerate();
+            shape.map(|(mode, v)| v * v * of(mode)).sum()
+        };
+        match &self.damping.viscous {
+            Viscous::Full(viscous) => {
                 let product = viscous.times_vector(shape);
+                let eta = self.damping.loss_factor;
                 omega * shape.iter().zip(&product).map(|(a, b)| a * b).sum::<f64>()
+                    + diagonal(&|mode| eta * self.eigenvalues[mode])
             }
-            _ => shape
-                .iter()
-                .enumerate()
-                .map(|(mode, v)| v * v * self.damping_diagonal(mode, omega))
-                .sum(),
+            _ => diagonal(&|mode| self.damping_diagonal(mode, omega)),
         }
     }
 
     /// Adds the damping `D(omega)` at the full, column-major `n x n` block through `add(i, j, value)`.
     pub fn for_each_damping(&self, omega: f64, mut add: impl FnMut(usize, usize, f64)) {
-        if let ModalDamping::ViscousFull(viscous) = &self.damping {
-            for j in 0..self.size() {
-                for i in 0..self.size() {
-                    add(i, j, omega * viscous[(i, j)]);
-                }
-            }
-        } else {
-            for mode in 0..self.size() {
-                add(mode, mode, self.damping_diagonal(mode, omega));
-            }
+        for mode in 0..self.size() {
+            add(mode, mode, self.damping_diagonal(mode, omega));
+        }
+        if let Viscous::Full(viscous) = &self.damping.viscous {
+            each_off_diagonal(viscous, |i, j, rate| add(i, j, omega * rate));
         }
     }
 
     /// Adds `dD/domega`, 1/s, through `add(i, j, value)`; structural damping has none.
     pub fn for_each_damping_rate(&self, mut add: impl FnMut(usize, usize, f64)) {
-        match &self.damping {
-            ModalDamping::Structural(_) => {}
-            ModalDamping::ViscousDiagonal(viscous) => {
+        match &self.damping.viscous {
+            Viscous::None => {}
+            Viscous::Diagonal(viscous) => {
                 for (mode, &rate) in viscous.iter().enumerate() {
                     add(mode, mode, rate);
                 }
             }
-            ModalDamping::ViscousFull(viscous) => {
-                for j in 0..self.size() {
-                    for i in 0..self.size() {
-                        add(i, j, viscous[(i, j)]);
-                    }
+            Viscous::Full(viscous) => {
+                for mode in 0..self.size() {
+                    add(mode, mode, viscous[(mode, mode)]);
                 }
+                each_off_diagonal(viscous, add);
             }
         }
     }
@@ -261,5 +246,48 @@ impl Structure {
             matrix[mode * n + mode] += lambda - omega * omega;
         }
         self.for_each_damping(omega, |i, j, d| matrix[j * n + i].im += d);
+    }
+}
+
+impl Viscous {
+    /// The damping of tuned coordinates in the modes of `rotation`, none where they are the same.
+    fn of(tuned: Vec<f64>, rotation: Option<&Matrix<f64>>) -> Self {
+        let alike = |pair: &[f64]| pair[0].total_cmp(&pair[1]).is_eq();
+        if tuned.iter().all(|&rate| rate == 0.0) {
+            return Self::None;
+        }
+        match rotation {
+            Some(rotation) if !tuned.windows(2).all(alike) => {
+                let scaled = Matrix::from_fn(rotation.rows(), rotation.columns(), |i, j| {
+                    tuned[i] * rotation[(i, j)]
+                });
+                Self::Full(rotation.adjoint_times(&scaled))
+            }
+            _ => Self::Diagonal(tuned),
+        }
+    }
+
+    fn add_diagonal(&mut self, added: Vec<f64>) {
+        match self {
+            Self::None => *self = Self::Diagonal(added),
+            Self::Diagonal(viscous) => {
+                for (sum, part) in viscous.iter_mut().zip(added) {
+                    *sum += part;
+                }
+            }
+            Self::Full(viscous) => {
+                for (mode, part) in added.into_iter().enumerate() {
+                    viscous[(mode, mode)] += part;
+                }
+            }
+        }
+    }
+}
+
+fn each_off_diagonal(matrix: &Matrix<f64>, mut add: impl FnMut(usize, usize, f64)) {
+    for j in 0..matrix.columns() {
+        for i in (0..matrix.rows()).filter(|&i| i != j) {
+            add(i, j, matrix[(i, j)]);
+        }
     }
 }

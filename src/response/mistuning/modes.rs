@@ -32,6 +32,8 @@ pub struct StructuralModes {
     pub eigenvalues: Vec<f64>,
     /// Eigenvalues of the tuned wheel in the tuned coordinates, (rad/s)^2.
     pub tuned_eigenvalues: Vec<f64>,
+    /// Damping of the tuned coordinates besides the damping model of the structure, 1/s.
+    pub added_damping_per_s: Vec<f64>,
     /// Tuned coordinates of each mode, orthonormal columns; none where they are the same.
     pub rotation: Option<Matrix<f64>>,
     /// Relative motion at the contact rows, sector after sector.
@@ -61,6 +63,7 @@ impl StructuralModes {
             observed: rows(basis.observed()),
             eigenvalues,
             tuned_eigenvalues: basis.eigenvalues().to_vec(),
+            added_damping_per_s: basis.added_damping_per_s().to_vec(),
             rotation: Some(rotation),
             sectors: basis.model().sectors,
         })
@@ -93,6 +96,7 @@ impl StructuralModes {
             observed: rows(basis.observed()),
             eigenvalues,
             tuned_eigenvalues: basis.eigenvalues().to_vec(),
+            added_damping_per_s: basis.added_damping_per_s().to_vec(),
             sectors: basis.model().sectors,
             rotation: Some(shapes),
         })
@@ -105,6 +109,7 @@ impl StructuralModes {
         Self {
             eigenvalues: wave.eigenvalues.clone(),
             tuned_eigenvalues: wave.eigenvalues,
+            added_damping_per_s: wave.added_damping_per_s,
             rotation: None,
             contact: ModalRows::from_complex(&wave.contact),
             observed: ModalRows::from_complex(&wave.observed),

@@ -18,6 +18,7 @@ pub struct WheelBasis {
     model: Arc<ReducedModel>,
     waves: Vec<Wave>,
     eigenvalues: Vec<f64>,
+    added_damping_per_s: Vec<f64>,
     contact: Matrix<f64>,
     observed: Matrix<f64>,
 }
@@ -40,6 +41,7 @@ impl WheelBasis {
         let sectors = model.sectors;
         let mut waves = Vec::new();
         let mut eigenvalues = Vec::new();
+        let mut added_damping_per_s = Vec::new();
         for (h, nd) in model.nodal_diameters.iter().enumerate() {
             let phases: Vec<Complex64> = (0..sectors).map(|n| phase(h, n, sectors)).collect();
             let standing = model.is_standing(h);
@@ -52,6 +54,7 @@ impl WheelBasis {
                 imaginary: phases.iter().map(|p| -scale * p.im).collect(),
             };
             eigenvalues.extend_from_slice(&nd.eigenvalues);
+            added_damping_per_s.extend_from_slice(&nd.added_damping_per_s);
             waves.push(cosine);
             if !standing {
                 let sine = Wave {
@@ -61,6 +64,7 @@ impl WheelBasis {
                     imaginary: phases.iter().map(|p| scale * p.re).collect(),
                 };
                 eigenvalues.extend_from_slice(&nd.eigenvalues);
+                added_damping_per_s.extend_from_slice(&nd.added_damping_per_s);
                 waves.push(sine);
             }
         }
@@ -68,6 +72,7 @@ impl WheelBasis {
             model,
             waves,
             eigenvalues,
+            added_damping_per_s,
             contact: Matrix::zeros(0, 0),
             observed: Matrix::zeros(0, 0),
         };
@@ -95,6 +100,12 @@ impl WheelBasis {
         &self.eigenvalues
     }
 
+    /// Damping of the coordinates besides the damping model of the structure, 1/s.
+    #[must_use]
+    pub fn added_damping_per_s(&self) -> &[f64] {
+        &self.added_damping_per_s
+    }
+
     /// Relative motion at the contact rows, sector after sector, `N n_rows x size`.
     #[must_use]
     pub fn contact(&self) -> &Matrix<f64> {
@@ -112,6 +123,7 @@ impl WheelBasis {
     pub fn force(&self, engine_order: u32) -> Vec<Complex64> {
         let sectors = self.model.sectors;
         let excited = nodal_diameter_of(1, engine_order, sectors).index;
+        let factor = self.model.force_factor(engine_order);
         let mut force = vec![Complex64::default(); self.size()];
         for wave in self
             .waves
@@ -125,12 +137,13 @@ impl WheelBasis {
                 let (adjoint, plain) = (nd.force[(mode, 0)], nd.conjugate_force[(mode, 0)]);
                 let real_part = (adjoint + plain) * 0.5;
                 let imaginary_part = (plain - adjoint) * Complex64::new(0.0, -0.5);
-                force[wave.start + mode] = (0..sectors)
+                let sum: Complex64 = (0..sectors)
                     .map(|n| {
                         let turn = phase(engine_order as usize % sectors, n, sectors);
                         (real_part * wave.real[n] + imaginary_part * wave.imaginary[n]) * turn
                     })
                     .sum();
+                force[wave.start + mode] = sum * factor;
             }
         }
         force

@@ -38,8 +38,7 @@ impl ContactForces {
         sectors: usize,
         transform: Arc<HarmonicTransform>,
     ) -> Self {
-        let nominal: Vec<PairParameters> =
-            geometry.weights.iter().map(|&w| sector.share(w)).collect();
+        let nominal: Vec<PairParameters> = sector.pairs(&geometry).collect();
         let pair = |index: usize| {
             let own = nominal[index % nominal.len()];
             factors.pairs().get(index).map_or(own, |by| own.varied(by))

@@ -47,7 +47,7 @@ impl FullStructure {
         Self {
             stiffness,
             loss_factor: loss_factor(damping),
-            viscous: viscous(damping, &wave.eigenvalues),
+            viscous: viscous(damping, &wave.eigenvalues, &wave.added_damping_per_s),
             contact: wave.contact,
             observed: wave.observed,
         }
@@ -77,7 +77,7 @@ impl FullStructure {
         Some(Self {
             stiffness,
             loss_factor: loss_factor(damping),
-            viscous: viscous(damping, &waves.eigenvalues),
+            viscous: viscous(damping, &waves.eigenvalues, &waves.added_damping_per_s),
             contact: waves.rows(|nd| &nd.contact),
             observed: waves.rows(|nd| &nd.observed),
         })
@@ -111,6 +111,7 @@ pub(super) fn force(
     mistuned: bool,
 ) -> Vec<Complex64> {
     let excited = nodal_diameter_of(1, engine_order, model.sectors);
+    let amplitude_n = amplitude_n * model.force_factor(engine_order);
     let wave = model.wave(excited).force;
     let of_wave = |scale: f64| wave.column(0).iter().map(move |f| f * scale);
     if !mistuned {
@@ -134,8 +135,8 @@ fn loss_factor(damping: Damping) -> f64 {
     }
 }
 
-/// Viscous damping of tuned modes with these eigenvalues, 1/s.
-fn viscous(damping: Damping, eigenvalues: &[f64]) -> Vec<f64> {
+/// Viscous damping of tuned modes with these eigenvalues, and `added` to it, 1/s.
+fn viscous(damping: Damping, eigenvalues: &[f64], added: &[f64]) -> Vec<f64> {
     let of_mode = |lambda: f64| match damping {
         Damping::StructuralLossFactor(_) => 0.0,
         Damping::ModalRatio(zeta) => 2.0 * zeta * lambda.max(0.0).sqrt(),
@@ -144,7 +145,10 @@ fn viscous(damping: Damping, eigenvalues: &[f64]) -> Vec<f64> {
             stiffness_s,
         } => mass_per_s + stiffness_s * lambda,
     };
-    eigenvalues.iter().map(|&lambda| of_mode(lambda)).collect()
+    let modes = eigenvalues.iter().zip(added);
+    modes
+        .map(|(&lambda, added)| of_mode(lambda) + added)
+        .collect()
 }
 
 /// The coordinates of a wheel, wave after wave, h = 0..N-1.
@@ -153,6 +157,7 @@ struct Waves<'a> {
     /// First coordinate of each wave.
     start: Vec<usize>,
     eigenvalues: Vec<f64>,
+    added_damping_per_s: Vec<f64>,
     size: usize,
 }
 
@@ -160,16 +165,20 @@ impl<'a> Waves<'a> {
     fn new(model: &'a ReducedModel) -> Self {
         let mut start = Vec::new();
         let mut eigenvalues = Vec::new();
+        let mut added_damping_per_s = Vec::new();
         for h in 0..model.sectors {
             start.push(eigenvalues.len());
             let index = h.min(model.sectors - h);
-            eigenvalues.extend_from_slice(&model.nodal_diameters[index].eigenvalues);
+            let own = &model.nodal_diameters[index];
+            eigenvalues.extend_from_slice(&own.eigenvalues);
+            added_damping_per_s.extend_from_slice(&own.added_damping_per_s);
         }
         Self {
             size: eigenvalues.len(),
             model,
             start,
             eigenvalues,
+            added_damping_per_s,
         }
     }
 

@@ -213,12 +213,11 @@ impl PointCase<'_> {
 
     fn interface(&self) -> ContactInterface {
         let geometry = self.basis.model().contact.clone();
-        let weights = &geometry.weights;
         ContactInterface {
             law: self.law,
             pairs: self
                 .sector
-                .pairs_under(self.sector.normal_load_n, weights, self.factors),
+                .pairs_under(self.sector.normal_load_n, &geometry, self.factors),
             geometry,
         }
     }

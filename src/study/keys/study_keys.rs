@@ -1,6 +1,8 @@
 //! The keys of a study file except those of its model.
 
-use super::Value::{Ascending, Either, Flag, List, Name, Number, Table, Text, Whole};
+use super::Value::{
+    Ascending, Either, Flag, List, Name, Number, Numbers, Pairs, Table, Text, Whole,
+};
 use super::key::{Entry, REQUIRED, entry};
 use super::{Range, Value};
 
@@ -17,6 +19,7 @@ const SHARE: Value = Number(Range::above(0.0).below(1.0));
 const MODES: Value = Whole(1, 1000);
 const TRUNCATION: Value = Number(Range::from_to(0.1, 10.0));
 const DEVIATION: Value = Number(Range::from_to(0.0, 0.5));
+const SPEED: Value = Number(Range::above(0.0).up_to(1e6));
 const AUTO: Value = Name(&["auto"]);
 
 /// What stands before the model.
@@ -125,6 +128,48 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "`creeping`: a ring that is free drifts so that friction has no mean along its rigid motions; not with `coulomb_3d` ([formulation.md](formulation.md))",
     ),
     entry(
+        "contact.normal_load",
+        Table,
+        "",
+        "normal loads by rotation, besides those of the sweep",
+    ),
+    entry(
+        "contact.normal_load.from",
+        Name(&["rotation"]),
+        REQUIRED,
+        "the ring's centrifugal load",
+    ),
+    entry(
+        "contact.normal_load.speed_rpm",
+        Either(&[SPEED, List(&SPEED)]),
+        REQUIRED,
+        "revolutions per minute; each is a load of the sweep, after those of `sweep.normal_load_n`",
+    ),
+    entry(
+        "contact.normal_load.hoop",
+        Name(&["closed", "split"]),
+        "`\"closed\"`",
+        "`closed`: hoop force takes a part of the load; `split`: a ring with a free gap, all of the load on the contact",
+    ),
+    entry(
+        "contact.normal_load.share",
+        Name(&["weight", "equilibrium"]),
+        "`\"weight\"`",
+        "how the load of a sector is shared out: by the weights of the pairs, or as the static equilibrium has it",
+    ),
+    entry(
+        "contact.normal_load.ring_mass_factor",
+        Number(Range::from_to(1e-3, 1e3)),
+        "1.0",
+        "on the ring's mass, in its load and in its vibration",
+    ),
+    entry(
+        "contact.normal_load.ring_radius_m",
+        ABOVE_ZERO,
+        "required for a ring without radial dofs",
+        "radius r of a ring of masses: `N0 = m r Omega^2`, without `hoop` and `share`; m",
+    ),
+    entry(
         "contact.variation",
         Table,
         "",
@@ -196,6 +241,28 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         REQUIRED,
         "b, s",
     ),
+    entry(
+        "nodal_diameter_damping",
+        Table,
+        "",
+        "damping of the tuned modes by nodal diameter, besides",
+    ),
+    entry(
+        "nodal_diameter_damping.damping_ratios",
+        Pairs(
+            ["nodal diameter", "damping ratio"],
+            [0, 5000],
+            Range::at_least(0.0).below(1.0),
+        ),
+        REQUIRED,
+        "each nodal diameter once, up to N/2; those left out have none",
+    ),
+    entry(
+        "nodal_diameter_damping.modes",
+        Name(&["blade", "all"]),
+        "`\"blade\"`",
+        "`blade`: each mode by the share of its strain energy in the blade; `all`: every mode of the nodal diameter alike",
+    ),
     entry("excitation", Table, REQUIRED, "the rotating force"),
     entry(
         "excitation.engine_orders",
@@ -205,9 +272,9 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
     ),
     entry(
         "excitation.amplitude_n",
-        ABOVE_ZERO,
+        Either(&[ABOVE_ZERO, Numbers(Range::above(0.0))]),
         "1.0",
-        "multiplies the model's force vector",
+        "multiplies the model's force vector; a list: one per engine order, in their order",
     ),
     entry("mistuning", Table, REQUIRED, "the random blades"),
     entry(
@@ -258,14 +325,14 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "none",
         "instead of a distribution: columns `pattern`, `blade`, `deviation` and optionally `mode`",
     ),
-    entry("sweep", Table, REQUIRED, "the scenarios"),
+    entry("sweep", Table, "", "the scenarios"),
     entry(
         "sweep.normal_load_n",
         List(&Either(&[
             Number(Range::at_least(0.0)),
             Name(&["stuck", "slide", "free"]),
         ])),
-        REQUIRED,
+        "required without `contact.normal_load`",
         "N per sector, and the linear limits; only `free` for a model without contact",
     ),
     entry(
@@ -383,5 +450,11 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         Name(&["zstd", "snappy"]),
         "`\"zstd\"`",
         "",
+    ),
+    entry(
+        "output.stress_pa_per_m",
+        ABOVE_ZERO,
+        "none",
+        "stress per amplitude of the observed node, Pa/m: amplitudes are told as stress too",
     ),
 ];

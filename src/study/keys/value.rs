@@ -83,8 +83,12 @@ pub enum Value {
     Name(&'static [&'static str]),
     /// A list of different values, at least one.
     List(&'static Value),
+    /// A list of numbers of which some may be the same.
+    Numbers(Range),
     /// An ascending list of this many values, or of any number from one.
     Ascending(&'static Value, Option<u64>),
+    /// A list of lists of two: these names, the first a whole number from the two, the second a number.
+    Pairs([&'static str; 2], [i64; 2], Range),
     /// Any of these.
     Either(&'static [Value]),
 }
@@ -129,8 +133,13 @@ impl fmt::Display for Value {
                 write!(f, "{}", names.join(", "))
             }
             Self::List(value) => write!(f, "list of different values: {value}"),
+            Self::Numbers(range) => write!(f, "list: {range}"),
             Self::Ascending(value, None) => write!(f, "ascending list: {value}"),
             Self::Ascending(value, Some(count)) => write!(f, "{count} ascending values: {value}"),
+            Self::Pairs([first, second], [low, high], range) => write!(
+                f,
+                "list of `[{first}, {second}]`: whole number, {low} to {high}; {range}"
+            ),
             Self::Either(values) => {
                 let values: Vec<String> = values.iter().map(ToString::to_string).collect();
                 write!(f, "{}", values.join("; or "))
@@ -167,6 +176,9 @@ impl Value {
             Self::List(value) => json!({
                 "type": "array", "items": value.schema(), "minItems": 1, "uniqueItems": true,
             }),
+            Self::Numbers(range) => json!({
+                "type": "array", "items": Self::Number(*range).schema(), "minItems": 1,
+            }),
             Self::Ascending(value, count) => {
                 let mut schema = json!({
                     "type": "array", "items": value.schema(), "minItems": count.unwrap_or(1),
@@ -177,6 +189,13 @@ impl Value {
                 }
                 schema
             }
+            // Draft 7 has no short way to say what each of the two is.
+            Self::Pairs(..) => json!({
+                "type": "array", "minItems": 1, "uniqueItems": true,
+                "items": {
+                    "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2,
+                },
+            }),
             Self::Either(values) => {
                 let values: Vec<Json> = values.iter().map(Self::schema).collect();
                 json!({ "anyOf": values })

@@ -42,6 +42,7 @@ fn oscillator(
     let modes = StructuralModes {
         eigenvalues: vec![1.0],
         tuned_eigenvalues: vec![1.0],
+        added_damping_per_s: vec![0.0],
         rotation: None,
         contact: rows(1),
         observed: rows(3),
@@ -61,6 +62,7 @@ fn oscillator(
         law,
         geometry: ContactGeometry {
             weights: vec![1.0],
+            load_weights: vec![1.0],
             rows: vec![[None, Some(0), None]],
             ring_motion: vec![[[1.0, 0.0], [0.0, 1.0]]],
             ring_free: [false; 2],

@@ -90,6 +90,7 @@ fn comb(link: f64) -> SectorModel {
                 ring_node: ring[i],
                 normal: [-1.0, 0.0, 0.0],
                 weight: share,
+                load_weight: None,
             })
             .collect(),
         force: vec![(blade[0], Complex64::new(1.0, 0.0))],

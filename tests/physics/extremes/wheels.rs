@@ -140,6 +140,7 @@ pub fn spatial_sector(sectors: usize) -> SectorModel {
             ring_node: RING,
             normal: [-1.0, 0.0, 0.0],
             weight: 1.0,
+            load_weight: None,
         }],
         force: vec![
             (0, Complex64::new(0.4, 0.0)),

@@ -28,6 +28,7 @@ impl OneDof {
         let modes = StructuralModes {
             eigenvalues: vec![stiffness],
             tuned_eigenvalues: vec![stiffness],
+            added_damping_per_s: vec![0.0],
             rotation: None,
             contact: rows(Matrix::identity(1)),
             observed: rows(Matrix::from_fn(3, 1, |i, _| f64::from(u8::from(i == 0)))),
@@ -46,6 +47,7 @@ impl OneDof {
                 law: ContactLaw::MacroSlip1d,
                 geometry: ContactGeometry {
                     weights: vec![1.0],
+                    load_weights: vec![1.0],
                     rows: vec![[None, Some(0), None]],
                     ring_motion: vec![[[0.0; 2]; 2]],
                     ring_free: [false; 2],

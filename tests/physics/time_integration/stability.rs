@@ -31,6 +31,7 @@ impl OneDof {
         let modes = StructuralModes {
             eigenvalues: vec![1.0],
             tuned_eigenvalues: vec![1.0],
+            added_damping_per_s: vec![0.0],
             rotation: None,
             contact: rows(Matrix::identity(1)),
             observed: rows(Matrix::from_fn(3, 1, |i, _| f64::from(u8::from(i == 0)))),
@@ -50,6 +51,7 @@ impl OneDof {
                 law: ContactLaw::Simplified3d,
                 geometry: ContactGeometry {
                     weights: vec![1.0],
+                    load_weights: vec![1.0],
                     rows: vec![directions],
                     ring_motion: vec![[[0.0; 2]; 2]],
                     ring_free: [false; 2],

@@ -85,6 +85,7 @@ fn parse_contact(
         ring_node: integer("ring_node", ring_node)?,
         normal: [number("nr", nr)?, number("nt", nt)?, number("nz", nz)?],
         weight: number("weight", weight)?,
+        load_weight: None,
     })
 }
 

@@ -95,6 +95,7 @@ pub(super) fn pairs(
             ring_node: other,
             normal,
             weight: nodal.area_m2,
+            load_weight: None,
         });
     }
     let count = pairs.len() as f64;

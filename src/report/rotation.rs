@@ -1,0 +1,50 @@
+//! What rotation makes of the ring: its load, and what of it the contact takes.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// Normal loads by rotation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RotationFacts {
+    /// Speeds, revolutions per minute.
+    pub speed_rpm: Vec<f64>,
+    /// Normal load per sector at each, N.
+    pub normal_load_n: Vec<f64>,
+    /// Mass of the ring's sector, kg.
+    pub ring_mass_kg: f64,
+    /// Radius at which that mass has the centrifugal load of the ring, m.
+    pub ring_radius_m: f64,
+    /// Sum of the normal loads over the centrifugal load of the ring; the rest is hoop force.
+    pub contact_fraction: f64,
+    /// Normal load of each pair in the equilibrium over the square of the angular velocity, kg m.
+    pub pair_load_kg_m: Vec<f64>,
+}
+
+impl RotationFacts {
+    /// Speeds with their loads, in words.
+    #[must_use]
+    pub fn loads(&self) -> String {
+        let loads = self.speed_rpm.iter().zip(&self.normal_load_n);
+        let told: Vec<String> = loads
+            .map(|(speed, load)| format!("{speed} rpm: {load:.1} N"))
+            .collect();
+        told.join(", ")
+    }
+}
+
+impl fmt::Display for RotationFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let pressed = self.pair_load_kg_m.iter().filter(|load| **load > 0.0);
+        write!(
+            f,
+            "rotation: ring of {:.4} kg per sector at {:.4} m, contact takes {:.1} % of its load, {} of {} pairs pressed; {}",
+            self.ring_mass_kg,
+            self.ring_radius_m,
+            100.0 * self.contact_fraction,
+            pressed.count(),
+            self.pair_load_kg_m.len(),
+            self.loads()
+        )
+    }
+}

@@ -1,0 +1,104 @@
+//! The checks of the normal loads: newtons and limits of `[sweep]`, rotation of `[contact.normal_load]`.
+
+use super::RotationOptions;
+use super::raw::{RawLoad, RawNormalLoad, RawNumbers, RawSweep};
+use super::validate::Check;
+use crate::response::forced_response::ContactCondition;
+
+/// The contact conditions written as newtons or limits; there may be none `besides` those by rotation.
+pub(super) fn contacts(
+    check: &mut Check,
+    sweep: &RawSweep,
+    besides: bool,
+) -> Vec<ContactCondition> {
+    let key = "sweep.normal_load_n";
+    let accepted = "a list of different normal loads per sector: numbers of at least 0 in N, \
+                    \"stuck\", \"slide\" or \"free\"; at least one";
+    let Some(loads) = &sweep.normal_load_n else {
+        if !besides {
+            check.missing(key, accepted);
+        }
+        return Vec::new();
+    };
+    if loads.is_empty() && !besides {
+        check.refuse(key, accepted);
+    }
+    let mut contacts: Vec<ContactCondition> = Vec::new();
+    for (place, load) in loads.iter().enumerate() {
+        let contact = match load {
+            RawLoad::Number(value) if value.is_finite() && *value >= 0.0 => {
+                // The sum turns -0.0 into 0.0.
+                Some(ContactCondition::Full {
+                    normal_load_n: value + 0.0,
+                })
+            }
+            RawLoad::Name(name) if name == "stuck" => Some(ContactCondition::Stuck),
+            RawLoad::Name(name) if name == "slide" => Some(ContactCondition::Slide),
+            RawLoad::Name(name) if name == "free" => Some(ContactCondition::Free),
+            _ => None,
+        };
+        match contact {
+            Some(contact) if !contacts.contains(&contact) => contacts.push(contact),
+            _ => check.refuse(&format!("{key}[{place}]"), accepted),
+        }
+    }
+    contacts
+}
+
+/// Normal loads by rotation; none where they cannot be told.
+pub(super) fn rotation(check: &mut Check, raw: &RawNormalLoad) -> Option<RotationOptions> {
+    if raw.from.is_none() {
+        check.missing("contact.normal_load.from", "\"rotation\"");
+    }
+    let ring_mass_factor = raw.ring_mass_factor.unwrap_or(1.0);
+    let ring_mass_factor = check.within(
+        "contact.normal_load.ring_mass_factor",
+        ring_mass_factor,
+        (1e-3..=1e3).contains(&ring_mass_factor),
+        "a number from 1e-3 to 1e3",
+    );
+    if let Some(radius_m) = raw.ring_radius_m {
+        check.within(
+            "contact.normal_load.ring_radius_m",
+            radius_m,
+            radius_m.is_finite() && radius_m > 0.0,
+            "a finite number above 0, in m",
+        );
+        for key in ["contact.normal_load.hoop", "contact.normal_load.share"] {
+            if check.is_written(key) {
+                check.conflict(
+                    key,
+                    "with ring_radius_m the load is m r Omega^2, no equilibrium of a ring; accepted: one of the two keys",
+                );
+            }
+        }
+    }
+    Some(RotationOptions {
+        speeds_rpm: speeds(check, raw.speed_rpm.as_ref())?,
+        hoop: raw.hoop.unwrap_or_default(),
+        share: raw.share.unwrap_or_default(),
+        ring_mass_factor,
+        ring_radius_m: raw.ring_radius_m,
+    })
+}
+
+fn speeds(check: &mut Check, raw: Option<&RawNumbers>) -> Option<Vec<f64>> {
+    let key = "contact.normal_load.speed_rpm";
+    let accepted =
+        "a speed above 0 in revolutions per minute, at most 1e6, or a list of different ones";
+    let speeds = match raw {
+        None => {
+            check.missing(key, accepted);
+            return None;
+        }
+        Some(RawNumbers::One(speed)) => vec![*speed],
+        Some(RawNumbers::List(speeds)) => speeds.clone(),
+    };
+    let possible = |speed: &f64| *speed > 0.0 && *speed <= 1e6;
+    let twice = |place: usize| speeds[..place].contains(&speeds[place]);
+    if speeds.is_empty() || !speeds.iter().all(possible) || (0..speeds.len()).any(twice) {
+        check.refuse(key, accepted);
+        return None;
+    }
+    Some(speeds)
+}
