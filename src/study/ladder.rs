@@ -235,15 +235,17 @@ const STICK_PARTIAL_SLIDE: [(usize, usize, usize); 5] =
 /// Stick modes of `stick_attachment` that are tried.
 const ATTACHMENT: [usize; 3] = [4, 8, 14];
 /// Sets under a constant normal load.
-const ODD_SETS: [&[u32]; 4] = [&[1], &[1, 3], &[1, 3, 5], &[1, 3, 5, 7]];
+const ODD_SETS: [&[u32]; 5] = [&[1], &[1, 3], &[1, 3, 5], &[1, 3, 5, 7], &[1, 3, 5, 7, 9]];
 /// Sets under a variable one.
-const SETS: [&[u32]; 6] = [
+const SETS: [&[u32]; 8] = [
     &[1],
     &[1, 3],
     &[1, 3, 5],
     &[1, 2, 3],
     &[0, 1, 2, 3],
     &[0, 1, 2, 3, 4, 5],
+    &[1, 3, 5, 7, 9],
+    &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10],
 ];
 /// Tolerances of automatic sets.
 const AUTOMATIC: [f64; 3] = [0.02, 0.01, 0.005];

@@ -141,7 +141,7 @@ enum Factors {
     /// But for those of `J_ss`, which are in the workspace of the set.
     Blocks(Vec<Option<LuWorkspace<Complex64>>>),
     /// Of every harmonic by itself.
-    ByHarmonic(KeptJacobian),
+    ByHarmonic(Box<KeptJacobian>),
 }
 
 /// Corrects the solution `x` of `system` at `omega` towards that of the enlarged set; `blocks` are
@@ -405,7 +405,7 @@ impl Factors {
         system.residual(omega, x, &mut residual, true, &mut buffers);
         let mut factors = KeptJacobian::new();
         let regular = factors.factor_by_harmonic(system, omega, &mut buffers);
-        regular.then_some(Self::ByHarmonic(factors))
+        regular.then(|| Self::ByHarmonic(Box::new(factors)))
     }
 
     /// The others.

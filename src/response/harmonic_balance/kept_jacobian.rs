@@ -36,7 +36,7 @@ impl HarmonicSystem {
     }
 
     /// From now on derivatives of pairs are those of all harmonics again.
-    pub(super) fn couple_all(&self, workspace: &mut SystemWorkspace) {
+    pub(super) fn couple_all(workspace: &mut SystemWorkspace) {
         workspace.pairs.couple_first(usize::MAX);
     }
 }
@@ -303,8 +303,8 @@ mod tests {
             pairs: vec![pair; 2],
         };
         let force = vec![Complex64::new(1.0, 0.0), Complex64::new(0.3, 0.2)];
-        let transform = Arc::new(HarmonicTransform::new(&HARMONICS, 64).unwrap());
-        HarmonicSystem::new(blocks.to_vec(), force, interface, transform)
+        let transform = HarmonicTransform::new(&HARMONICS, 64).expect("enough samples");
+        HarmonicSystem::new(blocks.to_vec(), force, interface, Arc::new(transform))
     }
 
     fn displacement() -> Vec<f64> {

@@ -239,7 +239,7 @@ impl Equation for FixedFrequency<'_> {
         if by_harmonic {
             self.system.couple_leading(self.workspace);
         } else {
-            self.system.couple_all(self.workspace);
+            HarmonicSystem::couple_all(self.workspace);
         }
         let (_, shares) = self
             .system
@@ -247,7 +247,7 @@ impl Equation for FixedFrequency<'_> {
         let (system, omega) = (self.system, self.omega);
         // Contact that opens couples the harmonics closely.
         if by_harmonic && shares.separated > 0.0 {
-            self.system.couple_all(self.workspace);
+            HarmonicSystem::couple_all(self.workspace);
             system.residual(omega, x, residual, true, self.workspace);
         }
         let whole = small || shares.separated > 0.0;
