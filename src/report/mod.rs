@@ -1,5 +1,6 @@
 //! The numbers of a report as one struct, warnings with advice, and the summary as text.
 
+mod accuracy_trials;
 mod answers;
 mod comparison;
 mod comparison_text;
@@ -25,6 +26,7 @@ mod warning;
 mod wheel_report;
 mod words;
 
+pub use accuracy_trials::{AccuracyTrial, AccuracyTrials};
 pub use answers::{Answer, answers};
 pub use comparison::{
     BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet, QuantityComparison,

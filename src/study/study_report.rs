@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::compare::best_loads;
+use super::compare::{HALF_ERROR, best_loads};
 use super::report_wheels::solve_wheels;
 use super::{EngineSource, PipelineError, ResultColumns, ScenarioColumns, StoredStudy, summarise};
 use crate::population::monte_carlo::ResponseRow;
@@ -13,8 +13,8 @@ use crate::population::statistics::{
 };
 use crate::population::table::{AccuracyLadder, ResponseReader};
 use crate::report::{
-    ComparedScenario, DistributionReport, ErrorRows, GroupReport, LoadChoice, Provenance,
-    ScenarioErrors, StudyReport, Wheels,
+    AccuracyTrials, ComparedScenario, DistributionReport, ErrorRows, GroupReport, LoadChoice,
+    Provenance, ScenarioErrors, StudyReport, Wheels,
 };
 
 /// Percentiles that a load is chosen by, in percent, the first with a value before the others.
@@ -60,6 +60,7 @@ pub fn report(
         summary,
         groups,
         accuracy_ladder: AccuracyLadder::read(&request.results)?,
+        accuracy_trials: AccuracyTrials::from_choice(&manifest.chosen["accuracy"]),
         provenance: Provenance {
             version: manifest.version,
             generator: manifest.generator,
@@ -197,6 +198,7 @@ fn choice(group: &[ScenarioColumns], percent: f64, seed: u64) -> LoadChoice {
         percent,
         best,
         needed_patterns: smallest_sample(percent / 100.0, CONFIDENCE),
+        patterns_of_best: smallest_sample(percent / 100.0, HALF_ERROR),
         lowest,
         enclosed: chosen.is_some_and(|chosen| {
             loads().any(|load| load < chosen) && loads().any(|load| load > chosen)
