@@ -10,6 +10,7 @@ mod fidelity;
 mod import;
 mod init;
 mod interrupt;
+mod man;
 mod merge;
 mod model;
 mod optimum;

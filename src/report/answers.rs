@@ -2,9 +2,10 @@
 
 use super::words::{Quantities, load_with_unit, percent_words, share_words};
 use super::{
-    BestLoads, GroupReport, LoadChoice, NumericalError, PercentileError, ScenarioSummary,
-    StatedErrors, StudyReport,
+    BestLoads, CommonErrors, GroupReport, LoadChoice, NumericalError, PercentileError,
+    ScenarioErrors, ScenarioSummary, StatedErrors, StudyReport,
 };
+use crate::population::monte_carlo::HARMONIC_SAFETY;
 use crate::population::statistics::{CONFIDENCE, Percentile};
 
 /// A question of an engineer with its answer from the numbers of a report.
@@ -48,7 +49,11 @@ impl Writer<'_> {
         load_with_unit(scenario.contact, scenario.normal_load_n)
     }
 
-    fn error_of(&self, scenario: usize, percent: f64) -> Option<(&StatedErrors, &PercentileError)> {
+    fn error_of(
+        &self,
+        scenario: usize,
+        percent: f64,
+    ) -> Option<(&ScenarioErrors, &PercentileError)> {
         let errors = self
             .group
             .errors
@@ -58,7 +63,7 @@ impl Writer<'_> {
             .percentiles
             .iter()
             .find(|error| error.percentile.percent.total_cmp(&percent).is_eq())?;
-        Some((&errors.rows, of_percent))
+        Some((errors, of_percent))
     }
 
     /// Which load to choose for a percentile, and how sure that is.
@@ -204,7 +209,8 @@ impl Writer<'_> {
     /// How much of the percentile at the chosen load is numerical error; none without a percentile.
     fn error(&self, choice: &LoadChoice) -> Option<Answer> {
         let lowest = choice.lowest?;
-        let (rows, found) = self.error_of(lowest, choice.percent)?;
+        let (errors, found) = self.error_of(lowest, choice.percent)?;
+        let rows = &errors.rows;
         let value = found.percentile.value?;
         let percent = percent_words(choice.percent);
         let statistical = found.statistical_width();
@@ -261,7 +267,7 @@ impl Writer<'_> {
                 self.units.amplitude(corrected)
             ));
         }
-        reasons.extend(self.basis());
+        reasons.extend(self.common(&errors.common));
         reasons.extend(self.report.summary.numerical_error.map(measured));
         reasons.push(
             "Not in these numbers: errors of the model that was given, as of its mesh, contact stiffness, friction \
@@ -275,15 +281,30 @@ impl Writer<'_> {
         })
     }
 
-    fn basis(&self) -> Option<String> {
+    /// Errors that every row of a load states, whatever its own.
+    fn common(&self, common: &CommonErrors) -> Option<String> {
         let basis = &self.report.summary.basis;
-        let error = basis.tuned_peak_error?;
-        Some(format!(
-            "Of what rows state, {} is that of the reduced basis ({}), measured on the tuned peak against the full \
-             contact model.",
-            share_words(error),
-            basis.name
-        ))
+        let parts = [
+            (
+                common.harmonics.map(|change| HARMONIC_SAFETY * change),
+                format!(
+                    "harmonics left out ({HARMONIC_SAFETY} times what they change on the tuned wheel)"
+                ),
+            ),
+            (common.peak, "the peak search".to_owned()),
+            (
+                basis.tuned_peak_error,
+                format!(
+                    "the reduced basis ({}, measured on the tuned wheel)",
+                    basis.name
+                ),
+            ),
+        ];
+        let parts: Vec<String> = parts
+            .into_iter()
+            .filter_map(|(error, of)| Some(format!("{} for {of}", share_words(error?))))
+            .collect();
+        (!parts.is_empty()).then(|| format!("Every row here states at least {}.", listed(&parts)))
     }
 }
 

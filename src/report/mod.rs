@@ -42,8 +42,8 @@ pub use peak_audit::PeakAuditReport;
 pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};
 pub use stated_errors::{ErrorRows, ErrorSpread, StatedErrors};
 pub use study_report::{
-    DistributionReport, GroupReport, LoadChoice, PercentileError, Provenance, ScenarioErrors,
-    StudyReport, Wheels,
+    CommonErrors, DistributionReport, GroupReport, LoadChoice, PercentileError, Provenance,
+    ScenarioErrors, StudyReport, Wheels,
 };
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use tail_report::StatisticsReport;

@@ -87,8 +87,19 @@ pub struct ScenarioErrors {
     pub scenario: usize,
     /// Errors that its rows state.
     pub rows: StatedErrors,
+    /// What every row of it states at least.
+    pub common: CommonErrors,
     /// What they come to in percentiles of the peak amplitude.
     pub percentiles: Vec<PercentileError>,
+}
+
+/// Errors that every row of a scenario states besides its own and that of the basis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CommonErrors {
+    /// What the harmonics left out change in the tuned peak of the full contact model; none for linear limits.
+    pub harmonics: Option<f64>,
+    /// Tolerance of the peak search.
+    pub peak: Option<f64>,
 }
 
 /// Statistical and numerical error of one percentile, side by side.
