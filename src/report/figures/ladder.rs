@@ -45,11 +45,16 @@ fn of_ladder(report: &StudyReport, ladder: &AccuracyLadder) -> Option<Figure> {
         .collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
     svg.polyline("curve high", &front);
-    for &(operations, error, setting) in &placed {
-        let (mark, class) = match (setting.on_front, setting.role.as_str()) {
+    // Those that matter most are drawn last, over the others.
+    let rank = |setting: &MeasuredSetting| (setting.on_front, setting.role == "base");
+    let mut drawn: Vec<_> = placed.iter().collect();
+    drawn.sort_by_key(|place| rank(place.2));
+    let mut numbers: Vec<((f64, f64), String)> = Vec::new();
+    for &&(operations, error, setting) in &drawn {
+        let (mark, class) = match rank(setting) {
             (true, _) => (Mark::Square, "high"),
-            (false, "base") => (Mark::Diamond, "extreme"),
-            _ => (Mark::Circle, "median"),
+            (false, true) => (Mark::Diamond, "extreme"),
+            (false, false) => (Mark::Circle, "median"),
         };
         let (x, y) = at(operations, error);
         let words = format!(
@@ -63,10 +68,10 @@ fn of_ladder(report: &StudyReport, ladder: &AccuracyLadder) -> Option<Figure> {
         );
         mark.draw(&mut svg, class, (x, y), &words);
         if setting.on_front {
-            let number = setting.setting.to_string();
-            svg.text("small", (x - 7.0, y + 14.0), Anchor::End, &number);
+            number(&mut numbers, (x, y), &setting.setting.to_string());
         }
     }
+    draw_numbers(&mut svg, &numbers);
     let mut entries = vec![
         LegendEntry::Line("high", Some(Mark::Square), "nothing cheaper is as accurate"),
         LegendEntry::Line("median", Some(Mark::Circle), "other settings"),
@@ -119,6 +124,7 @@ fn of_trials(trials: &AccuracyTrials) -> Option<Figure> {
     frame.x_ticks(&mut svg, 5);
     let accepted = frame.y.at(100.0 * trials.accepted);
     svg.line("curve tuned", (SIDES.0, accepted), (SIDES.1, accepted));
+    let mut numbers = Vec::new();
     for (place, worst, own) in placed {
         let (mark, class) = if own.taken {
             (Mark::Square, "high")
@@ -134,13 +140,9 @@ fn of_trials(trials: &AccuracyTrials) -> Option<Figure> {
             own.operations / 1e9
         );
         mark.draw(&mut svg, class, (x, y), &words);
-        svg.text(
-            "small",
-            (x - 7.0, y + 14.0),
-            Anchor::End,
-            &place.to_string(),
-        );
+        number(&mut numbers, (x, y), &place.to_string());
     }
+    draw_numbers(&mut svg, &numbers);
     legend(
         &mut svg,
         &[
@@ -172,6 +174,22 @@ fn of_trials(trials: &AccuracyTrials) -> Option<Figure> {
         height: HEIGHT,
         body: svg.into_body(),
     })
+}
+
+/// Adds the number of the setting at a place, to those of a place that is almost the same.
+fn number(numbers: &mut Vec<((f64, f64), String)>, at: (f64, f64), setting: &str) {
+    const APART: f64 = 12.0;
+    let near = |place: &(f64, f64)| (place.0 - at.0).hypot(place.1 - at.1) < APART;
+    match numbers.iter_mut().find(|(place, _)| near(place)) {
+        Some((_, words)) => *words = format!("{words}, {setting}"),
+        None => numbers.push((at, setting.to_owned())),
+    }
+}
+
+fn draw_numbers(svg: &mut Svg, numbers: &[((f64, f64), String)]) {
+    for ((x, y), words) in numbers {
+        svg.text("small", (x - 7.0, y + 14.0), Anchor::End, words);
+    }
 }
 
 /// Axes round points of operations and relative error, and round `accepted`; none without points.
