@@ -6,6 +6,10 @@ use std::path::{Path, PathBuf};
 /// Folders that hold no pages of the project.
 const LEFT_OUT: [&str; 3] = ["target", ".git", "results"];
 
+fn is_page(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "md")
+}
+
 /// Every page in Markdown, but for results that are not kept.
 fn pages(root: &Path) -> Vec<PathBuf> {
     let mut found = vec![root.join("results/README.md")];
@@ -18,7 +22,7 @@ fn pages(root: &Path) -> Vec<PathBuf> {
                 if !LEFT_OUT.contains(&name.as_str()) {
                     folders.push(path);
                 }
-            } else if name.ends_with(".md") {
+            } else if is_page(&path) {
                 found.push(path);
             }
         }
@@ -130,8 +134,9 @@ fn every_page_of_docs_stands_in_its_index() {
     let index = std::fs::read_to_string(docs.join("README.md")).unwrap();
     let named: BTreeSet<String> = links(&index).into_iter().collect();
     for entry in std::fs::read_dir(&docs).unwrap() {
-        let name = entry.unwrap().file_name().to_string_lossy().into_owned();
-        if name.ends_with(".md") && name != "README.md" {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if is_page(&path) && name != "README.md" {
             assert!(named.contains(&name), "{name} is not in docs/README.md");
         }
     }
