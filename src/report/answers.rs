@@ -94,6 +94,9 @@ impl Writer<'_> {
             Some(best) => reasons.extend(self.could_be_best(best, lowest, choice)),
             None => reasons.push("It is the only load of this study.".to_owned()),
         }
+        if choice.best.is_some() {
+            reasons.extend(self.by_numerical_error(lowest, choice.percent));
+        }
         if choice.best.is_some() && !choice.enclosed {
             reasons.push(
                 "No lower and higher normal load than this one were both studied, so the optimum may lie beyond: add \
@@ -204,6 +207,36 @@ impl Writer<'_> {
             None => {}
         }
         reasons
+    }
+
+    /// Which other loads could have a lower percentile if rows are wrong by what they state; none where
+    /// the rows of the chosen load state no bound.
+    fn by_numerical_error(&self, lowest: usize, percent: f64) -> Option<String> {
+        let highest = self.error_of(lowest, percent)?.1.highest?;
+        let could: Vec<String> = self
+            .group
+            .scenarios
+            .iter()
+            .filter(|&&other| other != lowest)
+            .filter(|&&other| {
+                let bound = self
+                    .error_of(other, percent)
+                    .and_then(|(_, own)| own.lowest);
+                bound.is_none_or(|bound| bound < highest)
+            })
+            .map(|&other| self.load_of(other))
+            .collect();
+        let words = percent_words(percent);
+        Some(if could.is_empty() {
+            format!(
+                "By what the rows state, numerical error cannot make the P{words} of another load the lowest."
+            )
+        } else {
+            format!(
+                "By what the rows state, numerical error could hide a lower P{words} at {}: finer solutions decide.",
+                listed(&could)
+            )
+        })
     }
 
     /// How much of the percentile at the chosen load is numerical error; none without a percentile.

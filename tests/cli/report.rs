@@ -180,6 +180,30 @@ fn errors_bound_the_percentile_of_the_rows_that_state_them() {
 }
 
 #[test]
+fn the_answer_says_whether_numerical_error_could_change_the_choice() {
+    let place = finished(&study());
+    let arguments = ["report", "results/small", "--no-curves", "--json"];
+    let report = json(&place, &arguments);
+    let group = &report["groups"][0];
+    let lowest = group["choices"][1]["lowest"].as_u64().expect("a scenario") as usize;
+    let bound = |scenario: usize, end: &str| {
+        let of_p95 = &group["errors"][scenario]["percentiles"][1];
+        of_p95[end].as_f64().expect("a bound")
+    };
+    let others = (0..5).filter(|&other| other != lowest);
+    let could = others
+        .filter(|&other| bound(other, "lowest") < bound(lowest, "highest"))
+        .count();
+    let text = place
+        .run(&["report", "results/small", "--no-curves"])
+        .stdout;
+    let sure = "numerical error cannot make the P95 of another load the lowest";
+    let unsure = "numerical error could hide a lower P95 at";
+    assert_eq!(text.contains(sure), could == 0, "{text}");
+    assert_eq!(text.contains(unsure), could > 0, "{text}");
+}
+
+#[test]
 fn the_wheels_of_a_report_are_those_that_were_delivered() {
     let place = finished(&study());
     let report = json(&place, &["report", "results/small", "--json"]);
