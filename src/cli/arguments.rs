@@ -11,6 +11,7 @@ use super::explain::{CompletionsArguments, ExplainArguments};
 use super::fidelity::FidelityArguments;
 use super::import::ImportArguments;
 use super::init::InitArguments;
+use super::man::ManArguments;
 use super::merge::MergeArguments;
 use super::optimum::OptimumArguments;
 use super::plan::PlanArguments;
@@ -201,4 +202,7 @@ pub enum Command {
         after_help = "Example:\n  blisk completions bash > ~/.local/share/bash-completion/completions/blisk"
     )]
     Completions(CompletionsArguments),
+    /// Write the manual pages: one of the program, and one of every command.
+    #[command(after_help = "Example:\n  blisk man --out ~/.local/share/man/man1")]
+    Man(ManArguments),
 }

@@ -11,6 +11,7 @@ mod fidelity;
 mod import;
 mod init;
 mod interrupt;
+mod man;
 mod merge;
 mod model;
 mod optimum;

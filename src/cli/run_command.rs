@@ -6,7 +6,7 @@ use std::io::{self, ErrorKind};
 use clap::Parser;
 
 use super::{
-    Arguments, Command, ExitStatus, campbell, check, compare, estimate, explain, import, init,
+    Arguments, Command, ExitStatus, campbell, check, compare, estimate, explain, import, init, man,
     merge, model, optimum, output, plan, replay, report, response, run, slurm, stats, status,
     tradeoff, verify,
 };
@@ -99,6 +99,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Explain(arguments) => explain::explain(&arguments),
         Command::Schema => Ok(explain::schema()),
         Command::Completions(arguments) => Ok(explain::completions(&arguments)),
+        Command::Man(arguments) => man::command(&arguments),
     };
     ended.unwrap_or_else(|failure| {
         output::message(&format!("error: {}", failure.message));

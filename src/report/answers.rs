@@ -2,8 +2,11 @@
 
 use super::words::{Quantities, load_with_unit, percent_words, share_words};
 use super::{
-    BestLoads, GroupReport, LoadChoice, PercentileError, ScenarioSummary, StatedErrors, StudyReport,
+    BestLoads, CommonErrors, GroupReport, LoadChoice, NumericalError, PercentileError,
+    ScenarioErrors, ScenarioSummary, StatedErrors, StudyReport,
 };
+use crate::population::monte_carlo::HARMONIC_SAFETY;
+use crate::population::statistics::{CONFIDENCE, Percentile};
 
 /// A question of an engineer with its answer from the numbers of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -46,7 +49,11 @@ impl Writer<'_> {
         load_with_unit(scenario.contact, scenario.normal_load_n)
     }
 
-    fn error_of(&self, scenario: usize, percent: f64) -> Option<(&StatedErrors, &PercentileError)> {
+    fn error_of(
+        &self,
+        scenario: usize,
+        percent: f64,
+    ) -> Option<(&ScenarioErrors, &PercentileError)> {
         let errors = self
             .group
             .errors
@@ -56,7 +63,7 @@ impl Writer<'_> {
             .percentiles
             .iter()
             .find(|error| error.percentile.percent.total_cmp(&percent).is_eq())?;
-        Some((&errors.rows, of_percent))
+        Some((errors, of_percent))
     }
 
     /// Which load to choose for a percentile, and how sure that is.
@@ -78,15 +85,17 @@ impl Writer<'_> {
         };
         let value = found.percentile.value.unwrap_or(f64::NAN);
         let verdict = format!(
-            "{}: P{percent} = {}{}.",
+            "{}: P{percent} = {}.",
             self.load_of(lowest),
             self.units.amplitude(value),
-            self.bounds(found.percentile.lower, found.percentile.upper)
         );
-        let mut reasons = Vec::new();
+        let mut reasons = vec![self.how_sure(lowest, &found.percentile)];
         match &choice.best {
-            Some(best) => reasons.extend(self.could_be_best(best, lowest, &percent)),
+            Some(best) => reasons.extend(self.could_be_best(best, lowest, choice)),
             None => reasons.push("It is the only load of this study.".to_owned()),
+        }
+        if choice.best.is_some() {
+            reasons.extend(self.by_numerical_error(lowest, choice.percent));
         }
         if choice.best.is_some() && !choice.enclosed {
             reasons.push(
@@ -100,6 +109,34 @@ impl Writer<'_> {
             verdict,
             reasons,
         }
+    }
+
+    /// The interval of a percentile, and what the percentile means.
+    fn how_sure(&self, scenario: usize, found: &Percentile) -> String {
+        let percent = percent_words(found.percent);
+        let confidence = percent_words(100.0 * self.confidence());
+        let range = match (found.lower, found.upper) {
+            (Some(lower), Some(upper)) => format!(
+                "lies between {} and {}",
+                self.units.number(lower),
+                self.units.amplitude(upper)
+            ),
+            (Some(lower), None) => format!("is above {}", self.units.amplitude(lower)),
+            (None, Some(upper)) => format!("is below {}", self.units.amplitude(upper)),
+            (None, None) => "has no bounds".to_owned(),
+        };
+        format!(
+            "{percent} % of such wheels have a lower peak. From {} random patterns: with {confidence} % confidence the \
+             P{percent} at {} {range}.",
+            self.report.summary.patterns,
+            self.load_of(scenario),
+        )
+    }
+
+    /// Confidence of the intervals.
+    fn confidence(&self) -> f64 {
+        let stop = self.report.summary.stop.as_ref();
+        stop.map_or(CONFIDENCE, |stop| stop.confidence)
     }
 
     fn why_none(&self, choice: &LoadChoice) -> Vec<String> {
@@ -129,40 +166,84 @@ impl Writer<'_> {
     }
 
     /// Which other loads could be the best, and how low the percentile of the best can be.
-    fn could_be_best(&self, best: &BestLoads, lowest: usize, percent: &str) -> Vec<String> {
+    fn could_be_best(&self, best: &BestLoads, lowest: usize, choice: &LoadChoice) -> Vec<String> {
+        let percent = percent_words(choice.percent);
         let others: Vec<String> = best
             .loads
             .iter()
             .filter(|load| load.could_be_best && load.scenario.scenario != lowest)
-            .map(|load| self.load_of(load.scenario.scenario))
+            .map(|load| {
+                let of_sample = load
+                    .percentile
+                    .value
+                    .map(|value| self.units.amplitude(value));
+                let of_sample = of_sample.map_or(String::new(), |value| format!(" ({value})"));
+                format!("{}{of_sample}", self.load_of(load.scenario.scenario))
+            })
             .collect();
         let count = best.loads.len();
+        let compared = "all were compared on the same patterns";
         let mut reasons = vec![if others.is_empty() {
             format!(
-                "With 95 % confidence no other of the {count} loads studied has a lower P{percent}; all were compared on \
-                 the same patterns."
+                "With 95 % confidence none of the {count} loads studied has a lower P{percent}; {compared}."
             )
         } else {
             format!(
-                "{} could have a lower P{percent} as well: with 95 % confidence the best of the {count} loads studied is \
-                 among these. All were compared on the same patterns.",
+                "The P{percent} at {} is not significantly higher: with 95 % confidence the best of the {count} loads \
+                 studied is among these; {compared}.",
                 listed(&others)
             )
         }];
-        if let Some((lower, upper)) = best.lower.zip(best.upper) {
-            reasons.push(format!(
+        match best.lower.zip(best.upper) {
+            Some((lower, upper)) => reasons.push(format!(
                 "At the truly best of these loads the P{percent} lies between {} and {} (95 %, the choice allowed for).",
                 self.units.number(lower),
                 self.units.amplitude(upper)
-            ));
+            )),
+            None if self.report.summary.patterns < choice.patterns_of_best => reasons.push(format!(
+                "Bounds on the P{percent} at the truly best of these loads, the choice allowed for, need {} patterns.",
+                choice.patterns_of_best
+            )),
+            None => {}
         }
         reasons
+    }
+
+    /// Which other loads could have a lower percentile if rows are wrong by what they state; none where
+    /// the rows of the chosen load state no bound.
+    fn by_numerical_error(&self, lowest: usize, percent: f64) -> Option<String> {
+        let highest = self.error_of(lowest, percent)?.1.highest?;
+        let could: Vec<String> = self
+            .group
+            .scenarios
+            .iter()
+            .filter(|&&other| other != lowest)
+            .filter(|&&other| {
+                let bound = self
+                    .error_of(other, percent)
+                    .and_then(|(_, own)| own.lowest);
+                bound.is_none_or(|bound| bound < highest)
+            })
+            .map(|&other| self.load_of(other))
+            .collect();
+        let words = percent_words(percent);
+        Some(if could.is_empty() {
+            format!(
+                "By what the rows state, numerical error cannot make the P{words} of another load the lowest."
+            )
+        } else {
+            format!(
+                "By what the rows state, numerical error could hide a lower P{words} at {}: finer solutions decide.",
+                listed(&could)
+            )
+        })
     }
 
     /// How much of the percentile at the chosen load is numerical error; none without a percentile.
     fn error(&self, choice: &LoadChoice) -> Option<Answer> {
         let lowest = choice.lowest?;
-        let (rows, found) = self.error_of(lowest, choice.percent)?;
+        let (errors, found) = self.error_of(lowest, choice.percent)?;
+        let rows = &errors.rows;
         let value = found.percentile.value?;
         let percent = percent_words(choice.percent);
         let statistical = found.statistical_width();
@@ -178,7 +259,7 @@ impl Writer<'_> {
         };
         let verdict = match around(found.lowest, found.highest) {
             Some(range) => format!(
-                "At most {range} of the P{percent} at {}.",
+                "At most {range} of the P{percent} at {}, by what the rows state.",
                 self.load_of(lowest)
             ),
             None => format!(
@@ -189,6 +270,13 @@ impl Writer<'_> {
             ),
         };
         let mut reasons = Vec::new();
+        if let Some((lowest, highest)) = found.lowest.zip(found.highest) {
+            reasons.push(format!(
+                "Were these wheels solved without error, their P{percent} would lie between {} and {}.",
+                self.units.number(lowest),
+                self.units.amplitude(highest)
+            ));
+        }
         if let Some(range) = around(found.percentile.lower, found.percentile.upper) {
             let beside = match statistical.zip(numerical) {
                 Some((statistical, numerical)) if numerical > statistical => {
@@ -212,7 +300,13 @@ impl Writer<'_> {
                 self.units.amplitude(corrected)
             ));
         }
-        reasons.extend(self.basis());
+        reasons.extend(self.common(&errors.common));
+        reasons.extend(self.report.summary.numerical_error.map(measured));
+        reasons.push(
+            "Not in these numbers: errors of the model that was given, as of its mesh, contact stiffness, friction \
+             coefficient or damping."
+                .to_owned(),
+        );
         Some(Answer {
             question: "How much of that number is numerical error?".to_owned(),
             verdict,
@@ -220,23 +314,50 @@ impl Writer<'_> {
         })
     }
 
-    fn basis(&self) -> Option<String> {
+    /// Errors that every row of a load states, whatever its own.
+    fn common(&self, common: &CommonErrors) -> Option<String> {
         let basis = &self.report.summary.basis;
-        let error = basis.tuned_peak_error?;
-        Some(format!(
-            "Of what rows state, {} is that of the reduced basis ({}), measured on the tuned peak against the full \
-             contact model.",
-            share_words(error),
-            basis.name
-        ))
+        let parts = [
+            (
+                common.harmonics.map(|change| HARMONIC_SAFETY * change),
+                format!(
+                    "harmonics left out ({HARMONIC_SAFETY} times what they change on the tuned wheel)"
+                ),
+            ),
+            (common.peak, "the peak search".to_owned()),
+            (
+                basis.tuned_peak_error,
+                format!(
+                    "the reduced basis ({}, measured on the tuned wheel)",
+                    basis.name
+                ),
+            ),
+        ];
+        let parts: Vec<String> = parts
+            .into_iter()
+            .filter_map(|(error, of)| Some(format!("{} for {of}", share_words(error?))))
+            .collect();
+        (!parts.is_empty()).then(|| format!("Every row here states at least {}.", listed(&parts)))
     }
+}
 
-    fn bounds(&self, lower: Option<f64>, upper: Option<f64>) -> String {
-        let one = |bound: Option<f64>| {
-            bound.map_or("unbounded".to_owned(), |bound| self.units.number(bound))
-        };
-        format!(" [{}, {}]", one(lower), one(upper))
-    }
+/// What was measured of the error before the settings were chosen by it.
+fn measured(error: NumericalError) -> String {
+    let accepted = share_words(error.accepted);
+    let kept = match (error.p95_upper, error.met) {
+        (Some(bound), true) => format!(
+            "with 95 % confidence 95 % of the amplitudes are within {} of a finer solution",
+            share_words(bound)
+        ),
+        (Some(bound), false) => format!(
+            "not kept, 95 % of the amplitudes are within {} of a finer solution",
+            share_words(bound)
+        ),
+        (None, _) => "without a bound".to_owned(),
+    };
+    format!(
+        "The settings were chosen on a sample of rows for an error of {accepted} (accuracy.amplitude_error): {kept}."
+    )
 }
 
 /// What the rows of the chosen load state.

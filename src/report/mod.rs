@@ -1,5 +1,6 @@
 //! The numbers of a report as one struct, warnings with advice, and the summary as text.
 
+mod accuracy_trials;
 mod answers;
 mod campbell;
 mod comparison;
@@ -27,6 +28,7 @@ mod warning;
 mod wheel_report;
 mod words;
 
+pub use accuracy_trials::{AccuracyTrial, AccuracyTrials};
 pub use answers::{Answer, answers};
 pub use campbell::{CampbellCrossing, CampbellMode, CampbellReport};
 pub use comparison::{
@@ -44,8 +46,8 @@ pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, Planned
 pub use rotation::RotationFacts;
 pub use stated_errors::{ErrorRows, ErrorSpread, StatedErrors};
 pub use study_report::{
-    DistributionReport, GroupReport, LoadChoice, PercentileError, Provenance, ScenarioErrors,
-    StudyReport, Wheels,
+    CommonErrors, DistributionReport, GroupReport, LoadChoice, PercentileError, Provenance,
+    ScenarioErrors, StudyReport, Wheels,
 };
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use tail_report::StatisticsReport;

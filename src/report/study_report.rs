@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::{BestLoads, StatedErrors, StudySummary, WheelReport};
+use super::{AccuracyTrials, BestLoads, StatedErrors, StudySummary, WheelReport};
 use crate::population::statistics::{Percentile, Quantity, TailFit};
 use crate::population::table::AccuracyLadder;
 
@@ -18,6 +18,8 @@ pub struct StudyReport {
     pub groups: Vec<GroupReport>,
     /// What accuracy costs, where it was measured.
     pub accuracy_ladder: Option<AccuracyLadder>,
+    /// What was tried before the settings were chosen, where `[accuracy]` chose them.
+    pub accuracy_trials: Option<AccuracyTrials>,
     /// What the numbers were made from.
     pub provenance: Provenance,
 }
@@ -70,6 +72,8 @@ pub struct LoadChoice {
     pub best: Option<BestLoads>,
     /// Smallest number of patterns with an interval of this percentile.
     pub needed_patterns: u64,
+    /// Smallest number of patterns that bounds this percentile at the truly best load.
+    pub patterns_of_best: u64,
     /// Scenario with the lowest value, if any has one.
     pub lowest: Option<usize>,
     /// Whether a lower and a higher normal load than that were studied.
@@ -83,8 +87,19 @@ pub struct ScenarioErrors {
     pub scenario: usize,
     /// Errors that its rows state.
     pub rows: StatedErrors,
+    /// What every row of it states at least.
+    pub common: CommonErrors,
     /// What they come to in percentiles of the peak amplitude.
     pub percentiles: Vec<PercentileError>,
+}
+
+/// Errors that every row of a scenario states besides its own and that of the basis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CommonErrors {
+    /// What the harmonics left out change in the tuned peak of the full contact model; none for linear limits.
+    pub harmonics: Option<f64>,
+    /// Tolerance of the peak search.
+    pub peak: Option<f64>,
 }
 
 /// Statistical and numerical error of one percentile, side by side.

@@ -21,7 +21,7 @@ const TOPIC: u32 = 1 << 30;
 
 /// Confidence of both the set and the intervals in it that together bound the lowest percentile with
 /// 95 % (Bonferroni).
-const HALF_ERROR: f64 = 0.975;
+pub(super) const HALF_ERROR: f64 = 0.975;
 
 /// What to compare.
 #[derive(Debug, Clone, PartialEq)]

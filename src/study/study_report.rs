@@ -3,7 +3,9 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::compare::best_loads;
+use serde_json::Value;
+
+use super::compare::{HALF_ERROR, best_loads};
 use super::report_wheels::solve_wheels;
 use super::{EngineSource, PipelineError, ResultColumns, ScenarioColumns, StoredStudy, summarise};
 use crate::population::monte_carlo::ResponseRow;
@@ -13,8 +15,8 @@ use crate::population::statistics::{
 };
 use crate::population::table::{AccuracyLadder, ResponseReader};
 use crate::report::{
-    ComparedScenario, DistributionReport, ErrorRows, GroupReport, LoadChoice, Provenance,
-    ScenarioErrors, StudyReport, Wheels,
+    AccuracyTrials, CommonErrors, ComparedScenario, DistributionReport, ErrorRows, GroupReport,
+    LoadChoice, Provenance, ScenarioErrors, StudyReport, Wheels,
 };
 
 /// Percentiles that a load is chosen by, in percent, the first with a value before the others.
@@ -60,6 +62,7 @@ pub fn report(
         summary,
         groups,
         accuracy_ladder: AccuracyLadder::read(&request.results)?,
+        accuracy_trials: AccuracyTrials::from_choice(&manifest.chosen["accuracy"]),
         provenance: Provenance {
             version: manifest.version,
             generator: manifest.generator,
@@ -123,6 +126,7 @@ fn group_report(columns: &ResultColumns, rows: &[ErrorRows], group: Range<usize>
         .map(|scenario| ScenarioErrors {
             scenario,
             rows: rows[scenario].spread(),
+            common: common_errors(columns, scenario),
             percentiles: CHOSEN_BY
                 .iter()
                 .map(|&percent| rows[scenario].percentile(percent, confidence))
@@ -152,6 +156,26 @@ fn group_report(columns: &ResultColumns, rows: &[ErrorRows], group: Range<usize>
         wheels: Wheels::NotSolved {
             reason: "not asked for".to_owned(),
         },
+    }
+}
+
+/// What every row of a scenario states of errors that are not measured on the row itself, besides the basis.
+fn common_errors(columns: &ResultColumns, scenario: usize) -> CommonErrors {
+    let manifest = &columns.manifest;
+    let own = &columns.scenarios[scenario].scenario;
+    let of_load = |choice: &&Value| {
+        choice["engine_order"] == own.engine_order
+            && choice["contact"]["full"]["normal_load_n"].as_f64() == own.contact.normal_load_n()
+            && own.contact.normal_load_n().is_some()
+    };
+    let harmonics = manifest.chosen["harmonics"].as_array();
+    let remainder = harmonics.and_then(|all| all.iter().find(of_load)?["remainder"].as_f64());
+    // Where [accuracy] chose it, the tolerance is a level of the ladder, which is text.
+    let chosen = manifest.chosen["accuracy"]["setting"]["peak_tolerance"].as_str();
+    let chosen = chosen.and_then(|level| level.parse().ok());
+    CommonErrors {
+        harmonics: remainder,
+        peak: chosen.or(manifest.study["solver"]["peak_tolerance"].as_f64()),
     }
 }
 
@@ -197,6 +221,7 @@ fn choice(group: &[ScenarioColumns], percent: f64, seed: u64) -> LoadChoice {
         percent,
         best,
         needed_patterns: smallest_sample(percent / 100.0, CONFIDENCE),
+        patterns_of_best: smallest_sample(percent / 100.0, HALF_ERROR),
         lowest,
         enclosed: chosen.is_some_and(|chosen| {
             loads().any(|load| load < chosen) && loads().any(|load| load > chosen)

@@ -5,6 +5,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod links;
 mod paths;
 
 use std::path::Path;

@@ -182,3 +182,55 @@ fn the_commands_of_the_readme_run_on_a_small_study() {
     }
     assert!(run.len() >= 18, "{run:?}");
 }
+
+/// Lines of the blocks of shell commands of a page, in order.
+fn shell_lines(page: &str) -> Vec<String> {
+    let blocks = page.split("```").skip(1).step_by(2);
+    let blocks = blocks.filter_map(|block| block.strip_prefix("sh\n"));
+    let lines = blocks.flat_map(str::lines);
+    lines
+        .filter(|line| !line.is_empty())
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn the_tutorial_runs_from_its_first_study_to_its_last_command() {
+    let (_, tutorial) = pages()
+        .into_iter()
+        .find(|(name, _)| name == "docs/tutorial.md")
+        .expect("docs/tutorial.md");
+    let place = Place::new();
+    let lines = shell_lines(&tutorial);
+    assert_eq!(lines[0], "cargo install --path .");
+    for line in &lines[1..] {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        if words[0] == "sed" {
+            let changed = std::process::Command::new("sh")
+                .args(["-c", line])
+                .current_dir(place.path("."))
+                .status();
+            assert!(changed.expect("a shell").success(), "{line}");
+            continue;
+        }
+        assert_eq!(words[0], "blisk", "{line}");
+        let ended = place.run(&words[1..]);
+        assert_eq!(ended.code, 0, "{line}: {}{}", ended.stdout, ended.stderr);
+        if words[1] == "init" {
+            // A wheel of masses and few patterns in the place of one of finite elements.
+            let small = GOOD
+                .replace("name = \"small\"", "name = \"quickstart\"")
+                .replace("patterns = 10", "patterns = 80")
+                .replace(
+                    "[\"slide\", 50, \"stuck\"]",
+                    "[\"slide\", 320, 800, \"stuck\"]",
+                );
+            place.write("ring.toml", &small);
+        }
+    }
+    let last =
+        std::fs::read_to_string(place.path("results/quickstart/summary.txt")).expect("a summary");
+    assert!(last.contains("440 patterns"), "{last}");
+    assert!(place.path("results/quickstart/report.html").exists());
+    assert!(lines.len() >= 11, "{lines:?}");
+}

@@ -76,9 +76,9 @@ fn ended(child: Child) -> Ended {
     }
 }
 
-/// Kills a run at `kills` instants of its way, no two alike, then lets it end.
-fn killed(kills: u32, patterns: u32) {
-    let place = Place::with(&study(patterns));
+/// Kills a run of `study` at `kills` instants of its way, no two alike, then lets it end.
+fn killed(kills: u32, study: &str) {
+    let place = Place::with(study);
     let (expected, mut whole) = undisturbed(&place);
     let mut attempts = 0;
     let mut done = 0;
@@ -113,15 +113,21 @@ fn killed(kills: u32, patterns: u32) {
 }
 
 #[test]
+fn kills_while_settings_are_chosen_change_neither_the_choice_nor_a_row() {
+    let open = study(12).replace("[solver]\nharmonics = [1, 3]\n", "");
+    killed(8, &format!("{open}[accuracy]\namplitude_error = 0.01\n"));
+}
+
+#[test]
 fn thirty_kills_lose_and_double_no_row() {
-    killed(30, 24);
+    killed(30, &study(24));
 }
 
 /// `cargo test --release --test cli -- --ignored three_hundred`
 #[test]
 #[ignore = "some minutes"]
 fn three_hundred_kills_lose_and_double_no_row() {
-    killed(300, 200);
+    killed(300, &study(200));
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod documentation;
 mod faults;
 mod imports;
 mod interruption;
+mod manual;
 mod report;
 mod rotation;
 mod runs;

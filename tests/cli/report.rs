@@ -156,12 +156,51 @@ fn errors_bound_the_percentile_of_the_rows_that_state_them() {
         let [lowest, highest] =
             ["lowest", "highest"].map(|end| of_p95[end].as_f64().expect("a bound"));
         assert!(lowest < value && value < highest);
+        // What every row states is no more than any row states.
+        let common = &errors["common"];
+        assert_eq!(common["peak"], 1e-3);
+        let harmonics = common["harmonics"].as_f64();
+        let linear = report["summary"]["scenarios"]
+            [errors["scenario"].as_u64().expect("an index") as usize]["contact"]
+            != "full";
+        assert_eq!(harmonics.is_none(), linear);
+        let least = errors["rows"]["stated"]["median"]
+            .as_f64()
+            .expect("an error");
+        assert!(
+            1.5 * harmonics.unwrap_or_default() + 1e-3 <= least,
+            "{errors}"
+        );
         // No percentile moves further than the row that states most.
         let stated = errors["rows"]["stated"]["largest"]
             .as_f64()
             .expect("an error");
         assert!(lowest >= value / (1.0 + stated) && highest <= value / (1.0 - stated));
     }
+}
+
+#[test]
+fn the_answer_says_whether_numerical_error_could_change_the_choice() {
+    let place = finished(&study());
+    let arguments = ["report", "results/small", "--no-curves", "--json"];
+    let report = json(&place, &arguments);
+    let group = &report["groups"][0];
+    let lowest = group["choices"][1]["lowest"].as_u64().expect("a scenario") as usize;
+    let bound = |scenario: usize, end: &str| {
+        let of_p95 = &group["errors"][scenario]["percentiles"][1];
+        of_p95[end].as_f64().expect("a bound")
+    };
+    let others = (0..5).filter(|&other| other != lowest);
+    let could = others
+        .filter(|&other| bound(other, "lowest") < bound(lowest, "highest"))
+        .count();
+    let text = place
+        .run(&["report", "results/small", "--no-curves"])
+        .stdout;
+    let sure = "numerical error cannot make the P95 of another load the lowest";
+    let unsure = "numerical error could hide a lower P95 at";
+    assert_eq!(text.contains(sure), could == 0, "{text}");
+    assert_eq!(text.contains(unsure), could > 0, "{text}");
 }
 
 #[test]
@@ -229,6 +268,41 @@ fn the_wheels_of_a_report_are_those_that_were_delivered() {
             .iter()
             .all(|d| d.as_f64().expect("a number").abs() < 0.2)
     );
+}
+
+#[test]
+fn a_report_of_an_accepted_error_shows_contact_and_what_was_tried_for_it() {
+    let open = study().replace("[solver]\nharmonics = [1, 3]\n", "");
+    let place = finished(&format!("{open}[accuracy]\namplitude_error = 0.01\n"));
+    let drawn = |figures: &[&str]| {
+        assert_eq!(place.run(&["report", "results/small"]).code, 0);
+        let page = read(&place, "results/small/report.html");
+        assert_well_formed(&page);
+        for id in figures {
+            assert!(page.contains(&format!("<figure id=\"{id}-0\">")), "{id}");
+        }
+        page
+    };
+    let page = drawn(&["contact", "worst-blades", "worst-response", "accuracy"]);
+    assert!(page.contains("What was tried for the accepted error"));
+    assert!(page.contains("The settings were chosen on a sample of rows for an error of 1.0"));
+    let report = json(
+        &place,
+        &["report", "results/small", "--no-curves", "--json"],
+    );
+    assert!(report["accuracy_ladder"].is_null());
+    let trials = &report["accuracy_trials"];
+    let tried = trials["tried"].as_array().expect("a list");
+    let taken: Vec<&Value> = tried.iter().filter(|own| own["taken"] == true).collect();
+    assert_eq!(taken.len(), 1, "{trials}");
+    assert_eq!(taken[0]["rows"], trials["rows"]);
+    assert!(taken[0]["worst"].as_f64().expect("an error") <= 0.01);
+    // A measured ladder takes the place of the trials.
+    let measured = place.run(&["tradeoff", "study.toml", "--patterns", "4"]);
+    assert_eq!(measured.code, 0, "{}", measured.stderr);
+    let page = drawn(&["contact", "accuracy"]);
+    assert!(page.contains("What accuracy costs") && !page.contains("another state"));
+    assert!(page.contains("Settings that nothing cheaper beats"));
 }
 
 #[test]

@@ -66,7 +66,7 @@ impl ErrorTolerance {
 /// Factor on the estimate of the harmonics in the stated error. The estimate is made at the frequency
 /// of the delivered peak and can be too small; a factor of safety on estimates of discretisation
 /// errors follows Roache (1994), its size what was measured (section 8 of docs/formulation.md).
-const HARMONIC_SAFETY: f64 = 1.5;
+pub const HARMONIC_SAFETY: f64 = 1.5;
 
 /// Bound on the relative error of a peak amplitude that is stated with it: sampling, harmonics
 /// outside of the set (by the solution itself or by the tuned full contact model, whichever is

@@ -21,6 +21,8 @@ const COLUMNS: &[ColumnSpec] = &[
     column("basis", Text),
     column("harmonics", Text),
     column("samples_per_period", Int32),
+    column("residual_tolerance", Float64),
+    column("peak_tolerance", Float64),
     column("amplitude_error_median", Float64),
     column("amplitude_error_p95", Float64),
     column("amplitude_error_p95_upper", Float64),
@@ -41,6 +43,10 @@ pub struct MeasuredSetting {
     pub harmonics: String,
     /// Samples per period.
     pub samples_per_period: u32,
+    /// Residual accepted, relative to the excitation.
+    pub residual_tolerance: Option<f64>,
+    /// Relative tolerance of the peak.
+    pub peak_tolerance: Option<f64>,
     /// Median relative error of the peak amplitude.
     pub amplitude_error_median: Option<f64>,
     /// 95th percentile of the errors of the sample.
@@ -51,6 +57,17 @@ pub struct MeasuredSetting {
     pub operations: Option<f64>,
     /// Whether no other setting is both cheaper and more accurate.
     pub on_front: bool,
+}
+
+impl MeasuredSetting {
+    /// The bound on the error that 95 % of the rows keep; where the sample has none, that of the sample.
+    #[must_use]
+    pub fn drawn_error(&self) -> Option<f64> {
+        let bound = self.amplitude_error_p95_upper;
+        bound
+            .filter(|bound| bound.is_finite())
+            .or(self.amplitude_error_p95)
+    }
 }
 
 /// A measured trade-off.
@@ -77,6 +94,8 @@ impl AccuracyLadder {
         let (setting, samples) = (rows.int32("setting")?, rows.int32("samples_per_period")?);
         let (role, basis) = (rows.string("role")?, rows.string("basis")?);
         let harmonics = rows.string("harmonics")?;
+        let residual = rows.float64("residual_tolerance")?;
+        let peak = rows.float64("peak_tolerance")?;
         let median = rows.float64("amplitude_error_median")?;
         let p95 = rows.float64("amplitude_error_p95")?;
         let p95_upper = rows.float64("amplitude_error_p95_upper")?;
@@ -89,6 +108,8 @@ impl AccuracyLadder {
                 basis: basis[row].clone().unwrap_or_default(),
                 harmonics: harmonics[row].clone().unwrap_or_default(),
                 samples_per_period: samples[row].unwrap_or_default() as u32,
+                residual_tolerance: residual[row],
+                peak_tolerance: peak[row],
                 amplitude_error_median: median[row],
                 amplitude_error_p95: p95[row],
                 amplitude_error_p95_upper: p95_upper[row],
@@ -128,6 +149,8 @@ mod tests {
             text("stick_slide 3+4"),
             text("1-3"),
             Values::Int32(vec![Some(128), Some(256)]),
+            number(1e-8),
+            number(1e-3),
             number(0.001),
             number(0.01),
             number(0.02),

@@ -60,7 +60,7 @@ pub const FIGURES: [(FigureName, &str, &str); 10] = [
     (
         FigureName::Accuracy,
         "accuracy",
-        "what accuracy costs, where the folder has a tradeoff.parquet",
+        "what accuracy costs, where the folder has a tradeoff.parquet or the study [accuracy]",
     ),
     (
         FigureName::MedianResponse,

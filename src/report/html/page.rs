@@ -30,12 +30,18 @@ pub fn html_report(report: &StudyReport) -> String {
     page.push_str(&header(report));
     page.push_str("<main>\n");
     for (place, group) in report.groups.iter().enumerate() {
+        // The ladder is of the study, not of one of its sections.
+        let settings = if place == 0 {
+            tables::settings(report)
+        } else {
+            String::new()
+        };
         page.push_str(&answers_of(report, group));
         if place == 0 {
             page.push_str(&warnings(report));
         }
         page.push_str(&figures_of(report, group, place));
-        page.push_str(&tables_of(report, group));
+        page.push_str(&tables_of(report, group, &settings));
     }
     page.push_str(&end(report));
     page.push_str("</main>\n");
@@ -129,7 +135,6 @@ fn figures_of(report: &StudyReport, group: &GroupReport, place: usize) -> String
         }
         html.push_str("<div class=\"figures\">\n");
         for (name, words, _) in FIGURES {
-            // The ladder is of the study, not of one of its sections.
             let again = name == FigureName::Accuracy && place > 0;
             if name.is_of_wheels() != wheels || again {
                 continue;
@@ -149,14 +154,14 @@ fn figures_of(report: &StudyReport, group: &GroupReport, place: usize) -> String
     html
 }
 
-fn tables_of(report: &StudyReport, group: &GroupReport) -> String {
+fn tables_of(report: &StudyReport, group: &GroupReport, settings: &str) -> String {
     format!(
         "<section>\n<h2>Numbers: {}</h2>\n<h3>Peak amplitude, 95 % bounds in brackets</h3>\n{}\
          <h3>Amplification factor, 95 % bounds in brackets</h3>\n{}\
          <h3>Numerical error (median of the rows) beside the statistical interval, both relative</h3>\n{}\
          <h3>Tail fits at the chosen load, a second opinion beside the sample</h3>\n{}\
          <p class=\"quiet\">* outside of the bounds of the sample; + beyond 1 − 1/n, where no value of the sample \
-         reaches. – not estimable.</p>\n</section>\n",
+         reaches. – not estimable.</p>\n{settings}</section>\n",
         escaped(&setting(group)),
         tables::amplitudes(report, group),
         tables::factors(report, group),

@@ -1,5 +1,6 @@
 //! The tables of a report: loads, errors, tail fits, accounting, provenance.
 
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use super::table::Table;
@@ -63,6 +64,75 @@ pub(super) fn factors(report: &StudyReport, group: &GroupReport) -> String {
         table.row_chosen(index == group.shown, row);
     }
     table.html()
+}
+
+/// The settings of the accuracy figure: those of a measured ladder that nothing cheaper beats, else what
+/// `[accuracy]` tried; empty without both.
+pub(super) fn settings(report: &StudyReport) -> String {
+    let gflop = |operations: f64| format!("{:.3}", operations / 1e9);
+    let share = |error: Option<f64>| error.map_or(NONE.to_owned(), share_words);
+    let tolerance =
+        |value: Option<f64>| value.map_or(NONE.to_owned(), |value| format!("{value:e}"));
+    let (words, table) = if let Some(ladder) = &report.accuracy_ladder {
+        let mut front: Vec<_> = ladder.settings.iter().filter(|own| own.on_front).collect();
+        front.sort_by(|a, b| {
+            a.operations
+                .partial_cmp(&b.operations)
+                .unwrap_or(Ordering::Equal)
+        });
+        let mut table = Table::new(&[
+            "setting",
+            "basis",
+            "harmonics",
+            "samples",
+            "residual",
+            "peak",
+            "median error",
+            "P95 of the error, bound",
+            "Gflop per row",
+        ]);
+        for own in front {
+            table.row(vec![
+                own.setting.to_string(),
+                escaped(&own.basis),
+                escaped(&own.harmonics),
+                own.samples_per_period.to_string(),
+                tolerance(own.residual_tolerance),
+                tolerance(own.peak_tolerance),
+                share(own.amplitude_error_median),
+                share(own.drawn_error()),
+                own.operations.map_or(NONE.to_owned(), gflop),
+            ]);
+        }
+        ("Settings that nothing cheaper beats", table)
+    } else if let Some(trials) = &report.accuracy_trials {
+        let mut table = Table::new(&[
+            "setting",
+            "basis, harmonics, samples, residual, peak, law, projection",
+            "rows",
+            "largest error",
+            "Gflop per row",
+        ]);
+        for (place, own) in trials.tried.iter().enumerate() {
+            table.row_chosen(
+                own.taken,
+                vec![
+                    place.to_string(),
+                    escaped(&own.setting),
+                    own.rows.to_string(),
+                    share(own.worst),
+                    gflop(own.operations),
+                ],
+            );
+        }
+        (
+            "Settings tried for the accepted error, the one taken shaded",
+            table,
+        )
+    } else {
+        return String::new();
+    };
+    format!("<h3>{words}</h3>\n{}", table.html())
 }
 
 fn name(scenario: &ScenarioSummary) -> String {

@@ -1,0 +1,40 @@
+//! `blisk man`: the manual pages of the program and of every command.
+
+use std::path::PathBuf;
+
+use clap::{Args, CommandFactory};
+use clap_mangen::Man;
+
+use super::run_command::Failure;
+use super::{Arguments, ExitStatus, output};
+use crate::population::table::write_atomically;
+
+/// Arguments of `blisk man`.
+#[derive(Debug, Args)]
+pub struct ManArguments {
+    /// The folder for the pages, made if it is not there; `man` looks in `man1` below each part of its path.
+    #[arg(long, value_name = "DIR", default_value = "man/man1")]
+    out: PathBuf,
+}
+
+pub(super) fn command(arguments: &ManArguments) -> Result<ExitStatus, Failure> {
+    let out = &arguments.out;
+    let mut program = Arguments::command().disable_help_subcommand(true);
+    program.build();
+    let commands = program.get_subcommands().cloned();
+    let pages: Vec<_> = std::iter::once(program.clone()).chain(commands).collect();
+    for page in &pages {
+        let page = Man::new(page.clone()).source(concat!("blisk ", env!("CARGO_PKG_VERSION")));
+        let mut text = Vec::new();
+        // Writing to memory cannot fail.
+        let _ = page.render(&mut text);
+        write_atomically(&out.join(page.get_filename()), &text)?;
+    }
+    output::text(&format!(
+        "wrote {} pages to {}; next: man {}",
+        pages.len(),
+        out.display(),
+        out.join("blisk.1").display()
+    ));
+    Ok(ExitStatus::Done)
+}
