@@ -13,8 +13,8 @@ pub enum Steps {
     /// Simplified steps combined by Anderson's acceleration, with a Jacobian (its lower block triangle where it is
     /// large) that is renewed where they shrink too slowly.
     Accelerated,
-    /// From a good start: the acceleration alone, with the derivatives of the harmonics by themselves, see
-    /// [`KeptJacobian`], found once. Steps may grow on the way.
+    /// From a good start: the acceleration alone, with the derivatives of harmonic 1 and of every other one by
+    /// themselves, found once. Steps may grow on the way.
     ByHarmonic,
     /// The same with the whole Jacobian.
     Once,
