@@ -69,7 +69,7 @@ fn newton_steps(criterion: &mut Criterion) {
         group.bench_function("solve", |bencher| bencher.iter(|| lu.solve(&mut residual)));
         group.finish();
         machine(criterion, n);
-        let (step, _) = smallest(20, || {
+        let (step, ()) = smallest(20, || {
             system.residual(omega, &point.solution, &mut residual, true, &mut workspace);
             system.jacobian(omega, &mut workspace, lu.matrix_mut());
             lu.factor();
@@ -191,7 +191,7 @@ fn rows_of_a_pattern(case: &Case) {
             .filter(|(s, _)| wanted(s))
             .collect();
         let patterns = &case.patterns;
-        let (time, _) = smallest(2, || {
+        let (time, ()) = smallest(2, || {
             for pattern in patterns {
                 std::hint::black_box(case.solver.rows(pattern, &pairs));
             }
