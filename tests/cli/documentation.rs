@@ -7,12 +7,13 @@ use clap::Parser;
 use crate::blisk::{GOOD, Place};
 
 /// Pages with commands.
-fn pages() -> Vec<(String, String)> {
+pub fn pages() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths = vec![
         root.join("README.md"),
         root.join("results/README.md"),
         root.join("studies/calculix/README.md"),
+        root.join("studies/validation/README.md"),
     ];
     for entry in std::fs::read_dir(root.join("docs")).expect("docs") {
         let path = entry.expect("an entry").path();
@@ -32,10 +33,10 @@ fn pages() -> Vec<(String, String)> {
 }
 
 /// What begins a command line of the program.
-const PROGRAM: [&str; 2] = ["blisk ", "cargo run --release -- "];
+pub const PROGRAM: [&str; 2] = ["blisk ", "cargo run --release -- "];
 
 /// The arguments of every command of a page: between backticks, or as a line of its own.
-fn commands(page: &str) -> Vec<String> {
+pub fn commands(page: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut of = |text: &str| {
         for program in PROGRAM {

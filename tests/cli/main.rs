@@ -5,6 +5,7 @@ mod bad_study_table;
 mod blisk;
 mod commands;
 mod documentation;
+mod documented_commands;
 mod faults;
 mod imports;
 mod interruption;
