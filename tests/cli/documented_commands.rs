@@ -29,7 +29,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 13] = [
+const NOT_RUN: [(&str, &str); 15] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -50,6 +50,8 @@ const NOT_RUN: [(&str, &str); 13] = [
         "needs Slurm; tests/slurm has it",
     ),
     ("studies/calculix/run.sh", "needs gmsh and ccx"),
+    ("apt-get install", "installs outside of the clone"),
+    ("python docs/quickstart.py", "needs pyarrow"),
     ("gmsh", "is no part of a clone"),
     ("ccx", "is no part of a clone"),
 ];
@@ -76,7 +78,7 @@ const OTHERS: [&str; 17] = [
 ];
 
 /// What a document's place-holder stands for in a command, after the word before it.
-fn value(command: &str, before: &str, word: &str) -> Vec<String> {
+fn value(command: &str, before: &str, word: &str) -> String {
     let out = ["--out", "--export"].contains(&before);
     let text = match (word, before, command) {
         ("FILE", _, "report") if out => "new.html",
@@ -88,8 +90,8 @@ fn value(command: &str, before: &str, word: &str) -> Vec<String> {
         ("DIR", _, "merge") => "shared/ring",
         ("DIR" | "BUNDLE", ..) if out => "new",
         ("DIR", ..) => "results/small",
-        ("DIR/load-*", ..) => return vec!["results/search/load-*".to_owned()],
-        ("STUDY", ..) => "study.toml",
+        ("DIR/load-*", ..) => "results/search/load-*",
+        ("STUDY", ..) | ("FILE", "--study", _) => "study.toml",
         ("FIGURE", ..) => "amplitude",
         ("SHELL", ..) => "bash",
         ("KEY", ..) => "solver",
@@ -112,7 +114,7 @@ fn value(command: &str, before: &str, word: &str) -> Vec<String> {
         // Folders of a cluster lie in the folder of the test.
         _ => word.trim_matches('"').trim_start_matches('/'),
     };
-    vec![text.to_owned()]
+    text.to_owned()
 }
 
 /// What a command needs that is only named: its operands, then its options.
@@ -189,7 +191,7 @@ fn filled(words: &[&str]) -> Vec<String> {
     let mut line: Vec<String> = Vec::new();
     for (place, word) in words.iter().enumerate() {
         let before = if place == 0 { "" } else { words[place - 1] };
-        line.extend(value(command, before, word));
+        line.push(value(command, before, word));
     }
     let whole = ["blisk".to_owned()].into_iter().chain(line.clone());
     let refused = blisk::cli::Arguments::try_parse_from(whole).err();
@@ -197,7 +199,7 @@ fn filled(words: &[&str]) -> Vec<String> {
     if refused.is_some_and(|error| error.kind() == lacks) {
         let (operands, options) = required(command);
         if line.get(1).is_none_or(|word| word.starts_with("--")) {
-            line.splice(1..1, operands.iter().map(|&word| word.to_owned()));
+            drop(line.splice(1..1, operands.iter().map(|&word| word.to_owned())));
         }
         for (option, value) in options {
             if !line.iter().any(|word| word == option) {
@@ -224,7 +226,11 @@ fn embedded(page: &str) -> Vec<String> {
 
 /// Commands of other programs: lines of shell blocks, and lines and spans that begin with their names.
 fn others(page: &str) -> Vec<String> {
-    let other = |text: &str| !PROGRAM.iter().any(|program| text.starts_with(program));
+    let other = |text: &str| {
+        !PROGRAM
+            .iter()
+            .any(|program| format!("{text} ").starts_with(program))
+    };
     let mut found: Vec<String> = Vec::new();
     let mut block: Option<&str> = None;
     for line in page.lines() {
@@ -272,6 +278,7 @@ fn copy(from: &Path, to: &Path) {
 /// A small study in the place of a documented one.
 fn stand_in(name: &str, patterns: u32) -> String {
     GOOD.replace("name = \"small\"", &format!("name = \"{name}\""))
+        .replace("seed = 7", "seed = 9")
         .replace("patterns = 10", &format!("patterns = {patterns}"))
 }
 
@@ -306,14 +313,15 @@ fn results() -> Place {
         "run studies/calculix/study_speed.toml",
         "run study.toml --out shared/ring --shard 1/2",
         "run study.toml --out shared/ring --shard 2/2",
-        "run study.toml --out data/ring --shard 1/2",
-        "run study.toml --out data/ring --shard 2/2",
         "model study.toml --export exported",
         "optimum study.toml --between 45:60 --resolution 0.3 --out results/search",
     ] {
         let words: Vec<&str> = line.split_whitespace().collect();
         let ended = place.run(&words);
         assert_eq!(ended.code, 0, "{line}: {}{}", ended.stdout, ended.stderr);
+    }
+    for folder in ["data/ring", "results/ring"] {
+        copy(&place.path("shared/ring"), &place.path(folder));
     }
     place
 }
@@ -355,7 +363,9 @@ fn fault(line: &[String], prepared: &Place) -> Option<String> {
     let ended = command.args(&words).current_dir(place.path(".")).output();
     let ended = ended.expect("the binary starts");
     let out = words.iter().position(|word| word == "--out");
-    let written = out.is_none_or(|option| place.path(&words[option + 1]).exists());
+    // What a script for a cluster names is written by the cluster.
+    let now = out.filter(|_| words[0] != "slurm");
+    let written = now.is_none_or(|option| place.path(&words[option + 1]).exists());
     let fine = ended.status.code() == Some(0) && written;
     let told = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     (!fine).then(|| {
@@ -401,10 +411,9 @@ fn every_documented_command_of_another_program_has_a_reason_not_to_run() {
                 .map(move |text| (name.clone(), text))
         })
         .collect();
-    for (name, text) in &shown {
-        let listed = NOT_RUN.iter().any(|(start, _)| text.starts_with(start));
-        assert!(listed, "{name}: `{text}` is neither run nor listed");
-    }
+    let listed = |text: &str| NOT_RUN.iter().any(|(start, _)| text.starts_with(start));
+    let open: Vec<_> = shown.iter().filter(|(_, text)| !listed(text)).collect();
+    assert!(open.is_empty(), "neither run nor listed: {open:#?}");
     for (start, reason) in NOT_RUN {
         let occurs = shown.iter().any(|(_, text)| text.starts_with(start));
         assert!(occurs, "`{start}` ({reason}) occurs in no document");
