@@ -72,7 +72,10 @@ fn main() {
         .flat_map(|(_, amplitudes)| amplitudes.clone())
         .fold(0.0, f64::max);
     let peak_difference = (amplitude / highest - 1.0).abs();
-    assert!(peak_difference <= options.peak_tolerance, "{amplitude:e} {highest:e}");
+    assert!(
+        peak_difference <= options.peak_tolerance,
+        "{amplitude:e} {highest:e}"
+    );
 
     println!("curve_points = {}", curve.len());
     println!("curve_ms = {curve_ms:.2}");
@@ -111,7 +114,9 @@ fn smallest<T>(mut work: impl FnMut() -> T) -> (f64, T) {
         let before = processor_ms();
         result = work();
         let elapsed = 1e3 * clock.elapsed().as_secs_f64();
-        let used = processor_ms().zip(before).map(|(after, before)| after - before);
+        let used = processor_ms()
+            .zip(before)
+            .map(|(after, before)| after - before);
         least = least.min(used.unwrap_or(elapsed));
     }
     (least, result)
