@@ -52,7 +52,8 @@ fn main() {
         .fold(0.0, f64::max);
     assert!(difference <= CURVE_TOLERANCE, "{difference:e}");
 
-    let (peak_ms, peak) = smallest(|| case.peak(pattern, &case.excited(pattern), LOAD));
+    let (peak_ms, peak) =
+        smallest(|| case.peak(pattern, &case.excited(pattern, case.harmonics()), LOAD));
     let scenario = Scenario {
         index: 0,
         engine_order: 3,

@@ -18,12 +18,12 @@ BARS = {"curve of 121 points": 200, "peak to 0.1 %": 2000}
 CURVE_BAR_MS = 60
 
 
-def run(command, **options):
+def run(command, folder=ROOT):
     """Standard output of a command, and the processor time that it took, s."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(
-        [str(part) for part in command], cwd=ROOT, env=os.environ | ONE_THREAD, check=True, text=True,
-        stdout=subprocess.PIPE, **options,
+        [str(part) for part in command], cwd=folder, env=os.environ | ONE_THREAD, check=True, text=True,
+        stdout=subprocess.PIPE,
     )
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return done.stdout, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -49,20 +49,22 @@ def main():
     arguments.add_argument("--environment", type=Path, default=ROOT / "target" / "peers")
     arguments.add_argument("--repetitions", type=int, default=3, help="of pyHarm; the smallest time counts")
     arguments = arguments.parse_args()
-    python = with_pyharm(arguments.environment, "1.2.2")
+    environment = arguments.environment.resolve()
+    python = with_pyharm(environment, "1.2.2")
 
     run(["cargo", "build", "--release"])
     run(["cargo", "bench", "--bench", "curve", "--no-run"])
     bench = ["cargo", "bench", "--quiet", "--bench", "curve"]
     # Before and after, so that a machine that grows busy is seen.
     before = figures(run(bench)[0])
+    # pyHarm leaves a folder where it is run.
     case = ROOT / "tests" / "data" / "lumped24"
-    peer = figures(run([python, HERE / "pyharm_case.py", case, arguments.repetitions])[0])
+    peer = figures(run([python, HERE / "pyharm_case.py", case, arguments.repetitions], environment)[0])
     after = figures(run(bench)[0])
     own = {name: min(before[name], after[name]) if name.endswith("_ms") else before[name] for name in before}
     response = [
         ROOT / "target" / "release" / "blisk", "response", "studies/lumped24.toml", "--pattern", "0", "--load", "50",
-        "--frequencies", "340:370:121", "--out", arguments.environment / "curve.csv",
+        "--frequencies", "340:370:121", "--out", environment / "curve.csv",
     ]
     process = min(run(response)[1] for _ in range(5))
 

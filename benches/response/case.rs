@@ -3,14 +3,16 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction, ReductionOptions};
+use blisk::model::reduction::{Basis, BasisChoice, ContactStiffness, Reduction, ReductionOptions};
 use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{
-    ContactCondition, Excited, FrequencyBand, Harmonics, LimitsWanted, Peak, PointSettings, Wheel,
-    mistuned_window, peak, tuned_span, wheel_force,
+    ContactCondition, Excited, FrequencyBand, Harmonics, LimitsWanted, Peak, PointSettings, Search,
+    Wheel, mistuned_window, peak, refined_peak, tuned_span, wheel_force,
 };
 use blisk::response::friction::{ContactLaw, PairParameters};
-use blisk::response::harmonic_balance::{ContactInterface, HarmonicSystem, HarmonicTransform};
+use blisk::response::harmonic_balance::{
+    ContactInterface, HarmonicSystem, HarmonicTransform, LARGEST_WHOLE_JACOBIAN,
+};
 use blisk::response::mistuning::{ContactFactors, Deviations, Pattern, StructuralModes};
 use blisk::study::{Study, load_sector_model, pattern_source};
 
@@ -46,9 +48,15 @@ impl Case {
             tangential_1_n_per_m: tangential,
             tangential_2_n_per_m: second,
         };
-        let choice = match (study.reduction.stick_modes, study.reduction.slide_modes) {
-            (Some(stick), Some(slide)) => BasisChoice::StickSlide { stick, slide },
-            (stick, _) => BasisChoice::StickAttachment {
+        let (stick, slide) = (study.reduction.stick_modes, study.reduction.slide_modes);
+        let choice = match (study.reduction.basis, stick, slide) {
+            (Basis::StickPartialSlide, stick, slide) => BasisChoice::StickPartialSlide {
+                stick: stick.unwrap_or(2),
+                partial: study.reduction.partial_modes.unwrap_or(1),
+                slide: slide.unwrap_or(1),
+            },
+            (_, Some(stick), Some(slide)) => BasisChoice::StickSlide { stick, slide },
+            (_, stick, _) => BasisChoice::StickAttachment {
                 stick: stick.unwrap_or(4),
             },
         };
@@ -88,8 +96,13 @@ impl Case {
         }
     }
 
-    /// The wheel of `pattern`, excited by the first engine order of the study.
-    pub fn excited(&self, pattern: &Pattern) -> Excited {
+    /// The harmonic set.
+    pub fn harmonics(&self) -> &[u32] {
+        &self.harmonics
+    }
+
+    /// The wheel of `pattern` in these harmonics, excited by the first engine order of the study.
+    pub fn excited(&self, pattern: &Pattern, harmonics: &[u32]) -> Excited {
         let basis = self.solver.basis();
         let Deviations::PerBlade(values) = &pattern.deviations else {
             panic!("one deviation per blade");
@@ -109,7 +122,7 @@ impl Case {
             self.study.damping,
             wanted,
         );
-        Excited::wheel(&wheel, force, &self.harmonics)
+        Excited::wheel(&wheel, force, harmonics)
     }
 
     fn engine_order(&self) -> u32 {
@@ -138,13 +151,19 @@ impl Case {
             model.contact.clone(),
         )
         .expect("enough samples");
-        peak(
-            excited,
-            condition,
-            &settings,
-            window,
-            options.peak_tolerance,
-        )
+        let tolerance = options.peak_tolerance;
+        let unknowns = 2 * self.harmonics.len() * self.solver.basis().size();
+        match settings.search() {
+            Some(search) if unknowns > LARGEST_WHOLE_JACOBIAN => {
+                let coarse = self.excited(pattern, search.harmonics());
+                let search = Search {
+                    excited: &coarse,
+                    settings: search,
+                };
+                refined_peak(excited, search, condition, &settings, window, tolerance)
+            }
+            _ => peak(excited, condition, &settings, window, tolerance),
+        }
     }
 
     /// The harmonic balance equation of `excited` under a normal load per sector.

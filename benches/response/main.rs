@@ -31,7 +31,7 @@ fn newton_steps(criterion: &mut Criterion) {
         let case = Case::new(name, 1);
         let loads = case.loads();
         let load = loads[loads.len() / 2];
-        let excited = case.excited(&case.patterns[0]);
+        let excited = case.excited(&case.patterns[0], case.harmonics());
         let condition = ContactCondition::Full {
             normal_load_n: load,
         };
@@ -69,15 +69,47 @@ fn newton_steps(criterion: &mut Criterion) {
         group.bench_function("solve", |bencher| bencher.iter(|| lu.solve(&mut residual)));
         group.finish();
         machine(criterion, n);
+        let (step, ()) = smallest(20, || {
+            system.residual(omega, &point.solution, &mut residual, true, &mut workspace);
+            system.jacobian(omega, &mut workspace, lu.matrix_mut());
+            lu.factor();
+            lu.solve(&mut residual);
+        });
+        over_floor(step, n, case.solver.basis().contact().rows());
     }
+}
+
+/// A whole Newton step beside what dense algebra of its size takes: LU factors of `n x n`, and the product of its
+/// contact rows with the derivatives of the forces on them, `2 c n^2` operations at the rate of a square product.
+fn over_floor(step: Duration, n: usize, contact_rows: usize) {
+    let matrix = diagonally_dominant(n);
+    let mut lu = LuWorkspace::<f64>::new(n);
+    let (factor, _) = smallest(20, || {
+        lu.matrix_mut().copy_from_slice(matrix.as_slice());
+        lu.factor()
+    });
+    let (square, _) = smallest(20, || matrix.times(&matrix));
+    let product = square.as_secs_f64() * contact_rows as f64 / n as f64;
+    let floor = factor.as_secs_f64() + product;
+    println!(
+        "{n} unknowns, {contact_rows} contact rows: a Newton step {:.2} ms; floor: LU {:.2} ms + product {:.2} ms; step / floor {:.2}",
+        1e3 * step.as_secs_f64(),
+        1e3 * factor.as_secs_f64(),
+        1e3 * product,
+        step.as_secs_f64() / floor
+    );
+}
+
+fn diagonally_dominant(n: usize) -> Matrix<f64> {
+    let noise = |i: usize, j: usize| ((7 * i + 13 * j + i * j) % 101) as f64 / 101.0;
+    Matrix::from_fn(n, n, |i, j| {
+        noise(i, j) + if i == j { n as f64 } else { 0.0 }
+    })
 }
 
 /// What the machine does with dense matrices of the same size.
 fn machine(criterion: &mut Criterion, n: usize) {
-    let noise = |i: usize, j: usize| ((7 * i + 13 * j + i * j) % 101) as f64 / 101.0;
-    let matrix = Matrix::from_fn(n, n, |i, j| {
-        noise(i, j) + if i == j { n as f64 } else { 0.0 }
-    });
+    let matrix = diagonally_dominant(n);
     let mut lu = LuWorkspace::<f64>::new(n);
     let mut group = criterion.benchmark_group(format!("dense {n}"));
     group.sample_size(10);
@@ -115,7 +147,11 @@ fn peaks(_: &mut Criterion) {
         let case = Case::new(name, patterns);
         println!("\n{name}: one peak on one thread, mean over {patterns} pattern(s)");
         println!("load N   time ms   solves   iterations   factorisations   retries   status");
-        let excited: Vec<_> = case.patterns.iter().map(|p| case.excited(p)).collect();
+        let excited: Vec<_> = case
+            .patterns
+            .iter()
+            .map(|p| case.excited(p, case.harmonics()))
+            .collect();
         for load in case.loads() {
             let condition = ContactCondition::Full {
                 normal_load_n: load,
@@ -140,21 +176,61 @@ fn peaks(_: &mut Criterion) {
                 statuses.join(" ")
             );
         }
-        whole_pattern(&case);
+        rows_of_a_pattern(&case);
     }
 }
 
-/// One pattern under every scenario of its study, as a run solves it.
-fn whole_pattern(case: &Case) {
+/// One pattern as a run solves it, error columns included: its linear limits alone, and with each load by itself.
+fn rows_of_a_pattern(case: &Case) {
     let scenarios: Vec<Scenario> = case.study.scenarios();
     let tuned: Vec<_> = scenarios.iter().map(|s| case.solver.tuned(s)).collect();
-    let pairs: Vec<_> = scenarios.iter().zip(&tuned).collect();
-    let (time, _) = smallest(2, || case.solver.rows(&case.patterns[0], &pairs));
+    let time = |wanted: &dyn Fn(&Scenario) -> bool| {
+        let pairs: Vec<_> = scenarios
+            .iter()
+            .zip(&tuned)
+            .filter(|(s, _)| wanted(s))
+            .collect();
+        let patterns = &case.patterns;
+        let (time, ()) = smallest(2, || {
+            for pattern in patterns {
+                std::hint::black_box(case.solver.rows(pattern, &pairs));
+            }
+        });
+        1e3 * time.as_secs_f64() / patterns.len() as f64
+    };
+    let linear = time(&|s| s.contact == ContactCondition::Stuck);
+    println!("{}: a linear pattern (stuck) {linear:.2} ms", case.name);
+    for load in case.loads() {
+        let full = time(&|s| s.contact.normal_load_n() == Some(load));
+        println!(
+            "{}: a pattern at {load} N {full:.1} ms, {:.1} linear ones",
+            case.name,
+            full / linear
+        );
+    }
+}
+
+/// The same population on one thread and on all.
+fn threads(_: &mut Criterion) {
+    let mut study = study("quickstart");
+    study.patterns = 24;
+    let all = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let [alone, together] = [1, all].map(|threads| {
+        let (time, _) = smallest(2, || {
+            let folder = tempfile::tempdir().expect("a temporary folder");
+            let results = folder.path().join("quickstart");
+            let request = RunRequest {
+                study: &study,
+                results: &results,
+                threads,
+            };
+            run(request, &ReducedEngineSource, &Silent).expect("a run")
+        });
+        time.as_secs_f64()
+    });
     println!(
-        "{}: one pattern, {} scenarios, {:.0} ms",
-        case.name,
-        scenarios.len(),
-        1e3 * time.as_secs_f64()
+        "\nquickstart, 24 patterns, model cached: {alone:.1} s on 1 thread, {together:.1} s on {all}: {:.2} times",
+        alone / together
     );
 }
 
@@ -178,5 +254,5 @@ fn linear_population(_: &mut Criterion) {
     );
 }
 
-criterion_group!(benches, newton_steps, peaks, linear_population);
+criterion_group!(benches, newton_steps, peaks, threads, linear_population);
 criterion_main!(benches);

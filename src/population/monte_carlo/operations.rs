@@ -218,7 +218,7 @@ mod tests {
             newton_iterations: 200.0,
             factorisations: 15.0,
         };
-        let ratio = size(4000).operations(&work) / size(2000).operations(&work);
+        let ratio = size(16_000).operations(&work) / size(8_000).operations(&work);
         assert!((7.0..8.0).contains(&ratio), "{ratio}");
     }
 }

@@ -95,6 +95,15 @@ pub fn refined_peak(
             peak_tolerance,
         )
     });
+    // A band that is asked for has no peak beyond its ends.
+    let inside = |peak: &Peak| {
+        let hz = peak.point.as_ref().map(|point| point.frequency_hz);
+        plan.extensions > 0 || hz.is_some_and(|hz| plan.band_hz.0 < hz && hz < plan.band_hz.1)
+    };
+    let refined = refined.map(|refined| match refined {
+        Ok(peak) if !inside(&peak) => Err(peak.work),
+        other => other,
+    });
     match refined {
         Some(Ok(refined)) => with_work(refined, coarse.work()),
         Some(Err(wasted)) => with_work(in_one(), coarse.work().plus(wasted)),
