@@ -8,7 +8,7 @@
 //! and harmonic 0 has no damping.
 
 use super::Damping;
-use crate::linalg::{Complex64, Matrix};
+use crate::linalg::{Complex64, Matrix, add_times_vector};
 use crate::response::mistuning::{ModalRows, StructuralModes};
 
 /// Damping `D(omega) = eta diag(lambda) + omega C` in modal coordinates.
@@ -171,6 +171,24 @@ impl Structure {
         }
         if let Viscous::Full(viscous) = &self.damping.viscous {
             each_off_diagonal(viscous, |i, j, rate| add(i, j, omega * rate));
+        }
+    }
+
+    /// Adds the damping force `i D(omega) x` to `sum`; both as real and imaginary parts.
+    pub fn add_damping_force(&self, omega: f64, x: [&[f64]; 2], sum: [&mut [f64]; 2]) {
+        let ([x_real, x_imaginary], [real, imaginary]) = (x, sum);
+        for mode in 0..self.size() {
+            let full = match &self.damping.viscous {
+                Viscous::Full(viscous) => omega * viscous[(mode, mode)],
+                _ => 0.0,
+            };
+            let d = self.damping_diagonal(mode, omega) - full;
+            real[mode] -= d * x_imaginary[mode];
+            imaginary[mode] += d * x_real[mode];
+        }
+        if let Viscous::Full(viscous) = &self.damping.viscous {
+            add_times_vector(real, -omega, viscous.as_slice(), x_imaginary);
+            add_times_vector(imaginary, omega, viscous.as_slice(), x_real);
         }
     }
 

@@ -297,10 +297,11 @@ impl HarmonicSystem {
                 r_real[mode] += stiffness * x_real[mode];
                 r_imaginary[mode] += stiffness * x_imaginary[mode];
             }
-            block.structure.for_each_damping(k_omega, |i, j, d| {
-                r_real[i] -= d * x_imaginary[j];
-                r_imaginary[i] += d * x_real[j];
-            });
+            block.structure.add_damping_force(
+                k_omega,
+                [x_real, x_imaginary],
+                [r_real, r_imaginary],
+            );
             if index == fundamental {
                 for (mode, f) in self.force.iter().enumerate() {
                     r_real[mode] -= f.re;
