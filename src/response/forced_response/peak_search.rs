@@ -292,8 +292,8 @@ impl Search {
         if gain <= tolerance && left_gap.max(right_gap) <= trusted {
             let told = left_gap.max(right_gap) > NEAR * trusted;
             let skewed = self.samples.skewed_summits(best);
-            if told && !self.samples.has_fourth(best) {
-                // Three points say nothing of how skewed the top is.
+            if told && self.settings.extensions > 0 && !self.samples.has_fourth(best) {
+                // Three points say nothing of how skewed the top is; a band that is asked for is not left for a fourth.
                 return Some(if points[2].1 < points[0].1 {
                     x2 + right_gap
                 } else {
