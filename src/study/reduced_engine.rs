@@ -21,7 +21,9 @@ use crate::population::monte_carlo::{
 };
 use crate::population::table::CurvePoint;
 use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
-use crate::response::forced_response::{Harmonics, ResponseTrace, RowsBeyondTolerance, SearchPlan};
+use crate::response::forced_response::{
+    Harmonics, HigherHarmonics, ResponseTrace, RowsBeyondTolerance, SearchPlan,
+};
 use crate::response::friction::{ContactLaw, ContactOptions, PairParameters, Ring};
 use crate::response::harmonic_balance::{Status, TransformError};
 use crate::response::mistuning::Pattern;
@@ -59,6 +61,8 @@ struct Stored {
     fixed_interface: FixedInterface,
     harmonics: Vec<HarmonicChoice>,
     beyond: Option<StoredBeyond>,
+    /// The tuned wheel that harmonics other than 1 are taken in, where the study asks for it.
+    tuned_harmonics: Option<ReducedModel>,
 }
 
 /// The model and sets for rows that the others are not good enough for.
@@ -383,12 +387,16 @@ fn reduced(
     } else {
         None
     };
+    let tuned_harmonics = settings.solver.higher_harmonics == HigherHarmonics::Tuned;
     Ok(Stored {
         model: reduction.reduce(choice, modes)?,
         evidence,
         fixed_interface,
         harmonics,
         beyond,
+        tuned_harmonics: (tuned_harmonics && study.has_friction())
+            .then(|| reduction.tuned(BasisChoice::CraigBampton))
+            .transpose()?,
     })
 }
 
@@ -409,13 +417,16 @@ fn solver_of(
     // what that model leaves out of the sector.
     let truncation = stored.fixed_interface.error.unwrap_or(f64::INFINITY);
     let error = basis_error(&stored.evidence) + truncation;
+    let tuned_harmonics = stored.tuned_harmonics.map(Arc::new);
     let solver = RowSolver::new(Arc::new(stored.model), settings.clone())?
-        .with_choices(stored.harmonics, error)?;
+        .with_choices(stored.harmonics, error)?
+        .with_tuned_harmonics(tuned_harmonics.clone());
     let Some(beyond) = stored.beyond else {
         return Ok(solver);
     };
     let finer = RowSolver::new(Arc::new(beyond.model), settings)?
-        .with_choices(beyond.harmonics, beyond.basis_error + truncation)?;
+        .with_choices(beyond.harmonics, beyond.basis_error + truncation)?
+        .with_tuned_harmonics(tuned_harmonics);
     let inexact = study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
     Ok(solver.with_beyond(finer, inexact))
 }
@@ -475,6 +486,9 @@ fn models_digest(stored: &Stored) -> String {
     add(&stored.model, basis_error(&stored.evidence));
     if let Some(beyond) = &stored.beyond {
         add(&beyond.model, beyond.basis_error);
+    }
+    if let Some(model) = &stored.tuned_harmonics {
+        add(model, 0.0);
     }
     hasher.finalize().to_hex().to_string()
 }

@@ -9,7 +9,7 @@ use super::validate_contact::contact_variations;
 use super::validate_damping::{damping, nodal_diameter_damping};
 use super::validate_loads::{contacts, rotation};
 use super::validate_mistuning::mistuning;
-use super::validate_solver::solver;
+use super::validate_solver::{solver, tuned_harmonics};
 use super::validate_stop::stop;
 use super::{Finding, ModelSource, OutputOptions, Problem, RotationOptions, Study, StudyError};
 use crate::model::reduction::{Basis, ReductionOptions};
@@ -203,6 +203,8 @@ fn resolve(
         (Some(raw), Some(contact)) => contact_variations(check, raw, contact),
         _ => Vec::new(),
     };
+    let creeping = contact.as_ref().is_some_and(|c| c.ring == Ring::Creeping);
+    tuned_harmonics(check, &solver, creeping, !contact_variations.is_empty());
     let mistuning = mistuning(check, path, raw.mistuning, &sweep, head.patterns)?;
     let (Some(model), Some(damping), Some(mistuning)) = (model, damping, mistuning) else {
         return Ok(None);

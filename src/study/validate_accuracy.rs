@@ -8,7 +8,7 @@ use super::validate::Check;
 use super::{AccuracyOptions, Finding, Problem, Study, StudyError};
 
 /// Keys that the program sets itself under `[accuracy]`.
-pub(super) const KEYS_OF_ACCURACY: [&str; 12] = [
+pub(super) const KEYS_OF_ACCURACY: [&str; 13] = [
     "reduction.basis",
     "reduction.error",
     "reduction.stick_modes",
@@ -16,6 +16,7 @@ pub(super) const KEYS_OF_ACCURACY: [&str; 12] = [
     "reduction.partial_modes",
     "solver.harmonics",
     "solver.search_harmonics",
+    "solver.higher_harmonics",
     "solver.harmonic_tolerance",
     "solver.rows_beyond_tolerance",
     "solver.samples_per_period",

@@ -27,8 +27,12 @@ impl RowSolver {
             None => self.tuned_excited(engine_order, contact),
             Some(pattern) => {
                 let (modes, wheel) = self.mistuned(pattern, LimitsWanted::default())?;
-                let harmonics = self.points(engine_order, contact).harmonics();
-                self.wheel_excited(&modes, &wheel, engine_order, harmonics)
+                let points = self.points(engine_order, contact);
+                let excited = self.wheel_excited(&modes, &wheel, engine_order, points.harmonics());
+                match self.waves(pattern, points) {
+                    Some(waves) => excited.with_waves(waves),
+                    None => excited,
+                }
             }
         };
         let points = self.points_of(pattern, engine_order, contact);

@@ -2,11 +2,20 @@
 
 use super::{RowSolver, Scenario, TunedReference};
 use crate::response::forced_response::{
-    ErrorEstimate, FrequencyBand, Peak, PointSettings, Search, SearchHarmonics, Wheel, Window,
-    estimate_errors, mistuned_window, peak, refined_peak, tuned_span,
+    ContactCondition, ErrorEstimate, Excited, FrequencyBand, Peak, PointSettings, Search,
+    SearchHarmonics, Wheel, Window, Work, estimate_errors, mistuned_window, peak, refined,
+    tuned_span,
 };
 use crate::response::harmonic_balance::{LARGEST_WHOLE_JACOBIAN, Status};
 use crate::response::mistuning::{ContactFactors, Pattern, StructuralModes};
+
+/// A peak as a row states it.
+pub(super) struct MistunedPeak {
+    pub(super) peak: Peak,
+    pub(super) errors: Option<ErrorEstimate>,
+    /// Whether harmonics other than 1 were taken in the tuned wheel.
+    pub(super) tuned_harmonics: bool,
+}
 
 impl RowSolver {
     /// Where the peak of a mistuned wheel is sought.
@@ -52,6 +61,7 @@ impl RowSolver {
         points.search().filter(|_| pays)
     }
 
+    /// The highest peak of a mistuned wheel with its errors.
     pub(super) fn mistuned_peak(
         &self,
         modes: &StructuralModes,
@@ -59,35 +69,74 @@ impl RowSolver {
         pattern: &Pattern,
         scenario: &Scenario,
         tuned: &TunedReference,
-    ) -> Result<(Peak, Option<ErrorEstimate>), Status> {
+    ) -> Result<MistunedPeak, Status> {
         let window = self.window(pattern, scenario, tuned.frequency_hz)?;
-        let engine_order = scenario.engine_order;
-        let points = self.points_of(pattern, engine_order, scenario.contact);
-        let excited = self.wheel_excited(modes, wheel, engine_order, points.harmonics());
+        let contact = scenario.contact;
+        let points = self.points_of(pattern, scenario.engine_order, contact);
+        let in_harmonics =
+            |harmonics: &[u32]| self.wheel_excited(modes, wheel, scenario.engine_order, harmonics);
         let tolerance = self.settings.solver.peak_tolerance;
-        let found = match self.search(&points) {
-            Some(search) => {
-                let coarse = self.wheel_excited(modes, wheel, engine_order, search.harmonics());
-                let coarse = Search {
-                    excited: &coarse,
-                    settings: search,
-                };
-                refined_peak(
-                    &excited,
-                    coarse,
-                    scenario.contact,
-                    &points,
-                    window,
-                    tolerance,
-                )
-            }
-            None => peak(&excited, scenario.contact, &points, window, tolerance),
+        let in_stages = |excited: &Excited, search: &PointSettings| {
+            let coarse = in_harmonics(search.harmonics());
+            let search = Search {
+                excited: &coarse,
+                settings: search,
+            };
+            refined(excited, search, contact, &points, window, tolerance)
         };
-        let errors = found.point.as_ref().and_then(|point| {
-            let enlarged =
-                self.wheel_excited(modes, wheel, engine_order, points.errors().harmonics());
-            estimate_errors(&excited, scenario.contact, &points, point, &enlarged.blocks)
-        });
-        Ok((found, errors))
+        let excited = in_harmonics(points.harmonics());
+        let waves = self.waves(pattern, &points);
+        let mut wasted = Work::default();
+        if let (Some(waves), Some(search)) = (waves, points.search()) {
+            let excited = excited.clone().with_waves(waves);
+            match in_stages(&excited, search) {
+                Ok(peak) => {
+                    let enlarged = in_harmonics(points.errors().harmonics()).with_waves(waves);
+                    return Ok(MistunedPeak {
+                        errors: errors(&excited, contact, &points, &peak, &enlarged),
+                        peak,
+                        tuned_harmonics: true,
+                    });
+                }
+                Err(work) => wasted = work,
+            }
+        }
+        // What the first stage finds is the same, where it has been made.
+        let staged = self.search(&points).filter(|_| wasted == Work::default());
+        let staged = staged.map(|search| in_stages(&excited, search));
+        let found = match staged {
+            Some(Ok(found)) => found,
+            Some(Err(work)) => {
+                wasted = wasted.plus(work);
+                peak(&excited, contact, &points, window, tolerance)
+            }
+            None => peak(&excited, contact, &points, window, tolerance),
+        };
+        let found = Peak {
+            work: found.work.plus(wasted),
+            ..found
+        };
+        let enlarged = in_harmonics(points.errors().harmonics());
+        let enlarged = match waves {
+            // Harmonic 1 alone: the others are in its error.
+            Some(waves) if points.harmonics().len() == 1 => enlarged.with_waves(waves),
+            _ => enlarged,
+        };
+        Ok(MistunedPeak {
+            errors: errors(&excited, contact, &points, &found, &enlarged),
+            peak: found,
+            tuned_harmonics: false,
+        })
     }
+}
+
+fn errors(
+    excited: &Excited,
+    contact: ContactCondition,
+    points: &PointSettings,
+    peak: &Peak,
+    enlarged: &Excited,
+) -> Option<ErrorEstimate> {
+    let point = peak.point.as_ref()?;
+    estimate_errors(excited, contact, points, point, &enlarged.blocks)
 }

@@ -4,6 +4,8 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::beyond::Beyond;
+use super::mistuned_peak::MistunedPeak;
+use super::tuned_harmonics::TunedHarmonics;
 use super::{
     ErrorTolerance, HarmonicChoice, ResponseRow, Scenario, ScenarioError, TunedReference,
     stated_error,
@@ -11,8 +13,8 @@ use super::{
 use crate::linalg::Matrix;
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
-    ContactCondition, ErrorEstimate, Excited, LimitsWanted, Peak, Point, PointSettings, Screening,
-    SolverOptions, Wheel, Window, peak, screen, wheel_force,
+    ContactCondition, Excited, LimitsWanted, Peak, Point, PointSettings, Screening, SolverOptions,
+    Wheel, Window, peak, screen, wheel_force,
 };
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{Damping, Status, TransformError};
@@ -53,6 +55,7 @@ pub struct RowSolver {
     pub(super) chosen: Vec<(HarmonicChoice, PointSettings)>,
     basis_error: f64,
     pub(super) beyond: Option<Beyond>,
+    pub(super) tuned_harmonics: Option<TunedHarmonics>,
 }
 
 impl RowSolver {
@@ -78,6 +81,7 @@ impl RowSolver {
             chosen: Vec::new(),
             basis_error: 0.0,
             beyond: None,
+            tuned_harmonics: None,
         })
     }
 
@@ -260,15 +264,6 @@ impl RowSolver {
         self.tuned_waves(engine_order, contact, harmonics)
     }
 
-    fn tuned_waves(
-        &self,
-        engine_order: u32,
-        contact: ContactCondition,
-        harmonics: &[u32],
-    ) -> Excited {
-        self.tuned_waves_with(&ContactFactors::default(), engine_order, contact, harmonics)
-    }
-
     /// The tuned wheel with the contact of every sector multiplied by `factors`.
     pub(super) fn tuned_waves_with(
         &self,
@@ -350,11 +345,16 @@ impl RowSolver {
         pattern: &Pattern,
         scenario: &Scenario,
         tuned: &TunedReference,
-        found: Result<(Peak, Option<ErrorEstimate>), Status>,
+        found: Result<MistunedPeak, Status>,
     ) -> ResponseRow {
-        let (status, found, errors) = match found {
-            Ok((found, errors)) => (found.status, Some(found), errors),
-            Err(status) => (status, None, None),
+        let (status, found, errors, tuned_harmonics) = match found {
+            Ok(found) => (
+                found.peak.status,
+                Some(found.peak),
+                found.errors,
+                found.tuned_harmonics,
+            ),
+            Err(status) => (status, None, None, false),
         };
         let good: Option<(&Peak, &Point)> = found
             .as_ref()
@@ -399,10 +399,18 @@ impl RowSolver {
             error_within_tolerance: good
                 .map(|_| errors.is_some_and(|errors| self.tolerance().holds(&errors))),
             basis: self.basis.model().basis_name(),
-            shortcut: shortcut(scenario.contact, good.map(|(_, point)| point)).to_owned(),
+            shortcut: shortcut(
+                scenario.contact,
+                good.map(|(_, point)| point),
+                tuned_harmonics,
+            )
+            .to_owned(),
         }
     }
 }
+
+/// In the column `shortcut`: harmonics other than 1 were taken in the tuned wheel.
+pub(super) const TUNED_HARMONICS: &str = "tuned_harmonics";
 
 /// Largest amplitude over blades and frequency of the mistuned wheel over that of the tuned wheel
 /// with the same normal load, engine order and settings.
@@ -419,14 +427,19 @@ pub fn harmonics_name(harmonics: &[u32]) -> String {
 }
 
 /// `linear` for a linear limit; `stuck` where every pair sticks at the peak, so that the linear
-/// solution is the exact one.
-fn shortcut(contact: ContactCondition, point: Option<&Point>) -> &'static str {
+/// solution is the exact one; [`TUNED_HARMONICS`].
+fn shortcut(
+    contact: ContactCondition,
+    point: Option<&Point>,
+    tuned_harmonics: bool,
+) -> &'static str {
     match (contact, point) {
         (ContactCondition::Full { .. }, Some(point))
             if point.shares.slipping == 0.0 && point.shares.separated == 0.0 =>
         {
             "stuck"
         }
+        (ContactCondition::Full { .. }, Some(_)) if tuned_harmonics => TUNED_HARMONICS,
         (ContactCondition::Full { .. }, _) => "none",
         _ => "linear",
     }

@@ -1,5 +1,6 @@
 //! A delivered row looked into: blade amplitudes and the state of every contact pair at its peak.
 
+use super::row_solver::TUNED_HARMONICS;
 use super::{ResponseRow, RowSolver, Scenario};
 use crate::response::forced_response::{LimitsWanted, PointSolver};
 use crate::response::harmonic_balance::{PairContact, Status};
@@ -33,6 +34,10 @@ impl RowSolver {
         let (modes, wheel) = solver.mistuned(pattern, LimitsWanted::of(&[contact]))?;
         let points = solver.points_of(pattern, engine_order, contact);
         let excited = solver.wheel_excited(&modes, &wheel, engine_order, points.harmonics());
+        let excited = match solver.waves(pattern, &points) {
+            Some(waves) if row.shortcut == TUNED_HARMONICS => excited.with_waves(waves),
+            _ => excited,
+        };
         let mut solver = PointSolver::new(&excited, contact, &points);
         let point = solver.solve(frequency_hz)?.clone();
         Ok(WheelState {

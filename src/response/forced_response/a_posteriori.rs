@@ -5,13 +5,13 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use super::excited::Excited;
-use super::observed_amplitude::ObservedAmplitude;
+use super::observed_amplitude::{ObservedAmplitude, ObservedBlock};
 use super::options::{ContactCondition, SolverOptions};
 use super::point_settings::{PointSettings, samples_per_period};
 use super::point_solver::{Point, PointSolver};
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{
-    ContactShares, Effects, EnlargedSet, HarmonicBlock, Structure, TransformError, enlarge,
+    ContactShares, Effects, EnlargedSet, HarmonicBlock, TransformError, enlarge,
 };
 
 /// Samples per period of the check, over those of the solution.
@@ -142,10 +142,7 @@ fn assess(
         &point.solution,
         wanted,
     )?;
-    let structures: Vec<(u32, &Structure)> = blocks
-        .iter()
-        .map(|block| (block.harmonic, &*block.structure))
-        .collect();
+    let structures = ObservedBlock::all(blocks);
     let largest = |amplitudes: Vec<f64>| amplitudes.into_iter().fold(0.0, f64::max);
     let before = largest(amplitude.of(&structures, &enlarged.before));
     let change = |solution: &[f64]| {

@@ -38,9 +38,14 @@ const LADDER: [Attempt; 8] = [
 ];
 
 impl Attempt {
-    /// The attempts, with or without a solution with fewer harmonics.
-    pub(super) fn ladder(refines: bool) -> &'static [Self] {
-        if refines { &LADDER } else { &LADDER[2..] }
+    /// The attempts, with or without a solution with fewer harmonics; where the others are taken in the tuned wheel,
+    /// the whole Jacobian is not to be had.
+    pub(super) fn ladder(refines: bool, waves: bool) -> &'static [Self] {
+        match (refines, waves) {
+            (_, true) => &LADDER[..1],
+            (true, false) => &LADDER,
+            (false, false) => &LADDER[2..],
+        }
     }
 
     /// How the steps of Newton's method are made.

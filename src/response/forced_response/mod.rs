@@ -25,13 +25,13 @@ pub use branch::{BranchPlace, BranchPoint, ResponseTrace};
 pub use dense_sweep::{DensePeak, dense_peak};
 pub use excited::{Excited, LimitsWanted, LinearStructure, Wheel, wheel_force};
 pub use linear_peaks::LinearPeak;
-pub use observed_amplitude::ObservedAmplitude;
+pub use observed_amplitude::{ObservedAmplitude, ObservedBlock};
 pub use options::{
-    AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, RowsBeyondTolerance,
-    SearchHarmonics, SolverOptions,
+    AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, HigherHarmonics,
+    RowsBeyondTolerance, SearchHarmonics, SolverOptions,
 };
 pub use peak::{Peak, SearchPlan, Window, mistuned_window, peak, search_plan, tuned_span};
 pub use peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
 pub use point_settings::PointSettings;
 pub use point_solver::{Point, PointSolver, Work};
-pub use refined_peak::{Search, refined_peak};
+pub use refined_peak::{Search, refined, refined_peak};

@@ -2,13 +2,52 @@
 
 use super::options::AmplitudeMeasure;
 use crate::linalg::{Complex64, add_times_vector};
-use crate::response::harmonic_balance::{HarmonicTransform, Structure, TransformError};
+use crate::response::harmonic_balance::{
+    HarmonicBlock, HarmonicTransform, Structure, TransformError,
+};
 
 /// The measure called amplitude, ready for solutions with harmonics of one set.
 #[derive(Debug, Clone)]
 pub struct ObservedAmplitude {
     /// Instants of a period for [`AmplitudeMeasure::TimeMaximum`].
     time_grid: Option<HarmonicTransform>,
+}
+
+/// One harmonic of a solution.
+#[derive(Clone, Copy)]
+pub struct ObservedBlock<'a> {
+    harmonic: u32,
+    structure: &'a Structure,
+    /// Complex unknowns.
+    size: usize,
+    /// Whether they are modal coordinates of the structure; else nothing is known of what the harmonic moves, and the
+    /// measure is the fundamental.
+    is_modal: bool,
+}
+
+impl<'a> ObservedBlock<'a> {
+    /// The harmonics of a solution, in their order.
+    #[must_use]
+    pub fn all(blocks: &'a [HarmonicBlock]) -> Vec<Self> {
+        let block = |block: &'a HarmonicBlock| Self {
+            harmonic: block.harmonic,
+            structure: &block.structure,
+            size: block.size(),
+            is_modal: block.waves.is_none(),
+        };
+        blocks.iter().map(block).collect()
+    }
+
+    /// Harmonic 1 alone.
+    #[must_use]
+    pub fn fundamental(structure: &'a Structure) -> [Self; 1] {
+        [Self {
+            harmonic: 1,
+            structure,
+            size: structure.size(),
+            is_modal: true,
+        }]
+    }
 }
 
 /// Complex displacement r, theta, z of the observed node, blade after blade, of one harmonic.
@@ -38,7 +77,7 @@ impl ObservedAmplitude {
     /// Amplitude of each blade, m: of the fundamental harmonic, or the largest over a period.
     /// `blocks` are harmonics and structures in the order of the unknowns `solution`.
     #[must_use]
-    pub fn of(&self, blocks: &[(u32, &Structure)], solution: &[f64]) -> Vec<f64> {
+    pub fn of(&self, blocks: &[ObservedBlock<'_>], solution: &[f64]) -> Vec<f64> {
         let harmonics = observed(blocks, solution);
         let rows = harmonics[0].displacement.len();
         (0..rows / 3)
@@ -56,7 +95,7 @@ impl ObservedAmplitude {
     /// Whether `step` changes no amplitude by more than `share` of the largest one of `solution`.
     pub(super) fn is_steady(
         &self,
-        blocks: &[(u32, &Structure)],
+        blocks: &[ObservedBlock<'_>],
         solution: &[f64],
         step: &[f64],
         share: f64,
@@ -82,7 +121,7 @@ impl ObservedAmplitude {
     /// which leaves the height of the peak as it is.
     pub(super) fn changed(
         &self,
-        blocks: &[(u32, &Structure)],
+        blocks: &[ObservedBlock<'_>],
         before: &[f64],
         after: &[f64],
     ) -> Vec<f64> {
@@ -107,15 +146,20 @@ impl ObservedAmplitude {
 }
 
 /// The observed displacement in every harmonic; zero in harmonic 0, which no measure counts.
-fn observed(blocks: &[(u32, &Structure)], solution: &[f64]) -> Vec<ObservedHarmonic> {
+fn observed(blocks: &[ObservedBlock<'_>], solution: &[f64]) -> Vec<ObservedHarmonic> {
     let mut start = 0;
     let mut harmonics = Vec::with_capacity(blocks.len());
-    for &(harmonic, structure) in blocks {
+    for &ObservedBlock {
+        harmonic,
+        structure,
+        size: n,
+        is_modal,
+    } in blocks
+    {
         let rows = structure.observed();
-        let n = structure.size();
         let mut re = vec![0.0; rows.real.rows()];
         let mut im = vec![0.0; rows.real.rows()];
-        if harmonic > 0 {
+        if harmonic > 0 && is_modal {
             let (x_re, x_im) = solution[start..start + 2 * n].split_at(n);
             add_times_vector(&mut re, 1.0, rows.real.as_slice(), x_re);
             add_times_vector(&mut im, 1.0, rows.real.as_slice(), x_im);

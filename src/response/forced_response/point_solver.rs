@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::attempt::Attempt;
 use super::excited::Excited;
+use super::observed_amplitude::ObservedBlock;
 use super::options::ContactCondition;
 use super::point_settings::PointSettings;
 use super::starts::between;
@@ -12,7 +13,7 @@ use crate::linalg::{Complex64, LuWorkspace};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{
     ContactInterface, ContactShares, HarmonicBlock, HarmonicSystem, NewtonWorkspace, PairContact,
-    Status, Structure, linear_response, solve, solve_creeping,
+    Status, linear_response, solve, solve_creeping,
 };
 
 /// Work done for a row.
@@ -93,6 +94,8 @@ pub struct PointSolver<'a> {
     pub(super) points: Vec<Point>,
     /// Points with fewer harmonics, in the unknowns of this solver; none unless it refines them.
     pub(super) coarse: Vec<Point>,
+    /// Solver of harmonic 1 alone, whose points the others come beside; only where they are taken in the tuned wheel.
+    fundamental: Option<Box<Self>>,
     failures: Vec<(f64, Status)>,
     /// Relative precision of the amplitudes at which a point may end before its residual is met.
     precision: Option<f64>,
@@ -125,6 +128,10 @@ impl<'a> PointSolver<'a> {
             }
             _ => None,
         };
+        let fundamental = match (&excited.fundamental, settings.search()) {
+            (Some(alone), Some(search)) => Some(Self::new(alone, condition, search)),
+            _ => None,
+        };
         Self {
             excited,
             condition,
@@ -133,6 +140,7 @@ impl<'a> PointSolver<'a> {
             nonlinear,
             points: Vec::new(),
             coarse: Vec::new(),
+            fundamental: fundamental.map(Box::new),
             failures: Vec::new(),
             precision: None,
             work: Work::default(),
@@ -209,15 +217,14 @@ impl<'a> PointSolver<'a> {
         });
         Self {
             coarse: coarse.collect(),
+            fundamental: None,
             ..self
         }
     }
 
     /// A solution of `excited`, whose harmonics are among those of this solver, in the unknowns of this one.
     fn embedded(&self, excited: &Excited, solution: &[f64]) -> Vec<f64> {
-        let size = |block: &HarmonicBlock| {
-            block.structure.size() * if block.harmonic == 0 { 1 } else { 2 }
-        };
+        let size = |block: &HarmonicBlock| block.size() * if block.harmonic == 0 { 1 } else { 2 };
         let mut all = Vec::new();
         for block in &self.excited.blocks {
             let mut from = 0;
@@ -279,7 +286,7 @@ impl<'a> PointSolver<'a> {
     fn solve_linear(&mut self, frequency_hz: f64) -> Result<Point, Status> {
         let response = self.linear_at(frequency_hz)?;
         let solution = real_parts(&response);
-        let blocks = [(1, &*self.excited.linear.structure)];
+        let blocks = ObservedBlock::fundamental(&self.excited.linear.structure);
         Ok(Point {
             frequency_hz,
             amplitudes_m: self.settings.amplitude.of(&blocks, &solution),
@@ -319,9 +326,11 @@ impl<'a> PointSolver<'a> {
     }
 
     fn solve_nonlinear(&mut self, frequency_hz: f64) -> Result<Point, Status> {
+        self.solve_fundamental(frequency_hz)?;
         self.work.nonlinear_solves += 1;
         let mut last = Status::IterationLimit;
-        let ladder = Attempt::ladder(!self.coarse.is_empty());
+        let waves = self.excited.fundamental.is_some();
+        let ladder = Attempt::ladder(!self.coarse.is_empty(), waves);
         for (rung, attempt) in ladder.iter().enumerate() {
             if let Some((_, workspace)) = &mut self.nonlinear {
                 workspace.set_steps(attempt.steps());
@@ -336,6 +345,22 @@ impl<'a> PointSolver<'a> {
         }
         self.work.retries += 1;
         Err(last)
+    }
+
+    /// Adds the point of harmonic 1 alone to those that are refined, where there is a solver for it.
+    fn solve_fundamental(&mut self, frequency_hz: f64) -> Result<(), Status> {
+        let Some(solver) = &mut self.fundamental else {
+            return Ok(());
+        };
+        let solved = solver.solve(frequency_hz).cloned();
+        self.work = self.work.plus(std::mem::take(&mut solver.work));
+        let point = solved?;
+        let excited = solver.excited;
+        self.coarse.push(Point {
+            solution: self.embedded(excited, &point.solution),
+            ..point
+        });
+        Ok(())
     }
 
     fn attempt(&mut self, attempt: Attempt, frequency_hz: f64) -> Result<Point, Status> {
@@ -386,7 +411,7 @@ impl<'a> PointSolver<'a> {
             let outcome = solve(other, omega, &mut x, bounds, None, workspace);
             (outcome, [0.0; 2])
         } else {
-            let blocks = structures(self.excited);
+            let blocks = ObservedBlock::all(&self.excited.blocks);
             let amplitude = &self.settings.amplitude;
             let precision = self.precision;
             let steady = |x: &[f64], step: &[f64]| {
@@ -419,21 +444,13 @@ impl<'a> PointSolver<'a> {
 
     /// Amplitude of every blade, m, of a nonlinear solution.
     pub(super) fn amplitudes_of(&self, solution: &[f64]) -> Vec<f64> {
-        let blocks = structures(self.excited);
+        let blocks = ObservedBlock::all(&self.excited.blocks);
         self.settings.amplitude.of(&blocks, solution)
     }
 }
 
 /// A step that changes the amplitudes by a share is no longer than this many times the share of the solution.
 const WHOLE_STEP: f64 = 10.0;
-
-/// Harmonics and structures in the order of the unknowns.
-fn structures(excited: &Excited) -> Vec<(u32, &Structure)> {
-    let blocks = excited.blocks.iter();
-    blocks
-        .map(|block| (block.harmonic, &*block.structure))
-        .collect()
-}
 
 fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()

@@ -57,12 +57,28 @@ pub fn refined_peak(
     window: Window,
     peak_tolerance: f64,
 ) -> Peak {
-    let in_one = || peak(excited, condition, settings, window, peak_tolerance);
-    let Ok(plan) = search_plan(excited, condition, window) else {
-        return in_one();
-    };
+    let refined = refined(excited, search, condition, settings, window, peak_tolerance);
+    refined.unwrap_or_else(|wasted| {
+        let found = peak(excited, condition, settings, window, peak_tolerance);
+        with_work(found, wasted)
+    })
+}
+
+/// The peak by both stages alone.
+///
+/// # Errors
+/// The work done, where one of them finds none: few harmonics find no peak, a contact opens, or a top is lost.
+pub fn refined(
+    excited: &Excited,
+    search: Search<'_>,
+    condition: ContactCondition,
+    settings: &PointSettings,
+    window: Window,
+    peak_tolerance: f64,
+) -> Result<Peak, Work> {
+    let plan = search_plan(excited, condition, window).map_err(|_| Work::default())?;
     if settings.ring == Ring::Creeping {
-        return in_one();
+        return Err(Work::default());
     }
     let coarse_tolerance = peak_tolerance.max(COARSE_TOLERANCE);
     let mut coarse = PointSolver::new(search.excited, condition, search.settings)
@@ -83,31 +99,23 @@ pub fn refined_peak(
         .points()
         .iter()
         .any(|point| point.shares.separated > 0.0);
-    let certain = found.end == SearchEnd::Found && found.bracketed && !opens;
-    let refined = certain.then(|| {
-        let solver = PointSolver::new(excited, condition, settings)
-            .with_precision(REFINED_PRECISION * peak_tolerance)
-            .refining(&coarse);
-        highest(
-            solver,
-            &tops(&found, plan.envelope),
-            plan.envelope,
-            peak_tolerance,
-        )
-    });
+    if found.end != SearchEnd::Found || !found.bracketed || opens {
+        return Err(coarse.work());
+    }
+    let solver = PointSolver::new(excited, condition, settings)
+        .with_precision(REFINED_PRECISION * peak_tolerance)
+        .refining(&coarse);
+    let tops = tops(&found, plan.envelope);
+    let refined = highest(solver, &tops, plan.envelope, peak_tolerance)
+        .map_err(|wasted| coarse.work().plus(wasted))?;
+    let refined = with_work(refined, coarse.work());
     // A band that is asked for has no peak beyond its ends.
-    let inside = |peak: &Peak| {
-        let hz = peak.point.as_ref().map(|point| point.frequency_hz);
-        plan.extensions > 0 || hz.is_some_and(|hz| plan.band_hz.0 < hz && hz < plan.band_hz.1)
-    };
-    let refined = refined.map(|refined| match refined {
-        Ok(peak) if !inside(&peak) => Err(peak.work),
-        other => other,
-    });
-    match refined {
-        Some(Ok(refined)) => with_work(refined, coarse.work()),
-        Some(Err(wasted)) => with_work(in_one(), coarse.work().plus(wasted)),
-        None => with_work(in_one(), coarse.work()),
+    let hz = refined.point.as_ref().map(|point| point.frequency_hz);
+    let inside = hz.is_some_and(|hz| plan.band_hz.0 < hz && hz < plan.band_hz.1);
+    if plan.extensions > 0 || inside {
+        Ok(refined)
+    } else {
+        Err(refined.work)
     }
 }
 

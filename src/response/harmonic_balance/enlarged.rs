@@ -176,7 +176,8 @@ pub fn enlarge(
     let places: Vec<Option<usize>> = blocks.iter().map(same).collect();
     let before = embed(system, &enlarged, &places, x);
     let linearised = with(blocks, &set.linearised);
-    let factors = if system.unknowns() > LARGEST_WHOLE_JACOBIAN && system.is_shared() {
+    let large = system.unknowns() > LARGEST_WHOLE_JACOBIAN && system.is_shared();
+    let factors = if large || enlarged.has_waves() {
         Factors::by_harmonic(&linearised, omega, &before)?
     } else {
         if !workspace.factor_at(system, omega, x) {

@@ -22,6 +22,8 @@ mod status;
 mod structure;
 mod system;
 mod transform;
+mod tuned_waves;
+mod wave_blocks;
 
 pub use contact_interface::ContactInterface;
 pub use contact_states::PairContact;
@@ -37,3 +39,4 @@ pub use status::Status;
 pub use structure::{ContactStiffnessMatrix, Structure};
 pub use system::{ContactShares, HarmonicBlock, HarmonicSystem, SystemWorkspace};
 pub use transform::{HarmonicTransform, TransformError, TransformScratch};
+pub use tuned_waves::TunedWaves;

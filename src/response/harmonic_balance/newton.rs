@@ -234,7 +234,8 @@ impl Equation for FixedFrequency<'_> {
     }
 
     fn linearise(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
-        let small = self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN || !self.system.is_shared();
+        let small = (self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN || !self.system.is_shared())
+            && !self.system.has_waves();
         let by_harmonic = self.steps == Steps::ByHarmonic && !small;
         if by_harmonic {
             self.system.couple_leading(self.workspace);

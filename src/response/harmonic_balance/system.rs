@@ -14,6 +14,8 @@
 use std::sync::Arc;
 
 use super::structure::{ContactStiffnessMatrix, Structure};
+use super::tuned_waves::TunedWaves;
+use super::wave_blocks::{WaveScale, WaveWorkspace};
 use super::{ContactInterface, HarmonicTransform, PairHarmonics, PairJacobian};
 use crate::linalg::{
     Complex64, Matrix, add_times, add_times_vector, add_transpose_times, add_transpose_times_vector,
@@ -29,6 +31,17 @@ pub struct HarmonicBlock {
     pub structure: Arc<Structure>,
     /// Linear stuck contact stiffness of that structure.
     pub stuck: Arc<ContactStiffnessMatrix>,
+    /// The contact of the tuned wheel, where the harmonic is taken in it instead; never for harmonic 1.
+    pub waves: Option<Arc<TunedWaves>>,
+}
+
+impl HarmonicBlock {
+    /// Number of complex unknowns: modal coordinates, or relative motions at the contact of the tuned wheel.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        let waves = self.waves.as_ref();
+        waves.map_or_else(|| self.structure.size(), |waves| waves.size())
+    }
 }
 
 /// The nonlinear equation at any frequency.
@@ -44,10 +57,12 @@ pub struct HarmonicSystem {
     pub(super) interface: ContactInterface,
     pub(super) transform: Arc<HarmonicTransform>,
     /// Number of contact rows over all sectors.
-    rows: usize,
+    pub(super) rows: usize,
     /// Whether all harmonics have the same real matrices, those of a wheel: the unknowns are then one matrix
     /// with a column per real coefficient.
     shared: bool,
+    /// Units of the unknowns of waves.
+    pub(super) wave_scale: WaveScale,
     /// Drift of the ring along its rigid motions, m per period.
     ring_drift_m: [f64; 2],
 }
@@ -67,6 +82,7 @@ pub struct ContactShares {
 #[derive(Debug)]
 pub struct SystemWorkspace {
     pub(super) pairs: PairHarmonics,
+    pub(super) waves: Option<WaveWorkspace>,
     /// Displacement and correction at the contact rows, coefficient after coefficient (`n_coefficients x rows`).
     pub(super) displacement: Vec<f64>,
     pub(super) correction: Vec<f64>,
@@ -106,17 +122,19 @@ impl HarmonicSystem {
             let parts = if block.harmonic == 0 { 1 } else { 2 };
             coefficient.push(coefficients);
             coefficients += parts;
-            unknowns += parts * block.structure.size();
+            unknowns += parts * block.size();
             start.push(unknowns);
         }
         let force_norm = force.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
         let rows = blocks[0].structure.contact().real.rows();
         let shared = blocks.iter().all(|block| {
-            Arc::ptr_eq(&block.structure, &blocks[0].structure)
+            block.waves.is_none()
+                && Arc::ptr_eq(&block.structure, &blocks[0].structure)
                 && Arc::ptr_eq(&block.stuck, &blocks[0].stuck)
                 && block.structure.contact().imaginary.is_none()
                 && block.stuck.imaginary.is_none()
         });
+        let wave_scale = WaveScale::of(&blocks, &interface);
         Self {
             blocks,
             start,
@@ -127,6 +145,7 @@ impl HarmonicSystem {
             transform,
             rows,
             shared,
+            wave_scale,
             ring_drift_m: [0.0; 2],
         }
     }
@@ -207,6 +226,7 @@ impl HarmonicSystem {
             .unwrap_or(0);
         SystemWorkspace {
             pairs: PairHarmonics::new(self.interface.law, Arc::clone(&self.transform)),
+            waves: self.wave_workspace(),
             displacement: vec![0.0; coefficients * self.rows],
             correction: vec![0.0; coefficients * self.rows],
             pair_input: vec![0.0; 3 * coefficients],
@@ -249,6 +269,7 @@ impl HarmonicSystem {
             let shares = self.contact_correction(derivative, workspace);
             if shares != ContactShares::default() {
                 self.add_contact_force(&workspace.correction, residual);
+                self.add_motion_of_waves(omega, workspace, residual);
             }
             shares
         } else {
@@ -268,9 +289,14 @@ impl HarmonicSystem {
         }
         let fundamental = self.fundamental();
         for (index, block) in self.blocks.iter().enumerate() {
-            let n = block.structure.size();
             let range = self.start[index]..self.start[index + 1];
             let (x, r) = (&x[range.clone()], &mut residual[range]);
+            if block.waves.is_some() {
+                let stiffness = self.wave_scale.stiffness();
+                r.iter_mut().zip(x).for_each(|(r, x)| *r = stiffness * x);
+                continue;
+            }
+            let n = block.structure.size();
             let k_omega = f64::from(block.harmonic) * omega;
             let stuck = &block.stuck;
             if block.harmonic == 0 {
@@ -320,6 +346,7 @@ impl HarmonicSystem {
             add_times(displacement, rows.as_slice(), x, size);
             return;
         }
+        self.displacement_of_waves(x, displacement);
         for link in self.links() {
             let x = &x[link.unknown..link.unknown + link.size];
             let d = &mut displacement[link.coefficient * self.rows..][..self.rows];
@@ -448,6 +475,9 @@ impl HarmonicSystem {
     pub(super) fn links(&self) -> Vec<Link<'_>> {
         let mut links = Vec::new();
         for (index, block) in self.blocks.iter().enumerate() {
+            if block.waves.is_some() {
+                continue;
+            }
             let size = block.structure.size();
             let (unknown, coefficient) = (self.start[index], self.coefficient[index]);
             let contact = block.structure.contact();

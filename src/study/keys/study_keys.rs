@@ -355,6 +355,12 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "tops are sought with these, then solved with `harmonics` ([formulation.md](formulation.md)); `auto`: 1 where the equation is large; `all`: sought with `harmonics`",
     ),
     entry(
+        "solver.higher_harmonics",
+        Name(&["mistuned", "tuned"]),
+        "`\"mistuned\"`",
+        "wheel that harmonics other than 1 are taken in ([formulation.md](formulation.md)); `tuned`: with all modes of the tuned one",
+    ),
+    entry(
         "solver.harmonic_tolerance",
         Number(Range::from_to(1e-6, 1.0)),
         "0.02",

@@ -1,0 +1,298 @@
+//! Contact of the tuned wheel in one harmonic: what its relative motions answer to forces on them.
+//!
+//! Harmonics beside the fundamental are a few percent of a response, and most of them far from resonance. What counts
+//! in them is the compliance of the contact, up to frequencies that a small basis does not reach; the deviations of
+//! the blades change it little. So they may be taken in the tuned wheel with all its modes. Its waves do
+//! not couple, and only the relative motions d of the contact rows are left as unknowns: with the contact-free modes
+//! of nodal diameter h,
+//!
+//! ```text
+//! H = sum_m c_m c_m^H / (lambda_m - (k omega)^2 + i D_m(k omega)),    R = (I + H k_c)^-1 H
+//! d + R G(d) = 0
+//! ```
+//!
+//! where R is the receptance of the contact with stuck springs and G the correction of the contact force, both
+//! in waves `d_h = sum_n d_n e^{-i h n alpha}` over the sectors n.
+
+use std::sync::Arc;
+
+use rustfft::{Fft, FftPlanner};
+
+use super::Damping;
+use super::structure::Structure;
+use crate::linalg::{Complex64, LuWorkspace};
+use crate::model::ReducedModel;
+use crate::model::cyclic::NodalDiameter;
+use crate::response::mistuning::StructuralModes;
+
+/// The tuned wheel as its contact feels it; shared by all wheels of a study.
+pub struct TunedWaves {
+    sectors: usize,
+    /// Contact rows of a sector.
+    rows: usize,
+    /// Stuck springs of the rows, N/m.
+    springs: Vec<f64>,
+    /// Nodal diameters 0..=N/2.
+    waves: Vec<Structure>,
+    /// R of harmonic 0.
+    at_rest: Vec<Complex64>,
+    forward: Arc<dyn Fft<f64>>,
+    inverse: Arc<dyn Fft<f64>>,
+}
+
+/// Buffers of one thread.
+#[derive(Debug)]
+pub(super) struct WaveBuffers {
+    values: Vec<Complex64>,
+    product: Vec<Complex64>,
+    scratch: Vec<Complex64>,
+}
+
+impl std::fmt::Debug for TunedWaves {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("TunedWaves")
+            .field("sectors", &self.sectors)
+            .field("rows", &self.rows)
+            .finish_non_exhaustive()
+    }
+}
+
+impl TunedWaves {
+    /// The waves of a model, which is best one that leaves nothing out; none if the contact is not held at rest.
+    #[must_use]
+    pub fn new(model: &ReducedModel, damping: Damping) -> Option<Self> {
+        let (sectors, rows) = (model.sectors, model.springs.stick.len());
+        let waves = (0..model.nodal_diameters.len()).map(|index| {
+            let wave = NodalDiameter {
+                index,
+                conjugate: false,
+            };
+            Structure::new(StructuralModes::of_wave(model, wave), damping)
+        });
+        let mut planner = FftPlanner::new();
+        let mut waves = Self {
+            sectors,
+            rows,
+            springs: model.springs.stick.clone(),
+            waves: waves.collect(),
+            at_rest: Vec::new(),
+            forward: planner.plan_fft_forward(sectors),
+            inverse: planner.plan_fft_inverse(sectors),
+        };
+        waves.at_rest = waves.spread(|wave| waves.receptance_at_rest(wave))?;
+        Some(waves)
+    }
+
+    /// Contact rows of the wheel: the unknowns of a harmonic.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.sectors * self.rows
+    }
+
+    /// Entries of R over all waves.
+    pub(super) fn table_size(&self) -> usize {
+        self.rows * self.size()
+    }
+
+    pub(super) fn buffers(&self) -> WaveBuffers {
+        let scratch = self.forward.get_inplace_scratch_len();
+        WaveBuffers {
+            values: vec![Complex64::default(); self.size()],
+            product: vec![Complex64::default(); self.size()],
+            scratch: vec![
+                Complex64::default();
+                scratch.max(self.inverse.get_inplace_scratch_len())
+            ],
+        }
+    }
+
+    /// R of a harmonic at angular frequency `omega`: entry (i, j) of wave h at `(i rows + j) N + h`. None where the
+    /// stuck wheel has an undamped resonance.
+    pub(super) fn receptance(&self, harmonic: u32, omega: f64) -> Option<Vec<Complex64>> {
+        if harmonic == 0 {
+            return Some(self.at_rest.clone());
+        }
+        self.spread(|wave| self.receptance_in_motion(wave, f64::from(harmonic) * omega))
+    }
+
+    /// `(I + R g)^-1` of every wave, laid out as R; `g` is `rows x rows`, row after row.
+    pub(super) fn inverse_with(
+        &self,
+        receptance: &[Complex64],
+        g: &[Complex64],
+    ) -> Option<Vec<Complex64>> {
+        let (n, sectors) = (self.rows, self.sectors);
+        let mut all = vec![Complex64::default(); n * n * sectors];
+        let mut lu = LuWorkspace::new(n);
+        for h in 0..sectors {
+            let of = |i: usize, j: usize| receptance[(i * n + j) * sectors + h];
+            for (at, entry) in lu.matrix_mut().iter_mut().enumerate() {
+                let (j, i) = (at / n, at % n);
+                *entry = (0..n).map(|l| of(i, l) * g[l * n + j]).sum();
+                if i == j {
+                    *entry += 1.0;
+                }
+            }
+            let inverse = inverse(&mut lu)?;
+            for (at, entry) in inverse.iter().enumerate() {
+                let (j, i) = (at / n, at % n);
+                all[(i * n + j) * sectors + h] = *entry;
+            }
+        }
+        Some(all)
+    }
+
+    /// The circulant `table`, laid out as R, times contact coefficients of one harmonic: real and imaginary parts,
+    /// sector after sector; times `factor` into `sum`.
+    pub(super) fn add_product(
+        &self,
+        table: &[Complex64],
+        factor: f64,
+        [real, imaginary]: [&[f64]; 2],
+        sum: &mut [f64],
+        buffers: &mut WaveBuffers,
+    ) {
+        let (rows, sectors) = (self.rows, self.sectors);
+        let WaveBuffers {
+            values,
+            product,
+            scratch,
+        } = buffers;
+        for (row, values) in values.chunks_exact_mut(sectors).enumerate() {
+            for (n, value) in values.iter_mut().enumerate() {
+                let at = n * rows + row;
+                *value = Complex64::new(real[at], imaginary.get(at).copied().unwrap_or(0.0));
+            }
+        }
+        self.forward.process_with_scratch(values, scratch);
+        for (row, product) in product.chunks_exact_mut(sectors).enumerate() {
+            product.fill(Complex64::default());
+            for (column, values) in values.chunks_exact(sectors).enumerate() {
+                let table = &table[(row * rows + column) * sectors..][..sectors];
+                for ((product, r), value) in product.iter_mut().zip(table).zip(values) {
+                    *product += r * value;
+                }
+            }
+        }
+        self.inverse.process_with_scratch(product, scratch);
+        let (real, imaginary) = sum.split_at_mut(self.size());
+        let factor = factor / sectors as f64;
+        for (row, product) in product.chunks_exact(sectors).enumerate() {
+            for (n, value) in product.iter().enumerate() {
+                let at = n * rows + row;
+                real[at] += factor * value.re;
+                if let Some(imaginary) = imaginary.get_mut(at) {
+                    *imaginary += factor * value.im;
+                }
+            }
+        }
+    }
+
+    /// A matrix of every nodal diameter, `rows x rows` column-major, laid out over all waves: that of `N - h` is the
+    /// transpose of that of h, since the structure is reciprocal.
+    fn spread(
+        &self,
+        mut of: impl FnMut(&Structure) -> Option<Vec<Complex64>>,
+    ) -> Option<Vec<Complex64>> {
+        let (n, sectors) = (self.rows, self.sectors);
+        let mut all = vec![Complex64::default(); n * n * sectors];
+        for (h, wave) in self.waves.iter().enumerate() {
+            let matrix = of(wave)?;
+            let mirrored = (sectors - h) % sectors;
+            for (at, entry) in matrix.iter().enumerate() {
+                let (j, i) = (at / n, at % n);
+                all[(j * n + i) * sectors + mirrored] = *entry;
+                all[(i * n + j) * sectors + h] = *entry;
+            }
+        }
+        Some(all)
+    }
+
+    fn receptance_in_motion(&self, wave: &Structure, k_omega: f64) -> Option<Vec<Complex64>> {
+        let n = self.rows;
+        let contact = wave.contact();
+        let imaginary = contact.imaginary.as_ref();
+        // Real and imaginary parts apart, so that the loops over rows become vector operations.
+        let (mut free_re, mut free_im) = (vec![0.0; n * n], vec![0.0; n * n]);
+        for (mode, lambda) in wave.eigenvalues().iter().enumerate() {
+            let z = Complex64::new(
+                lambda - k_omega * k_omega,
+                wave.damping_diagonal(mode, k_omega),
+            );
+            let re = contact.real.column(mode);
+            let im = imaginary.map_or(&re[..0], |imaginary| imaginary.column(mode));
+            for j in 0..n {
+                let c = Complex64::new(re[j], im.get(j).copied().unwrap_or(0.0));
+                let w = c.conj() / z;
+                let (to_re, to_im) = (&mut free_re[j * n..][..n], &mut free_im[j * n..][..n]);
+                for i in 0..n {
+                    to_re[i] += re[i] * w.re;
+                    to_im[i] += re[i] * w.im;
+                }
+                for (i, im) in im.iter().enumerate() {
+                    to_re[i] -= im * w.im;
+                    to_im[i] += im * w.re;
+                }
+            }
+        }
+        let free = |i: usize, j: usize| Complex64::new(free_re[j * n + i], free_im[j * n + i]);
+        let mut lu = LuWorkspace::new(n);
+        for (at, entry) in lu.matrix_mut().iter_mut().enumerate() {
+            let (j, i) = (at / n, at % n);
+            *entry = free(i, j) * self.springs[j];
+            if i == j {
+                *entry += 1.0;
+            }
+        }
+        if !lu.factor() {
+            return None;
+        }
+        let mut right = crate::linalg::Matrix::from_fn(n, n, free);
+        lu.solve_columns(&mut right);
+        let stuck = right.as_slice().to_vec();
+        stuck.iter().all(|r| r.is_finite()).then_some(stuck)
+    }
+
+    /// `C (diag(lambda) + C^H k_c C)^-1 C^H`: free motions of the ring have no receptance of their own.
+    fn receptance_at_rest(&self, wave: &Structure) -> Option<Vec<Complex64>> {
+        let (n, size) = (self.rows, wave.size());
+        let contact = wave.contact();
+        let c = |i: usize, mode: usize| {
+            let imaginary = contact.imaginary.as_ref();
+            Complex64::new(
+                contact.real[(i, mode)],
+                imaginary.map_or(0.0, |imaginary| imaginary[(i, mode)]),
+            )
+        };
+        let mut lu = LuWorkspace::new(size);
+        for (at, entry) in lu.matrix_mut().iter_mut().enumerate() {
+            let (j, i) = (at / size, at % size);
+            let springs = self.springs.iter().enumerate();
+            *entry = springs.map(|(l, k)| c(l, i).conj() * *k * c(l, j)).sum();
+            if i == j {
+                *entry += wave.eigenvalues()[i];
+            }
+        }
+        if !lu.factor() {
+            return None;
+        }
+        let mut right = crate::linalg::Matrix::from_fn(size, n, |mode, i| c(i, mode).conj());
+        lu.solve_columns(&mut right);
+        let entries = (0..n * n).map(|at| {
+            let (j, i) = (at / n, at % n);
+            (0..size).map(|mode| c(i, mode) * right[(mode, j)]).sum()
+        });
+        Some(entries.collect())
+    }
+}
+
+/// The inverse of the matrix in `lu`, column-major; none if it is singular.
+fn inverse(lu: &mut LuWorkspace<Complex64>) -> Option<Vec<Complex64>> {
+    if !lu.factor() {
+        return None;
+    }
+    let n = lu.dimension();
+    let mut inverse = crate::linalg::Matrix::<Complex64>::identity(n);
+    lu.solve_columns(&mut inverse);
+    Some(inverse.as_slice().to_vec())
+}
