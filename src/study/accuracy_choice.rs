@@ -250,6 +250,7 @@ fn levels(
         Knob::SamplesPerPeriod
         | Knob::ResidualTolerance
         | Knob::PeakTolerance
+        | Knob::HigherHarmonics
         | Knob::Projection => false,
     });
     let loose = LOOSE.into_iter().find(|(error, _)| accepted >= *error);

@@ -84,6 +84,8 @@ pub struct Judged<'a> {
     pub sets: &'a [HarmonicChoice],
     /// Factors on the contact stiffness besides the nominal one.
     pub varied: &'a [PairFactors],
+    /// The tuned wheel that harmonics other than 1 are taken in, whatever the basis; none where the basis carries them.
+    pub tuned_harmonics: Option<&'a Arc<ReducedModel>>,
 }
 
 impl<'a> Judged<'a> {
@@ -245,7 +247,8 @@ impl Peaks {
                 slide: of_sector.springs(&model.springs.slide, &model.contact.rows),
             };
             let solver = RowSolver::new(Arc::new(varied), settings)?
-                .with_choices(judged.sets.to_vec(), 0.0)?;
+                .with_choices(judged.sets.to_vec(), 0.0)?
+                .with_tuned_harmonics(judged.tuned_harmonics.cloned());
             peaks.extend(
                 judged
                     .each()

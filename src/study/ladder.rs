@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::Study;
 use crate::model::reduction::{Basis, BasisChoice};
 use crate::population::monte_carlo::harmonics_name;
-use crate::response::forced_response::{Harmonics, RowsBeyondTolerance};
+use crate::response::forced_response::{Harmonics, HigherHarmonics, RowsBeyondTolerance};
 use crate::response::friction::ContactLaw;
 use crate::response::mistuning::Projection;
 
@@ -39,6 +39,8 @@ pub struct LadderSetting {
     pub basis: BasisChoice,
     /// Harmonics.
     pub harmonics: HarmonicLevel,
+    /// Wheel of the harmonics other than 1.
+    pub higher_harmonics: HigherHarmonics,
     /// Samples per period.
     pub samples_per_period: usize,
     /// Bound on the residual relative to the excitation.
@@ -59,6 +61,8 @@ pub enum Knob {
     Basis,
     /// `solver.harmonics`.
     Harmonics,
+    /// `solver.higher_harmonics`.
+    HigherHarmonics,
     /// `solver.samples_per_period`.
     SamplesPerPeriod,
     /// `solver.residual_tolerance`.
@@ -73,9 +77,10 @@ pub enum Knob {
 
 impl Knob {
     /// Every knob.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Basis,
         Self::Harmonics,
+        Self::HigherHarmonics,
         Self::SamplesPerPeriod,
         Self::ResidualTolerance,
         Self::PeakTolerance,
@@ -89,6 +94,7 @@ impl Knob {
         match self {
             Self::Basis => "basis",
             Self::Harmonics => "harmonics",
+            Self::HigherHarmonics => "higher_harmonics",
             Self::SamplesPerPeriod => "samples_per_period",
             Self::ResidualTolerance => "residual_tolerance",
             Self::PeakTolerance => "peak_tolerance",
@@ -106,6 +112,7 @@ impl LadderSetting {
         match knob {
             Knob::Basis => own.basis = other.basis,
             Knob::Harmonics => own.harmonics.clone_from(&other.harmonics),
+            Knob::HigherHarmonics => own.higher_harmonics = other.higher_harmonics,
             Knob::SamplesPerPeriod => own.samples_per_period = other.samples_per_period,
             Knob::ResidualTolerance => own.residual_tolerance = other.residual_tolerance,
             Knob::PeakTolerance => own.peak_tolerance = other.peak_tolerance,
@@ -121,6 +128,7 @@ impl LadderSetting {
         match knob {
             Knob::Basis => self.basis.to_string(),
             Knob::Harmonics => self.harmonics.to_string(),
+            Knob::HigherHarmonics => self.higher_harmonics.name().to_owned(),
             Knob::SamplesPerPeriod => self.samples_per_period.to_string(),
             Knob::ResidualTolerance => format!("{:e}", self.residual_tolerance),
             Knob::PeakTolerance => format!("{:e}", self.peak_tolerance),
@@ -165,6 +173,7 @@ impl LadderSetting {
                 solver.harmonic_tolerance = *tolerance;
             }
         }
+        solver.higher_harmonics = self.higher_harmonics;
         solver.rows_beyond_tolerance = RowsBeyondTolerance::Flag;
         solver.samples_per_period = self.samples_per_period;
         solver.residual_tolerance = self.residual_tolerance;
@@ -332,8 +341,19 @@ impl LadderSpace {
         for basis in self.bases() {
             add(Knob::Basis, &|own| own.basis = basis);
         }
-        for harmonics in self.harmonics(finest) {
+        let tuned = base.higher_harmonics == HigherHarmonics::Tuned;
+        // Harmonic 0 is never taken in the tuned wheel.
+        let possible = |level: &HarmonicLevel| match level {
+            HarmonicLevel::Set(set) => !(tuned && set.contains(&0)),
+            HarmonicLevel::Automatic(_) => true,
+        };
+        for harmonics in self.harmonics(finest).into_iter().filter(possible) {
             add(Knob::Harmonics, &|own| own.harmonics.clone_from(&harmonics));
+        }
+        if tuned {
+            add(Knob::HigherHarmonics, &|own| {
+                own.higher_harmonics = HigherHarmonics::Mistuned;
+            });
         }
         for samples in SAMPLES {
             add(Knob::SamplesPerPeriod, &|own| {

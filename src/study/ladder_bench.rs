@@ -24,7 +24,7 @@ use crate::population::monte_carlo::{
     HarmonicChoice, ResponseRow, RowSettings, RowSolver, RowWork, Scenario, SystemSize,
     TunedReference,
 };
-use crate::response::forced_response::Harmonics;
+use crate::response::forced_response::{Harmonics, HigherHarmonics};
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::{Pattern, PatternSource};
@@ -193,7 +193,12 @@ impl<'a> LadderBench<'a> {
         let place = self.reduction_for(contact_stiffness(study.contact.as_ref()))?;
         let modes = study.mistuning.cantilever_mode_count;
         let model = self.model((place, setting.basis, modes))?;
-        let mut solver = RowSolver::new(Arc::clone(&model), settings.clone())?;
+        let tuned_harmonics = (setting.higher_harmonics == HigherHarmonics::Tuned)
+            .then(|| self.reductions[place].1.tuned(BasisChoice::CraigBampton))
+            .transpose()?
+            .map(Arc::new);
+        let mut solver = RowSolver::new(Arc::clone(&model), settings.clone())?
+            .with_tuned_harmonics(tuned_harmonics);
         if let HarmonicLevel::Automatic(tolerance) = setting.harmonics {
             let full = Arc::new(self.reductions[place].1.tuned(BasisChoice::CraigBampton)?);
             let sets = choose_harmonics(

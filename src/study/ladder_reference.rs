@@ -1,7 +1,7 @@
 //! The reference that settings are judged by: every knob at its best.
 //!
 //! All knobs at their best at once is what is wanted, and what is solved where the equation is small. On
-//! larger models that costs minutes a row. There the base setting is taken with one knob at its best at
+//! larger models that costs minutes a row, unless harmonics other than 1 can be taken in the tuned wheel. There the base setting is taken with one knob at its best at
 //! a time (basis, harmonics, numerical tolerances), and the ratios to the base are multiplied:
 //!
 //! ```text
@@ -17,7 +17,9 @@ use super::ladder_bench::{LadderBench, LadderValues};
 use super::ladder_measure::Measured;
 use super::reduced_engine::row_settings;
 use crate::model::reduction::{Basis, BasisChoice, ReductionOptions};
-use crate::response::forced_response::Harmonics;
+use crate::response::forced_response::{AmplitudeMeasure, Harmonics, HigherHarmonics};
+use crate::response::friction::{ContactOptions, Ring};
+use crate::response::harmonic_balance::LARGEST_WHOLE_JACOBIAN;
 use crate::response::mistuning::PatternSource;
 
 /// Relative error of the tuned peak by which the basis of the base is chosen.
@@ -30,6 +32,8 @@ const BEST_STICK: usize = 8;
 const MOST_ATTACHMENT: usize = 24;
 /// Unknowns up to which all knobs are at their best at once.
 const JOINT_UNKNOWNS: usize = 1600;
+/// Vectors per nodal diameter of the smallest basis of the ladder.
+const FEWEST_VECTORS: usize = 4;
 /// Harmonics of the base, without and with contacts that separate.
 const BASE_HARMONICS: [&[u32]; 2] = [&[1, 3], &[0, 1, 2, 3]];
 /// Samples, residual and tolerance of the peak of the base and of the reference.
@@ -103,6 +107,7 @@ impl LadderEnds {
         let setting = |basis, harmonics, (samples, residual, peak)| LadderSetting {
             basis,
             harmonics,
+            higher_harmonics: HigherHarmonics::Mistuned,
             samples_per_period: samples,
             residual_tolerance: residual,
             peak_tolerance: peak,
@@ -117,10 +122,16 @@ impl LadderEnds {
         let automatic = HarmonicLevel::Automatic(tolerance);
         let best = setting(best_basis, automatic, BEST_TOLERANCES);
         let separates = bench.law().has_variable_load() && bench.engine(&closed)?.separates();
-        Ok(Self {
+        let mut ends = Self {
             base: if separates { separating } else { closed },
             best,
-        })
+        };
+        // Where a wheel is large the harmonics are its largest error, and only the tuned one has modes enough for them.
+        if !separates && can_tune_harmonics(bench) {
+            ends.base.higher_harmonics = HigherHarmonics::Tuned;
+            ends.best.higher_harmonics = HigherHarmonics::Tuned;
+        }
+        Ok(ends)
     }
 
     /// The base with all tolerances at their best.
@@ -130,6 +141,20 @@ impl LadderEnds {
             .with(Knob::ResidualTolerance, &self.best)
             .with(Knob::PeakTolerance, &self.best)
     }
+}
+
+/// Whether harmonics other than 1 can be taken in the tuned wheel, and are worth it: where a study may ask for it, and
+/// the mistuned wheel has too many unknowns for its whole Jacobian.
+fn can_tune_harmonics(bench: &LadderBench<'_>) -> bool {
+    let study = bench.study();
+    let creeping = |contact: &ContactOptions| contact.ring == Ring::Creeping;
+    let unknowns = 2 * BASE_HARMONICS[0].len() * FEWEST_VECTORS * bench.reduction().sectors();
+    study.has_friction()
+        && !study.contact.as_ref().is_some_and(creeping)
+        && study.contact_variations.is_empty()
+        && study.solver.amplitude == AmplitudeMeasure::Fundamental
+        && !bench.reduction().is_whole_space()
+        && unknowns > LARGEST_WHOLE_JACOBIAN
 }
 
 /// The smallest basis of a family whose tuned peaks are within `error`.
@@ -146,6 +171,7 @@ fn basis_within(
         conditions: &judged_conditions(&study.contacts),
         sets: &[],
         varied: &judged_variations(&study.contact_variations),
+        tuned_harmonics: None,
     };
     let options = ReductionOptions {
         basis: family,
@@ -196,7 +222,8 @@ impl LadderReference {
             all.filter_map(of).max().unwrap_or(0)
         };
         let unknowns = largest(&coordinates) * largest(&coefficients);
-        if unknowns > JOINT_UNKNOWNS {
+        let tuned = ends.best.higher_harmonics == HigherHarmonics::Tuned;
+        if unknowns > JOINT_UNKNOWNS && !tuned {
             return Ok(Self {
                 kind: ReferenceKind::ByKnobs,
                 values: product,

@@ -337,6 +337,8 @@ fn reduced(
             tolerance,
         )
     };
+    let tuned_harmonics =
+        study.has_friction() && settings.solver.higher_harmonics == HigherHarmonics::Tuned;
     let conditions = judged_conditions(&study.contacts);
     let varied = judged_variations(&study.contact_variations);
     let basis = |options: &ReductionOptions, sets: &[HarmonicChoice]| {
@@ -346,6 +348,7 @@ fn reduced(
             conditions: &conditions,
             sets,
             varied: &varied,
+            tuned_harmonics: tuned_harmonics.then_some(&full),
         };
         choose_basis(reduction, options, judged)
     };
@@ -387,14 +390,13 @@ fn reduced(
     } else {
         None
     };
-    let tuned_harmonics = settings.solver.higher_harmonics == HigherHarmonics::Tuned;
     Ok(Stored {
         model: reduction.reduce(choice, modes)?,
         evidence,
         fixed_interface,
         harmonics,
         beyond,
-        tuned_harmonics: (tuned_harmonics && study.has_friction())
+        tuned_harmonics: tuned_harmonics
             .then(|| reduction.tuned(BasisChoice::CraigBampton))
             .transpose()?,
     })

@@ -251,8 +251,8 @@ impl Trade {
             Knob::SamplesPerPeriod | Knob::ResidualTolerance | Knob::PeakTolerance => {
                 Knob::SamplesPerPeriod
             }
-            // The law and the projection of the study are those of the base.
-            Knob::ContactLaw | Knob::Projection => {
+            // The base has the law and the projection of the study, and the better harmonics.
+            Knob::ContactLaw | Knob::Projection | Knob::HigherHarmonics => {
                 let base = self.reference.base.values();
                 return error_bound(&measured.values(), &base, Compared::Amplitude);
             }

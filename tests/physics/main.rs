@@ -26,5 +26,6 @@ mod sector_sources;
 mod separation;
 mod surrogate;
 mod time_integration;
+mod tuned_harmonics;
 mod wheels;
 mod work_counts;

@@ -61,6 +61,40 @@ pub struct SystemSize {
     pub samples: usize,
     /// Whether tops are sought with fewer harmonics, so that the set is solved by its harmonics.
     pub in_stages: bool,
+    /// The tuned wheel that harmonics other than 1 are taken in, if they are.
+    pub tuned: Option<TunedSize>,
+}
+
+/// Size of the tuned wheel as its contact feels it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TunedSize {
+    /// Sectors.
+    pub sectors: usize,
+    /// Modes of a nodal diameter.
+    pub modes: usize,
+}
+
+impl TunedSize {
+    /// Contact receptance of one harmonic at one frequency, with `rows` contact rows on the wheel: a modal sum in every
+    /// nodal diameter, and the springs.
+    fn receptance(self, rows: f64) -> f64 {
+        let (sectors, modes) = (self.sectors as f64, self.modes as f64);
+        let own = rows / sectors;
+        0.5 * sectors * (8.0 * modes * own.powi(2) + 11.0 * own.powi(3))
+    }
+
+    /// Derivative of one harmonic: an inverse in every wave.
+    fn factors(self, rows: f64) -> f64 {
+        let sectors = self.sectors as f64;
+        19.0 * sectors * (rows / sectors).powi(3)
+    }
+
+    /// Residual and step of one harmonic: two circulant products with their transforms over the sectors.
+    fn products(self, rows: f64) -> f64 {
+        let sectors = self.sectors as f64;
+        let transforms = 4.0 * 5.0 * rows * sectors.log2().max(1.0);
+        2.0 * 8.0 * rows.powi(2) / sectors + transforms
+    }
 }
 
 impl SystemSize {
@@ -81,15 +115,24 @@ impl SystemSize {
     /// the first stage has fewer.
     #[must_use]
     pub fn per_factorisation(&self) -> f64 {
+        if let Some(tuned) = self.tuned {
+            let own = self.whole_jacobian(2 * self.coordinates);
+            return own + self.beyond() * tuned.factors(self.contact_rows as f64);
+        }
         if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
             return self.whole_jacobian(self.unknowns());
         }
         if self.in_stages {
-            return self.by_harmonic(self.coefficients as f64 / 2.0 - 1.0);
+            return self.by_harmonic(self.beyond());
         }
         let factors = |size: f64| 2.0 / 3.0 * size.powi(3);
         let blocks: f64 = self.blocks().map(factors).sum();
         2.0 * self.contact_rows as f64 * self.lower_triangle() + blocks
+    }
+
+    /// Harmonics besides 1.
+    fn beyond(&self) -> f64 {
+        self.coefficients as f64 / 2.0 - 1.0
     }
 
     fn whole_jacobian(&self, unknowns: usize) -> f64 {
@@ -125,6 +168,11 @@ impl SystemSize {
     /// frequency/time method.
     #[must_use]
     pub fn per_iteration(&self) -> f64 {
+        if let Some(tuned) = self.tuned {
+            let own = 2.0 * (2.0 * self.coordinates as f64).powi(2);
+            let waves = self.beyond() * tuned.products(self.contact_rows as f64);
+            return own + waves + self.evaluation(self.coefficients as f64, self.samples as f64);
+        }
         let n = self.unknowns() as f64;
         let entries = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
             n * n
@@ -139,7 +187,12 @@ impl SystemSize {
     /// One residual with `coefficients` and `samples`.
     fn evaluation(&self, coefficients: f64, samples: f64) -> f64 {
         let rows = self.contact_rows as f64;
-        let modal = 4.0 * rows * self.coordinates as f64 * coefficients;
+        let in_modes = if self.tuned.is_some() {
+            2.0
+        } else {
+            coefficients
+        };
+        let modal = 4.0 * rows * self.coordinates as f64 * in_modes;
         let transforms = 4.0 * rows * coefficients * samples;
         modal + transforms + LAW * self.pairs as f64 * samples
     }
@@ -150,6 +203,13 @@ impl SystemSize {
     pub fn check(&self) -> f64 {
         let samples = CHECK_SAMPLES * self.samples as f64;
         let evaluation = self.evaluation(CHECK_COEFFICIENTS, samples);
+        if let Some(tuned) = self.tuned {
+            let rows = self.contact_rows as f64;
+            let factors = self.whole_jacobian(2 * self.coordinates)
+                + CHECK_BLOCKS * (tuned.receptance(rows) + tuned.factors(rows));
+            let waves = CHECK_BLOCKS * tuned.products(rows);
+            return factors + CHECK_ITERATIONS * (evaluation + waves);
+        }
         let factors = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
             self.by_harmonic(CHECK_BLOCKS) + self.whole_jacobian(self.unknowns())
         } else {
@@ -162,7 +222,11 @@ impl SystemSize {
     #[must_use]
     pub fn operations(&self, work: &RowWork) -> f64 {
         let eigen = EIGENPROBLEMS * EIGEN * (self.coordinates as f64).powi(3);
+        let receptances = self.tuned.map_or(0.0, |tuned| {
+            self.beyond() * tuned.receptance(self.contact_rows as f64)
+        });
         work.factorisations * self.per_factorisation()
+            + work.nonlinear_solves * receptances
             + work.newton_iterations * self.per_iteration()
             + self.check()
             + eigen
@@ -186,6 +250,7 @@ impl RowSolver {
             contact_rows: self.basis().contact().rows(),
             pairs: model.contact.weights.len() * model.sectors,
             coefficients: SystemSize::coefficients_of(harmonics),
+            tuned: self.tuned_size(harmonics).filter(|_| !linear),
             in_stages: self
                 .search(self.points(scenario.engine_order, scenario.contact))
                 .is_some(),
@@ -211,6 +276,7 @@ mod tests {
             coefficients: SystemSize::coefficients_of(&[0, 1, 3]),
             samples: 128,
             in_stages: false,
+            tuned: None,
         };
         assert_eq!(size(168).unknowns(), 840);
         let work = RowWork {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::RowSolver;
+use super::operations::TunedSize;
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
     ContactCondition, Excited, HigherHarmonics, LimitsWanted, PointSettings,
@@ -40,6 +41,19 @@ impl RowSolver {
         let tuned = self.tuned_harmonics.as_ref()?;
         let alike = pattern.contact.is_nominal();
         (alike && !points.harmonics().contains(&0)).then_some(&tuned.waves)
+    }
+
+    /// Size of the tuned wheel that the other harmonics of a set are taken in.
+    pub(super) fn tuned_size(&self, harmonics: &[u32]) -> Option<TunedSize> {
+        let tuned = self.tuned_harmonics.as_ref()?;
+        let diameters = tuned.model.nodal_diameters.iter();
+        (!harmonics.contains(&0)).then(|| TunedSize {
+            sectors: tuned.model.sectors,
+            modes: diameters
+                .map(|own| own.eigenvalues.len())
+                .max()
+                .unwrap_or(0),
+        })
     }
 
     /// The tuned wheel with the given harmonics, those other than 1 on the model that rows have them on.

@@ -8,6 +8,8 @@ pub(super) enum Attempt {
     /// From what a solution with fewer harmonics and the converged points lead one to expect, with the derivatives
     /// of harmonics by themselves.
     ByHarmonic,
+    /// The same with derivatives of this very point: those of an earlier one serve most often, not always.
+    ByHarmonicAfresh,
     /// The same with the whole Jacobian, found once.
     Once,
     /// From what the converged points beside it lead one to expect, or from the stuck solution, with
@@ -24,6 +26,9 @@ pub(super) enum Attempt {
     /// Homotopy in normal load.
     LoadHomotopy,
 }
+
+/// Where the whole Jacobian is not to be had: harmonics other than 1 in the tuned wheel.
+const OF_WAVES: [Attempt; 2] = [Attempt::ByHarmonic, Attempt::ByHarmonicAfresh];
 
 /// In the order in which they are made; the first two only beside a solution with fewer harmonics.
 const LADDER: [Attempt; 8] = [
@@ -42,7 +47,7 @@ impl Attempt {
     /// the whole Jacobian is not to be had.
     pub(super) fn ladder(refines: bool, waves: bool) -> &'static [Self] {
         match (refines, waves) {
-            (_, true) => &LADDER[..1],
+            (_, true) => &OF_WAVES,
             (true, false) => &LADDER,
             (false, false) => &LADDER[2..],
         }
@@ -51,7 +56,7 @@ impl Attempt {
     /// How the steps of Newton's method are made.
     pub(super) fn steps(self) -> Steps {
         match self {
-            Self::ByHarmonic => Steps::ByHarmonic,
+            Self::ByHarmonic | Self::ByHarmonicAfresh => Steps::ByHarmonic,
             Self::Once => Steps::Once,
             Self::Neighbours => Steps::Accelerated,
             _ => Steps::Plain,

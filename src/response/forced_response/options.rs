@@ -32,6 +32,17 @@ pub enum HigherHarmonics {
     Tuned,
 }
 
+impl HigherHarmonics {
+    /// Name in studies and tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mistuned => "mistuned",
+            Self::Tuned => "tuned",
+        }
+    }
+}
+
 /// What becomes of a row whose error exceeds its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -334,6 +334,9 @@ impl<'a> PointSolver<'a> {
         for (rung, attempt) in ladder.iter().enumerate() {
             if let Some((_, workspace)) = &mut self.nonlinear {
                 workspace.set_steps(attempt.steps());
+                if matches!(attempt, Attempt::ByHarmonicAfresh) {
+                    workspace.forget_jacobian();
+                }
             }
             match self.attempt(*attempt, frequency_hz) {
                 Ok(point) => {
@@ -365,7 +368,7 @@ impl<'a> PointSolver<'a> {
 
     fn attempt(&mut self, attempt: Attempt, frequency_hz: f64) -> Result<Point, Status> {
         match attempt {
-            Attempt::ByHarmonic | Attempt::Once => {
+            Attempt::ByHarmonic | Attempt::ByHarmonicAfresh | Attempt::Once => {
                 let start = self.expected_from_coarse(frequency_hz)?;
                 self.newton(frequency_hz, start, None)
             }

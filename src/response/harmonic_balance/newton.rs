@@ -205,6 +205,11 @@ impl NewtonWorkspace {
         self.buffers.steps = steps;
     }
 
+    /// Lets go of the factors of an earlier point.
+    pub fn forget_jacobian(&mut self) {
+        self.jacobian.forget();
+    }
+
     /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
     pub fn factor_at(&mut self, system: &HarmonicSystem, omega: f64, x: &[f64]) -> bool {
         system.residual(omega, x, &mut self.buffers.residual, true, &mut self.system);
@@ -246,6 +251,10 @@ impl Equation for FixedFrequency<'_> {
             .system
             .residual(self.omega, x, residual, true, self.workspace);
         let (system, omega) = (self.system, self.omega);
+        // Of waves there is no whole Jacobian.
+        if system.has_waves() && shares.separated > 0.0 {
+            return false;
+        }
         // Contact that opens couples the harmonics closely.
         if by_harmonic && shares.separated > 0.0 {
             HarmonicSystem::couple_all(self.workspace);

@@ -20,7 +20,7 @@ use rustfft::{Fft, FftPlanner};
 
 use super::Damping;
 use super::structure::Structure;
-use crate::linalg::{Complex64, LuWorkspace};
+use crate::linalg::{Complex64, LuWorkspace, Matrix};
 use crate::model::ReducedModel;
 use crate::model::cyclic::NodalDiameter;
 use crate::response::mistuning::StructuralModes;
@@ -247,7 +247,7 @@ impl TunedWaves {
         if !lu.factor() {
             return None;
         }
-        let mut right = crate::linalg::Matrix::from_fn(n, n, free);
+        let mut right = Matrix::from_fn(n, n, free);
         lu.solve_columns(&mut right);
         let stuck = right.as_slice().to_vec();
         stuck.iter().all(|r| r.is_finite()).then_some(stuck)
@@ -276,7 +276,7 @@ impl TunedWaves {
         if !lu.factor() {
             return None;
         }
-        let mut right = crate::linalg::Matrix::from_fn(size, n, |mode, i| c(i, mode).conj());
+        let mut right = Matrix::from_fn(size, n, |mode, i| c(i, mode).conj());
         lu.solve_columns(&mut right);
         let entries = (0..n * n).map(|at| {
             let (j, i) = (at / n, at % n);
@@ -292,7 +292,99 @@ fn inverse(lu: &mut LuWorkspace<Complex64>) -> Option<Vec<Complex64>> {
         return None;
     }
     let n = lu.dimension();
-    let mut inverse = crate::linalg::Matrix::<Complex64>::identity(n);
+    let mut inverse = Matrix::<Complex64>::identity(n);
     lu.solve_columns(&mut inverse);
     Some(inverse.as_slice().to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::mistuning::ModalRows;
+
+    const SPRINGS: [f64; 2] = [3.0, 0.5];
+
+    /// Three modes, of which one is a free motion, and two contact rows.
+    fn wave(damping: Damping) -> Structure {
+        let rows =
+            |phase: f64| Matrix::from_fn(2, 3, |i, j| (phase + (1 + i + 2 * j) as f64).sin());
+        let rows = |phase: f64| ModalRows {
+            real: rows(phase),
+            imaginary: Some(rows(phase + 0.7)),
+        };
+        let modes = StructuralModes {
+            eigenvalues: vec![0.0, 2.0, 5.0],
+            tuned_eigenvalues: vec![0.0, 2.0, 5.0],
+            added_damping_per_s: vec![0.01, 0.02, 0.03],
+            rotation: None,
+            contact: rows(0.2),
+            observed: rows(0.1),
+            sectors: 1,
+        };
+        Structure::new(modes, damping)
+    }
+
+    fn waves() -> TunedWaves {
+        let mut planner = FftPlanner::new();
+        TunedWaves {
+            sectors: 1,
+            rows: 2,
+            springs: SPRINGS.to_vec(),
+            waves: vec![wave(Damping::ModalRatio(0.02))],
+            at_rest: Vec::new(),
+            forward: planner.plan_fft_forward(1),
+            inverse: planner.plan_fft_inverse(1),
+        }
+    }
+
+    /// Put into the equation of motion, `Z x = C^H (e - k_c d)` and `d = C x` under a unit force e.
+    #[test]
+    fn the_receptance_solves_the_equation_of_motion() {
+        let waves = waves();
+        let wave = &waves.waves[0];
+        let contact = wave.contact();
+        let c = |i: usize, mode: usize| {
+            let imaginary = contact.imaginary.as_ref().expect("complex rows");
+            Complex64::new(contact.real[(i, mode)], imaginary[(i, mode)])
+        };
+        for (k_omega, receptance) in [
+            (1.3, waves.receptance_in_motion(wave, 1.3)),
+            (0.0, waves.receptance_at_rest(wave)),
+        ] {
+            let receptance = receptance.expect("a regular matrix");
+            for force_row in 0..2 {
+                let motion = |row: usize| receptance[force_row * 2 + row];
+                let modal = |mode: usize| -> Complex64 {
+                    let force = (0..2).map(|row| {
+                        let unit = if row == force_row { 1.0 } else { 0.0 };
+                        c(row, mode).conj() * (unit - SPRINGS[row] * motion(row))
+                    });
+                    let z = Complex64::new(
+                        wave.eigenvalues()[mode] - k_omega * k_omega,
+                        if k_omega > 0.0 {
+                            wave.damping_diagonal(mode, k_omega)
+                        } else {
+                            0.0
+                        },
+                    );
+                    force.sum::<Complex64>() / z
+                };
+                if k_omega > 0.0 {
+                    for row in 0..2 {
+                        let moved: Complex64 = (0..3).map(|mode| c(row, mode) * modal(mode)).sum();
+                        assert!((moved - motion(row)).norm() < 1e-12, "{row}: {moved}");
+                    }
+                } else {
+                    // Nothing but the springs holds the free motion: the forces on it are in balance.
+                    let unbalanced: Complex64 = (0..2)
+                        .map(|row| {
+                            let unit = if row == force_row { 1.0 } else { 0.0 };
+                            c(row, 0).conj() * (unit - SPRINGS[row] * motion(row))
+                        })
+                        .sum();
+                    assert!(unbalanced.norm() < 1e-12, "{unbalanced}");
+                }
+            }
+        }
+    }
 }

@@ -14,10 +14,11 @@
 //! `(I + R g)^-1` for every one of them.
 
 use std::ops::Range;
+use std::sync::Arc;
 
-use super::system::{HarmonicBlock, HarmonicSystem, SystemWorkspace};
+use super::system::{HarmonicSystem, SystemWorkspace};
 use super::tuned_waves::WaveBuffers;
-use super::{ContactInterface, PairJacobian};
+use super::{ContactInterface, HarmonicBlock, PairJacobian, TunedWaves};
 use crate::linalg::Complex64;
 
 /// Units of the unknowns of waves.
@@ -188,7 +189,7 @@ pub(super) struct WaveFactors {
 }
 
 struct WaveBlock {
-    waves: std::sync::Arc<super::TunedWaves>,
+    waves: Arc<TunedWaves>,
     unknowns: Range<usize>,
     inverse: Vec<Complex64>,
     stiffness: f64,
@@ -226,7 +227,7 @@ impl WaveFactors {
             };
             self.buffers.get_or_insert_with(|| waves.buffers());
             self.blocks.push(WaveBlock {
-                waves: std::sync::Arc::clone(waves),
+                waves: Arc::clone(waves),
                 unknowns: system.start[index]..system.start[index + 1],
                 inverse,
                 stiffness: system.wave_scale.stiffness(),
