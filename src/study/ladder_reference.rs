@@ -32,8 +32,6 @@ const BEST_STICK: usize = 8;
 const MOST_ATTACHMENT: usize = 24;
 /// Unknowns up to which all knobs are at their best at once.
 const JOINT_UNKNOWNS: usize = 1600;
-/// Vectors per nodal diameter of the smallest basis of the ladder.
-const FEWEST_VECTORS: usize = 4;
 /// Harmonics of the base, without and with contacts that separate.
 const BASE_HARMONICS: [&[u32]; 2] = [&[1, 3], &[0, 1, 2, 3]];
 /// Samples, residual and tolerance of the peak of the base and of the reference.
@@ -127,7 +125,7 @@ impl LadderEnds {
             best,
         };
         // Where a wheel is large the harmonics are its largest error, and only the tuned one has modes enough for them.
-        if !separates && can_tune_harmonics(bench) {
+        if !separates && can_tune_harmonics(bench, base_basis) {
             ends.base.higher_harmonics = HigherHarmonics::Tuned;
             ends.best.higher_harmonics = HigherHarmonics::Tuned;
         }
@@ -145,15 +143,20 @@ impl LadderEnds {
 
 /// Whether harmonics other than 1 can be taken in the tuned wheel, and are worth it: where a study may ask for it, and
 /// the mistuned wheel has too many unknowns for its whole Jacobian.
-fn can_tune_harmonics(bench: &LadderBench<'_>) -> bool {
+fn can_tune_harmonics(bench: &LadderBench<'_>, base: BasisChoice) -> bool {
     let study = bench.study();
     let creeping = |contact: &ContactOptions| contact.ring == Ring::Creeping;
-    let unknowns = 2 * BASE_HARMONICS[0].len() * FEWEST_VECTORS * bench.reduction().sectors();
+    let whole_space = bench.reduction().is_whole_space();
+    let vectors = if whole_space {
+        0
+    } else {
+        bench.space(base).most_vectors
+    };
+    let unknowns = 2 * BASE_HARMONICS[0].len() * vectors * bench.reduction().sectors();
     study.has_friction()
         && !study.contact.as_ref().is_some_and(creeping)
         && study.contact_variations.is_empty()
         && study.solver.amplitude == AmplitudeMeasure::Fundamental
-        && !bench.reduction().is_whole_space()
         && unknowns > LARGEST_WHOLE_JACOBIAN
 }
 

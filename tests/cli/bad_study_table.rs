@@ -316,6 +316,30 @@ pub const CASES: &[Case] = &[
     ),
     (
         "[1, 3]",
+        "[0, 1, 3]\nhigher_harmonics = \"tuned\"",
+        &[
+            "solver.higher_harmonics",
+            "has 0",
+            "accepted here: \"mistuned\"",
+        ],
+    ),
+    (
+        "[1, 3]",
+        "[1, 3]\nsearch_harmonics = \"all\"\nhigher_harmonics = \"tuned\"",
+        &["solver.higher_harmonics", "search_harmonics"],
+    ),
+    (
+        "[1, 3]",
+        "[1, 3]\namplitude = \"time_maximum\"\nhigher_harmonics = \"tuned\"",
+        &["solver.higher_harmonics", "time_maximum"],
+    ),
+    (
+        "[1, 3]",
+        "[1, 3]\nhigher_harmonics = \"all\"",
+        &["higher_harmonics", "mistuned", "tuned"],
+    ),
+    (
+        "[1, 3]",
         "[1]\nharmonic_tolerance = 2",
         &["solver.harmonic_tolerance = 2", "1e-6"],
     ),
