@@ -98,6 +98,9 @@ pub enum Command {
         /// The file to write: .csv or .parquet.
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
+        /// Load case, where the study has several.
+        #[arg(long, value_name = "NAME")]
+        load_case: Option<String>,
         /// Engine order, where the study lists several.
         #[arg(long, value_name = "EO")]
         engine_order: Option<u32>,

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::{NumericalError, RotationFacts, Warning};
 use crate::model::reduction::ContactDisplacementErrors;
+use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{
     Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics, StopOutcome,
 };
@@ -101,6 +102,9 @@ impl BasisSummary {
 pub struct ScenarioSummary {
     /// Index.
     pub scenario: usize,
+    /// Load case; absent: the study has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_case: Option<LoadCaseName>,
     /// Engine order.
     pub engine_order: u32,
     /// Standard deviation, if the study has one.
@@ -127,9 +131,21 @@ pub struct ScenarioSummary {
     pub separated_rows: Option<f64>,
 }
 
+impl ScenarioSummary {
+    /// Whether both differ in nothing but the contact condition.
+    pub(super) fn same_group(&self, other: &Self) -> bool {
+        self.load_case == other.load_case
+            && self.engine_order == other.engine_order
+            && self.standard_deviation == other.standard_deviation
+    }
+}
+
 /// The contact condition with the lowest amplitude among those studied.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BestLoad {
+    /// Load case; absent: the study has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_case: Option<LoadCaseName>,
     /// Engine order.
     pub engine_order: u32,
     /// Standard deviation, if the study has one.
@@ -236,6 +252,7 @@ fn scenario_summary(record: &ScenarioRecord) -> ScenarioSummary {
     } = record;
     ScenarioSummary {
         scenario: scenario.index,
+        load_case: scenario.load_case,
         engine_order: scenario.engine_order,
         standard_deviation: scenario.standard_deviation,
         contact: scenario.contact.name(),
@@ -251,12 +268,10 @@ fn scenario_summary(record: &ScenarioRecord) -> ScenarioSummary {
     }
 }
 
-/// For each engine order and standard deviation, the lowest tuned and the lowest P95 amplitude.
+/// For each excitation and standard deviation, the lowest tuned and the lowest P95 amplitude.
 fn best_loads(scenarios: &[ScenarioSummary]) -> Vec<BestLoad> {
     let mut best = Vec::new();
-    let groups = scenarios.chunk_by(|a, b| {
-        a.engine_order == b.engine_order && a.standard_deviation == b.standard_deviation
-    });
+    let groups = scenarios.chunk_by(ScenarioSummary::same_group);
     for group in groups.filter(|group| group.len() > 1) {
         let tuned = |scenario: &ScenarioSummary| scenario.tuned_amplitude_m;
         let p95 = |scenario: &ScenarioSummary| {
@@ -282,6 +297,7 @@ fn lowest(
         .min_by(|a, b| a.1.total_cmp(&b.1))?;
     let loads = || group.iter().filter_map(|scenario| scenario.normal_load_n);
     Some(BestLoad {
+        load_case: scenario.load_case,
         engine_order: scenario.engine_order,
         standard_deviation: scenario.standard_deviation,
         quantity,

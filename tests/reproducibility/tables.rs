@@ -12,6 +12,7 @@ fn header(compression: Compression) -> TableHeader {
     TableHeader {
         study_digest: "abc".to_owned(),
         compression,
+        load_cases: Vec::new(),
     }
 }
 
