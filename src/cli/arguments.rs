@@ -165,9 +165,9 @@ pub enum Command {
     },
     /// Compare a percentile between scenarios, on common patterns where there are any.
     ///
-    /// Within one results folder each scenario is compared with the first of its engine order and
-    /// standard deviation; between folders, with the scenario of the first folder that has the same
-    /// engine order, standard deviation and load.
+    /// Within one results folder each scenario is compared with the first of its load case, engine order
+    /// and standard deviation; between folders, with the scenario of the first folder that has the same
+    /// load case, engine order, standard deviation and load.
     Compare(CompareArguments),
     /// Search for the normal load with the lowest percentile, on the same patterns at every load.
     Optimum(OptimumArguments),

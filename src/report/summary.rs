@@ -113,6 +113,9 @@ pub struct ScenarioSummary {
     pub contact: &'static str,
     /// Normal load per sector, N.
     pub normal_load_n: Option<f64>,
+    /// Speed that the normal load is that of, revolutions per minute; absent: it is written in newtons.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_rpm: Option<f64>,
     /// How the tuned solution ended.
     pub tuned_status: &'static str,
     /// Tuned peak amplitude, m.
@@ -132,6 +135,16 @@ pub struct ScenarioSummary {
 }
 
 impl ScenarioSummary {
+    /// Speed at which the engine order meets the tuned peak, revolutions per minute: the crossing of the
+    /// Campbell diagram; none for engine order 0.
+    #[must_use]
+    pub fn crossing_rpm(&self) -> Option<f64> {
+        let order = f64::from(self.engine_order);
+        self.tuned_frequency_hz
+            .filter(|_| order > 0.0)
+            .map(|hz| 60.0 * hz / order)
+    }
+
     /// Whether both differ in nothing but the contact condition.
     pub(super) fn same_group(&self, other: &Self) -> bool {
         self.load_case == other.load_case
@@ -203,7 +216,11 @@ impl StudySummary {
     /// The summary of the scenarios of a study.
     #[must_use]
     pub fn new(context: &SummaryContext, records: &[ScenarioRecord]) -> Self {
-        let scenarios: Vec<ScenarioSummary> = records.iter().map(scenario_summary).collect();
+        let rotation = context.rotation.as_ref();
+        let scenarios: Vec<ScenarioSummary> = records
+            .iter()
+            .map(|record| scenario_summary(record, rotation))
+            .collect();
         let mut rows = Accounting::default();
         for scenario in &scenarios {
             rows.merge(&scenario.rows);
@@ -244,7 +261,7 @@ impl StudySummary {
     }
 }
 
-fn scenario_summary(record: &ScenarioRecord) -> ScenarioSummary {
+fn scenario_summary(record: &ScenarioRecord, rotation: Option<&RotationFacts>) -> ScenarioSummary {
     let ScenarioRecord {
         scenario,
         tuned,
@@ -257,6 +274,9 @@ fn scenario_summary(record: &ScenarioRecord) -> ScenarioSummary {
         standard_deviation: scenario.standard_deviation,
         contact: scenario.contact.name(),
         normal_load_n: scenario.contact.normal_load_n(),
+        speed_rpm: rotation
+            .zip(scenario.contact.normal_load_n())
+            .and_then(|(rotation, load_n)| rotation.speed_of(load_n)),
         tuned_status: tuned.status.name(),
         tuned_amplitude_m: tuned.amplitude_m,
         tuned_frequency_hz: tuned.frequency_hz,

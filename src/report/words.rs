@@ -88,7 +88,7 @@ pub fn setting(group: &GroupReport) -> String {
 
 /// `text` with its units held to their numbers by spaces that do not break.
 pub(super) fn tied(text: &str) -> String {
-    const UNITS: [&str; 7] = ["%", "N", "Hz", "m", "mm", "µm", "nm"];
+    const UNITS: [&str; 9] = ["%", "N", "MPa", "rpm", "Hz", "m", "mm", "µm", "nm"];
     let mut tied = String::with_capacity(text.len() + 16);
     for word in text.split(' ') {
         if !tied.is_empty() {

@@ -126,7 +126,8 @@ impl StudyDigest {
 
 /// Takes the places of the force files out of a list, whose members have no names of their own.
 fn without_places(resolved: &mut Value) {
-    let cases = resolved["excitation"]["load_case"].as_array_mut();
+    let cases = resolved.pointer_mut("/excitation/load_case");
+    let cases = cases.and_then(Value::as_array_mut);
     for case in cases.into_iter().flatten() {
         if let Some(force) = case.get_mut("force") {
             *force = Value::from("file");

@@ -211,14 +211,10 @@ fn resolve(
     let stop = raw
         .stop
         .and_then(|raw| stop(check, &raw, mistuning.patterns));
-    let accuracy = raw.accuracy.and_then(|raw| accuracy(check, &raw));
-    if accuracy.is_some() && !excited.load_cases.is_empty() {
-        check.conflict(
-            "accuracy",
-            "settings are chosen by the error under one force vector; accepted: a study without \
-             excitation.load_case, or the settings themselves",
-        );
-    }
+    let load_cases = !excited.load_cases.is_empty();
+    let accuracy = raw
+        .accuracy
+        .and_then(|raw| accuracy(check, &raw, load_cases));
     let study = Study {
         path: path.to_owned(),
         map: SourceMap::default(),
