@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::raw::{RawHead, RawModel, RawModelKind, RawStudy};
+use super::raw::{RawContact, RawHead, RawModel, RawModelKind, RawStudy};
 use super::source_map::SourceMap;
 use super::validate_accuracy::accuracy;
 use super::validate_contact::contact_variations;
@@ -174,23 +174,7 @@ fn resolve(
         .contact
         .as_mut()
         .map(|raw| std::mem::take(&mut raw.variation));
-    let contact = raw.contact.map(|raw| ContactOptions {
-        law: raw.law.unwrap_or(ContactLaw::Simplified3d),
-        friction_coefficient: check.required(
-            "contact.friction_coefficient",
-            raw.friction_coefficient,
-            |value| (0.0..=10.0).contains(&value),
-            "a number from 0 to 10",
-        ),
-        tangential_stiffness_n_per_m: check.required(
-            "contact.tangential_stiffness_n_per_m",
-            raw.tangential_stiffness_n_per_m,
-            |value| value.is_finite() && value > 0.0,
-            "a finite number above 0, in N/m",
-        ),
-        normal_stiffness_n_per_m: raw.normal_stiffness_n_per_m,
-        ring: raw.ring.unwrap_or_default(),
-    });
+    let contact = raw.contact.map(|raw| contact_options(check, &raw));
     if let Some(contact) = &contact {
         normal_stiffness(check, contact);
         if contact.law == ContactLaw::Coulomb3d && contact.ring == Ring::Creeping {
@@ -398,6 +382,26 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
                 );
             }
         }
+    }
+}
+
+fn contact_options(check: &mut Check, raw: &RawContact) -> ContactOptions {
+    ContactOptions {
+        law: raw.law.unwrap_or(ContactLaw::Simplified3d),
+        friction_coefficient: check.required(
+            "contact.friction_coefficient",
+            raw.friction_coefficient,
+            |value| (0.0..=10.0).contains(&value),
+            "a number from 0 to 10",
+        ),
+        tangential_stiffness_n_per_m: check.required(
+            "contact.tangential_stiffness_n_per_m",
+            raw.tangential_stiffness_n_per_m,
+            |value| value.is_finite() && value > 0.0,
+            "a finite number above 0, in N/m",
+        ),
+        normal_stiffness_n_per_m: raw.normal_stiffness_n_per_m,
+        ring: raw.ring.unwrap_or_default(),
     }
 }
 

@@ -481,7 +481,12 @@ fn load_cases_are_accepted_and_refused_by_the_parser_and_by_the_schema() {
             findings(&text)
         );
     }
-    // What keys have to do with each other is known to the parser alone.
+}
+
+/// What keys have to do with each other is known to the parser alone.
+#[test]
+fn keys_of_load_cases_that_do_not_fit_together_are_refused() {
+    let good = with_load_cases(("", ""));
     for (part, bad, key, words) in [
         (
             "name = \"own\"",
