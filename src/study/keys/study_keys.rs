@@ -6,14 +6,6 @@ use super::Value::{
 use super::key::{Entry, REQUIRED, entry};
 use super::{Range, Value};
 
-/// Parameters that `[contact.variation]` can let vary.
-pub(super) const CONTACT_PARAMETERS: [&str; 4] = [
-    "friction_coefficient",
-    "tangential_stiffness",
-    "normal_stiffness",
-    "normal_load",
-];
-
 const ABOVE_ZERO: Value = Number(Range::above(0.0));
 const SHARE: Value = Number(Range::above(0.0).below(1.0));
 const MODES: Value = Whole(1, 1000);
