@@ -56,6 +56,7 @@ fn main() {
         smallest(|| case.peak(pattern, &case.excited(pattern, case.harmonics()), LOAD));
     let scenario = Scenario {
         index: 0,
+        load_case: None,
         engine_order: 3,
         standard_deviation: None,
         contact: LOAD,

@@ -98,6 +98,9 @@ pub enum Command {
         /// The file to write: .csv or .parquet.
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
+        /// Load case, where the study has several.
+        #[arg(long, value_name = "NAME")]
+        load_case: Option<String>,
         /// Engine order, where the study lists several.
         #[arg(long, value_name = "EO")]
         engine_order: Option<u32>,
@@ -162,9 +165,9 @@ pub enum Command {
     },
     /// Compare a percentile between scenarios, on common patterns where there are any.
     ///
-    /// Within one results folder each scenario is compared with the first of its engine order and
-    /// standard deviation; between folders, with the scenario of the first folder that has the same
-    /// engine order, standard deviation and load.
+    /// Within one results folder each scenario is compared with the first of its load case, engine order
+    /// and standard deviation; between folders, with the scenario of the first folder that has the same
+    /// load case, engine order, standard deviation and load.
     Compare(CompareArguments),
     /// Search for the normal load with the lowest percentile, on the same patterns at every load.
     Optimum(OptimumArguments),

@@ -19,6 +19,21 @@ pub(super) fn command(
     if let Some(folder) = export {
         bundle::write(&model, folder).map_err(PipelineError::from)?;
         output::message(&format!("wrote the sector bundle {}", folder.display()));
+        let shares = model
+            .contact_pairs
+            .iter()
+            .any(|pair| pair.load_weight.is_some());
+        if shares {
+            output::message(
+                &"the bundle has no shares of the normal load: a study of it shares the load by weight, unless it has \
+                 contact.normal_load.share = \"equilibrium\" itself",
+            );
+        }
+        if !model.load_case_forces.is_empty() {
+            output::message(
+                &"the bundle has the force vector of the model, not those of load cases",
+            );
+        }
     }
     let engine = ReducedEngineSource.build(&study, &model, None)?;
     let mut report = engine.model_report();

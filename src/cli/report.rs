@@ -8,6 +8,7 @@ use clap::builder::PossibleValuesParser;
 
 use super::run_command::Failure;
 use super::{ExitStatus, output};
+use crate::population::monte_carlo::LoadCaseName;
 use crate::population::table::write_atomically;
 use crate::report::{
     Answer, FIGURES, GroupReport, StudyReport, Wheels, answers, figure, html_report, setting,
@@ -46,6 +47,9 @@ pub struct PlotArguments {
     /// The SVG file to write [default: FIGURE.svg].
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Load case, where the study has several.
+    #[arg(long, value_name = "NAME")]
+    load_case: Option<String>,
     /// Engine order, where the study lists several.
     #[arg(long, value_name = "EO")]
     engine_order: Option<u32>,
@@ -146,7 +150,9 @@ fn chosen<'a>(
     let fits = |group: &&GroupReport| {
         let order = arguments.engine_order;
         let deviation = arguments.standard_deviation;
-        order.is_none_or(|order| order == group.engine_order)
+        let case = group.load_case.as_ref().map(LoadCaseName::as_str);
+        (arguments.load_case.is_none() || arguments.load_case.as_deref() == case)
+            && order.is_none_or(|order| order == group.engine_order)
             && deviation.is_none_or(|deviation| Some(deviation) == group.standard_deviation)
     };
     let fitting: Vec<&GroupReport> = found.groups.iter().filter(fits).collect();
@@ -156,16 +162,17 @@ fn chosen<'a>(
     let choices: Vec<String> = found
         .groups
         .iter()
-        .map(|group| match group.standard_deviation {
-            Some(deviation) => format!(
-                "--engine-order {} --standard-deviation {deviation}",
-                group.engine_order
-            ),
-            None => format!("--engine-order {}", group.engine_order),
+        .map(|group| {
+            let case = group.load_case;
+            let case = case.map_or_else(String::new, |name| format!("--load-case {name} "));
+            let deviation = group.standard_deviation;
+            let deviation =
+                deviation.map_or_else(String::new, |s| format!(" --standard-deviation {s}"));
+            format!("{case}--engine-order {}{deviation}", group.engine_order)
         })
         .collect();
     Err(Failure::usage(format!(
-        "the study has several engine orders or standard deviations, or not this one; accepted: {}",
+        "the study has several load cases, engine orders or standard deviations, or not this one; accepted: {}",
         choices.join("; ")
     )))
 }

@@ -8,6 +8,7 @@ use serde_json::json;
 use super::fidelity::{Fidelity, FidelityArguments};
 use super::run_command::Failure;
 use super::{ExitStatus, output};
+use crate::population::monte_carlo::LoadCaseName;
 use crate::population::table::{CurveFormat, TableHeader, write_curve, write_traced_curve};
 use crate::response::forced_response::ContactCondition;
 use crate::response::friction::Ring;
@@ -126,6 +127,7 @@ pub(super) struct ResponseArguments {
     pub(super) load: LoadArgument,
     pub(super) frequencies: FrequencyGrid,
     pub(super) out: PathBuf,
+    pub(super) load_case: Option<String>,
     pub(super) engine_order: Option<u32>,
     pub(super) standard_deviation: Option<f64>,
     pub(super) fidelity: FidelityArguments,
@@ -145,10 +147,12 @@ pub(super) fn command(arguments: &ResponseArguments) -> Result<ExitStatus, Failu
         .fidelity
         .applied_to(Study::read(&arguments.study)?)?;
     let frequencies_hz = arguments.frequencies.frequencies_hz();
+    let excited = excited(&study, arguments.load_case.as_deref())?;
     let request = CurveRequest {
         pattern: arguments.pattern.0,
         contact: arguments.load.0,
-        engine_order: engine_order(&study, arguments.engine_order)?,
+        load_case: excited.name,
+        engine_order: engine_order(excited.engine_orders, arguments.engine_order)?,
         standard_deviation: match arguments.pattern.0 {
             None => None,
             Some(_) => standard_deviation(&study, arguments.standard_deviation)?,
@@ -158,6 +162,7 @@ pub(super) fn command(arguments: &ResponseArguments) -> Result<ExitStatus, Failu
     let header = TableHeader {
         study_digest: StudyDigest::of(&study)?.hex(),
         compression: study.output.compression,
+        load_cases: Vec::new(),
     };
     if arguments.continuation {
         return followed(arguments, &study, request, format, &header);
@@ -303,16 +308,63 @@ fn in_words(curve: &TracedCurve) -> String {
     lines.join("\n")
 }
 
-fn engine_order(study: &Study, asked: Option<u32>) -> Result<u32, Failure> {
+/// A load case with its engine orders; without a name where the study has none.
+struct Excited<'a> {
+    name: Option<LoadCaseName>,
+    engine_orders: &'a [u32],
+}
+
+fn excited<'a>(study: &'a Study, asked: Option<&str>) -> Result<Excited<'a>, Failure> {
+    let names = || {
+        let names: Vec<&str> = study
+            .load_cases
+            .iter()
+            .map(|case| case.name.as_str())
+            .collect();
+        names.join(", ")
+    };
+    let case = match (asked, study.load_cases.as_slice()) {
+        (None, []) => {
+            return Ok(Excited {
+                name: None,
+                engine_orders: &study.engine_orders,
+            });
+        }
+        (None, [only]) => only,
+        (Some(asked), cases) => cases
+            .iter()
+            .find(|case| case.name.as_str() == asked)
+            .ok_or_else(|| {
+                Failure::usage(match cases {
+                    [] => format!("--load-case {asked}: the study has no excitation.load_case"),
+                    _ => format!(
+                        "--load-case {asked} is not in the study; accepted: {}",
+                        names()
+                    ),
+                })
+            })?,
+        (None, _) => {
+            return Err(Failure::usage(format!(
+                "the study has several load cases; give --load-case, one of {}",
+                names()
+            )));
+        }
+    };
+    Ok(Excited {
+        name: Some(case.name),
+        engine_orders: &case.engine_orders,
+    })
+}
+
+fn engine_order(known: &[u32], asked: Option<u32>) -> Result<u32, Failure> {
     let choices = || {
-        study
-            .engine_orders
+        known
             .iter()
             .map(u32::to_string)
             .collect::<Vec<_>>()
             .join(", ")
     };
-    match (asked, study.engine_orders.as_slice()) {
+    match (asked, known) {
         (Some(order), orders) if orders.contains(&order) => Ok(order),
         (None, [only]) => Ok(*only),
         (Some(order), _) => Err(Failure::usage(format!(

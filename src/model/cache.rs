@@ -42,6 +42,9 @@ pub fn reduction_digest(model: &SectorModel, key: &str) -> String {
         model.force,
         model.observed,
     ));
+    if !model.load_case_forces.is_empty() {
+        text(&format!("{:?}", model.load_case_forces));
+    }
     for matrix in [&model.stiffness, &model.mass, &model.blade_stiffness] {
         for (row, column, value) in matrix.lower_entries() {
             hasher.update(&(row as u64).to_le_bytes());

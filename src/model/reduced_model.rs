@@ -79,7 +79,7 @@ pub struct ReducedNodalDiameter {
     pub contact: Matrix<Complex64>,
     /// Displacement r, theta, z of the first observed node, `3 x n_modes`; zero where it has none.
     pub observed: Matrix<Complex64>,
-    /// `B^H f` of the sector's force amplitude, `n_modes x 1`.
+    /// `B^H f` of the sector's force amplitude, `n_modes x 1`; a column per load case where there are several.
     pub force: Matrix<Complex64>,
     /// `B^T f`: the same for the conjugate wave.
     pub conjugate_force: Matrix<Complex64>,
@@ -143,6 +143,21 @@ impl ReducedModel {
             .iter()
             .find(of)
             .map_or(1.0, |&(_, factor)| factor)
+    }
+
+    /// The same wheel under one of several load cases, the one in column `column` of its forces, with
+    /// factors of its own on the force vector under single engine orders.
+    #[must_use]
+    pub fn under(&self, column: usize, force_factors: Vec<(u32, f64)>) -> Self {
+        let mut model = self.clone();
+        for nd in &mut model.nodal_diameters {
+            nd.force = nd.force.column_range(column, column + 1);
+            nd.conjugate_force = nd.conjugate_force.column_range(column, column + 1);
+        }
+        Self {
+            force_factors,
+            ..model
+        }
     }
 
     /// Number of real modal coordinates of the wheel: every nodal diameter but 0 and N/2 twice.

@@ -1,5 +1,6 @@
 //! The answers that a report opens with: which normal load, how sure, and how much of it is numerical error.
 
+use super::summary_text::four_digits;
 use super::words::{Quantities, load_with_unit, percent_words, share_words};
 use super::{
     BestLoads, CommonErrors, GroupReport, LoadChoice, NumericalError, PercentileError,
@@ -46,7 +47,11 @@ impl Writer<'_> {
 
     fn load_of(&self, index: usize) -> String {
         let scenario = self.scenario(index);
-        load_with_unit(scenario.contact, scenario.normal_load_n)
+        let load = load_with_unit(scenario.contact, scenario.normal_load_n);
+        match scenario.speed_rpm {
+            Some(speed) => format!("{load} ({speed} rpm)"),
+            None => load,
+        }
     }
 
     fn error_of(
@@ -85,9 +90,10 @@ impl Writer<'_> {
         };
         let value = found.percentile.value.unwrap_or(f64::NAN);
         let verdict = format!(
-            "{}: P{percent} = {}.",
+            "{}: P{percent} = {}{}.",
             self.load_of(lowest),
             self.units.amplitude(value),
+            self.as_stress(value),
         );
         let mut reasons = vec![self.how_sure(lowest, &found.percentile)];
         match &choice.best {
@@ -109,6 +115,14 @@ impl Writer<'_> {
             verdict,
             reasons,
         }
+    }
+
+    /// An amplitude as stress, where the study has a scale.
+    fn as_stress(&self, amplitude_m: f64) -> String {
+        let scale = self.report.summary.stress_pa_per_m;
+        scale.map_or_else(String::new, |pa_per_m| {
+            format!(" ({} MPa)", four_digits(1e-6 * pa_per_m * amplitude_m))
+        })
     }
 
     /// The interval of a percentile, and what the percentile means.

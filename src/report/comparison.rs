@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use crate::population::monte_carlo::Scenario;
+use crate::population::monte_carlo::{LoadCaseName, Scenario};
 use crate::population::statistics::{PairFacts, Percentile, PercentileComparison, Quantity};
 
 /// A results folder of a comparison.
@@ -27,6 +27,9 @@ pub struct ComparedScenario {
     pub folder: usize,
     /// Index in its folder.
     pub scenario: usize,
+    /// Load case; absent: the study has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_case: Option<LoadCaseName>,
     /// Engine order.
     pub engine_order: u32,
     /// Standard deviation, if the study has one.
@@ -44,6 +47,7 @@ impl ComparedScenario {
         Self {
             folder,
             scenario: scenario.index,
+            load_case: scenario.load_case,
             engine_order: scenario.engine_order,
             standard_deviation: scenario.standard_deviation,
             contact: scenario.contact.name(),

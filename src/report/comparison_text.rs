@@ -171,8 +171,10 @@ fn load_of(scenario: &ComparedScenario) -> String {
 
 fn group(scenario: &ComparedScenario) -> String {
     let deviation = scenario.standard_deviation;
+    let case = scenario.load_case;
     format!(
-        "EO {}{}",
+        "{}EO {}{}",
+        case.map_or_else(String::new, |name| format!("{name}, ")),
         scenario.engine_order,
         deviation.map_or_else(String::new, |s| format!(", {} %", trimmed(100.0 * s)))
     )

@@ -6,8 +6,9 @@ use std::fmt;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::summary_text::{four_digits, load, trimmed};
+use super::summary_text::{excitation, four_digits, load, trimmed};
 use super::text_table::TextTable;
+use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{
     Accounting, Allocation, EstimateTarget, MeanEstimate, PointStatus, Quantity, SamplingMethod,
     TwoPhasePercentile,
@@ -51,6 +52,9 @@ pub struct ScenarioEstimate {
     pub scenario: usize,
     /// `full`, or the linear limit.
     pub contact: String,
+    /// Load case; absent: the study has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_case: Option<LoadCaseName>,
     /// Engine order.
     pub engine_order: u32,
     /// Normal load per sector, N.
@@ -127,8 +131,8 @@ impl fmt::Display for ScenarioEstimate {
         });
         writeln!(
             f,
-            "\nengine order {}{deviation}, load {}: {} rows solved, {} failed",
-            self.engine_order,
+            "\n{}{deviation}, load {}: {} rows solved, {} failed",
+            excitation(self.load_case, self.engine_order),
             load(&self.contact, self.normal_load_n),
             self.rows.planned(),
             self.rows.failed()

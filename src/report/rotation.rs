@@ -22,6 +22,16 @@ pub struct RotationFacts {
 }
 
 impl RotationFacts {
+    /// The speed that a normal load is that of, revolutions per minute; none for one written in newtons.
+    #[must_use]
+    pub fn speed_of(&self, normal_load_n: f64) -> Option<f64> {
+        let loads = self.normal_load_n.iter().zip(&self.speed_rpm);
+        loads
+            .filter(|(own, _)| own.total_cmp(&normal_load_n).is_eq())
+            .map(|(_, &speed)| speed)
+            .next()
+    }
+
     /// Speeds with their loads, in words.
     #[must_use]
     pub fn loads(&self) -> String {

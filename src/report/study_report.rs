@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::{AccuracyTrials, BestLoads, StatedErrors, StudySummary, WheelReport};
+use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{Percentile, Quantity, TailFit};
 use crate::population::table::AccuracyLadder;
 
@@ -44,6 +45,9 @@ pub struct Provenance {
 /// The loads of one engine order and standard deviation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GroupReport {
+    /// Load case; absent: the study has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_case: Option<LoadCaseName>,
     /// Engine order.
     pub engine_order: u32,
     /// Standard deviation, if the study has one.

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::{NumericalError, RotationFacts, Warning};
 use crate::model::reduction::ContactDisplacementErrors;
+use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{
     Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics, StopOutcome,
 };
@@ -101,6 +102,9 @@ impl BasisSummary {
 pub struct ScenarioSummary {
     /// Index.
     pub scenario: usize,
+    /// Load case; absent: the study has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_case: Option<LoadCaseName>,
     /// Engine order.
     pub engine_order: u32,
     /// Standard deviation, if the study has one.
@@ -109,6 +113,9 @@ pub struct ScenarioSummary {
     pub contact: &'static str,
     /// Normal load per sector, N.
     pub normal_load_n: Option<f64>,
+    /// Speed that the normal load is that of, revolutions per minute; absent: it is written in newtons.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_rpm: Option<f64>,
     /// How the tuned solution ended.
     pub tuned_status: &'static str,
     /// Tuned peak amplitude, m.
@@ -127,9 +134,31 @@ pub struct ScenarioSummary {
     pub separated_rows: Option<f64>,
 }
 
+impl ScenarioSummary {
+    /// Speed at which the engine order meets the tuned peak, revolutions per minute: the crossing of the
+    /// Campbell diagram; none for engine order 0.
+    #[must_use]
+    pub fn crossing_rpm(&self) -> Option<f64> {
+        let order = f64::from(self.engine_order);
+        self.tuned_frequency_hz
+            .filter(|_| order > 0.0)
+            .map(|hz| 60.0 * hz / order)
+    }
+
+    /// Whether both differ in nothing but the contact condition.
+    pub(super) fn same_group(&self, other: &Self) -> bool {
+        self.load_case == other.load_case
+            && self.engine_order == other.engine_order
+            && self.standard_deviation == other.standard_deviation
+    }
+}
+
 /// The contact condition with the lowest amplitude among those studied.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BestLoad {
+    /// Load case; absent: the study has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_case: Option<LoadCaseName>,
     /// Engine order.
     pub engine_order: u32,
     /// Standard deviation, if the study has one.
@@ -187,7 +216,11 @@ impl StudySummary {
     /// The summary of the scenarios of a study.
     #[must_use]
     pub fn new(context: &SummaryContext, records: &[ScenarioRecord]) -> Self {
-        let scenarios: Vec<ScenarioSummary> = records.iter().map(scenario_summary).collect();
+        let rotation = context.rotation.as_ref();
+        let scenarios: Vec<ScenarioSummary> = records
+            .iter()
+            .map(|record| scenario_summary(record, rotation))
+            .collect();
         let mut rows = Accounting::default();
         for scenario in &scenarios {
             rows.merge(&scenario.rows);
@@ -228,7 +261,7 @@ impl StudySummary {
     }
 }
 
-fn scenario_summary(record: &ScenarioRecord) -> ScenarioSummary {
+fn scenario_summary(record: &ScenarioRecord, rotation: Option<&RotationFacts>) -> ScenarioSummary {
     let ScenarioRecord {
         scenario,
         tuned,
@@ -236,10 +269,14 @@ fn scenario_summary(record: &ScenarioRecord) -> ScenarioSummary {
     } = record;
     ScenarioSummary {
         scenario: scenario.index,
+        load_case: scenario.load_case,
         engine_order: scenario.engine_order,
         standard_deviation: scenario.standard_deviation,
         contact: scenario.contact.name(),
         normal_load_n: scenario.contact.normal_load_n(),
+        speed_rpm: rotation
+            .zip(scenario.contact.normal_load_n())
+            .and_then(|(rotation, load_n)| rotation.speed_of(load_n)),
         tuned_status: tuned.status.name(),
         tuned_amplitude_m: tuned.amplitude_m,
         tuned_frequency_hz: tuned.frequency_hz,
@@ -251,12 +288,10 @@ fn scenario_summary(record: &ScenarioRecord) -> ScenarioSummary {
     }
 }
 
-/// For each engine order and standard deviation, the lowest tuned and the lowest P95 amplitude.
+/// For each excitation and standard deviation, the lowest tuned and the lowest P95 amplitude.
 fn best_loads(scenarios: &[ScenarioSummary]) -> Vec<BestLoad> {
     let mut best = Vec::new();
-    let groups = scenarios.chunk_by(|a, b| {
-        a.engine_order == b.engine_order && a.standard_deviation == b.standard_deviation
-    });
+    let groups = scenarios.chunk_by(ScenarioSummary::same_group);
     for group in groups.filter(|group| group.len() > 1) {
         let tuned = |scenario: &ScenarioSummary| scenario.tuned_amplitude_m;
         let p95 = |scenario: &ScenarioSummary| {
@@ -282,6 +317,7 @@ fn lowest(
         .min_by(|a, b| a.1.total_cmp(&b.1))?;
     let loads = || group.iter().filter_map(|scenario| scenario.normal_load_n);
     Some(BestLoad {
+        load_case: scenario.load_case,
         engine_order: scenario.engine_order,
         standard_deviation: scenario.standard_deviation,
         quantity,

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::text_table::TextTable;
 use super::{BestLoad, NumericalError, ScenarioSummary, StudySummary};
+use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{PointStatus, SampleStatistics, ScenarioLook, StopOutcome};
 
 /// A unit of length in which amplitudes are shown.
@@ -65,9 +66,7 @@ impl fmt::Display for StudySummary {
             writeln!(f, "{}", stress_line(scale, &self.scenarios))?;
         }
         let unit = unit_of(&self.scenarios);
-        let groups = self.scenarios.chunk_by(|a, b| {
-            a.engine_order == b.engine_order && a.standard_deviation == b.standard_deviation
-        });
+        let groups = self.scenarios.chunk_by(ScenarioSummary::same_group);
         for group in groups {
             writeln!(f, "\n{}", heading(&group[0]))?;
             write!(f, "{}", amplitudes(group, unit))?;
@@ -151,16 +150,13 @@ fn stress_line(pa_per_m: f64, scenarios: &[ScenarioSummary]) -> String {
 }
 
 fn heading(scenario: &ScenarioSummary) -> String {
+    let excitation = excitation(scenario.load_case, scenario.engine_order);
     match scenario.standard_deviation {
         Some(deviation) => format!(
-            "engine order {}, standard deviation {} %",
-            scenario.engine_order,
+            "{excitation}, standard deviation {} %",
             trimmed(100.0 * deviation)
         ),
-        None => format!(
-            "engine order {}, patterns from a file",
-            scenario.engine_order
-        ),
+        None => format!("{excitation}, patterns from a file"),
     }
 }
 
@@ -249,12 +245,18 @@ fn best_line(best: &BestLoad, unit: Unit) -> String {
         "; not enclosed by a lower and a higher load"
     };
     format!(
-        "lowest {what} (engine order {}{deviation}): {} {} at load {}{place}",
-        best.engine_order,
+        "lowest {what} ({}{deviation}): {} {} at load {}{place}",
+        excitation(best.load_case, best.engine_order),
         four_digits(best.amplitude_m / unit.metres),
         unit.name,
         load(best.contact, best.normal_load_n),
     )
+}
+
+/// Load case, where there is one, and engine order.
+pub(super) fn excitation(load_case: Option<LoadCaseName>, engine_order: u32) -> String {
+    let case = load_case.map_or_else(String::new, |name| format!("load case {name}, "));
+    format!("{case}engine order {engine_order}")
 }
 
 pub(super) fn load(contact: &str, normal_load_n: Option<f64>) -> String {

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::StudySummary;
-use super::summary_text::{four_digits, load};
+use super::summary_text::{excitation, four_digits, load};
 use super::text_table::TextTable;
 use crate::population::statistics::{
     Estimate, FitStatus, Percentile, TailFit, TailLaw, TailPercentile,
@@ -54,10 +54,10 @@ fn heading(record: &TailFitRecord) -> String {
     let scenario = &record.scenario;
     let deviation = scenario.standard_deviation;
     format!(
-        "tail of {} at load {}, engine order {}{}\n",
+        "tail of {} at load {}, {}{}\n",
         record.quantity.name(),
         load(scenario.contact.name(), scenario.contact.normal_load_n()),
-        scenario.engine_order,
+        excitation(scenario.load_case, scenario.engine_order),
         deviation.map_or_else(String::new, |s| format!(
             ", standard deviation {} %",
             100.0 * s

@@ -4,8 +4,9 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::summary_text::excitation;
 use super::text_table::TextTable;
-use crate::population::monte_carlo::{ResponseRow, Scenario};
+use crate::population::monte_carlo::{LoadCaseName, ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;
 use crate::response::time_integration::{PeriodicMotion, PointComparison, Stability};
 
@@ -37,6 +38,9 @@ pub struct TimeDomainReport {
     pub scenario: usize,
     /// Pattern id.
     pub pattern: u32,
+    /// Load case; absent: the study has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_case: Option<LoadCaseName>,
     /// Engine order.
     pub engine_order: u32,
     /// Normal load, N per sector.
@@ -127,6 +131,7 @@ impl TimeDomainReport {
             study_digest: study_digest.to_owned(),
             scenario: scenario.index,
             pattern: row.pattern,
+            load_case: scenario.load_case,
             engine_order: scenario.engine_order,
             normal_load_n: scenario.contact.normal_load_n(),
             harmonics: row.harmonics.clone(),
@@ -176,11 +181,11 @@ impl fmt::Display for TimeDomainReport {
         };
         writeln!(
             f,
-            "study {}: scenario {}, pattern {}, engine order {}, {} N, {} Hz, harmonics {}, basis {}",
+            "study {}: scenario {}, pattern {}, {}, {} N, {} Hz, harmonics {}, basis {}",
             self.name,
             self.scenario,
             self.pattern,
-            self.engine_order,
+            excitation(self.load_case, self.engine_order),
             self.normal_load_n
                 .map_or_else(|| "-".to_owned(), |load| load.to_string()),
             self.frequency_hz

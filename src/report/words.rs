@@ -1,6 +1,6 @@
 //! Words and units of a report: the same in its text, its tables and its figures.
 
-use super::summary_text::{Unit, four_digits, load, trimmed, unit_of};
+use super::summary_text::{Unit, excitation, four_digits, load, trimmed, unit_of};
 use super::{GroupReport, StudySummary};
 
 /// The unit in which amplitudes of a report are shown.
@@ -73,22 +73,22 @@ pub(super) fn share_words(ratio: f64) -> String {
     format!("{percent:.decimals$} %")
 }
 
-/// Engine order and standard deviation of a group, in words.
+/// Load case, engine order and standard deviation of a group, in words.
 #[must_use]
 pub fn setting(group: &GroupReport) -> String {
+    let excitation = excitation(group.load_case, group.engine_order);
     match group.standard_deviation {
         Some(deviation) => format!(
-            "engine order {}, standard deviation {} %",
-            group.engine_order,
+            "{excitation}, standard deviation {} %",
             trimmed(100.0 * deviation)
         ),
-        None => format!("engine order {}, patterns from a file", group.engine_order),
+        None => format!("{excitation}, patterns from a file"),
     }
 }
 
 /// `text` with its units held to their numbers by spaces that do not break.
 pub(super) fn tied(text: &str) -> String {
-    const UNITS: [&str; 7] = ["%", "N", "Hz", "m", "mm", "µm", "nm"];
+    const UNITS: [&str; 9] = ["%", "N", "MPa", "rpm", "Hz", "m", "mm", "µm", "nm"];
     let mut tied = String::with_capacity(text.len() + 16);
     for word in text.split(' ') {
         if !tied.is_empty() {

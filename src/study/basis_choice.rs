@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::PipelineError;
 use super::contact_displacement::ContactMotion;
+use super::load_cases::Excitation;
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::model::reduction::{
@@ -117,6 +118,16 @@ pub fn choose_basis(
     options: &ReductionOptions,
     judged: Judged<'_>,
 ) -> Result<(BasisChoice, BasisEvidence), PipelineError> {
+    choose_basis_under(reduction, options, &[(None, judged)])
+}
+
+/// The same by the tuned peaks under several force vectors, each with its own settings: the largest of
+/// all errors counts.
+pub(super) fn choose_basis_under(
+    reduction: &Reduction<'_>,
+    options: &ReductionOptions,
+    cases: &[(Option<&Excitation>, Judged<'_>)],
+) -> Result<(BasisChoice, BasisEvidence), PipelineError> {
     if reduction.is_whole_space() {
         let evidence = BasisEvidence {
             whole_space: true,
@@ -125,18 +136,33 @@ pub fn choose_basis(
         };
         return Ok((BasisChoice::CraigBampton, evidence));
     }
-    let whole = Arc::new(reduction.tuned(BasisChoice::CraigBampton)?);
-    let reference = Peaks::of(&whole, judged)?;
-    let motions = reference.contact_motions(&whole, judged)?;
+    let whole = reduction.tuned(BasisChoice::CraigBampton)?;
+    let wholes: Vec<ReducedModel> = cases.iter().map(|(case, _)| under(*case, &whole)).collect();
+    let of_cases = |models: &[ReducedModel]| -> Result<Vec<Peaks>, PipelineError> {
+        let models = models.iter().zip(cases);
+        models
+            .map(|(model, (_, judged))| Peaks::of(model, *judged))
+            .collect()
+    };
+    let reference = of_cases(&wholes)?;
+    let mut motions = Vec::new();
+    for ((peaks, whole), (_, judged)) in reference.iter().zip(&wholes).zip(cases) {
+        motions.push(peaks.contact_motions(whole, *judged)?);
+    }
     let mut tried: Vec<(BasisChoice, BasisError)> = Vec::new();
     for choice in candidates(reduction, options) {
-        let model = Arc::new(reduction.tuned(choice)?);
-        let peaks = Peaks::of(&model, judged)?;
+        let model = reduction.tuned(choice)?;
+        let models: Vec<ReducedModel> =
+            cases.iter().map(|(case, _)| under(*case, &model)).collect();
+        let errors = of_cases(&models)?;
+        let errors = errors.iter().zip(&reference);
         let own = BasisError {
             basis: choice.to_string(),
             vectors: vectors(reduction, choice),
-            error: peaks.error(&reference),
-            contact_displacement: largest_displacement_error(&motions, &model),
+            error: errors
+                .map(|(own, reference)| own.error(reference))
+                .try_fold(0.0, |largest: f64, error| Some(largest.max(error?))),
+            contact_displacement: largest_displacement_error(&motions, &models),
         };
         let enough = own.excess(options.error) <= 1.0;
         tried.push((choice, own));
@@ -160,10 +186,19 @@ pub fn choose_basis(
         choice,
         BasisEvidence {
             whole_space: false,
-            craig_bampton_reach: reference.reach(reduction, judged),
+            craig_bampton_reach: reference
+                .iter()
+                .zip(cases)
+                .filter_map(|(peaks, (_, judged))| peaks.reach(reduction, *judged))
+                .min_by(f64::total_cmp),
             tried: tried.into_iter().map(|(_, own)| own).collect(),
         },
     ))
+}
+
+/// The model under a load case; without one, as it is.
+fn under(case: Option<&Excitation>, model: &ReducedModel) -> ReducedModel {
+    case.map_or_else(|| model.clone(), |case| case.of(model))
 }
 
 /// Bases to try, the cheapest first; one that the user fixed stands alone.
@@ -218,12 +253,13 @@ fn vectors(reduction: &Reduction<'_>, choice: BasisChoice) -> usize {
 
 /// Largest error of the contact displacement over the tuned peaks; none without any.
 fn largest_displacement_error(
-    motions: &[ContactMotion<'_>],
-    model: &ReducedModel,
+    motions: &[Vec<ContactMotion<'_>>],
+    models: &[ReducedModel],
 ) -> Option<ContactDisplacementErrors> {
     motions
         .iter()
-        .map(|motion| motion.errors_of(model))
+        .zip(models)
+        .flat_map(|(motions, model)| motions.iter().map(|motion| motion.errors_of(model)))
         .reduce(|a, b| Some(a?.larger(b?)))?
 }
 

@@ -281,8 +281,7 @@ pub(super) fn same_patterns(a: &ResultColumns, b: &ResultColumns) -> bool {
 }
 
 fn same_group(a: &ScenarioColumns, b: &ScenarioColumns) -> bool {
-    a.scenario.engine_order == b.scenario.engine_order
-        && a.scenario.standard_deviation == b.scenario.standard_deviation
+    a.scenario.same_group(&b.scenario)
 }
 
 fn same_keys(a: &ScenarioColumns, b: &ScenarioColumns) -> bool {

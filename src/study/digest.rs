@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{MistuningSource, ModelSource, Study, StudyError};
+use super::{ForceSource, MistuningSource, ModelSource, Study, StudyError};
 use crate::population::monte_carlo::Scenario;
 use crate::population::table::digest_file;
 
@@ -43,19 +43,31 @@ impl StudyDigest {
     pub fn of(study: &Study) -> Result<Self, StudyError> {
         let inputs = input_digests(study)?;
         let mut number_keys = BTreeMap::new();
-        flatten("", &study.resolved(), &mut number_keys);
+        let mut resolved = study.resolved();
+        without_places(&mut resolved);
+        flatten("", &resolved, &mut number_keys);
         number_keys.retain(|key, _| !NEUTRAL.iter().any(|neutral| key.starts_with(neutral)));
         number_keys.insert("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned());
         // The content of an input and its role count, not where it lies.
         for (name, digest) in &inputs {
+            let of_load_case = study.load_cases.iter().filter(|case| match &case.force {
+                ForceSource::File { written, .. } => written == name,
+                _ => false,
+            });
+            let mut roles: Vec<String> = of_load_case
+                .map(|case| format!("excitation.load_case/{}", case.name))
+                .collect();
             let in_bundle = match &study.model {
                 ModelSource::Bundle { written, .. } => name.strip_prefix(&format!("{written}/")),
                 _ => None,
             };
-            let role = in_bundle.map_or("mistuning.file".to_owned(), |file| {
-                format!("model.bundle/{file}")
-            });
-            number_keys.insert(format!("input {role}"), digest.clone());
+            roles.extend(in_bundle.map(|file| format!("model.bundle/{file}")));
+            if roles.is_empty() {
+                roles.push("mistuning.file".to_owned());
+            }
+            for role in roles {
+                number_keys.insert(format!("input {role}"), digest.clone());
+            }
         }
         Ok(Self {
             number_keys,
@@ -89,6 +101,9 @@ impl StudyDigest {
             scenario.contact,
         );
         hasher.update(format!("{keys:?}\n{engine}").as_bytes());
+        if let Some(load_case) = &scenario.load_case {
+            hasher.update(format!("\n{load_case}").as_bytes());
+        }
         hasher.finalize().to_hex().to_string()
     }
 
@@ -106,6 +121,17 @@ impl StudyDigest {
             })
             .filter(|(_, theirs, ours)| theirs != ours)
             .collect()
+    }
+}
+
+/// Takes the places of the force files out of a list, whose members have no names of their own.
+fn without_places(resolved: &mut Value) {
+    let cases = resolved.pointer_mut("/excitation/load_case");
+    let cases = cases.and_then(Value::as_array_mut);
+    for case in cases.into_iter().flatten() {
+        if let Some(force) = case.get_mut("force") {
+            *force = Value::from("file");
+        }
     }
 }
 
@@ -142,6 +168,11 @@ fn input_digests(study: &Study) -> Result<BTreeMap<String, String>, StudyError> 
         add(format!("{written}/model.toml"), &header)?;
         for file in files_of_bundle(&header) {
             add(format!("{written}/{file}"), &path.join(&file))?;
+        }
+    }
+    for case in &study.load_cases {
+        if let ForceSource::File { written, path } = &case.force {
+            add(written.clone(), path)?;
         }
     }
     if let MistuningSource::File { written, path, .. } = &study.mistuning.source {

@@ -90,6 +90,7 @@ pub fn estimate(
         header: TableHeader {
             study_digest: digest.hex(),
             compression: study.output.compression,
+            load_cases: TableHeader::load_cases_of(&study.scenarios()),
         },
         progress,
     };
@@ -201,7 +202,10 @@ impl Work<'_> {
                     ..*scenario
                 }],
                 row_digests: vec![row_digest.to_owned()],
-                header: self.header.clone(),
+                header: TableHeader {
+                    load_cases: scenario.load_case.into_iter().collect(),
+                    ..self.header.clone()
+                },
             },
             tuned: TunedReference {
                 scenario: 0,
@@ -243,6 +247,7 @@ impl Work<'_> {
         let found = ScenarioEstimate {
             scenario: scenario.index,
             contact: scenario.contact.name().to_owned(),
+            load_case: scenario.load_case,
             engine_order: scenario.engine_order,
             normal_load_n: scenario.contact.normal_load_n(),
             standard_deviation: scenario.standard_deviation,

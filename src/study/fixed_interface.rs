@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::basis_choice::judged_conditions;
 use super::full_model::reference_settings;
+use super::load_cases::Excitation;
 use super::reduced_engine::{contact_stiffness, row_settings};
 use super::{MistuningSource, PipelineError, Study};
 use crate::model::ReducedModel;
@@ -75,7 +76,7 @@ pub fn reduce_sector<'a>(
     sector: &'a SectorModel,
 ) -> Result<(Reduction<'a>, FixedInterface), PipelineError> {
     let fixed = study.reduction.craig_bampton_modes;
-    let compared = Compared::new(study)?;
+    let compared = ComparedCases::new(study)?;
     let mut tried = Vec::new();
     let first = fixed.unwrap_or(ReductionOptions::FIRST_CRAIG_BAMPTON_MODES);
     let mut coarse = Rung::new(study, sector, first);
@@ -145,9 +146,8 @@ impl<'a> Rung<'a> {
     }
 
     /// The tuned wheel with every contact dof, in the nodal diameters `waves`.
-    fn model(&self, waves: &[usize]) -> Result<Arc<ReducedModel>, PipelineError> {
-        let model = self.reduction.tuned_in(BasisChoice::CraigBampton, waves)?;
-        Ok(Arc::new(model))
+    fn model(&self, waves: &[usize]) -> Result<ReducedModel, PipelineError> {
+        Ok(self.reduction.tuned_in(BasisChoice::CraigBampton, waves)?)
     }
 
     fn taken(
@@ -181,7 +181,45 @@ fn largest_change(own: &[Option<TunedPeak>], other: &[Option<TunedPeak>]) -> Opt
         .reduce(f64::max)
 }
 
-/// The tuned peaks that are compared: of every engine order, at the loads that judge a basis too.
+/// The tuned peaks that are compared, under every force vector of the study.
+struct ComparedCases(Vec<(Excitation, Compared)>);
+
+impl ComparedCases {
+    fn new(study: &Study) -> Result<Self, PipelineError> {
+        let cases = study.excitations().into_iter().map(|case| {
+            let compared = Compared::new(&case.study)?;
+            Ok((case, compared))
+        });
+        cases.collect::<Result<_, PipelineError>>().map(Self)
+    }
+
+    fn waves(&self, sectors: usize) -> Vec<usize> {
+        let cases = self.0.iter();
+        let mut waves: Vec<usize> = cases
+            .flat_map(|(_, compared)| compared.waves(sectors))
+            .collect();
+        waves.sort_unstable();
+        waves.dedup();
+        waves
+    }
+
+    /// The peaks of one force vector after those of the other.
+    fn peaks(
+        &self,
+        model: &ReducedModel,
+        known: Option<&[Option<TunedPeak>]>,
+    ) -> Result<Vec<Option<TunedPeak>>, PipelineError> {
+        let mut peaks = Vec::new();
+        for (case, compared) in &self.0 {
+            let own = peaks.len()..peaks.len() + compared.cases.len();
+            let known = known.map(|known| &known[own]);
+            peaks.extend(compared.peaks(&Arc::new(case.of(model)), known)?);
+        }
+        Ok(peaks)
+    }
+}
+
+/// The tuned peaks that are compared under one force vector: of every engine order, at the loads that judge a basis too.
 struct Compared {
     row: RowSettings,
     cases: Vec<Scenario>,
@@ -212,6 +250,7 @@ impl Compared {
         let cases = study.engine_orders.iter().flat_map(|&engine_order| {
             conditions.iter().map(move |&contact| Scenario {
                 index: 0,
+                load_case: None,
                 engine_order,
                 standard_deviation: None,
                 contact,

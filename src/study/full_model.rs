@@ -9,9 +9,9 @@ use super::{PipelineError, Study};
 use crate::model::ReducedModel;
 use crate::model::reduction::BasisChoice;
 use crate::model::sector::SectorModel;
-use crate::population::monte_carlo::{RowSettings, RowSolver, Scenario};
+use crate::population::monte_carlo::{LoadCaseName, RowSettings, RowSolver, Scenario};
 use crate::population::table::CurvePoint;
-use crate::response::forced_response::{ContactCondition, FrequencyBand, Harmonics};
+use crate::response::forced_response::{FrequencyBand, Harmonics};
 use crate::response::harmonic_balance::{HarmonicTransform, Status, TransformError};
 use crate::response::mistuning::Pattern;
 use crate::response::reference::{
@@ -23,13 +23,22 @@ const SCOUT_MODES: usize = 6;
 
 /// The Craig-Bampton model with every contact dof, and the settings of a study.
 pub struct FullModel {
-    model: Arc<ReducedModel>,
+    /// Under each force vector of the study.
+    cases: Vec<FullCase>,
+    /// Settings of the rows, but for the amplitude of the force.
     row: RowSettings,
-    /// Says where the linear limits of a row resonate; no nonlinear solution is taken from it.
-    scout: RowSolver,
     samples_per_period: usize,
     /// Whether the study leaves the harmonics to the program, and none were asked for instead.
     automatic: bool,
+}
+
+/// The model under one force vector.
+struct FullCase {
+    name: Option<LoadCaseName>,
+    model: Arc<ReducedModel>,
+    amplitude_n: f64,
+    /// Says where the linear limits of a row resonate; no nonlinear solution is taken from it.
+    scout: RowSolver,
 }
 
 /// Temporal harmonics and samples of a solution on the full-contact model.
@@ -85,12 +94,23 @@ impl FullModel {
             stick: SCOUT_MODES,
             slide: SCOUT_MODES,
         };
+        let whole = reduction.reduce(BasisChoice::CraigBampton, cantilever)?;
+        let scout = reduction.reduce(scout, cantilever)?;
+        let cases = study.excitations().into_iter().map(|case| {
+            let amplitude_n = case.study.amplitude_n;
+            let settings = RowSettings {
+                amplitude_n,
+                ..settings.clone()
+            };
+            Ok(FullCase {
+                name: case.name,
+                model: Arc::new(case.of(&whole)),
+                amplitude_n,
+                scout: RowSolver::new(Arc::new(case.of(&scout)), settings)?,
+            })
+        });
         let full = Self {
-            model: Arc::new(reduction.reduce(BasisChoice::CraigBampton, cantilever)?),
-            scout: RowSolver::new(
-                Arc::new(reduction.reduce(scout, cantilever)?),
-                settings.clone(),
-            )?,
+            cases: cases.collect::<Result<_, PipelineError>>()?,
             samples_per_period: options.samples_per_period,
             automatic: options.harmonics.is_none() && study.solver.harmonics == Harmonics::Auto,
             row: settings,
@@ -99,25 +119,32 @@ impl FullModel {
         Ok(full)
     }
 
-    /// Harmonic set under an engine order and contact condition: the one asked for, else that of the
+    /// The force vector of a scenario, or the first.
+    fn case(&self, scenario: &Scenario) -> &FullCase {
+        let of = |case: &&FullCase| case.name == scenario.load_case;
+        self.cases.iter().find(of).unwrap_or(&self.cases[0])
+    }
+
+    /// Harmonic set under the excitation and contact condition of a scenario: the one asked for, else that of the
     /// study, which is the one that a run of the study chooses there where it is automatic.
     ///
     /// # Errors
     /// The samples per period of the study cannot tell the harmonics apart.
-    pub fn harmonics(
-        &self,
-        engine_order: u32,
-        contact: ContactCondition,
-    ) -> Result<Vec<u32>, PipelineError> {
+    pub fn harmonics(&self, scenario: &Scenario) -> Result<Vec<u32>, PipelineError> {
         let given = &self.row.harmonics;
         if !self.automatic {
             return Ok(given.clone());
         }
+        let case = self.case(scenario);
+        let row = RowSettings {
+            amplitude_n: case.amplitude_n,
+            ..self.row.clone()
+        };
         let chosen = choose_harmonics(
-            &self.model,
-            &self.row,
-            &[engine_order],
-            &[contact],
+            &case.model,
+            &row,
+            &[scenario.engine_order],
+            &[scenario.contact],
             given,
             Some(self.row.solver.harmonic_tolerance),
         )?;
@@ -131,7 +158,7 @@ impl FullModel {
     /// Number of complex coordinates of the wheel.
     #[must_use]
     pub fn size(&self) -> usize {
-        self.model.wheel_size()
+        self.cases[0].model.wheel_size()
     }
 
     /// Samples per period.
@@ -143,9 +170,10 @@ impl FullModel {
     /// Peak of one row, or of the tuned wheel.
     #[must_use]
     pub fn peak(&self, row: FullRow<'_>) -> ReferencePeak {
-        let plan = self
-            .scout
-            .search_plan(row.scenario, row.pattern, row.tuned_hz);
+        let plan =
+            self.case(row.scenario)
+                .scout
+                .search_plan(row.scenario, row.pattern, row.tuned_hz);
         let solver = self.solver(row.scenario, row.pattern, row.settings);
         match (plan, solver) {
             (Ok(plan), Ok(mut solver)) => {
@@ -171,7 +199,7 @@ impl FullModel {
         settings: &ReferenceSettings,
         frequencies_hz: &[f64],
     ) -> Vec<CurvePoint> {
-        let sectors = self.model.sectors as u32;
+        let sectors = self.cases[0].model.sectors as u32;
         let mut solver = self.solver(scenario, pattern, settings);
         let mut points = Vec::new();
         for &frequency_hz in frequencies_hz {
@@ -216,7 +244,12 @@ impl FullModel {
             contact,
             ..
         } = *scenario;
-        ReferenceSolver::new(&self.model, settings, engine_order, contact, pattern)
+        let case = self.case(scenario);
+        let settings = ReferenceSettings {
+            amplitude_n: case.amplitude_n,
+            ..settings.clone()
+        };
+        ReferenceSolver::new(&case.model, &settings, engine_order, contact, pattern)
     }
 }
 

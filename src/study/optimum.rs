@@ -72,7 +72,10 @@ pub fn find_optimum(
 fn refuse(request: &OptimumRequest<'_>) -> Result<(), PipelineError> {
     let study = request.study;
     let needed = smallest_sample(request.percent / 100.0, CONFIDENCE);
-    let reason = if study.engine_orders.len() != 1 || study.standard_deviations.len() != 1 {
+    let reason = if study.load_cases.len() > 1 {
+        "a search takes a study with one force vector; accepted: one excitation.load_case, or none"
+            .to_owned()
+    } else if study.engine_orders.len() != 1 || study.standard_deviations.len() != 1 {
         "a search takes a study with one engine order and one standard deviation".to_owned()
     } else if study.contact.is_none() {
         "the study has no [contact], so there is no normal load to search".to_owned()

@@ -52,6 +52,7 @@ pub fn audit_peaks(
         let header = TableHeader {
             study_digest: stored.manifest.study_digest.clone(),
             compression: stored.study.output.compression,
+            load_cases: stored.load_cases(),
         };
         let path = folder.path().join("peak_audit.parquet");
         write_peak_audit(&path, &records, &header, seed)?;

@@ -43,7 +43,7 @@ impl Facts {
         let mut tuned: Vec<TunedReference> = Vec::new();
         for scenario in &scenarios {
             let same = scenarios[..tuned.len()].iter().position(|other| {
-                other.engine_order == scenario.engine_order && other.contact == scenario.contact
+                other.same_excitation(scenario) && other.contact == scenario.contact
             });
             tuned.push(match same {
                 Some(same) => TunedReference {
@@ -134,6 +134,7 @@ impl<'a> TableWork<'a> {
                 header: TableHeader {
                     study_digest: digest.hex(),
                     compression: study.output.compression,
+                    load_cases: TableHeader::load_cases_of(&study.scenarios()),
                 },
             },
             study,

@@ -152,6 +152,18 @@ pub(super) struct RawRayleigh {
 pub(super) struct RawExcitation {
     pub engine_orders: Option<Vec<u32>>,
     pub amplitude_n: Option<RawNumbers>,
+    pub load_case: Option<Vec<RawLoadCase>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawLoadCase {
+    pub name: Option<String>,
+    pub force: Option<String>,
+    pub node: Option<String>,
+    pub direction: Option<Vec<f64>>,
+    pub engine_orders: Option<Vec<u32>>,
+    pub amplitude_n: Option<RawNumbers>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]

@@ -1,38 +1,30 @@
 //! The engine of the program: a sector model reduced for a study, cached, and ready to be solved.
 
 use std::path::Path;
-use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::accurate_engine::accurate_engine;
-use super::basis_choice::{
-    BasisEvidence, Judged, choose_basis, judged_conditions, judged_variations,
-};
+use super::basis_choice::BasisEvidence;
 use super::fixed_interface::{FixedInterface, reduce_sector, sensitivity_vectors};
-use super::harmonic_choice::{choose_harmonics, with_separation};
+use super::reduced_study::{Stored, models_digest, reduced, solver_of};
 use super::{Engine, EngineSource, PipelineError, Study, SurrogateOf};
-use crate::model::reduction::{Basis, BasisChoice, ContactStiffness, Reduction, ReductionOptions};
+use crate::model::reduction::ContactStiffness;
 use crate::model::sector::SectorModel;
-use crate::model::{ReducedModel, read_cached, reduction_digest, write_cached};
+use crate::model::{read_cached, reduction_digest, write_cached};
 use crate::population::monte_carlo::{
-    HarmonicChoice, ResponseRow, RowSettings, RowSolver, Scenario, TunedReference,
+    LoadCaseName, ResponseRow, RowSettings, RowSolver, Scenario, TunedReference,
 };
 use crate::population::table::CurvePoint;
 use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
-use crate::response::forced_response::{
-    Harmonics, HigherHarmonics, ResponseTrace, RowsBeyondTolerance, SearchPlan,
-};
+use crate::response::forced_response::{Harmonics, ResponseTrace, SearchPlan};
 use crate::response::friction::{ContactLaw, ContactOptions, PairParameters, Ring};
-use crate::response::harmonic_balance::{Status, TransformError};
+use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
 use crate::response::time_integration::{PointComparison, TimeOptions};
 
 /// Harmonics that an automatic set begins with.
 const FIRST_HARMONICS: [u32; 1] = [1];
-/// Share of the harmonic tolerance by which the set for rows beyond it is chosen.
-const BEYOND_TOLERANCE: f64 = 0.25;
 
 /// Reduces a model for a study with the basis that the study asks for.
 #[derive(Debug, Clone, Copy, Default)]
@@ -43,6 +35,8 @@ struct ReducedEngine {
     solver: RowSolver,
     evidence: BasisEvidence,
     fixed_interface: FixedInterface,
+    /// Names of the load cases; one absent name where there are none.
+    load_cases: Vec<Option<LoadCaseName>>,
     /// Whether the study says how many fixed-interface modes there are.
     fixed_modes: bool,
     wanted_error: f64,
@@ -51,26 +45,6 @@ struct ReducedEngine {
     models: String,
     sector_dofs: usize,
     observed: Vec<String>,
-}
-
-/// What the cache keeps.
-#[derive(Serialize, Deserialize)]
-struct Stored {
-    model: ReducedModel,
-    evidence: BasisEvidence,
-    fixed_interface: FixedInterface,
-    harmonics: Vec<HarmonicChoice>,
-    beyond: Option<StoredBeyond>,
-    /// The tuned wheel that harmonics other than 1 are taken in, where the study asks for it.
-    tuned_harmonics: Option<ReducedModel>,
-}
-
-/// The model and sets for rows that the others are not good enough for.
-#[derive(Serialize, Deserialize)]
-struct StoredBeyond {
-    model: ReducedModel,
-    basis_error: f64,
-    harmonics: Vec<HarmonicChoice>,
 }
 
 impl EngineSource for ReducedEngineSource {
@@ -98,13 +72,17 @@ impl EngineSource for ReducedEngineSource {
             study.nodal_diameter_damping,
             study.amplitudes_n
         );
+        let key = match study.load_cases.as_slice() {
+            [] => key,
+            load_cases => format!("{key} {load_cases:?}"),
+        };
         let digest = reduction_digest(model, &key);
         let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
         let stored = if let Some(stored) = cached {
             stored
         } else {
             let (reduction, fixed_interface) = reduce_sector(study, model)?;
-            let stored = reduced(study, &reduction, fixed_interface, &settings)?;
+            let stored = reduced(study, &reduction, fixed_interface)?;
             if let Some(folder) = cache {
                 write_cached(folder, &digest, &stored)?;
             }
@@ -114,8 +92,13 @@ impl EngineSource for ReducedEngineSource {
             evidence: stored.evidence.clone(),
             fixed_interface: stored.fixed_interface.clone(),
             models: models_digest(&stored),
+            load_cases: study
+                .excited_orders()
+                .into_iter()
+                .map(|own| own.0)
+                .collect(),
             fixed_modes: study.reduction.craig_bampton_modes.is_some(),
-            solver: solver_of(study, stored, settings)?,
+            solver: solver_of(study, &stored)?,
             wanted_error: study.reduction.error,
             digest,
             sector_dofs: model.dofs.len(),
@@ -198,17 +181,35 @@ impl Engine for ReducedEngine {
     }
 
     fn chosen_settings(&self) -> Value {
+        let sets = |of: &dyn Fn(&RowSolver) -> Vec<Value>| -> Vec<Value> {
+            let solvers = self.load_cases.iter().zip(self.solver.of_load_cases());
+            let named = solvers.flat_map(|(name, solver)| {
+                let sets = of(solver).into_iter();
+                sets.map(move |mut set| {
+                    if let Some(name) = name {
+                        set["load_case"] = json!(name);
+                    }
+                    set
+                })
+            });
+            named.collect()
+        };
+        let choices = |solver: &RowSolver| -> Vec<Value> {
+            let choices = solver.choices().map(|choice| json!(choice));
+            choices.collect()
+        };
         json!({
             "basis": self.solver.basis().model().basis.to_string(),
-            "harmonics": self.solver.choices().collect::<Vec<_>>(),
+            "harmonics": sets(&choices),
             "beyond": self.solver.beyond().map(|beyond| json!({
                 "basis": beyond.basis().model().basis_name(),
-                "harmonics": beyond.choices().collect::<Vec<_>>(),
+                "harmonics": sets(&|solver| solver.beyond().map(choices).unwrap_or_default()),
             })),
         })
     }
 
     fn rows_made_from(&self, scenario: &Scenario) -> String {
+        let own = self.solver.under(scenario);
         let of = |solver: &RowSolver| -> Vec<String> {
             solver
                 .choices()
@@ -219,12 +220,7 @@ impl Engine for ReducedEngine {
                 .map(|choice| format!("{choice:?}"))
                 .collect()
         };
-        format!(
-            "{} {:?} {:?}",
-            self.models,
-            of(&self.solver),
-            self.solver.beyond().map(of)
-        )
+        format!("{} {:?} {:?}", self.models, of(own), own.beyond().map(of))
     }
 
     fn tuned(&self, scenario: &Scenario) -> TunedReference {
@@ -268,7 +264,7 @@ impl Engine for ReducedEngine {
         frequencies_hz: &[f64],
     ) -> Vec<CurvePoint> {
         let sectors = self.solver.basis().model().sectors as u32;
-        let solved = self.solver.curve(
+        let solved = self.solver.under(scenario).curve(
             scenario.engine_order,
             scenario.contact,
             pattern,
@@ -297,7 +293,7 @@ impl Engine for ReducedEngine {
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
     ) -> Result<[ResponseTrace; 2], Status> {
-        self.solver.traces(
+        self.solver.under(scenario).traces(
             scenario.engine_order,
             scenario.contact,
             pattern,
@@ -314,123 +310,6 @@ impl Engine for ReducedEngine {
     ) -> Result<PointComparison, Status> {
         self.solver.compare_in_time(pattern, scenario, row, options)
     }
-}
-
-/// Harmonics, basis and reduced model of a study, and those for rows beyond them: harmonics by
-/// the full contact model, then the basis that carries these harmonics.
-fn reduced(
-    study: &Study,
-    reduction: &Reduction<'_>,
-    fixed_interface: FixedInterface,
-    settings: &RowSettings,
-) -> Result<Stored, PipelineError> {
-    let automatic = study.solver.harmonics == Harmonics::Auto;
-    let tolerance = automatic.then_some(study.solver.harmonic_tolerance);
-    let full = Arc::new(reduction.reduce(BasisChoice::CraigBampton, None)?);
-    let sets = |first: &[u32], tolerance| {
-        choose_harmonics(
-            &full,
-            settings,
-            &study.engine_orders,
-            &study.contacts,
-            first,
-            tolerance,
-        )
-    };
-    let tuned_harmonics =
-        study.has_friction() && settings.solver.higher_harmonics == HigherHarmonics::Tuned;
-    let conditions = judged_conditions(&study.contacts);
-    let varied = judged_variations(&study.contact_variations);
-    let basis = |options: &ReductionOptions, sets: &[HarmonicChoice]| {
-        let judged = Judged {
-            settings,
-            engine_orders: &study.engine_orders,
-            conditions: &conditions,
-            sets,
-            varied: &varied,
-            tuned_harmonics: tuned_harmonics.then_some(&full),
-        };
-        choose_basis(reduction, options, judged)
-    };
-    let modes = study.mistuning.cantilever_mode_count;
-    let harmonics = sets(&settings.harmonics, tolerance)?;
-    let (choice, evidence) = basis(&study.reduction, &harmonics)?;
-    let follows = study.reduction.basis == Basis::Auto && study.reduction.stick_modes.is_none();
-    let by_modes = matches!(choice, BasisChoice::StickSlide { .. }) && follows;
-    let resolves = automatic && study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
-    let separates = study
-        .contact
-        .as_ref()
-        .is_some_and(|contact| contact.law.has_variable_load());
-    let on_separation = separates && (by_modes || automatic);
-    let beyond = if study.has_friction() && (on_separation || resolves) {
-        let mut harmonics = if resolves {
-            let larger = tolerance.map(|tolerance| BEYOND_TOLERANCE * tolerance);
-            sets(&settings.harmonics, larger)?
-        } else {
-            harmonics.clone()
-        };
-        if automatic && separates {
-            harmonics = with_separation(&full, settings, harmonics)?;
-        }
-        let options = ReductionOptions {
-            basis: if by_modes {
-                Basis::StickAttachment
-            } else {
-                study.reduction.basis
-            },
-            ..study.reduction.clone()
-        };
-        let (choice, evidence) = basis(&options, &harmonics)?;
-        Some(StoredBeyond {
-            model: reduction.reduce(choice, modes)?,
-            basis_error: basis_error(&evidence),
-            harmonics,
-        })
-    } else {
-        None
-    };
-    Ok(Stored {
-        model: reduction.reduce(choice, modes)?,
-        evidence,
-        fixed_interface,
-        harmonics,
-        beyond,
-        tuned_harmonics: tuned_harmonics
-            .then(|| reduction.tuned(BasisChoice::CraigBampton))
-            .transpose()?,
-    })
-}
-
-/// Measured error of the basis that was taken; 0 where nothing was left out.
-fn basis_error(evidence: &BasisEvidence) -> f64 {
-    evidence
-        .tried
-        .last()
-        .map_or(0.0, |tried| tried.error.unwrap_or(f64::INFINITY))
-}
-
-fn solver_of(
-    study: &Study,
-    stored: Stored,
-    settings: RowSettings,
-) -> Result<RowSolver, TransformError> {
-    // Either part is measured on its own: what the basis leaves out of the Craig-Bampton model, and
-    // what that model leaves out of the sector.
-    let truncation = stored.fixed_interface.error.unwrap_or(f64::INFINITY);
-    let error = basis_error(&stored.evidence) + truncation;
-    let tuned_harmonics = stored.tuned_harmonics.map(Arc::new);
-    let solver = RowSolver::new(Arc::new(stored.model), settings.clone())?
-        .with_choices(stored.harmonics, error)?
-        .with_tuned_harmonics(tuned_harmonics.clone());
-    let Some(beyond) = stored.beyond else {
-        return Ok(solver);
-    };
-    let finer = RowSolver::new(Arc::new(beyond.model), settings)?
-        .with_choices(beyond.harmonics, beyond.basis_error + truncation)?
-        .with_tuned_harmonics(tuned_harmonics);
-    let inexact = study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
-    Ok(solver.with_beyond(finer, inexact))
 }
 
 /// The physics of a row as the study states it.
@@ -474,23 +353,4 @@ pub(super) fn contact_stiffness(contact: Option<&ContactOptions>) -> ContactStif
             ContactLaw::Simplified3d | ContactLaw::Coulomb3d => tangential,
         },
     }
-}
-
-/// Digest of the reduced models and the errors that their rows state.
-fn models_digest(stored: &Stored) -> String {
-    let mut hasher = blake3::Hasher::new();
-    let mut add = |model: &ReducedModel, error: f64| {
-        // A model that could not be written down could not be cached either.
-        let bytes = postcard::to_stdvec(model).unwrap_or_default();
-        hasher.update(&bytes);
-        hasher.update(&error.to_bits().to_le_bytes());
-    };
-    add(&stored.model, basis_error(&stored.evidence));
-    if let Some(beyond) = &stored.beyond {
-        add(&beyond.model, beyond.basis_error);
-    }
-    if let Some(model) = &stored.tuned_harmonics {
-        add(model, 0.0);
-    }
-    hasher.finalize().to_hex().to_string()
 }

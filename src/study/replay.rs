@@ -106,7 +106,7 @@ fn full_peaks(
     let asked = settings.harmonics.clone();
     let harmonics = match asked.or_else(|| harmonics_of(&delivered.harmonics)) {
         Some(harmonics) => harmonics,
-        None => full.harmonics(scenario.engine_order, scenario.contact)?,
+        None => full.harmonics(scenario)?,
     };
     let settings = full.settings(&harmonics)?;
     let row = FullRow {

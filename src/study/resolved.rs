@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::source_map::SourceMap;
 use super::validate_accuracy::KEYS_OF_ACCURACY;
-use super::{AccuracyOptions, Mistuning, NodalDiameterTable, RotationLoad};
+use super::{AccuracyOptions, LoadCase, Mistuning, NodalDiameterTable, RotationLoad};
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::monte_carlo::Scenario;
@@ -71,12 +71,14 @@ pub struct Study {
     pub damping: Damping,
     /// Damping of the tuned modes by nodal diameter, besides.
     pub nodal_diameter_damping: Option<NodalDiameterTable>,
-    /// Engine orders, as written.
+    /// Engine orders, as written; with load cases those of all, each once.
     pub engine_orders: Vec<u32>,
     /// Factor on the model's force vector.
     pub amplitude_n: f64,
     /// Factors of the engine orders in their order, each besides `amplitude_n`; empty: all alike.
     pub amplitudes_n: Vec<f64>,
+    /// Load cases, as written; empty: the model's force vector alone, as the three keys above say.
+    pub load_cases: Vec<LoadCase>,
     /// Mistuning and its source.
     pub mistuning: Mistuning,
     /// Normal loads by rotation; none where all are written in newtons.
@@ -96,19 +98,22 @@ pub struct Study {
 }
 
 impl Study {
-    /// The scenarios in product order engine order, standard deviation, normal load.
+    /// The scenarios in product order load case, engine order, standard deviation, normal load.
     #[must_use]
     pub fn scenarios(&self) -> Vec<Scenario> {
         let mut scenarios = Vec::new();
-        for &engine_order in &self.engine_orders {
-            for &standard_deviation in &self.standard_deviations {
-                for &contact in &self.contacts {
-                    scenarios.push(Scenario {
-                        index: scenarios.len(),
-                        engine_order,
-                        standard_deviation,
-                        contact,
-                    });
+        for (load_case, engine_orders) in self.excited_orders() {
+            for &engine_order in engine_orders {
+                for &standard_deviation in &self.standard_deviations {
+                    for &contact in &self.contacts {
+                        scenarios.push(Scenario {
+                            index: scenarios.len(),
+                            load_case,
+                            engine_order,
+                            standard_deviation,
+                            contact,
+                        });
+                    }
                 }
             }
         }
@@ -156,14 +161,7 @@ impl Study {
                     json!({ "rayleigh": { "mass_per_s": mass_per_s, "stiffness_s": stiffness_s } })
                 }
             },
-            "excitation": {
-                "engine_orders": self.engine_orders,
-                "amplitude_n": if self.amplitudes_n.is_empty() {
-                    json!(self.amplitude_n)
-                } else {
-                    json!(self.amplitudes_n)
-                },
-            },
+            "excitation": self.excitation_value(),
             "mistuning": self.mistuning.resolved(),
             "sweep": self.sweep_value(),
             "solver": {

@@ -6,7 +6,7 @@ use super::{
     load_sector_model, pattern_source,
 };
 use crate::model::sector::SectorModel;
-use crate::population::monte_carlo::Scenario;
+use crate::population::monte_carlo::{LoadCaseName, Scenario};
 use crate::population::table::CurvePoint;
 use crate::response::forced_response::ContactCondition;
 use crate::response::mistuning::Pattern;
@@ -18,6 +18,8 @@ pub struct CurveRequest<'a> {
     pub pattern: Option<u32>,
     /// Contact condition; it need not be in the sweep of the study.
     pub contact: ContactCondition,
+    /// Load case; none in a study without.
+    pub load_case: Option<LoadCaseName>,
     /// Engine order.
     pub engine_order: u32,
     /// Standard deviation of the pattern; none for the tuned wheel or patterns from a file.
@@ -68,7 +70,7 @@ pub fn full_response_curve(
 ) -> Result<Vec<CurvePoint>, PipelineError> {
     let wanted = Wanted::of(study, request)?;
     let full = FullModel::build(study, &wanted.sector, settings)?;
-    let harmonics = full.harmonics(request.engine_order, request.contact)?;
+    let harmonics = full.harmonics(&wanted.scenario)?;
     let settings = full.settings(&harmonics)?;
     Ok(full.curve(
         &wanted.scenario,
@@ -115,6 +117,7 @@ impl Wanted {
             pattern,
             scenario: Scenario {
                 index: 0,
+                load_case: request.load_case,
                 engine_order: request.engine_order,
                 standard_deviation: request.standard_deviation,
                 contact: request.contact,

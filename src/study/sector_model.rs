@@ -18,6 +18,7 @@ pub fn load_sector_model(study: &Study) -> Result<SectorModel, PipelineError> {
     })?;
     check_contact(study, &model)?;
     study.check_nodal_diameters(&model)?;
+    let model = study.with_load_cases(model)?;
     Ok(match &study.rotation {
         Some(rotation) => rotation.applied_to(model),
         None => model,

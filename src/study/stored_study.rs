@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::results_folder::verify_tables;
 use super::{EngineSource, PipelineError, Study, StudyDigest, load_sector_model, pattern_source};
 use crate::model::sector::SectorModel;
-use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use crate::population::monte_carlo::{LoadCaseName, ResponseRow, Scenario, TunedReference};
 use crate::population::table::{
     Manifest, ResponseReader, RunRecord, RunState, ScenarioEntry, TableError,
 };
@@ -112,6 +112,13 @@ impl StoredStudy {
         let cache = self.folder.join("model");
         let cache = cache.exists().then_some(cache);
         source.build(&self.study, &model.sector, cache.as_deref())
+    }
+
+    /// Load case of each scenario; empty where the study has none.
+    #[must_use]
+    pub(super) fn load_cases(&self) -> Vec<LoadCaseName> {
+        let entries = self.manifest.scenarios.iter();
+        entries.filter_map(|entry| entry.load_case).collect()
     }
 
     /// A scenario with its tuned reference as delivered; none if there is no such scenario.

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::compare::{HALF_ERROR, best_loads};
 use super::report_wheels::solve_wheels;
 use super::{EngineSource, PipelineError, ResultColumns, ScenarioColumns, StoredStudy, summarise};
-use crate::population::monte_carlo::ResponseRow;
+use crate::population::monte_carlo::{LoadCaseName, ResponseRow};
 use crate::population::statistics::{
     CONFIDENCE, DistributionBand, FitStatus, Quantity, RESAMPLES, TailLaw, fit_extreme_value,
     fit_tails, percentile_at, smallest_sample,
@@ -94,10 +94,7 @@ fn groups_of(columns: &ResultColumns) -> Vec<Range<usize>> {
     let mut start = 0;
     columns
         .scenarios
-        .chunk_by(|a, b| {
-            a.scenario.engine_order == b.scenario.engine_order
-                && a.scenario.standard_deviation == b.scenario.standard_deviation
-        })
+        .chunk_by(|a, b| a.scenario.same_group(&b.scenario))
         .map(|group| {
             let range = start..start + group.len();
             start = range.end;
@@ -134,6 +131,7 @@ fn group_report(columns: &ResultColumns, rows: &[ErrorRows], group: Range<usize>
         })
         .collect();
     GroupReport {
+        load_case: scenarios[0].scenario.load_case,
         engine_order: scenarios[0].scenario.engine_order,
         standard_deviation: scenarios[0].scenario.standard_deviation,
         scenarios: group.collect(),
@@ -164,7 +162,8 @@ fn common_errors(columns: &ResultColumns, scenario: usize) -> CommonErrors {
     let manifest = &columns.manifest;
     let own = &columns.scenarios[scenario].scenario;
     let of_load = |choice: &&Value| {
-        choice["engine_order"] == own.engine_order
+        choice["load_case"].as_str() == own.load_case.as_ref().map(LoadCaseName::as_str)
+            && choice["engine_order"] == own.engine_order
             && choice["contact"]["full"]["normal_load_n"].as_f64() == own.contact.normal_load_n()
             && own.contact.normal_load_n().is_some()
     };

@@ -93,8 +93,9 @@ pub(super) fn summary_of_rows(
 /// The stored rows that a manifest is about.
 pub(super) fn row_store(results: &Path, manifest: &Manifest) -> Result<RowStore, PipelineError> {
     let entries = &manifest.scenarios;
+    let keys: Vec<Scenario> = entries.iter().map(ScenarioEntry::keys).collect();
     let schema = RowSchema {
-        scenarios: entries.iter().map(ScenarioEntry::keys).collect(),
+        scenarios: keys.clone(),
         row_digests: entries
             .iter()
             .map(|entry| entry.row_digest.clone())
@@ -102,6 +103,7 @@ pub(super) fn row_store(results: &Path, manifest: &Manifest) -> Result<RowStore,
         header: TableHeader {
             study_digest: manifest.study_digest.clone(),
             compression: Compression::default(),
+            load_cases: TableHeader::load_cases_of(&keys),
         },
     };
     let rows = finished_rows(results, manifest);

@@ -27,10 +27,12 @@ pub fn fit_result_tails(results: &Path) -> Result<Vec<TailFitRecord>, PipelineEr
             });
         }
     }
+    let scenarios: Vec<_> = columns.scenarios.iter().map(|own| own.scenario).collect();
     let compression = columns.manifest.study["output"]["compression"].clone();
     let header = TableHeader {
         study_digest: columns.manifest.study_digest.clone(),
         compression: serde_json::from_value(compression).unwrap_or(Compression::Zstd),
+        load_cases: TableHeader::load_cases_of(&scenarios),
     };
     write_tail_fits(&results.join("tail_fits.parquet"), &records, &header)?;
     Ok(records)

@@ -68,6 +68,13 @@ pub fn tradeoff(
                 .to_owned(),
         });
     }
+    if !study.load_cases.is_empty() {
+        return Err(PipelineError::NoTradeoff {
+            reason: "settings are measured under one force vector; accepted: a study without \
+                     excitation.load_case"
+                .to_owned(),
+        });
+    }
     let digest = StudyDigest::of(study)?;
     let folder = ResultsFolder::open(request.results)?;
     folder.find(study, &digest, None)?;
@@ -86,6 +93,7 @@ pub fn tradeoff(
     let header = TableHeader {
         study_digest: digest.hex(),
         compression: study.output.compression,
+        load_cases: Vec::new(),
     };
     let records = trade.records();
     let report = trade.report(study, &digest, records, checks);

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use super::raw::{RawExcitation, RawHead, RawModel, RawModelKind, RawNumbers, RawStudy};
+use super::raw::{RawContact, RawHead, RawModel, RawModelKind, RawStudy};
 use super::source_map::SourceMap;
 use super::validate_accuracy::accuracy;
 use super::validate_contact::contact_variations;
 use super::validate_damping::{damping, nodal_diameter_damping};
+use super::validate_excitation::excitation;
 use super::validate_loads::{contacts, rotation};
 use super::validate_mistuning::mistuning;
 use super::validate_solver::{solver, tuned_harmonics};
@@ -162,8 +163,8 @@ fn resolve(
     let nodal_diameter_damping = raw
         .nodal_diameter_damping
         .and_then(|raw| nodal_diameter_damping(check, raw));
-    let (engine_orders, (amplitude_n, amplitudes_n)) =
-        excitation(check, raw.excitation.unwrap_or_default());
+    let excited = excitation(check, path, raw.excitation.unwrap_or_default());
+    let (amplitude_n, amplitudes_n) = excited.amplitudes;
     let sweep = raw.sweep.unwrap_or_default();
     let normal_load = raw.contact.as_mut().and_then(|raw| raw.normal_load.take());
     let contacts = contacts(check, &sweep, normal_load.is_some());
@@ -173,23 +174,7 @@ fn resolve(
         .contact
         .as_mut()
         .map(|raw| std::mem::take(&mut raw.variation));
-    let contact = raw.contact.map(|raw| ContactOptions {
-        law: raw.law.unwrap_or(ContactLaw::Simplified3d),
-        friction_coefficient: check.required(
-            "contact.friction_coefficient",
-            raw.friction_coefficient,
-            |value| (0.0..=10.0).contains(&value),
-            "a number from 0 to 10",
-        ),
-        tangential_stiffness_n_per_m: check.required(
-            "contact.tangential_stiffness_n_per_m",
-            raw.tangential_stiffness_n_per_m,
-            |value| value.is_finite() && value > 0.0,
-            "a finite number above 0, in N/m",
-        ),
-        normal_stiffness_n_per_m: raw.normal_stiffness_n_per_m,
-        ring: raw.ring.unwrap_or_default(),
-    });
+    let contact = raw.contact.map(|raw| contact_options(check, &raw));
     if let Some(contact) = &contact {
         normal_stiffness(check, contact);
         if contact.law == ContactLaw::Coulomb3d && contact.ring == Ring::Creeping {
@@ -212,7 +197,10 @@ fn resolve(
     let stop = raw
         .stop
         .and_then(|raw| stop(check, &raw, mistuning.patterns));
-    let accuracy = raw.accuracy.and_then(|raw| accuracy(check, &raw));
+    let load_cases = !excited.load_cases.is_empty();
+    let accuracy = raw
+        .accuracy
+        .and_then(|raw| accuracy(check, &raw, load_cases));
     let study = Study {
         path: path.to_owned(),
         map: SourceMap::default(),
@@ -225,9 +213,10 @@ fn resolve(
         contact_variations,
         damping,
         nodal_diameter_damping,
-        engine_orders,
+        engine_orders: excited.engine_orders,
         amplitude_n,
         amplitudes_n,
+        load_cases: excited.load_cases,
         rotation: None,
         mistuning: mistuning.mistuning,
         contacts,
@@ -398,6 +387,26 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
     }
 }
 
+fn contact_options(check: &mut Check, raw: &RawContact) -> ContactOptions {
+    ContactOptions {
+        law: raw.law.unwrap_or(ContactLaw::Simplified3d),
+        friction_coefficient: check.required(
+            "contact.friction_coefficient",
+            raw.friction_coefficient,
+            |value| (0.0..=10.0).contains(&value),
+            "a number from 0 to 10",
+        ),
+        tangential_stiffness_n_per_m: check.required(
+            "contact.tangential_stiffness_n_per_m",
+            raw.tangential_stiffness_n_per_m,
+            |value| value.is_finite() && value > 0.0,
+            "a finite number above 0, in N/m",
+        ),
+        normal_stiffness_n_per_m: raw.normal_stiffness_n_per_m,
+        ring: raw.ring.unwrap_or_default(),
+    }
+}
+
 fn normal_stiffness(check: &mut Check, contact: &ContactOptions) {
     let key = "contact.normal_stiffness_n_per_m";
     match (contact.law, contact.normal_stiffness_n_per_m) {
@@ -408,44 +417,5 @@ fn normal_stiffness(check: &mut Check, contact: &ContactOptions) {
             check.refuse(key, "a finite number above 0, in N/m");
         }
         _ => {}
-    }
-}
-
-fn excitation(check: &mut Check, raw: RawExcitation) -> (Vec<u32>, (f64, Vec<f64>)) {
-    let key = "excitation.engine_orders";
-    let accepted = "a list of different whole numbers from 0 to 10000, at least one";
-    let orders = raw.engine_orders.unwrap_or_default();
-    let mut sorted = orders.clone();
-    sorted.sort_unstable();
-    sorted.dedup();
-    if check.map.value(key) == "(absent)" {
-        check.missing(key, accepted);
-    } else if orders.is_empty() || sorted.len() < orders.len() || sorted.last() > Some(&10_000) {
-        check.refuse(key, accepted);
-    }
-    let amplitudes = amplitudes(check, raw.amplitude_n, orders.len());
-    (orders, amplitudes)
-}
-
-/// Factor on the force vector, and those of the engine orders where each has its own.
-fn amplitudes(check: &mut Check, raw: Option<RawNumbers>, orders: usize) -> (f64, Vec<f64>) {
-    let key = "excitation.amplitude_n";
-    let possible = |amplitude: &f64| amplitude.is_finite() && *amplitude > 0.0;
-    match raw {
-        None => (1.0, Vec::new()),
-        Some(RawNumbers::One(amplitude)) => {
-            let accepted = "a finite number above 0, in N, or a list of one per engine order";
-            let amplitude = check.within(key, amplitude, possible(&amplitude), accepted);
-            (amplitude, Vec::new())
-        }
-        Some(RawNumbers::List(amplitudes)) => {
-            if amplitudes.len() != orders || !amplitudes.iter().all(possible) {
-                let accepted = format!(
-                    "a finite number above 0, in N, or a list of {orders}, one per engine order"
-                );
-                check.refuse(key, &accepted);
-            }
-            (1.0, amplitudes)
-        }
     }
 }

@@ -16,7 +16,6 @@ use super::{
 use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
 use crate::population::table::{TableHeader, VerificationRecord, write_verification};
 use crate::report::{VerificationContext, VerificationReport};
-use crate::response::forced_response::ContactCondition;
 use crate::response::reference::{ReferencePeak, ReferenceSettings};
 
 /// Stream of the sample, apart from those of the patterns.
@@ -124,10 +123,9 @@ pub(super) fn draw_in(stream: u64, rows: usize, count: usize, seed: u64) -> Vec<
     places.into_iter().collect()
 }
 
-/// The tuned wheel on one contact condition and engine order.
+/// The tuned wheel under one contact condition and excitation.
 struct TunedPeak {
-    engine_order: u32,
-    contact: ContactCondition,
+    scenario: Scenario,
     harmonics: String,
     settings: ReferenceSettings,
     /// On the fast path; its scenario index is that of the first row that asked.
@@ -158,7 +156,7 @@ impl TunedAgain {
         let solved = wanted.into_par_iter().map(|(scenario, name)| {
             let harmonics = match harmonics_of(name) {
                 Some(harmonics) => harmonics,
-                None => full.harmonics(scenario.engine_order, scenario.contact)?,
+                None => full.harmonics(&scenario)?,
             };
             let settings = full.settings(&harmonics)?;
             let again = engine.tuned(&scenario);
@@ -170,8 +168,7 @@ impl TunedAgain {
                 expected_hz: again.frequency_hz,
             });
             Ok(TunedPeak {
-                engine_order: scenario.engine_order,
-                contact: scenario.contact,
+                scenario,
                 harmonics: name.to_owned(),
                 settings,
                 again,
@@ -182,17 +179,15 @@ impl TunedAgain {
     }
 
     fn of(&self, scenario: &Scenario, harmonics: &str) -> Option<&TunedPeak> {
-        self.0.iter().find(|tuned| {
-            tuned.engine_order == scenario.engine_order
-                && tuned.contact == scenario.contact
-                && tuned.harmonics == harmonics
-        })
+        self.0
+            .iter()
+            .find(|tuned| is_same(&tuned.scenario, scenario) && tuned.harmonics == harmonics)
     }
 }
 
 /// Whether two scenarios have the same tuned wheel.
 fn is_same(a: &Scenario, b: &Scenario) -> bool {
-    a.engine_order == b.engine_order && a.contact == b.contact
+    a.same_excitation(b) && a.contact == b.contact
 }
 
 fn scenario_of(
@@ -259,6 +254,7 @@ fn write_records(
     let header = TableHeader {
         study_digest: stored.manifest.study_digest.clone(),
         compression: stored.study.output.compression,
+        load_cases: stored.load_cases(),
     };
     let path = folder.join("verification.parquet");
     Ok(write_verification(&path, records, &header, seed)?)

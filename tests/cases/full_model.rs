@@ -38,6 +38,7 @@ impl Full {
     fn scenario(&self, contact: ContactCondition) -> Scenario {
         Scenario {
             index: 0,
+            load_case: None,
             engine_order: self.study.engine_orders[0],
             standard_deviation: None,
             contact,

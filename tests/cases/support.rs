@@ -117,6 +117,7 @@ impl Case {
     pub fn scenario(&self, contact: ContactCondition) -> Scenario {
         Scenario {
             index: 0,
+            load_case: None,
             engine_order: self.study.engine_orders[0],
             standard_deviation: None,
             contact,

@@ -9,6 +9,7 @@ mod documented_commands;
 mod faults;
 mod imports;
 mod interruption;
+mod load_cases;
 mod manual;
 mod report;
 mod rotation;

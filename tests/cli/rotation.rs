@@ -63,6 +63,27 @@ fn speeds_are_loads_of_a_run_and_more_of_them_are_solved_alone() {
     );
     let speeds = column(&place, "speed_rpm");
     assert_eq!(speeds, [None, None, None, Some(3000.0), Some(4000.0)]);
+    // The report has the speeds, and amplitudes as stress.
+    let report = place.run(&["report", "results/small", "--no-curves", "--json"]);
+    let report: Value = serde_json::from_str(&report.stdout).expect("JSON");
+    let loads = report["summary"]["scenarios"].as_array().expect("loads");
+    let speeds: Vec<Option<f64>> = loads
+        .iter()
+        .map(|load| load["speed_rpm"].as_f64())
+        .collect();
+    assert_eq!(speeds, [None, None, None, Some(3000.0), Some(4000.0)]);
+    let page = place.run(&["report", "results/small", "--no-curves"]);
+    assert_eq!(page.code, 0, "{}", page.stderr);
+    let html = std::fs::read_to_string(place.path("results/small/report.html")).expect("a page");
+    let crossing = 60.0 * loads[0]["tuned_frequency_hz"].as_f64().expect("a peak") / 2.0;
+    for part in [
+        "load of, rpm".to_owned(),
+        "crossing at, rpm".to_owned(),
+        format!(">{crossing:.0}<"),
+        "Stress, 2e11 Pa per m of amplitude".to_owned(),
+    ] {
+        assert!(html.contains(&part), "{part}");
+    }
     // The folder is a study of its own: its rows are solved again from it.
     let replay = place.run(&[
         "replay",

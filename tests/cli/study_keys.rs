@@ -47,10 +47,16 @@ fn alone(key: &str, value: &str) -> String {
 #[test]
 fn every_table_has_the_keys_that_the_parser_knows() {
     let tables = keys();
-    let tables = tables.iter().filter(|key| key.value == Value::Table);
-    for table in tables.map(|key| key.key.as_str()).chain([""]) {
+    let root = ("", &Value::Table);
+    let tables = tables.iter().map(|key| (key.key.as_str(), &key.value));
+    let tables = tables.filter(|(_, value)| matches!(value, Value::Table | Value::Tables));
+    for (table, value) in tables.chain([root]) {
         let key = format!("{table}.no_such_key");
-        let found = findings(&alone(key.trim_start_matches('.'), "1"));
+        let mut text = alone(key.trim_start_matches('.'), "1");
+        if *value == Value::Tables {
+            text = format!("[[{table}]]\nno_such_key = 1\n");
+        }
+        let found = findings(&text);
         let [(_, Problem::UnknownKey { accepted, .. })] = found.as_slice() else {
             panic!("[{table}]: {found:?}");
         };
@@ -420,6 +426,131 @@ fn violations(schema: &Json, value: &Json, place: &str) -> Vec<String> {
         }
     }
     found
+}
+
+/// The full study with two load cases.
+fn with_load_cases(replaced: (&str, &str)) -> String {
+    let cases = "[[excitation.load_case]]\nname = \"own\"\n\n[[excitation.load_case]]\nname = \"side\"\n\
+                 node = \"blade\"\ndirection = [0.0, 1.0, 0.0]\nengine_orders = [1, 2]\n\
+                 amplitude_n = [1.0, 0.5]\n";
+    assert!(cases.contains(replaced.0), "{}", replaced.0);
+    full(("", "")) + &cases.replacen(replaced.0, replaced.1, 1)
+}
+
+#[test]
+fn load_cases_are_accepted_and_refused_by_the_parser_and_by_the_schema() {
+    let schema = study_schema();
+    let good = with_load_cases(("", ""));
+    assert_eq!(
+        violations(&schema, &as_json(&good), ""),
+        Vec::<String>::new()
+    );
+    assert_eq!(findings(&good), []);
+    for (part, bad, key) in [
+        ("name = \"own\"\n", "", "excitation.load_case[0].name"),
+        (
+            "engine_orders = [1, 2]",
+            "engine_orders = [1, 1]",
+            "excitation.load_case[1].engine_orders",
+        ),
+        (
+            "engine_orders = [1, 2]",
+            "engine_orders = [20000, 2]",
+            "excitation.load_case[1].engine_orders",
+        ),
+        (
+            "[1.0, 0.5]",
+            "[1.0, -0.5]",
+            "excitation.load_case[1].amplitude_n",
+        ),
+        (
+            "direction = [0.0, 1.0, 0.0]",
+            "direction = \"theta\"",
+            "excitation.load_case[1].direction",
+        ),
+    ] {
+        let text = with_load_cases((part, bad));
+        assert_ne!(
+            violations(&schema, &as_json(&text), ""),
+            Vec::<String>::new(),
+            "{bad}"
+        );
+        assert!(
+            findings(&text).iter().any(|(own, _)| own == key),
+            "{bad}: {:?}",
+            findings(&text)
+        );
+    }
+}
+
+/// What keys have to do with each other is known to the parser alone.
+#[test]
+fn keys_of_load_cases_that_do_not_fit_together_are_refused() {
+    let good = with_load_cases(("", ""));
+    for (part, bad, key, words) in [
+        (
+            "name = \"own\"",
+            "name = \"side\"",
+            "excitation.load_case[1].name",
+            "a name of its own",
+        ),
+        (
+            "name = \"own\"",
+            "name = \"-\"",
+            "excitation.load_case[0].name",
+            "letters, digits",
+        ),
+        (
+            "[0.0, 1.0, 0.0]",
+            "[0.0, 0.0, 0.0]",
+            "excitation.load_case[1].direction",
+            "not all 0",
+        ),
+        (
+            "[0.0, 1.0, 0.0]",
+            "[0.0, 1.0]",
+            "excitation.load_case[1].direction",
+            "three numbers",
+        ),
+        (
+            "direction = [0.0, 1.0, 0.0]\n",
+            "",
+            "excitation.load_case[1].direction",
+            "three numbers",
+        ),
+        (
+            "node = \"blade\"",
+            "force = \"f.csv\"",
+            "excitation.load_case[1].direction",
+            "belongs to node",
+        ),
+        (
+            "node = \"blade\"",
+            "force = \"f.csv\"\nnode = \"blade\"",
+            "excitation.load_case[1].node",
+            "one of force and node",
+        ),
+        (
+            "[1.0, 0.5]",
+            "[1.0]",
+            "excitation.load_case[1].amplitude_n",
+            "a list of 2",
+        ),
+        (
+            "name = \"own\"\n",
+            "name = \"own\"\nengine_orders = [2]\n",
+            "excitation.engine_orders",
+            "every load case has its own",
+        ),
+    ] {
+        let found = findings(&with_load_cases((part, bad)));
+        let told = found
+            .iter()
+            .any(|(own, problem)| own == key && format!("{problem:?}").contains(words));
+        assert!(told, "{bad}: {found:?}");
+    }
+    let accuracy = good + "\n[accuracy]\namplitude_error = 0.01\n";
+    assert!(findings(&accuracy).iter().any(|(key, _)| key == "accuracy"));
 }
 
 fn as_json(text: &str) -> Json {

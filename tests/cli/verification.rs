@@ -38,6 +38,7 @@ fn tamper(place: &Place, change: impl Fn(&mut ResponseRow)) {
     let header = TableHeader {
         study_digest: manifest.study_digest,
         compression: Compression::Zstd,
+        load_cases: Vec::new(),
     };
     let digests: Vec<_> = manifest
         .scenarios

@@ -106,6 +106,7 @@ fn the_tuned_peak_of_every_engine_order_is_that_of_one_mode_with_its_ratio() {
             let c = 2.0 * RATIOS[h] * share * lambda.sqrt();
             let found = solver.tuned(&Scenario {
                 index: 0,
+                load_case: None,
                 engine_order,
                 standard_deviation: None,
                 contact: ContactCondition::Free,
@@ -333,6 +334,7 @@ fn the_ratio_of_a_nodal_diameter_damps_its_own_engine_order_alone() {
     let height = |engine_order| {
         let scenario = Scenario {
             index: 0,
+            load_case: None,
             engine_order,
             standard_deviation: None,
             contact: ContactCondition::Free,

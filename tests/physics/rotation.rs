@@ -90,6 +90,7 @@ fn thin_ring(foundations: &[Foundation]) -> SectorModel {
             })
             .collect(),
         force: vec![(0, Complex64::new(1.0, 0.0))],
+        load_case_forces: Vec::new(),
         observed: vec![ObservedNode {
             name: "foundation".to_owned(),
             node: 0,

@@ -189,6 +189,7 @@ pub fn full(normal_load_n: f64) -> ContactCondition {
 pub fn scenario(contact: ContactCondition) -> Scenario {
     Scenario {
         index: 0,
+        load_case: None,
         engine_order: ENGINE_ORDER,
         standard_deviation: None,
         contact,

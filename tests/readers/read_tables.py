@@ -21,7 +21,7 @@ INT32 |= {"resamples", "failed_resamples", "failures_left_out"}
 INT64 = {"rows", "nonlinear_solves", "newton_iterations", "factorisations", "retries"}
 BOOLEAN = {"peak_bracketed", "error_within_tolerance", "estimable"}
 BOOLEAN |= {"outside_interval", "extrapolates", "few_values", "rejected"}
-STRING = {"contact", "status", "tuned_status", "harmonics", "shortcut", "basis", "quantity", "law", "fit_status", "input"}
+STRING = {"contact", "load_case", "status", "tuned_status", "harmonics", "shortcut", "basis", "quantity", "law", "fit_status", "input"}
 
 # Name of each type in pyarrow, Polars, DuckDB and (without nulls) pandas.
 TYPES = {

@@ -12,6 +12,7 @@ fn header(compression: Compression) -> TableHeader {
     TableHeader {
         study_digest: "abc".to_owned(),
         compression,
+        load_cases: Vec::new(),
     }
 }
 
@@ -27,6 +28,7 @@ fn scenarios() -> Vec<Scenario> {
         .enumerate()
         .map(|(index, contact)| Scenario {
             index,
+            load_case: None,
             engine_order: 3,
             standard_deviation: (index == 0).then_some(0.03),
             contact,

@@ -68,6 +68,7 @@ fn record(
     ScenarioRecord {
         scenario: Scenario {
             index,
+            load_case: None,
             engine_order: 3,
             standard_deviation: Some(0.03),
             contact,

@@ -195,14 +195,27 @@ impl<'a> CyclicSector<'a> {
         })
     }
 
-    /// Complex force amplitude on the independent dofs of sector 0, N.
+    /// Number of force vectors: that of the model, or one per load case.
     #[must_use]
-    pub fn force(&self) -> Matrix<Complex64> {
-        let mut force = Matrix::zeros(self.dimension(), 1);
-        for &(dof, value) in &self.model.force {
-            force[(self.independent[dof].0, 0)] += value;
+    pub fn load_cases(&self) -> usize {
+        self.model.load_case_forces.len().max(1)
+    }
+
+    /// Complex force amplitudes on the independent dofs of sector 0, N, each `n_dofs x 1`: that of the
+    /// model, or one per load case.
+    #[must_use]
+    pub fn forces(&self) -> Vec<Matrix<Complex64>> {
+        let column = |entries: &Vec<(usize, Complex64)>| {
+            let mut force = Matrix::zeros(self.dimension(), 1);
+            for &(dof, value) in entries {
+                force[(self.independent[dof].0, 0)] += value;
+            }
+            force
+        };
+        match self.model.load_case_forces.as_slice() {
+            [] => vec![column(&self.model.force)],
+            load_cases => load_cases.iter().map(column).collect(),
         }
-        force
     }
 
     fn matrix(&self, sector: &SymmetricSparse, h: usize) -> HermitianSparse {

@@ -259,14 +259,20 @@ impl<'a> Reduction<'a> {
         let observed = Matrix::from_fn(3, full.columns(), |i, j| {
             observed[i].map_or(Complex64::default(), |dof| full[(dof, j)])
         });
-        let force = self.sector.force();
+        // One product per load case, so that each is the same with and without the others.
+        let forces = self.sector.forces();
+        let projected = |basis: &Matrix<Complex64>| {
+            let columns = forces.iter().map(|force| basis.adjoint_times(force));
+            columns.reduce(|left, right| left.beside(&right))
+        };
+        let none = || Matrix::zeros(full.columns(), 0);
         let blade = || self.sector.blade_stiffness();
         let reduced = ReducedNodalDiameter {
             added_damping_per_s: self.damping.of_modes(h, &eigenvalues, &full, blade),
             contact: model.contact.times(&v),
             observed,
-            force: full.adjoint_times(&force),
-            conjugate_force: full.conjugate().adjoint_times(&force),
+            force: projected(&full).unwrap_or_else(none),
+            conjugate_force: projected(&full.conjugate()).unwrap_or_else(none),
             eigenvalues,
         };
         let report = NodalDiameterReport {
@@ -292,8 +298,8 @@ impl Reduction<'_> {
         let reduced = ReducedNodalDiameter {
             contact: Matrix::zeros(self.contact_rows(), 0),
             observed: Matrix::zeros(3, 0),
-            force: Matrix::zeros(0, 1),
-            conjugate_force: Matrix::zeros(0, 1),
+            force: Matrix::zeros(0, self.sector.load_cases()),
+            conjugate_force: Matrix::zeros(0, self.sector.load_cases()),
             added_damping_per_s: Vec::new(),
             eigenvalues: Vec::new(),
         };

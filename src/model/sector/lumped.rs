@@ -259,6 +259,7 @@ pub fn build(options: &LumpedOptions) -> Result<SectorModel, ModelError> {
         cyclic_pairs,
         contact_pairs,
         force: vec![(0, Complex64::new(1.0, 0.0))],
+        load_case_forces: Vec::new(),
         observed: vec![ObservedNode {
             name: "blade".to_owned(),
             node: 0,

@@ -23,4 +23,4 @@ pub use line_problem::{LinePart, LineProblem};
 pub use lumped::LumpedOptions;
 pub use parametric_options::ParametricOptions;
 pub use sector_model::{Body, Component, ContactPair, Dof, ObservedNode, SectorModel};
-pub use validate::validate;
+pub use validate::{validate, validate_force};

@@ -82,6 +82,7 @@ pub fn build(options: &ParametricOptions) -> Result<SectorModel, ModelError> {
         cyclic_pairs,
         contact_pairs,
         force,
+        load_case_forces: Vec::new(),
         observed,
     };
     validate(&model)?;

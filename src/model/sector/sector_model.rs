@@ -87,6 +87,8 @@ pub struct SectorModel {
     pub contact_pairs: Vec<ContactPair>,
     /// Complex force amplitude on sector 0 as `(dof, newton)`.
     pub force: Vec<(usize, Complex64)>,
+    /// Force vectors of load cases, each as `force`, which they take the place of; empty: that one alone.
+    pub load_case_forces: Vec<Vec<(usize, Complex64)>>,
     /// Observed nodes, at least one.
     pub observed: Vec<ObservedNode>,
 }

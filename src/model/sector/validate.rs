@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use super::error::ModelError;
 use super::error_place::{Item, Matrix, Place};
 use super::sector_model::{Component, Dof, MAX_SECTORS, SectorModel};
-use crate::linalg::SymmetricSparse;
+use crate::linalg::{Complex64, SymmetricSparse};
 
 /// Tolerance on positions, as a fraction of the largest distance from the origin.
 const POSITION_TOLERANCE: f64 = 1e-6;
@@ -90,7 +90,9 @@ pub fn validate(model: &SectorModel) -> Result<(), ModelError> {
     check_faces_complete(model, &layout)?;
     check_blade_stiffness(model, &layout)?;
     check_contact(model, &layout)?;
-    check_force(model, &layout)?;
+    for force in std::iter::once(&model.force).chain(&model.load_case_forces) {
+        check_force(model, &layout, force)?;
+    }
     check_observed(model, &layout)
 }
 
@@ -346,10 +348,26 @@ fn check_contact(model: &SectorModel, layout: &Layout) -> Result<(), ModelError>
     Ok(())
 }
 
+/// Checks a force vector that is to take the place of that of a valid model.
+///
+/// # Errors
+/// The first entry that the model refuses, or a force that is zero.
+pub fn validate_force(model: &SectorModel, force: &[(usize, Complex64)]) -> Result<(), ModelError> {
+    let layout = Layout {
+        node_dofs: check_dofs(&model.dofs)?,
+        high: check_cyclic(model)?,
+    };
+    check_force(model, &layout, force)
+}
+
 /// Range, faces and values of the force.
-fn check_force(model: &SectorModel, layout: &Layout) -> Result<(), ModelError> {
+fn check_force(
+    model: &SectorModel,
+    layout: &Layout,
+    force: &[(usize, Complex64)],
+) -> Result<(), ModelError> {
     let mut seen: HashMap<usize, usize> = HashMap::new();
-    for (entry, &(dof, force)) in model.force.iter().enumerate() {
+    for (entry, &(dof, value)) in force.iter().enumerate() {
         let place = Place::Force(entry);
         in_range(place, dof, model.dofs.len())?;
         if layout.high[dof] {
@@ -358,8 +376,8 @@ fn check_force(model: &SectorModel, layout: &Layout) -> Result<(), ModelError> {
                 item: Item::Dof(dof),
             });
         }
-        finite(place, force.re)?;
-        finite(place, force.im)?;
+        finite(place, value.re)?;
+        finite(place, value.im)?;
         if let Some(&first) = seen.get(&dof) {
             return Err(ModelError::ForceDuplicate {
                 first,
@@ -369,7 +387,7 @@ fn check_force(model: &SectorModel, layout: &Layout) -> Result<(), ModelError> {
         }
         seen.insert(dof, entry);
     }
-    if model.force.iter().all(|(_, force)| force.norm() == 0.0) {
+    if force.iter().all(|(_, force)| force.norm() == 0.0) {
         return Err(ModelError::NoForce);
     }
     Ok(())

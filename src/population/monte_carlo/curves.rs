@@ -101,22 +101,23 @@ impl RowSolver {
         pattern: Option<&Pattern>,
         tuned_hz: Option<f64>,
     ) -> Result<SearchPlan, Status> {
+        let solver = self.under(scenario);
         let (excited, window) = match pattern {
             None => {
                 let window = Window {
                     resonances_hz: None,
-                    band: self.settings.solver.frequency_band,
+                    band: solver.settings.solver.frequency_band,
                 };
-                let excited = self.tuned_excited(scenario.engine_order, scenario.contact);
+                let excited = solver.tuned_excited(scenario.engine_order, scenario.contact);
                 (excited, window)
             }
             Some(pattern) => {
                 let (modes, wheel) =
-                    self.mistuned(pattern, LimitsWanted::of(&[scenario.contact]))?;
-                let window = self.window(pattern, scenario, tuned_hz)?;
+                    solver.mistuned(pattern, LimitsWanted::of(&[scenario.contact]))?;
+                let window = solver.window(pattern, scenario, tuned_hz)?;
                 let engine_order = scenario.engine_order;
-                let harmonics = self.points(engine_order, scenario.contact).harmonics();
-                let excited = self.wheel_excited(&modes, &wheel, engine_order, harmonics);
+                let harmonics = solver.points(engine_order, scenario.contact).harmonics();
+                let excited = solver.wheel_excited(&modes, &wheel, engine_order, harmonics);
                 (excited, window)
             }
         };

@@ -237,22 +237,23 @@ impl RowSolver {
     /// Size of the equation of the rows of a scenario.
     #[must_use]
     pub fn system_size(&self, scenario: &Scenario) -> SystemSize {
-        let harmonics = self
+        let solver = self.under(scenario);
+        let harmonics = solver
             .points(scenario.engine_order, scenario.contact)
             .harmonics();
-        let model = self.basis().model();
+        let model = solver.basis().model();
         let linear = !matches!(scenario.contact, ContactCondition::Full { .. });
-        let options = &self.settings.solver;
+        let options = &solver.settings.solver;
         let highest = harmonics.last().map_or(1, |&k| k as usize);
         let samples = options.samples_per_period;
         SystemSize {
-            coordinates: self.basis().size(),
-            contact_rows: self.basis().contact().rows(),
+            coordinates: solver.basis().size(),
+            contact_rows: solver.basis().contact().rows(),
             pairs: model.contact.weights.len() * model.sectors,
             coefficients: SystemSize::coefficients_of(harmonics),
-            tuned: self.tuned_size(harmonics).filter(|_| !linear),
-            in_stages: self
-                .search(self.points(scenario.engine_order, scenario.contact))
+            tuned: solver.tuned_size(harmonics).filter(|_| !linear),
+            in_stages: solver
+                .search(solver.points(scenario.engine_order, scenario.contact))
                 .is_some(),
             samples: match options.harmonics {
                 _ if linear => 1,

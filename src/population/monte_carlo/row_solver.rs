@@ -7,8 +7,8 @@ use super::beyond::Beyond;
 use super::mistuned_peak::MistunedPeak;
 use super::tuned_harmonics::TunedHarmonics;
 use super::{
-    ErrorTolerance, HarmonicChoice, ResponseRow, Scenario, ScenarioError, TunedReference,
-    stated_error,
+    ErrorTolerance, HarmonicChoice, LoadCaseName, ResponseRow, Scenario, ScenarioError,
+    TunedReference, stated_error,
 };
 use crate::linalg::Matrix;
 use crate::model::ReducedModel;
@@ -56,6 +56,8 @@ pub struct RowSolver {
     basis_error: f64,
     pub(super) beyond: Option<Beyond>,
     pub(super) tuned_harmonics: Option<TunedHarmonics>,
+    /// Solvers of the further load cases of the study.
+    pub(super) load_cases: Vec<(LoadCaseName, RowSolver)>,
 }
 
 impl RowSolver {
@@ -82,6 +84,7 @@ impl RowSolver {
             basis_error: 0.0,
             beyond: None,
             tuned_harmonics: None,
+            load_cases: Vec::new(),
         })
     }
 
@@ -167,8 +170,9 @@ impl RowSolver {
     /// Tuned reference of a scenario.
     #[must_use]
     pub fn tuned(&self, scenario: &Scenario) -> TunedReference {
-        let (found, screening) = self.tuned_screening(scenario.engine_order, scenario.contact);
-        let points = self.points(scenario.engine_order, scenario.contact);
+        let solver = self.under(scenario);
+        let (found, screening) = solver.tuned_screening(scenario.engine_order, scenario.contact);
+        let points = solver.points(scenario.engine_order, scenario.contact);
         let point = found.point.as_ref().filter(|_| found.status == Status::Ok);
         TunedReference {
             scenario: scenario.index,
@@ -198,14 +202,17 @@ impl RowSolver {
         scenarios
             .iter()
             .map(|(scenario, tuned)| {
+                // The wheel is the same under every load case.
+                let solver = self.under(scenario);
                 let found = match &wheel {
                     Ok((modes, wheel)) => {
-                        self.mistuned_peak(modes, wheel, pattern, scenario, tuned)
+                        solver.mistuned_peak(modes, wheel, pattern, scenario, tuned)
                     }
                     Err(status) => Err(*status),
                 };
-                let row = self.row(pattern, scenario, tuned, found);
-                self.solved_again(pattern, scenario, &row).unwrap_or(row)
+                let row = solver.row(pattern, scenario, tuned, found);
+                let again = solver.solved_again(pattern, scenario, &row);
+                again.unwrap_or(row)
             })
             .collect()
     }

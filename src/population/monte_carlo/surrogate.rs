@@ -44,28 +44,29 @@ impl RowSolver {
     /// The stand-in for the rows of `scenario`; none where the tuned wheel has no peak to linearise at.
     #[must_use]
     pub fn surrogate(&self, scenario: &Scenario, tuned: &TunedReference) -> Option<Surrogate<'_>> {
+        let solver = self.under(scenario);
         let tuned_hz = tuned.frequency_hz.filter(|_| tuned.status == Status::Ok)?;
-        let rows = self.basis().contact();
+        let rows = solver.basis().contact();
         let stiffness = |springs: Vec<f64>| {
             let scaled = Matrix::from_fn(rows.rows(), rows.columns(), |i, j| {
                 springs[i % springs.len()] * rows[(i, j)]
             });
             rows.adjoint_times(&scaled)
         };
-        let springs = self.linear_springs(scenario)?;
+        let springs = solver.linear_springs(scenario)?;
         let options = SolverOptions {
             samples_per_period: SAMPLES,
             residual_tolerance: RESIDUAL_TOLERANCE,
-            ..self.settings.solver.clone()
+            ..solver.settings.solver.clone()
         };
         let points = PointSettings::new(
             &options,
             &[1],
-            self.settings.contact,
-            self.basis().model().contact.clone(),
+            solver.settings.contact,
+            solver.basis().model().contact.clone(),
         );
         Some(Surrogate {
-            solver: self,
+            solver,
             scenario: *scenario,
             tuned_hz,
             contact_stiffness: springs.into_iter().map(stiffness).collect(),

@@ -21,7 +21,7 @@ impl RowSolver {
         row: &ResponseRow,
         options: &TimeOptions,
     ) -> Result<PointComparison, Status> {
-        let solver = self.solver_of(scenario, row);
+        let solver = self.under(scenario).solver_of(scenario, row);
         let frequency_hz = row.peak_frequency_hz.ok_or(row.status)?;
         let change = solver
             .stiffness_change(pattern)

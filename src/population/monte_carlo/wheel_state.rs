@@ -28,7 +28,7 @@ impl RowSolver {
         scenario: &Scenario,
         row: &ResponseRow,
     ) -> Result<WheelState, Status> {
-        let solver = self.solver_of(scenario, row);
+        let solver = self.under(scenario).solver_of(scenario, row);
         let frequency_hz = row.peak_frequency_hz.ok_or(row.status)?;
         let (engine_order, contact) = (scenario.engine_order, scenario.contact);
         let (modes, wheel) = solver.mistuned(pattern, LimitsWanted::of(&[contact]))?;

@@ -138,6 +138,7 @@ mod tests {
         let header = TableHeader {
             study_digest: "d".to_owned(),
             compression: Compression::Zstd,
+            load_cases: Vec::new(),
         };
         let path = folder.path().join("tradeoff.parquet");
         let mut writer = TableWriter::create(&path, COLUMNS, &header).expect("a table");

@@ -120,6 +120,13 @@ pub(super) mod key {
         "",
         "Index in the order engine order, standard deviation, normal load of this study",
     );
+    /// Only in the tables of studies with load cases.
+    pub(in super::super) const LOAD_CASE: ColumnSpec = ColumnSpec::new(
+        "load_case",
+        Text,
+        "",
+        "Load case: force vector of the excitation",
+    );
     pub(in super::super) const CONTACT: ColumnSpec = ColumnSpec::new(
         "contact",
         Text,

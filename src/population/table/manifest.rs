@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::TableError;
 use super::checked_json::{read_checked_json, write_checked_json};
-use crate::population::monte_carlo::{Scenario, TunedReference};
+use crate::population::monte_carlo::{LoadCaseName, Scenario, TunedReference};
 use crate::population::statistics::{Accounting, StopOutcome};
 use crate::response::forced_response::{ContactCondition, ErrorEstimate};
 use crate::response::harmonic_balance::Status;
@@ -59,6 +59,9 @@ impl From<&Accounting> for StatusCounts {
 pub struct ScenarioEntry {
     /// Index.
     pub scenario: usize,
+    /// Load case; absent: the study has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load_case: Option<LoadCaseName>,
     /// Engine order.
     pub engine_order: u32,
     /// Standard deviation, if the study has one.
@@ -96,6 +99,7 @@ impl ScenarioEntry {
     ) -> Self {
         Self {
             scenario: scenario.index,
+            load_case: scenario.load_case,
             engine_order: scenario.engine_order,
             standard_deviation: scenario.standard_deviation,
             contact: scenario.contact,
@@ -116,6 +120,7 @@ impl ScenarioEntry {
     pub fn keys(&self) -> Scenario {
         Scenario {
             index: self.scenario,
+            load_case: self.load_case,
             engine_order: self.engine_order,
             standard_deviation: self.standard_deviation,
             contact: self.contact,

@@ -28,8 +28,13 @@ impl Serialize for TailFitRecord {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         use serde::ser::SerializeStruct;
         let scenario = &self.scenario;
-        let mut fields = serializer.serialize_struct("TailFitRecord", 7)?;
+        let named = usize::from(scenario.load_case.is_some());
+        let mut fields = serializer.serialize_struct("TailFitRecord", 7 + named)?;
         fields.serialize_field("scenario", &scenario.index)?;
+        match &scenario.load_case {
+            Some(name) => fields.serialize_field("load_case", name)?,
+            None => fields.skip_field("load_case")?,
+        }
         fields.serialize_field("engine_order", &scenario.engine_order)?;
         fields.serialize_field("standard_deviation", &scenario.standard_deviation)?;
         fields.serialize_field("contact", scenario.contact.name())?;

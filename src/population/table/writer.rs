@@ -6,8 +6,9 @@ use polars::prelude::{BatchedWriter, KeyValueMetadata, ParquetCompression, Parqu
 use serde::{Deserialize, Serialize};
 
 use super::atomic::{AtomicFile, BufferedFile};
-use super::column::{Values, frame, polars_schema};
+use super::column::{Values, frame, key, polars_schema};
 use super::{ColumnSpec, TableError};
+use crate::population::monte_carlo::{LoadCaseName, Scenario};
 
 /// Version of the tables; raised when a column changes its meaning.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -35,9 +36,28 @@ pub struct TableHeader {
     pub study_digest: String,
     /// Compression of its tables.
     pub compression: Compression,
+    /// Load case of each scenario, in their order; empty in a study without load cases. Every table
+    /// with scenarios and engine orders then has the column `load_case`.
+    pub load_cases: Vec<LoadCaseName>,
 }
 
 impl TableHeader {
+    /// Load case of each of `scenarios`, where the study has any.
+    #[must_use]
+    pub fn load_cases_of(scenarios: &[Scenario]) -> Vec<LoadCaseName> {
+        scenarios
+            .iter()
+            .filter_map(|scenario| scenario.load_case)
+            .collect()
+    }
+
+    /// Place of the column `load_case` in a table of `columns`, if it has one.
+    fn place_of_load_case(&self, columns: &[ColumnSpec]) -> Option<usize> {
+        let has_load_cases = !self.load_cases.is_empty() && columns.contains(&key::SCENARIO);
+        let engine_order = || columns.iter().position(|own| *own == key::ENGINE_ORDER);
+        has_load_cases.then(engine_order).flatten()
+    }
+
     fn metadata(&self, columns: &[ColumnSpec], more: &[(&str, String)]) -> KeyValueMetadata {
         let mut pairs = vec![
             (
@@ -67,7 +87,9 @@ impl TableHeader {
 /// A Parquet file under construction.
 pub(super) struct TableWriter {
     path: PathBuf,
-    columns: &'static [ColumnSpec],
+    columns: Vec<ColumnSpec>,
+    /// Place of the column `load_case`, and the load case of each scenario.
+    load_case: Option<(usize, Vec<LoadCaseName>)>,
     file: AtomicFile,
     writer: BatchedWriter<BufferedFile>,
 }
@@ -88,6 +110,11 @@ impl TableWriter {
         header: &TableHeader,
         more: &[(&str, String)],
     ) -> Result<Self, TableError> {
+        let mut columns = columns.to_vec();
+        let load_case = header.place_of_load_case(&columns);
+        if let Some(place) = load_case {
+            columns.insert(place, key::LOAD_CASE);
+        }
         let file = AtomicFile::create(path)?;
         let compression = match header.compression {
             Compression::Zstd => ParquetCompression::Zstd(None),
@@ -97,21 +124,34 @@ impl TableWriter {
         let writer = ParquetWriter::new(file.writer()?)
             .with_compression(compression)
             .set_parallel(false)
-            .with_key_value_metadata(Some(header.metadata(columns, more)))
-            .batched(&polars_schema(columns))
+            .with_key_value_metadata(Some(header.metadata(&columns, more)))
+            .batched(&polars_schema(&columns))
             .map_err(|error| file.failed(error))?;
         Ok(Self {
             path: path.to_owned(),
             columns,
+            load_case: load_case.map(|place| (place, header.load_cases.clone())),
             file,
             writer,
         })
     }
 
     /// Writes one row group.
-    pub(super) fn write(&mut self, values: Vec<Values>) -> Result<(), TableError> {
-        let frame =
-            frame(self.columns, values).map_err(|error| TableError::encoding(&self.path, error))?;
+    pub(super) fn write(&mut self, mut values: Vec<Values>) -> Result<(), TableError> {
+        if let Some((place, names)) = &self.load_case {
+            let of_scenarios = self
+                .columns
+                .iter()
+                .position(|own| *own == key::SCENARIO)
+                .and_then(|scenario| names_of(values.get(scenario)?, names));
+            let reason = "its scenarios have no load case";
+            values.insert(
+                *place,
+                of_scenarios.ok_or_else(|| TableError::encoding(&self.path, reason.to_owned()))?,
+            );
+        }
+        let frame = frame(&self.columns, values)
+            .map_err(|error| TableError::encoding(&self.path, error))?;
         self.writer
             .write_batch(&frame)
             .map_err(|error| self.file.failed(error))
@@ -132,4 +172,17 @@ impl TableWriter {
             .map_err(|error| self.file.failed(error))?;
         self.file.commit_as(name)
     }
+}
+
+/// The load cases of a column of scenarios; none where one of them has none.
+fn names_of(scenarios: &Values, names: &[LoadCaseName]) -> Option<Values> {
+    let Values::Int32(scenarios) = scenarios else {
+        return None;
+    };
+    let of = |scenario: &Option<i32>| {
+        let place = usize::try_from((*scenario)?).ok()?;
+        Some(Some(names.get(place)?.to_string()))
+    };
+    let names: Option<Vec<Option<String>>> = scenarios.iter().map(of).collect();
+    names.map(Values::String)
 }

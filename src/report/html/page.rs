@@ -156,7 +156,7 @@ fn figures_of(report: &StudyReport, group: &GroupReport, place: usize) -> String
 
 fn tables_of(report: &StudyReport, group: &GroupReport, settings: &str) -> String {
     format!(
-        "<section>\n<h2>Numbers: {}</h2>\n<h3>Peak amplitude, 95 % bounds in brackets</h3>\n{}\
+        "<section>\n<h2>Numbers: {}</h2>\n<h3>Peak amplitude, 95 % bounds in brackets</h3>\n{}{}\
          <h3>Amplification factor, 95 % bounds in brackets</h3>\n{}\
          <h3>Numerical error (median of the rows) beside the statistical interval, both relative</h3>\n{}\
          <h3>Tail fits at the chosen load, a second opinion beside the sample</h3>\n{}\
@@ -164,6 +164,7 @@ fn tables_of(report: &StudyReport, group: &GroupReport, settings: &str) -> Strin
          reaches. – not estimable.</p>\n{settings}</section>\n",
         escaped(&setting(group)),
         tables::amplitudes(report, group),
+        tables::stresses(report, group),
         tables::factors(report, group),
         tables::errors(report, group),
         tables::tails(report, group),

@@ -17,31 +17,76 @@ const NONE: &str = "–";
 pub(super) fn amplitudes(report: &StudyReport, group: &GroupReport) -> String {
     let units = Quantities::of(&report.summary);
     let column = |name: &str| format!("{name}, {}", units.name());
-    let header = [
-        "load, N".to_owned(),
+    let by_speed = has_speeds(report, group);
+    let mut header = vec!["load, N".to_owned()];
+    header.extend(by_speed.then(|| "load of, rpm".to_owned()));
+    header.extend([
         column("tuned"),
         "at, Hz".to_owned(),
+        "crossing at, rpm".to_owned(),
         column("P50"),
         column("P95"),
         column("P99"),
-    ];
-    let mut table = Table::new(&header.each_ref().map(String::as_str));
+    ]);
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let mut table = Table::new(&header);
     for &index in &group.scenarios {
         let scenario = &report.summary.scenarios[index];
         let amplitude = |metres: f64| units.number(metres);
-        let mut row = vec![
-            name(scenario),
+        let mut row = vec![name(scenario)];
+        row.extend(by_speed.then(|| speed(scenario)));
+        row.extend([
             scenario
                 .tuned_amplitude_m
                 .map_or_else(|| escaped(scenario.tuned_status), amplitude),
             scenario
                 .tuned_frequency_hz
                 .map_or(NONE.to_owned(), |hz| format!("{hz:.2}")),
-        ];
+            scenario
+                .crossing_rpm()
+                .map_or(NONE.to_owned(), |rpm| format!("{rpm:.0}")),
+        ]);
         row.extend(percentiles(&scenario.peak_amplitude_m, amplitude));
         table.row_chosen(index == group.shown, row);
     }
     table.html()
+}
+
+/// Whether a load of the group is that of a speed.
+fn has_speeds(report: &StudyReport, group: &GroupReport) -> bool {
+    let scenarios = &report.summary.scenarios;
+    let mut speeds = group.scenarios.iter().map(|&own| scenarios[own].speed_rpm);
+    speeds.any(|speed| speed.is_some())
+}
+
+fn speed(scenario: &ScenarioSummary) -> String {
+    let speed = scenario.speed_rpm;
+    speed.map_or(NONE.to_owned(), |speed| speed.to_string())
+}
+
+/// Amplitudes of every load as stress; empty where the study has no scale.
+pub(super) fn stresses(report: &StudyReport, group: &GroupReport) -> String {
+    let Some(pa_per_m) = report.summary.stress_pa_per_m else {
+        return String::new();
+    };
+    let by_speed = has_speeds(report, group);
+    let mut header = vec!["load, N"];
+    header.extend(by_speed.then_some("load of, rpm"));
+    header.extend(["tuned, MPa", "P50, MPa", "P95, MPa", "P99, MPa"]);
+    let mut table = Table::new(&header);
+    for &index in &group.scenarios {
+        let scenario = &report.summary.scenarios[index];
+        let stress = |metres: f64| four_digits(1e-6 * pa_per_m * metres);
+        let mut row = vec![name(scenario)];
+        row.extend(by_speed.then(|| speed(scenario)));
+        row.push(scenario.tuned_amplitude_m.map_or(NONE.to_owned(), stress));
+        row.extend(percentiles(&scenario.peak_amplitude_m, stress));
+        table.row_chosen(index == group.shown, row);
+    }
+    format!(
+        "<h3>Stress, {pa_per_m:e} Pa per m of amplitude, 95 % bounds in brackets</h3>\n{}",
+        table.html()
+    )
 }
 
 /// Amplification factors of every load, and what its contacts do.

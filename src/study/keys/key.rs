@@ -4,7 +4,15 @@ use strsim::damerau_levenshtein;
 
 use super::Value;
 use super::model_keys::MODEL_KEYS;
-use super::study_keys::{CONTACT_PARAMETERS, LEADING_KEYS, STUDY_KEYS};
+use super::study_keys::{LEADING_KEYS, STUDY_KEYS};
+
+/// Parameters that `[contact.variation]` can let vary.
+const CONTACT_PARAMETERS: [&str; 4] = [
+    "friction_coefficient",
+    "tangential_stiffness",
+    "normal_stiffness",
+    "normal_load",
+];
 
 /// What a study file may say under one key.
 #[derive(Debug, Clone, PartialEq)]

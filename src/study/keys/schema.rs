@@ -23,6 +23,9 @@ pub fn study_schema() -> Json {
             let mut table = &mut schema;
             for step in tables {
                 table = &mut table["properties"][*step];
+                if table["items"].is_object() {
+                    table = &mut table["items"];
+                }
             }
             add(table, name, &key);
         }

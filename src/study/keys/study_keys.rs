@@ -1,18 +1,10 @@
 //! The keys of a study file except those of its model.
 
 use super::Value::{
-    Ascending, Either, Flag, List, Name, Number, Numbers, Pairs, Table, Text, Whole,
+    Ascending, Either, Flag, List, Name, Number, Numbers, Pairs, Table, Tables, Text, Whole,
 };
 use super::key::{Entry, REQUIRED, entry};
 use super::{Range, Value};
-
-/// Parameters that `[contact.variation]` can let vary.
-pub(super) const CONTACT_PARAMETERS: [&str; 4] = [
-    "friction_coefficient",
-    "tangential_stiffness",
-    "normal_stiffness",
-    "normal_load",
-];
 
 const ABOVE_ZERO: Value = Number(Range::above(0.0));
 const SHARE: Value = Number(Range::above(0.0).below(1.0));
@@ -267,7 +259,7 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
     entry(
         "excitation.engine_orders",
         List(&Whole(0, 10_000)),
-        REQUIRED,
+        "required unless every `load_case` has its own",
         "one scenario each, never simultaneous",
     ),
     entry(
@@ -275,6 +267,48 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         Either(&[ABOVE_ZERO, Numbers(Range::above(0.0))]),
         "1.0",
         "multiplies the model's force vector; a list: one per engine order, in their order",
+    ),
+    entry(
+        "excitation.load_case",
+        Tables,
+        "none",
+        "load cases: force vectors with engine orders of their own",
+    ),
+    entry(
+        "excitation.load_case.name",
+        Text("letters, digits, `-`, `_`, the first a letter or digit, at most 40"),
+        REQUIRED,
+        "names the load case in every table and report; each has another",
+    ),
+    entry(
+        "excitation.load_case.force",
+        Text("a file"),
+        "the model's force vector",
+        "force vector as that of a bundle: CSV with the columns `dof`, `re`, `im`, in N",
+    ),
+    entry(
+        "excitation.load_case.node",
+        Text("name of an observed node"),
+        "none",
+        "instead of `force`: 1 N at this node of the model",
+    ),
+    entry(
+        "excitation.load_case.direction",
+        Numbers(Range::ANY),
+        "required with `node`",
+        "where that force points to: `[r, theta, z]`, of any length",
+    ),
+    entry(
+        "excitation.load_case.engine_orders",
+        List(&Whole(0, 10_000)),
+        "those of `[excitation]`",
+        "as above",
+    ),
+    entry(
+        "excitation.load_case.amplitude_n",
+        Either(&[ABOVE_ZERO, Numbers(Range::above(0.0))]),
+        "that of `[excitation]`",
+        "multiplies the force vector of this load case",
     ),
     entry("mistuning", Table, REQUIRED, "the random blades"),
     entry(

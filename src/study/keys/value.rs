@@ -71,6 +71,8 @@ impl Range {
 pub enum Value {
     /// A table with keys of its own.
     Table,
+    /// One or more tables with the same keys, each `[[key]]`.
+    Tables,
     /// A finite number.
     Number(Range),
     /// A whole number from the first to the second.
@@ -124,6 +126,7 @@ impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Table => write!(f, "a table"),
+            Self::Tables => write!(f, "one or more tables"),
             Self::Number(range) => write!(f, "{range}"),
             Self::Whole(low, high) => write!(f, "whole number, {low} to {high}"),
             Self::Text(what) => write!(f, "{what}"),
@@ -154,6 +157,9 @@ impl Value {
     pub fn schema(&self) -> Json {
         match self {
             Self::Table => json!({ "type": "object", "additionalProperties": false }),
+            Self::Tables => json!({
+                "type": "array", "items": Self::Table.schema(), "minItems": 1,
+            }),
             Self::Number(range) => {
                 let mut schema = json!({ "type": "number" });
                 let ends = [

@@ -147,6 +147,7 @@ pub fn spatial_sector(sectors: usize) -> SectorModel {
             (1, Complex64::new(1.0, 0.3)),
             (2, Complex64::new(0.0, 0.5)),
         ],
+        load_case_forces: Vec::new(),
         observed: vec![ObservedNode {
             name: "blade".to_owned(),
             node: BLADE,
@@ -201,6 +202,7 @@ pub fn uneven(sectors: usize, size: f64) -> Vec<f64> {
 pub fn under(engine_order: u32, contact: ContactCondition) -> Scenario {
     Scenario {
         index: 0,
+        load_case: None,
         engine_order,
         standard_deviation: None,
         contact,

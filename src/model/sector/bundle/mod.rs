@@ -7,5 +7,5 @@ mod read;
 mod table;
 mod write;
 
-pub use read::read;
+pub use read::{read, read_force};
 pub use write::write;

@@ -43,10 +43,19 @@ pub fn read(directory: &Path) -> Result<SectorModel, ModelError> {
         cyclic_pairs: Table::read(directory.join(&files.cyclic), CYCLIC)?.rows(parse_cyclic)?,
         contact_pairs: Table::read(directory.join(&files.contact), CONTACT)?.rows(parse_contact)?,
         force: Table::read(directory.join(&files.force), FORCE)?.rows(parse_force)?,
+        load_case_forces: Vec::new(),
         observed: Table::read(directory.join(&files.observe), OBSERVE)?.rows(parse_observed)?,
     };
     validate(&model)?;
     Ok(model)
+}
+
+/// Reads a force vector as a bundle has it: `dof,re,im`, in N.
+///
+/// # Errors
+/// A file that is missing, or a line that is not what the format says.
+pub fn read_force(path: &Path) -> Result<Vec<(usize, Complex64)>, ModelError> {
+    Table::read(path.to_owned(), FORCE)?.rows(parse_force)
 }
 
 fn parse_dof(

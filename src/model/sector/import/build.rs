@@ -122,6 +122,7 @@ pub fn import(path: &Path) -> Result<Imported, ModelError> {
         dofs: frames.dofs,
         contact_pairs: contact_pairs.unwrap_or_default(),
         force,
+        load_case_forces: Vec::new(),
         observed,
     };
     validate(&model)?;

@@ -1,0 +1,240 @@
+//! What a study is solved on: its reduced models and harmonic sets, under each of its force vectors.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::basis_choice::{
+    BasisEvidence, Judged, choose_basis_under, judged_conditions, judged_variations,
+};
+use super::fixed_interface::FixedInterface;
+use super::harmonic_choice::{choose_harmonics, with_separation};
+use super::load_cases::Excitation;
+use super::reduced_engine::row_settings;
+use super::{PipelineError, Study};
+use crate::model::ReducedModel;
+use crate::model::reduction::{Basis, BasisChoice, Reduction, ReductionOptions};
+use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
+use crate::response::forced_response::{Harmonics, HigherHarmonics, RowsBeyondTolerance};
+use crate::response::harmonic_balance::TransformError;
+
+/// Share of the harmonic tolerance by which the set for rows beyond it is chosen.
+const BEYOND_TOLERANCE: f64 = 0.25;
+
+/// What the cache keeps.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Stored {
+    pub(super) model: ReducedModel,
+    pub(super) evidence: BasisEvidence,
+    pub(super) fixed_interface: FixedInterface,
+    harmonics: Vec<HarmonicChoice>,
+    beyond: Option<StoredBeyond>,
+    /// The tuned wheel that harmonics other than 1 are taken in, where the study asks for it.
+    tuned_harmonics: Option<ReducedModel>,
+}
+
+/// The model and sets for rows that the others are not good enough for.
+#[derive(Serialize, Deserialize)]
+pub(super) struct StoredBeyond {
+    model: ReducedModel,
+    basis_error: f64,
+    harmonics: Vec<HarmonicChoice>,
+}
+
+/// Harmonic sets under one force vector.
+type Sets = Vec<HarmonicChoice>;
+
+/// One force vector of a study, and the full contact model under it.
+struct Case<'a> {
+    excitation: &'a Excitation,
+    settings: RowSettings,
+    full: Arc<ReducedModel>,
+}
+
+impl<'a> Case<'a> {
+    fn new(excitation: &'a Excitation, full: &ReducedModel) -> Self {
+        Self {
+            settings: row_settings(&excitation.study),
+            full: Arc::new(excitation.of(full)),
+            excitation,
+        }
+    }
+
+    fn sets(&self, tolerance: Option<f64>) -> Result<Sets, PipelineError> {
+        let study = &self.excitation.study;
+        choose_harmonics(
+            &self.full,
+            &self.settings,
+            &study.engine_orders,
+            &study.contacts,
+            &self.settings.harmonics,
+            tolerance,
+        )
+    }
+}
+
+/// Harmonics, basis and reduced model of a study, and those for rows beyond them: harmonics by
+/// the full contact model, then the basis that carries these harmonics.
+pub(super) fn reduced(
+    study: &Study,
+    reduction: &Reduction<'_>,
+    fixed_interface: FixedInterface,
+) -> Result<Stored, PipelineError> {
+    let automatic = study.solver.harmonics == Harmonics::Auto;
+    let tolerance = automatic.then_some(study.solver.harmonic_tolerance);
+    let full = reduction.reduce(BasisChoice::CraigBampton, None)?;
+    let excitations = study.excitations();
+    let cases: Vec<Case<'_>> = excitations
+        .iter()
+        .map(|own| Case::new(own, &full))
+        .collect();
+    let sets = |tolerance| -> Result<Vec<Sets>, PipelineError> {
+        cases.iter().map(|case| case.sets(tolerance)).collect()
+    };
+    let tuned_harmonics =
+        study.has_friction() && study.solver.higher_harmonics == HigherHarmonics::Tuned;
+    let conditions = judged_conditions(&study.contacts);
+    let varied = judged_variations(&study.contact_variations);
+    let basis = |options: &ReductionOptions, sets: &[Sets]| {
+        let judged: Vec<_> = cases
+            .iter()
+            .zip(sets)
+            .map(|(case, sets)| {
+                let judged = Judged {
+                    settings: &case.settings,
+                    engine_orders: &case.excitation.study.engine_orders,
+                    conditions: &conditions,
+                    sets,
+                    varied: &varied,
+                    tuned_harmonics: tuned_harmonics.then_some(&case.full),
+                };
+                (Some(case.excitation), judged)
+            })
+            .collect();
+        choose_basis_under(reduction, options, &judged)
+    };
+    let modes = study.mistuning.cantilever_mode_count;
+    let harmonics = sets(tolerance)?;
+    let (choice, evidence) = basis(&study.reduction, &harmonics)?;
+    let follows = study.reduction.basis == Basis::Auto && study.reduction.stick_modes.is_none();
+    let by_modes = matches!(choice, BasisChoice::StickSlide { .. }) && follows;
+    let resolves = automatic && study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
+    let separates = study
+        .contact
+        .as_ref()
+        .is_some_and(|contact| contact.law.has_variable_load());
+    let on_separation = separates && (by_modes || automatic);
+    let beyond = if study.has_friction() && (on_separation || resolves) {
+        let mut harmonics = if resolves {
+            let larger = tolerance.map(|tolerance| BEYOND_TOLERANCE * tolerance);
+            sets(larger)?
+        } else {
+            harmonics.clone()
+        };
+        if automatic && separates {
+            harmonics = cases
+                .iter()
+                .zip(harmonics)
+                .map(|(case, sets)| with_separation(&case.full, &case.settings, sets))
+                .collect::<Result<_, _>>()?;
+        }
+        let options = ReductionOptions {
+            basis: if by_modes {
+                Basis::StickAttachment
+            } else {
+                study.reduction.basis
+            },
+            ..study.reduction.clone()
+        };
+        let (choice, evidence) = basis(&options, &harmonics)?;
+        Some(StoredBeyond {
+            model: reduction.reduce(choice, modes)?,
+            basis_error: basis_error(&evidence),
+            harmonics: harmonics.concat(),
+        })
+    } else {
+        None
+    };
+    Ok(Stored {
+        model: reduction.reduce(choice, modes)?,
+        evidence,
+        fixed_interface,
+        harmonics: harmonics.concat(),
+        beyond,
+        tuned_harmonics: tuned_harmonics
+            .then(|| reduction.tuned(BasisChoice::CraigBampton))
+            .transpose()?,
+    })
+}
+
+/// Measured error of the basis that was taken; 0 where nothing was left out.
+fn basis_error(evidence: &BasisEvidence) -> f64 {
+    evidence
+        .tried
+        .last()
+        .map_or(0.0, |tried| tried.error.unwrap_or(f64::INFINITY))
+}
+
+/// The solver of the study; with load cases that of the first, which knows those of the others.
+pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, TransformError> {
+    // Either part is measured on its own: what the basis leaves out of the Craig-Bampton model, and
+    // what that model leaves out of the sector.
+    let truncation = stored.fixed_interface.error.unwrap_or(f64::INFINITY);
+    let error = basis_error(&stored.evidence) + truncation;
+    let inexact = study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
+    let tuned_harmonics = stored.tuned_harmonics.clone().map(Arc::new);
+    let nonlinear = study
+        .contacts
+        .iter()
+        .filter(|own| own.normal_load_n().is_some());
+    let loads = nonlinear.count();
+    let mut first = 0;
+    let mut solvers = Vec::new();
+    for case in study.excitations() {
+        // The sets of a case stand together.
+        let sets = first..first + loads * case.study.engine_orders.len();
+        first = sets.end;
+        let settings = row_settings(&case.study);
+        let solver = RowSolver::new(Arc::new(case.of(&stored.model)), settings.clone())?
+            .with_choices(stored.harmonics[sets.clone()].to_vec(), error)?
+            .with_tuned_harmonics(tuned_harmonics.clone());
+        let solver = match &stored.beyond {
+            None => solver,
+            Some(beyond) => {
+                let finer = RowSolver::new(Arc::new(case.of(&beyond.model)), settings)?
+                    .with_choices(
+                        beyond.harmonics[sets].to_vec(),
+                        beyond.basis_error + truncation,
+                    )?
+                    .with_tuned_harmonics(tuned_harmonics.clone());
+                solver.with_beyond(finer, inexact)
+            }
+        };
+        solvers.push((case.name, solver));
+    }
+    let others = solvers.split_off(1);
+    let others = others
+        .into_iter()
+        .filter_map(|(name, solver)| Some((name?, solver)));
+    let (_, solver) = solvers.remove(0);
+    Ok(solver.with_load_cases(others.collect()))
+}
+
+/// Digest of the reduced models and the errors that their rows state.
+pub(super) fn models_digest(stored: &Stored) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let mut add = |model: &ReducedModel, error: f64| {
+        // A model that could not be written down could not be cached either.
+        let bytes = postcard::to_stdvec(model).unwrap_or_default();
+        hasher.update(&bytes);
+        hasher.update(&error.to_bits().to_le_bytes());
+    };
+    add(&stored.model, basis_error(&stored.evidence));
+    if let Some(beyond) = &stored.beyond {
+        add(&beyond.model, beyond.basis_error);
+    }
+    if let Some(model) = &stored.tuned_harmonics {
+        add(model, 0.0);
+    }
+    hasher.finalize().to_hex().to_string()
+}
