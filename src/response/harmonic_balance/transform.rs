@@ -17,7 +17,7 @@
 //! channels at a time (many harmonics); the two agree to rounding.
 
 use std::f64::consts::TAU;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
@@ -57,6 +57,9 @@ pub struct HarmonicTransform {
     basis: Vec<f64>,
     /// `sum_{i < j} psi_c(tau_i)`, row c after row (`n_coefficients * (n_samples + 1)`).
     cumulative: Vec<f64>,
+    /// `sum_{i < j} psi_c(tau_i) phi_c'(tau_i)`, made when first asked for (`(n_samples + 1) * n_coefficients *
+    /// n_coefficients`).
+    products: OnceLock<Vec<f64>>,
     forward: Arc<dyn Fft<f64>>,
     inverse: Arc<dyn Fft<f64>>,
 }
@@ -112,6 +115,7 @@ impl HarmonicTransform {
             n_samples,
             basis,
             cumulative: Vec::new(),
+            products: OnceLock::new(),
             forward: planner.plan_fft_forward(n_samples),
             inverse: planner.plan_fft_inverse(n_samples),
         };
@@ -157,6 +161,11 @@ impl HarmonicTransform {
         &self.basis[coefficient * self.n_samples..][..self.n_samples]
     }
 
+    /// Whether a signal changes sign after half a period, and the samples with it: where all harmonics are odd.
+    pub(super) fn has_half_waves(&self) -> bool {
+        self.n_samples.is_multiple_of(2) && self.harmonics.iter().all(|k| k % 2 == 1)
+    }
+
     /// Ratio `psi_c / phi_c`: 1/n for harmonic 0, 2/n otherwise.
     #[must_use]
     pub fn projection_scale(&self, coefficient: usize) -> f64 {
@@ -174,6 +183,36 @@ impl HarmonicTransform {
     pub fn cumulative_projection(&self, coefficient: usize) -> &[f64] {
         let length = self.n_samples + 1;
         &self.cumulative[coefficient * length..][..length]
+    }
+
+    /// `sum_{i < j} psi_c(tau_i) phi_c'(tau_i)`, a row per c (`n_coefficients * n_coefficients`).
+    pub(super) fn products_to(&self, j: usize) -> &[f64] {
+        let n = self.n_coefficients();
+        let products = self.products.get_or_init(|| {
+            let mut sums = vec![0.0; n * n];
+            let mut products = sums.clone();
+            for i in 0..self.n_samples {
+                for (c, row) in sums.chunks_exact_mut(n).enumerate() {
+                    let psi = self.projection_scale(c) * self.basis(c)[i];
+                    for (other, sum) in row.iter_mut().enumerate() {
+                        *sum += psi * self.basis(other)[i];
+                    }
+                }
+                products.extend_from_slice(&sums);
+            }
+            products
+        });
+        &products[j * n * n..][..n * n]
+    }
+
+    /// Upper bound on a signal with these coefficients, the mean left out: the sum of the amplitudes of its harmonics.
+    pub(super) fn excursion(&self, coefficients: impl Iterator<Item = f64>) -> f64 {
+        let mut oscillation = coefficients.skip(usize::from(self.has_mean()));
+        let mut sum = 0.0;
+        while let (Some(re), Some(im)) = (oscillation.next(), oscillation.next()) {
+            sum += (re * re + im * im).sqrt();
+        }
+        sum
     }
 
     /// Buffers for the methods that may use the FFT.
@@ -334,16 +373,19 @@ impl HarmonicTransform {
     /// `time_maximum`. Not a number if a coefficient is not finite.
     #[must_use]
     pub fn largest_norm(&self, coefficients: &[f64]) -> f64 {
-        const BLOCK: usize = 64;
+        const BLOCK: usize = 8;
         if !coefficients.iter().all(|value| value.is_finite()) {
             return f64::NAN;
         }
         let first = usize::from(self.has_mean());
+        let components = coefficients.chunks_exact(self.n_coefficients().max(1));
+        let moving = components.filter(|own| own[first..].iter().any(|&value| value != 0.0));
+        let instants = self.n_samples / if self.has_half_waves() { 2 } else { 1 };
         let mut largest = 0.0_f64;
-        for start in (0..self.n_samples).step_by(BLOCK) {
-            let length = BLOCK.min(self.n_samples - start);
+        for start in (0..instants).step_by(BLOCK) {
+            let length = BLOCK.min(instants - start);
             let mut square = [0.0; BLOCK];
-            for component in coefficients.chunks_exact(self.n_coefficients().max(1)) {
+            for component in moving.clone() {
                 let mut x = [0.0; BLOCK];
                 for (c, value) in component.iter().enumerate().skip(first) {
                     let row = &self.basis(c)[start..start + length];
