@@ -274,7 +274,9 @@ impl LinearPart {
         structure.dynamic_stiffness(k_omega, Some(&block.stuck), matrix);
         if block.harmonic == 0 {
             // Harmonic 0 has no damping.
-            matrix.iter_mut().for_each(|entry| entry.im = 0.0);
+            for entry in matrix {
+                entry.im = 0.0;
+            }
         }
         if !self.factors.factor() {
             return false;

@@ -265,8 +265,7 @@ impl Enlargement<'_> {
             _ => Vec::new(),
         };
         match &mut self.factors {
-            Factors::Whole(factors) => factors.solve(&mut step),
-            Factors::ByHarmonic(factors) => factors.solve(&mut step),
+            Factors::Whole(factors) | Factors::ByHarmonic(factors) => factors.solve(&mut step),
             Factors::Blocks(blocks) => {
                 for (index, factors) in blocks.iter_mut().enumerate() {
                     let place = range(&self.enlarged, index);

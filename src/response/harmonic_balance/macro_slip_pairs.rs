@@ -154,7 +154,9 @@ impl MacroSlipPairs {
         let repeated = (self.transform.n_samples() / samples) as f64;
         for (c, column) in coefficients.chunks_exact_mut(lanes.max(1)).enumerate() {
             let scale = repeated * self.transform.projection_scale(c);
-            column.iter_mut().for_each(|entry| *entry *= scale);
+            for entry in column {
+                *entry *= scale;
+            }
         }
         if self.transform.has_mean() {
             coefficients[..lanes].fill(0.0);
@@ -192,7 +194,9 @@ impl MacroSlipPairs {
         }
         let count = transform.n_coefficients();
         let factor = -stiffness * (transform.n_samples() / samples) as f64;
-        block.iter_mut().for_each(|entry| *entry *= factor);
+        for entry in block.iter_mut() {
+            *entry *= factor;
+        }
         if transform.has_mean() {
             block[..count].fill(0.0);
             block

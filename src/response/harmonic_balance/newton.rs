@@ -3,7 +3,7 @@
 
 use super::anderson::Anderson;
 use super::kept_jacobian::KeptJacobian;
-use super::serves::{ACCELERATED, ONCE, PLAIN, RENEWED};
+use super::serves::{ACCELERATED, ONCE, PLAIN, RENEWED, Serves};
 use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
 
 /// How the steps of a solve are made.
@@ -82,6 +82,15 @@ pub(super) trait Equation {
     /// Whether a new derivative costs no more than a few steps.
     fn renews_cheaply(&self) -> bool {
         false
+    }
+
+    /// When a derivative serves on, where `usual` is what other equations take.
+    fn serving(&self, usual: Serves) -> Serves {
+        if self.renews_cheaply() {
+            RENEWED
+        } else {
+            usual
+        }
     }
 
     /// Whether `u` serves its purpose already, where `step` is what it still lacks.
@@ -296,8 +305,7 @@ pub(super) fn iterate(
         acceleration,
         steps,
     } = buffers;
-    let cheap = equation.renews_cheaply();
-    let once = steps.keep_jacobian() && !cheap;
+    let once = steps.keep_jacobian() && !equation.renews_cheaply();
     if let Some(acceleration) = acceleration {
         acceleration.begin();
     }
@@ -341,7 +349,7 @@ pub(super) fn iterate(
         served += 1;
         let length = norm_of(step);
         // Contact that opens folds the curve, and a step that is too long ends on another branch of it.
-        let serves = match acceleration {
+        let serves = equation.serving(match acceleration {
             Some(acceleration) if *steps != Steps::Plain && state.shares.separated == 0.0 => {
                 acceleration.next(u, step, trial);
                 // A step of such a Jacobian is as good as the first.
@@ -352,8 +360,7 @@ pub(super) fn iterate(
                 add_scaled(trial, u, 1.0, step);
                 PLAIN
             }
-        };
-        let serves = if cheap { RENEWED } else { serves };
+        });
         let halvings = if kept { 0 } else { bounds.halvings };
         let accepted = (0..=halvings).find_map(|halving| {
             let factor = 0.5_f64.powi(halving as i32);
