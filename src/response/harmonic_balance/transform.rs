@@ -23,6 +23,8 @@ use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 use thiserror::Error;
 
+use crate::linalg::add_times;
+
 /// Number of coefficients from which on the FFT is the faster one for a batch of three channels:
 /// measured crossing at 6 for 128 samples and at 7 to 10 for 512.
 const FFT_COEFFICIENTS: usize = 8;
@@ -373,32 +375,26 @@ impl HarmonicTransform {
     /// `time_maximum`. Not a number if a coefficient is not finite.
     #[must_use]
     pub fn largest_norm(&self, coefficients: &[f64]) -> f64 {
-        const BLOCK: usize = 8;
         if !coefficients.iter().all(|value| value.is_finite()) {
             return f64::NAN;
         }
         let first = usize::from(self.has_mean());
-        let components = coefficients.chunks_exact(self.n_coefficients().max(1));
+        let count = self.n_coefficients();
+        let components = coefficients.chunks_exact(count.max(1));
         let moving = components.filter(|own| own[first..].iter().any(|&value| value != 0.0));
         let instants = self.n_samples / if self.has_half_waves() { 2 } else { 1 };
-        let mut largest = 0.0_f64;
-        for start in (0..instants).step_by(BLOCK) {
-            let length = BLOCK.min(instants - start);
-            let mut square = [0.0; BLOCK];
-            for component in moving.clone() {
-                let mut x = [0.0; BLOCK];
-                for (c, value) in component.iter().enumerate().skip(first) {
-                    let row = &self.basis(c)[start..start + length];
-                    x.iter_mut().zip(row).for_each(|(x, phi)| *x += value * phi);
-                }
-                square
-                    .iter_mut()
-                    .zip(x)
-                    .for_each(|(square, x)| *square += x * x);
+        let oscillation = &self.basis[first * self.n_samples..];
+        let mut squares = vec![0.0; self.n_samples];
+        let mut history = vec![0.0; self.n_samples];
+        for component in moving {
+            history.fill(0.0);
+            let size = (self.n_samples, 1, count - first);
+            add_times(&mut history, oscillation, &component[first..], size);
+            for (square, x) in squares.iter_mut().zip(&history[..instants]) {
+                *square += x * x;
             }
-            largest = square.into_iter().fold(largest, f64::max);
         }
-        largest.sqrt()
+        largest(&squares[..instants]).sqrt()
     }
 
     /// Harmonics of one channel and their complex coefficients (real for harmonic 0).
@@ -413,6 +409,23 @@ impl HarmonicTransform {
             .map(|pair| Complex64::new(pair[0], pair[1]));
         self.harmonics.iter().copied().zip(mean.chain(oscillation))
     }
+}
+
+/// The largest of values that are not negative; 0 of none.
+fn largest(values: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let (blocks, rest) = values.as_chunks::<LANES>();
+    let mut most = [0.0_f64; LANES];
+    for block in blocks {
+        for lane in 0..LANES {
+            most[lane] = if block[lane] > most[lane] {
+                block[lane]
+            } else {
+                most[lane]
+            };
+        }
+    }
+    most.iter().chain(rest).copied().fold(0.0, f64::max)
 }
 
 /// Sum of `a_j b_j` in eight partial sums, which a compiler can vectorise; the order of summation
