@@ -15,6 +15,7 @@ mod frequency_derivative;
 mod jacobian;
 mod kept_jacobian;
 mod linear;
+mod linear_factors;
 mod linear_part;
 mod macro_slip_pairs;
 mod newton;
