@@ -25,6 +25,8 @@ pub struct Case {
     harmonics: Vec<u32>,
     waves: Option<Arc<TunedWaves>>,
     contact: (ContactLaw, PairParameters),
+    settings: PointSettings,
+    tuned: Excited,
 }
 
 /// The study file `name` of `studies/`.
@@ -107,8 +109,25 @@ impl Case {
             .take(patterns as usize)
             .filter_map(|id| source.pattern(id, deviation))
             .collect();
+        let geometry = reduced.contact.clone();
+        let point_settings = PointSettings::new(&study.solver, &harmonics, Some(contact), geometry);
+        let tuned_waves = Excited::tuned(
+            &reduced,
+            &ContactFactors::default(),
+            study.engine_orders[0],
+            study.amplitude_n,
+            study.damping,
+            &harmonics,
+            LimitsWanted {
+                stuck: true,
+                slide: true,
+                free: true,
+            },
+        );
         Self {
             name,
+            settings: point_settings.expect("enough samples"),
+            tuned: tuned_waves,
             solver: RowSolver::new(reduced, settings)
                 .expect("enough samples")
                 .with_tuned_harmonics(tuned),
@@ -159,26 +178,9 @@ impl Case {
 
     /// The peak of a pattern whose wheel is `excited`.
     pub fn peak(&self, pattern: &Pattern, excited: &Excited, condition: ContactCondition) -> Peak {
-        let model = self.solver.basis().model();
-        let tuned = Excited::tuned(
-            model,
-            &ContactFactors::default(),
-            self.engine_order(),
-            self.study.amplitude_n,
-            self.study.damping,
-            &self.harmonics,
-            LimitsWanted::of(&[condition]),
-        );
-        let span = tuned_span(&tuned, condition, None).expect("a resonance");
+        let span = tuned_span(&self.tuned, condition, None).expect("a resonance");
         let window = mistuned_window(span, pattern.largest_deviation(), FrequencyBand::Auto);
-        let options = &self.study.solver;
-        let settings = PointSettings::new(
-            options,
-            &self.harmonics,
-            Some(self.contact),
-            model.contact.clone(),
-        )
-        .expect("enough samples");
+        let (options, settings) = (&self.study.solver, &self.settings);
         let tolerance = options.peak_tolerance;
         let unknowns = 2 * self.harmonics.len() * self.solver.basis().size();
         match settings.search() {
@@ -188,10 +190,10 @@ impl Case {
                     excited: &coarse,
                     settings: search,
                 };
-                let found = refined(excited, search, condition, &settings, window, tolerance);
+                let found = refined(excited, search, condition, settings, window, tolerance);
                 found.expect("a peak in two stages")
             }
-            _ => peak(excited, condition, &settings, window, tolerance),
+            _ => peak(excited, condition, settings, window, tolerance),
         }
     }
 

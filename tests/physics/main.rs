@@ -5,6 +5,7 @@
 mod bounds;
 mod calculix_sector;
 mod campbell;
+mod condensation;
 mod contact;
 mod contact_variation;
 mod continuation;

@@ -77,6 +77,7 @@ fn a_peak_of_a_wheel_of_many_unknowns_takes_the_work_known_for_it() {
     );
 }
 
+/// Few contact rows: a factorisation, of contact forces alone, costs no more than two steps.
 #[test]
 fn a_peak_of_a_wheel_of_few_unknowns_takes_the_work_known_for_it() {
     let wheel = Wheel {
@@ -86,9 +87,9 @@ fn a_peak_of_a_wheel_of_few_unknowns_takes_the_work_known_for_it() {
     assert_work(
         &wheel,
         &[
-            (25.0, [19, 224, 25]),
-            (50.0, [19, 283, 31]),
-            (150.0, [25, 188, 26]),
+            (25.0, [19, 121, 52]),
+            (50.0, [19, 122, 55]),
+            (150.0, [25, 109, 49]),
         ],
     );
 }

@@ -1,7 +1,7 @@
 //! The amplitude of every blade from the unknowns of a solution.
 
 use super::options::AmplitudeMeasure;
-use crate::linalg::{Complex64, add_times_vector};
+use crate::linalg::{Complex64, add_times, add_times_vector};
 use crate::response::harmonic_balance::{
     HarmonicBlock, HarmonicTransform, Structure, TransformError,
 };
@@ -160,9 +160,13 @@ fn observed(blocks: &[ObservedBlock<'_>], solution: &[f64]) -> Vec<ObservedHarmo
         let mut re = vec![0.0; rows.real.rows()];
         let mut im = vec![0.0; rows.real.rows()];
         if harmonic > 0 && is_modal {
-            let (x_re, x_im) = solution[start..start + 2 * n].split_at(n);
-            add_times_vector(&mut re, 1.0, rows.real.as_slice(), x_re);
-            add_times_vector(&mut im, 1.0, rows.real.as_slice(), x_im);
+            let x = &solution[start..start + 2 * n];
+            let (x_re, x_im) = x.split_at(n);
+            let mut both = vec![0.0; 2 * re.len()];
+            add_times(&mut both, rows.real.as_slice(), x, (re.len(), 2, n));
+            let (both_re, both_im) = both.split_at(re.len());
+            re.copy_from_slice(both_re);
+            im.copy_from_slice(both_im);
             if let Some(imaginary) = &rows.imaginary {
                 add_times_vector(&mut re, -1.0, imaginary.as_slice(), x_im);
                 add_times_vector(&mut im, 1.0, imaginary.as_slice(), x_re);

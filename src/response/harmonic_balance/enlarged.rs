@@ -137,7 +137,7 @@ struct Enlargement<'a> {
 /// Factors of P.
 enum Factors {
     /// Of J.
-    Whole(LuWorkspace<f64>),
+    Whole(Box<KeptJacobian>),
     /// But for those of `J_ss`, which are in the workspace of the set.
     Blocks(Vec<Option<LuWorkspace<Complex64>>>),
     /// Of every harmonic by itself.
@@ -266,8 +266,7 @@ impl Enlargement<'_> {
             _ => Vec::new(),
         };
         match &mut self.factors {
-            Factors::Whole(factors) => factors.solve(&mut step),
-            Factors::ByHarmonic(factors) => factors.solve(&mut step),
+            Factors::Whole(factors) | Factors::ByHarmonic(factors) => factors.solve(&mut step),
             Factors::Blocks(blocks) => {
                 for (index, factors) in blocks.iter_mut().enumerate() {
                     let place = range(&self.enlarged, index);
@@ -426,9 +425,9 @@ impl Factors {
         let mut residual = vec![0.0; system.unknowns()];
         system.residual(omega, x, &mut residual, true, &mut buffers);
         if whole {
-            let mut factors = LuWorkspace::new(system.unknowns());
-            system.jacobian(omega, &mut buffers, factors.matrix_mut());
-            return factors.factor().then_some(Self::Whole(factors));
+            let mut factors = KeptJacobian::new();
+            let regular = factors.factor_whole(system, omega, &mut buffers);
+            return regular.then(|| Self::Whole(Box::new(factors)));
         }
         let mut blocks = Vec::with_capacity(places.len());
         for (index, place) in places.iter().enumerate() {

@@ -17,6 +17,7 @@
 //! P = [J_cc, 0; 0, diag_k (part of J_kk)]
 //! ```
 
+use super::condensed::CondensedJacobian;
 use super::wave_blocks::WaveFactors;
 use super::{HarmonicSystem, SystemWorkspace};
 use crate::linalg::{Complex64, LuWorkspace, add_times};
@@ -47,6 +48,7 @@ impl HarmonicSystem {
 enum Held {
     Nothing,
     Whole,
+    Condensed,
     Triangle,
     ByHarmonic,
     Waves,
@@ -56,6 +58,7 @@ enum Held {
 pub(super) struct KeptJacobian {
     held: Held,
     whole: Option<LuWorkspace<f64>>,
+    condensed: CondensedJacobian,
     triangle: Vec<BlockColumn>,
     /// A block column of J before it is taken apart.
     assembled: Vec<f64>,
@@ -79,6 +82,7 @@ impl KeptJacobian {
         Self {
             held: Held::Nothing,
             whole: None,
+            condensed: CondensedJacobian::default(),
             triangle: Vec::new(),
             assembled: Vec::new(),
             negative: Vec::new(),
@@ -99,13 +103,17 @@ impl KeptJacobian {
     }
 
     /// Factors the whole Jacobian at the point last given to [`HarmonicSystem::residual`] with derivative; false if
-    /// it is singular.
+    /// it is singular. Where contact rows are few that is done by [`CondensedJacobian`].
     pub(super) fn factor_whole(
         &mut self,
         system: &HarmonicSystem,
         omega: f64,
         workspace: &mut SystemWorkspace,
     ) -> bool {
+        if system.condenses() {
+            let regular = self.condensed.factor(system, omega, workspace);
+            return self.hold(Held::Condensed, regular);
+        }
         let whole = self
             .whole
             .get_or_insert_with(|| LuWorkspace::new(system.unknowns()));
@@ -199,6 +207,7 @@ impl KeptJacobian {
     pub(super) fn solve(&mut self, residual: &mut [f64]) {
         match (self.held, &mut self.whole) {
             (Held::Whole, Some(whole)) => whole.solve(residual),
+            (Held::Condensed, _) => self.condensed.solve(residual),
             (Held::ByHarmonic, _) => {
                 let mut rest = residual;
                 if let Some(factors) = &mut self.leading {

@@ -1,6 +1,7 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
 mod anderson;
+mod condensed;
 mod contact_interface;
 mod contact_states;
 mod continuation;
@@ -15,10 +16,15 @@ mod harmonic_block;
 mod jacobian;
 mod kept_jacobian;
 mod linear;
+mod linear_factors;
+mod linear_part;
+mod macro_slip_pairs;
 mod newton;
 mod other_contact;
 mod pair_harmonics;
+mod pair_jacobian;
 mod ring_drift;
+mod serves;
 mod status;
 mod structure;
 mod system;
@@ -35,7 +41,8 @@ pub use enlarged::{Effects, Enlarged, EnlargedSet, enlarge};
 pub use harmonic_block::HarmonicBlock;
 pub use linear::linear_response;
 pub use newton::{LARGEST_WHOLE_JACOBIAN, NewtonOutcome, NewtonWorkspace, Settled, Steps, solve};
-pub use pair_harmonics::{PairHarmonics, PairJacobian};
+pub use pair_harmonics::PairHarmonics;
+pub use pair_jacobian::PairJacobian;
 pub use ring_drift::solve_creeping;
 pub use status::Status;
 pub use structure::{ContactStiffnessMatrix, Structure};

@@ -3,6 +3,7 @@
 
 use super::anderson::Anderson;
 use super::kept_jacobian::KeptJacobian;
+use super::serves::{ACCELERATED, ONCE, PLAIN, RENEWED, Serves};
 use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
 
 /// How the steps of a solve are made.
@@ -39,42 +40,6 @@ impl Steps {
         }
     }
 }
-
-/// When a Jacobian serves on: by the length of a simplified step over that of an earlier one.
-#[derive(Clone, Copy)]
-struct Serves {
-    /// At most, over the step before,
-    one_step: f64,
-    /// or over the one before that: accelerated steps do not shrink evenly.
-    two_steps: f64,
-    /// The step before is taken up to this.
-    longer: f64,
-    /// Steps after which it is renewed anyway.
-    steps: usize,
-}
-
-/// Of simplified steps by themselves.
-const PLAIN: Serves = Serves {
-    one_step: 0.6,
-    two_steps: 0.0,
-    longer: 0.75,
-    steps: usize::MAX,
-};
-/// Of accelerated ones, which cost a small part of what a new Jacobian does.
-const ACCELERATED: Serves = Serves {
-    one_step: 0.9,
-    two_steps: 0.8,
-    longer: 2.0,
-    steps: usize::MAX,
-};
-/// Of accelerated ones with a Jacobian that leaves out much: what is left out is learned from the steps, all of
-/// them, so that a new Jacobian would throw away more than it brings.
-const ONCE: Serves = Serves {
-    one_step: 1e3,
-    two_steps: 1e3,
-    longer: 1e3,
-    steps: 130,
-};
 
 /// Unknowns up to which accelerated steps take the whole Jacobian: it costs next to nothing there.
 pub const LARGEST_WHOLE_JACOBIAN: usize = 400;
@@ -113,6 +78,20 @@ pub(super) trait Equation {
 
     /// Turns a residual into the step `J^-1 R` with the factors at hand, in place.
     fn step(&mut self, residual: &mut [f64]);
+
+    /// Whether a new derivative costs no more than a few steps.
+    fn renews_cheaply(&self) -> bool {
+        false
+    }
+
+    /// When a derivative serves on, where `usual` is what other equations take.
+    fn serving(&self, usual: Serves) -> Serves {
+        if self.renews_cheaply() {
+            RENEWED
+        } else {
+            usual
+        }
+    }
 
     /// Whether `u` serves its purpose already, where `step` is what it still lacks.
     fn is_settled(&self, _u: &[f64], _step: &[f64]) -> bool {
@@ -239,7 +218,9 @@ impl Equation for FixedFrequency<'_> {
     }
 
     fn linearise(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
-        let small = (self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN || !self.system.is_shared())
+        let small = (self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN
+            || !self.system.is_shared()
+            || self.system.condenses())
             && !self.system.has_waves();
         let by_harmonic = self.steps == Steps::ByHarmonic && !small;
         if by_harmonic {
@@ -279,6 +260,10 @@ impl Equation for FixedFrequency<'_> {
 
     fn step(&mut self, residual: &mut [f64]) {
         self.jacobian.solve(residual);
+    }
+
+    fn renews_cheaply(&self) -> bool {
+        self.system.condenses()
     }
 
     fn is_settled(&self, x: &[f64], step: &[f64]) -> bool {
@@ -330,7 +315,7 @@ pub(super) fn iterate(
         acceleration,
         steps,
     } = buffers;
-    let once = steps.keep_jacobian();
+    let once = steps.keep_jacobian() && !equation.renews_cheaply();
     if let Some(acceleration) = acceleration {
         acceleration.begin();
     }
@@ -374,7 +359,7 @@ pub(super) fn iterate(
         served += 1;
         let length = norm_of(step);
         // Contact that opens folds the curve, and a step that is too long ends on another branch of it.
-        let serves = match acceleration {
+        let serves = equation.serving(match acceleration {
             Some(acceleration) if *steps != Steps::Plain && state.shares.separated == 0.0 => {
                 acceleration.next(u, step, trial);
                 // A step of such a Jacobian is as good as the first.
@@ -385,7 +370,7 @@ pub(super) fn iterate(
                 add_scaled(trial, u, 1.0, step);
                 PLAIN
             }
-        };
+        });
         let halvings = if kept { 0 } else { bounds.halvings };
         let accepted = (0..=halvings).find_map(|halving| {
             let factor = 0.5_f64.powi(halving as i32);

@@ -22,54 +22,10 @@ use std::sync::Arc;
 
 use super::coupled_derivative::{CoupledDerivative, Slopes};
 use super::transform::dot;
-use super::{HarmonicTransform, TransformScratch};
+use super::{HarmonicTransform, PairJacobian, TransformScratch};
 use crate::response::friction::{
     ContactHistory, ContactLaw, PairDisplacement, PairParameters, PairState,
 };
-
-/// Derivative of a pair's correction coefficients, N/m; every block is `n_coefficients *
-/// n_coefficients`, row after row, a row per coefficient of the correction and a column per
-/// coefficient of the displacement.
-///
-/// Blocks not listed are zero: normal by tangential.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PairJacobian {
-    /// Normal correction by normal displacement.
-    pub normal_normal: Vec<f64>,
-    /// Correction along t1 by displacement along t1, then t2 by t2.
-    pub tangential_tangential: [Vec<f64>; 2],
-    /// Correction along t1, then t2, by the normal displacement.
-    pub tangential_normal: [Vec<f64>; 2],
-    /// Correction along t1 by displacement along t2, then t2 by t1; none where the law leaves the
-    /// tangents uncoupled.
-    pub tangential_cross: Option<[Vec<f64>; 2]>,
-}
-
-impl PairJacobian {
-    /// Zero blocks.
-    #[must_use]
-    pub fn new(n_coefficients: usize) -> Self {
-        let zero = || vec![0.0; n_coefficients * n_coefficients];
-        Self {
-            normal_normal: zero(),
-            tangential_tangential: [zero(), zero()],
-            tangential_normal: [zero(), zero()],
-            tangential_cross: None,
-        }
-    }
-
-    /// Sets every block to zero.
-    pub fn clear(&mut self) {
-        self.normal_normal.fill(0.0);
-        self.tangential_tangential
-            .iter_mut()
-            .for_each(|block| block.fill(0.0));
-        self.tangential_normal
-            .iter_mut()
-            .chain(self.tangential_cross.iter_mut().flatten())
-            .for_each(|block| block.fill(0.0));
-    }
-}
 
 /// Evaluates pairs of one law and one harmonic set; owns the buffers, so each thread has its own.
 #[derive(Debug, Clone)]
@@ -132,6 +88,11 @@ impl PairHarmonics {
     /// zero; but for those of the first `coefficients` by each other.
     pub(super) fn couple_first(&mut self, coefficients: usize) {
         self.coupled_first = coefficients;
+    }
+
+    /// The coefficients last given to [`Self::couple_first`].
+    pub(super) fn coupled_first(&self) -> usize {
+        self.coupled_first
     }
 
     /// Corrections of one pair, and where wanted their derivative.
@@ -325,7 +286,7 @@ impl PairHarmonics {
 
 /// Coefficients by which the derivatives of coefficient `c` are wanted: all `coupled` ones, or those of its
 /// harmonic.
-fn wanted(transform: &HarmonicTransform, coupled: usize, c: usize) -> Range<usize> {
+pub(super) fn wanted(transform: &HarmonicTransform, coupled: usize, c: usize) -> Range<usize> {
     let mean = usize::from(transform.has_mean());
     if c < coupled {
         0..coupled.min(transform.n_coefficients())

@@ -8,7 +8,7 @@
 //! and harmonic 0 has no damping.
 
 use super::Damping;
-use crate::linalg::{Complex64, Matrix, add_times_vector};
+use crate::linalg::{Complex64, Matrix, add_times};
 use crate::response::mistuning::{ModalRows, StructuralModes};
 
 /// Damping `D(omega) = eta diag(lambda) + omega C` in modal coordinates.
@@ -174,21 +174,28 @@ impl Structure {
         }
     }
 
-    /// Adds the damping force `i D(omega) x` to `sum`; both as real and imaginary parts.
-    pub fn add_damping_force(&self, omega: f64, x: [&[f64]; 2], sum: [&mut [f64]; 2]) {
-        let ([x_real, x_imaginary], [real, imaginary]) = (x, sum);
-        for mode in 0..self.size() {
-            let full = match &self.damping.viscous {
-                Viscous::Full(viscous) => omega * viscous[(mode, mode)],
-                _ => 0.0,
-            };
-            let d = self.damping_diagonal(mode, omega) - full;
-            real[mode] -= d * x_imaginary[mode];
-            imaginary[mode] += d * x_real[mode];
-        }
+    /// Adds the damping force `i D(omega) x` to `sum`; both are real parts, then imaginary ones. `product` is room
+    /// for as many numbers.
+    pub fn add_damping_force(&self, omega: f64, x: &[f64], sum: &mut [f64], product: &mut [f64]) {
+        let n = self.size();
+        let (x_real, x_imaginary) = x.split_at(n);
+        let (real, imaginary) = sum.split_at_mut(n);
+        let mut add = |mode: usize, rate: f64| {
+            real[mode] -= rate * x_imaginary[mode];
+            imaginary[mode] += rate * x_real[mode];
+        };
         if let Viscous::Full(viscous) = &self.damping.viscous {
-            add_times_vector(real, -omega, viscous.as_slice(), x_imaginary);
-            add_times_vector(imaginary, omega, viscous.as_slice(), x_real);
+            let eta = self.damping.loss_factor;
+            (0..n).for_each(|mode| add(mode, eta * self.eigenvalues[mode]));
+            product.fill(0.0);
+            add_times(product, viscous.as_slice(), x, (n, 2, n));
+            let (product_real, product_imaginary) = product.split_at(n);
+            for mode in 0..n {
+                real[mode] -= omega * product_imaginary[mode];
+                imaginary[mode] += omega * product_real[mode];
+            }
+        } else {
+            (0..n).for_each(|mode| add(mode, self.damping_diagonal(mode, omega)));
         }
     }
 
@@ -263,7 +270,18 @@ impl Structure {
         for (mode, lambda) in self.eigenvalues.iter().enumerate() {
             matrix[mode * n + mode] += lambda - omega * omega;
         }
-        self.for_each_damping(omega, |i, j, d| matrix[j * n + i].im += d);
+        if let Viscous::Full(viscous) = &self.damping.viscous {
+            for (entry, rate) in matrix.iter_mut().zip(viscous.as_slice()) {
+                entry.im += omega * rate;
+            }
+            for (mode, lambda) in self.eigenvalues.iter().enumerate() {
+                matrix[mode * n + mode].im += self.damping.loss_factor * lambda;
+            }
+        } else {
+            for mode in 0..n {
+                matrix[mode * n + mode].im += self.damping_diagonal(mode, omega);
+            }
+        }
     }
 }
 

@@ -13,6 +13,7 @@
 
 use std::sync::Arc;
 
+use super::macro_slip_pairs::MacroSlipPairs;
 use super::wave_blocks::{WaveScale, WaveWorkspace};
 use super::{ContactInterface, HarmonicBlock, HarmonicTransform, PairHarmonics, PairJacobian};
 use crate::linalg::{
@@ -28,7 +29,7 @@ pub struct HarmonicSystem {
     pub(super) start: Vec<usize>,
     /// First real coefficient of each block.
     pub(super) coefficient: Vec<usize>,
-    force: Vec<Complex64>,
+    pub(super) force: Vec<Complex64>,
     force_norm: f64,
     pub(super) interface: ContactInterface,
     pub(super) transform: Arc<HarmonicTransform>,
@@ -36,7 +37,7 @@ pub struct HarmonicSystem {
     pub(super) rows: usize,
     /// Whether all harmonics have the same real matrices, those of a wheel: the unknowns are then one matrix
     /// with a column per real coefficient.
-    shared: bool,
+    pub(super) shared: bool,
     /// Units of the unknowns of waves.
     pub(super) wave_scale: WaveScale,
     /// Drift of the ring along its rigid motions, m per period.
@@ -66,12 +67,16 @@ pub struct SystemWorkspace {
     pub(super) pair_output: Vec<f64>,
     pub(super) jacobians: Vec<PairJacobian>,
     pub(super) active: Vec<bool>,
+    /// Pairs that are evaluated side by side.
+    pub(super) together: Option<MacroSlipPairs>,
     /// Whether a pair separates.
     pub(super) separated: bool,
     /// Contact rows of the active pairs; those of them that have a correction; then `dG/dd C`.
     pub(super) active_rows: Vec<f64>,
     pub(super) left_rows: Vec<f64>,
     pub(super) loaded_rows: Vec<f64>,
+    /// The full viscous damping times the unknowns of one harmonic.
+    pub(super) damped: Vec<f64>,
 }
 
 impl HarmonicSystem {
@@ -209,10 +214,12 @@ impl HarmonicSystem {
             pair_output: vec![0.0; 3 * coefficients],
             jacobians: vec![PairJacobian::new(coefficients); pairs],
             active: vec![false; pairs],
+            together: None,
             separated: false,
             active_rows: vec![0.0; self.rows * largest],
             left_rows: vec![0.0; self.rows * largest],
             loaded_rows: vec![0.0; self.rows * largest],
+            damped: vec![0.0; 2 * largest],
         }
     }
 
@@ -221,6 +228,11 @@ impl HarmonicSystem {
         let mut workspace = self.workspace();
         workspace.pairs.couple_first(0);
         workspace
+    }
+
+    /// Number of contact rows over all sectors.
+    pub(super) fn contact_row_count(&self) -> usize {
+        self.rows
     }
 
     /// Whether all harmonics have the same real matrices.
@@ -239,7 +251,7 @@ impl HarmonicSystem {
         derivative: bool,
         workspace: &mut SystemWorkspace,
     ) -> (f64, ContactShares) {
-        self.linear_part(omega, x, residual);
+        self.linear_part(omega, x, residual, &mut workspace.damped);
         let shares = if self.rows > 0 {
             self.contact_displacement(x, &mut workspace.displacement);
             let shares = self.contact_correction(derivative, workspace);
@@ -253,64 +265,6 @@ impl HarmonicSystem {
         };
         let norm = residual.iter().map(|r| r * r).sum::<f64>().sqrt();
         (norm / self.force_norm, shares)
-    }
-
-    /// `(Z + C^H k_c C) x - f` of every harmonic.
-    fn linear_part(&self, omega: f64, x: &[f64], residual: &mut [f64]) {
-        residual.fill(0.0);
-        if self.shared {
-            let n = self.blocks[0].structure.size();
-            let stuck = self.blocks[0].stuck.real.as_slice();
-            add_times(residual, stuck, x, (n, x.len() / n.max(1), n));
-        }
-        let fundamental = self.fundamental();
-        for (index, block) in self.blocks.iter().enumerate() {
-            let range = self.start[index]..self.start[index + 1];
-            let (x, r) = (&x[range.clone()], &mut residual[range]);
-            if block.waves.is_some() {
-                let stiffness = self.wave_scale.stiffness();
-                r.iter_mut().zip(x).for_each(|(r, x)| *r = stiffness * x);
-                continue;
-            }
-            let n = block.structure.size();
-            let k_omega = f64::from(block.harmonic) * omega;
-            let stuck = &block.stuck;
-            if block.harmonic == 0 {
-                if !self.shared {
-                    add_times_vector(r, 1.0, stuck.real.as_slice(), x);
-                }
-                for (mode, lambda) in block.structure.eigenvalues().iter().enumerate() {
-                    r[mode] += lambda * x[mode];
-                }
-                continue;
-            }
-            let (x_real, x_imaginary) = x.split_at(n);
-            let (r_real, r_imaginary) = r.split_at_mut(n);
-            if !self.shared {
-                add_times_vector(r_real, 1.0, stuck.real.as_slice(), x_real);
-                add_times_vector(r_imaginary, 1.0, stuck.real.as_slice(), x_imaginary);
-            }
-            if let Some(imaginary) = &stuck.imaginary {
-                add_times_vector(r_real, -1.0, imaginary.as_slice(), x_imaginary);
-                add_times_vector(r_imaginary, 1.0, imaginary.as_slice(), x_real);
-            }
-            for (mode, lambda) in block.structure.eigenvalues().iter().enumerate() {
-                let stiffness = lambda - k_omega * k_omega;
-                r_real[mode] += stiffness * x_real[mode];
-                r_imaginary[mode] += stiffness * x_imaginary[mode];
-            }
-            block.structure.add_damping_force(
-                k_omega,
-                [x_real, x_imaginary],
-                [r_real, r_imaginary],
-            );
-            if index == fundamental {
-                for (mode, f) in self.force.iter().enumerate() {
-                    r_real[mode] -= f.re;
-                    r_imaginary[mode] -= f.im;
-                }
-            }
-        }
     }
 
     /// Coefficients of `C x`.
@@ -407,11 +361,14 @@ impl HarmonicSystem {
         derivative: bool,
         workspace: &mut SystemWorkspace,
     ) -> ContactShares {
+        workspace.correction.fill(0.0);
+        if self.marches_together() {
+            return self.correction_together(derivative, workspace);
+        }
         let coefficients = self.transform.n_coefficients();
         let per_sector = self.interface.per_sector();
         let sector_rows = self.interface.geometry.row_count();
         let (mut slipping, mut separated, mut unclosed) = (0_usize, 0_usize, 0_usize);
-        workspace.correction.fill(0.0);
         let count = workspace.active.len();
         for pair in 0..count {
             let base = pair / per_sector * sector_rows;

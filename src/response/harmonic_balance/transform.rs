@@ -17,11 +17,13 @@
 //! channels at a time (many harmonics); the two agree to rounding.
 
 use std::f64::consts::TAU;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 use thiserror::Error;
+
+use crate::linalg::add_times;
 
 /// Number of coefficients from which on the FFT is the faster one for a batch of three channels:
 /// measured crossing at 6 for 128 samples and at 7 to 10 for 512.
@@ -57,6 +59,9 @@ pub struct HarmonicTransform {
     basis: Vec<f64>,
     /// `sum_{i < j} psi_c(tau_i)`, row c after row (`n_coefficients * (n_samples + 1)`).
     cumulative: Vec<f64>,
+    /// `sum_{i < j} psi_c(tau_i) phi_c'(tau_i)`, made when first asked for (`(n_samples + 1) * n_coefficients *
+    /// n_coefficients`).
+    products: OnceLock<Vec<f64>>,
     forward: Arc<dyn Fft<f64>>,
     inverse: Arc<dyn Fft<f64>>,
 }
@@ -112,6 +117,7 @@ impl HarmonicTransform {
             n_samples,
             basis,
             cumulative: Vec::new(),
+            products: OnceLock::new(),
             forward: planner.plan_fft_forward(n_samples),
             inverse: planner.plan_fft_inverse(n_samples),
         };
@@ -157,6 +163,11 @@ impl HarmonicTransform {
         &self.basis[coefficient * self.n_samples..][..self.n_samples]
     }
 
+    /// Whether a signal changes sign after half a period, and the samples with it: where all harmonics are odd.
+    pub(super) fn has_half_waves(&self) -> bool {
+        self.n_samples.is_multiple_of(2) && self.harmonics.iter().all(|k| k % 2 == 1)
+    }
+
     /// Ratio `psi_c / phi_c`: 1/n for harmonic 0, 2/n otherwise.
     #[must_use]
     pub fn projection_scale(&self, coefficient: usize) -> f64 {
@@ -174,6 +185,36 @@ impl HarmonicTransform {
     pub fn cumulative_projection(&self, coefficient: usize) -> &[f64] {
         let length = self.n_samples + 1;
         &self.cumulative[coefficient * length..][..length]
+    }
+
+    /// `sum_{i < j} psi_c(tau_i) phi_c'(tau_i)`, a row per c (`n_coefficients * n_coefficients`).
+    pub(super) fn products_to(&self, j: usize) -> &[f64] {
+        let n = self.n_coefficients();
+        let products = self.products.get_or_init(|| {
+            let mut sums = vec![0.0; n * n];
+            let mut products = sums.clone();
+            for i in 0..self.n_samples {
+                for (c, row) in sums.chunks_exact_mut(n).enumerate() {
+                    let psi = self.projection_scale(c) * self.basis(c)[i];
+                    for (other, sum) in row.iter_mut().enumerate() {
+                        *sum += psi * self.basis(other)[i];
+                    }
+                }
+                products.extend_from_slice(&sums);
+            }
+            products
+        });
+        &products[j * n * n..][..n * n]
+    }
+
+    /// Upper bound on a signal with these coefficients, the mean left out: the sum of the amplitudes of its harmonics.
+    pub(super) fn excursion(&self, coefficients: impl Iterator<Item = f64>) -> f64 {
+        let mut oscillation = coefficients.skip(usize::from(self.has_mean()));
+        let mut sum = 0.0;
+        while let (Some(re), Some(im)) = (oscillation.next(), oscillation.next()) {
+            sum += (re * re + im * im).sqrt();
+        }
+        sum
     }
 
     /// Buffers for the methods that may use the FFT.
@@ -334,29 +375,26 @@ impl HarmonicTransform {
     /// `time_maximum`. Not a number if a coefficient is not finite.
     #[must_use]
     pub fn largest_norm(&self, coefficients: &[f64]) -> f64 {
-        const BLOCK: usize = 64;
         if !coefficients.iter().all(|value| value.is_finite()) {
             return f64::NAN;
         }
         let first = usize::from(self.has_mean());
-        let mut largest = 0.0_f64;
-        for start in (0..self.n_samples).step_by(BLOCK) {
-            let length = BLOCK.min(self.n_samples - start);
-            let mut square = [0.0; BLOCK];
-            for component in coefficients.chunks_exact(self.n_coefficients().max(1)) {
-                let mut x = [0.0; BLOCK];
-                for (c, value) in component.iter().enumerate().skip(first) {
-                    let row = &self.basis(c)[start..start + length];
-                    x.iter_mut().zip(row).for_each(|(x, phi)| *x += value * phi);
-                }
-                square
-                    .iter_mut()
-                    .zip(x)
-                    .for_each(|(square, x)| *square += x * x);
+        let count = self.n_coefficients();
+        let components = coefficients.chunks_exact(count.max(1));
+        let moving = components.filter(|own| own[first..].iter().any(|&value| value != 0.0));
+        let instants = self.n_samples / if self.has_half_waves() { 2 } else { 1 };
+        let oscillation = &self.basis[first * self.n_samples..];
+        let mut squares = vec![0.0; self.n_samples];
+        let mut history = vec![0.0; self.n_samples];
+        for component in moving {
+            history.fill(0.0);
+            let size = (self.n_samples, 1, count - first);
+            add_times(&mut history, oscillation, &component[first..], size);
+            for (square, x) in squares.iter_mut().zip(&history[..instants]) {
+                *square += x * x;
             }
-            largest = square.into_iter().fold(largest, f64::max);
         }
-        largest.sqrt()
+        largest(&squares[..instants]).sqrt()
     }
 
     /// Harmonics of one channel and their complex coefficients (real for harmonic 0).
@@ -371,6 +409,23 @@ impl HarmonicTransform {
             .map(|pair| Complex64::new(pair[0], pair[1]));
         self.harmonics.iter().copied().zip(mean.chain(oscillation))
     }
+}
+
+/// The largest of values that are not negative; 0 of none.
+fn largest(values: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let (blocks, rest) = values.as_chunks::<LANES>();
+    let mut most = [0.0_f64; LANES];
+    for block in blocks {
+        for lane in 0..LANES {
+            most[lane] = if block[lane] > most[lane] {
+                block[lane]
+            } else {
+                most[lane]
+            };
+        }
+    }
+    most.iter().chain(rest).copied().fold(0.0, f64::max)
 }
 
 /// Sum of `a_j b_j` in eight partial sums, which a compiler can vectorise; the order of summation

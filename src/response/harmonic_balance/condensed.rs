@@ -1,0 +1,419 @@
+//! Newton's step of a wheel with few contact rows, by an equation in the contact forces alone.
+//!
+//! With `S_k = Z(k omega) + C^T k_c C` the linear part of harmonic k, and G' the derivative of the corrections of the
+//! contact forces by the relative motions, the Jacobian is `J = S + C^T G' C`, and exactly
+//!
+//! ```text
+//! J^-1 r = v - A y,    v = S^-1 r,    A_k = S_k^-1 C^T,    R_k = C A_k,
+//! (I + G' R) y = G' C v
+//! ```
+//!
+//! (Sherman, Morrison & Woodbury). The unknowns y are as many as coefficients of contact rows that have a correction;
+//! S has no coupling of harmonics and is factored once a frequency. Residual and judgement are those of the whole
+//! equation.
+
+use std::sync::Arc;
+
+use super::linear_factors::LinearFactors;
+use super::structure::{ContactStiffnessMatrix, Structure};
+use super::{HarmonicBlock, HarmonicSystem, LARGEST_WHOLE_JACOBIAN, SystemWorkspace};
+use crate::linalg::{LuWorkspace, add_times};
+
+impl HarmonicSystem {
+    /// Whether the step by contact forces is the cheaper one: for harmonics of a wheel, with no more coefficients of
+    /// contact rows than a matrix may have that costs next to nothing, by the operations that either takes.
+    #[must_use]
+    pub fn condenses(&self) -> bool {
+        let rows = self.contact_row_count();
+        let condensed = self.transform.n_coefficients() * rows;
+        if !self.is_shared() || rows == 0 || condensed > LARGEST_WHOLE_JACOBIAN {
+            return false;
+        }
+        let factored = |n: f64| 2.0 / 3.0 * n.powi(3);
+        let (m, unknowns) = (rows as f64, self.unknowns() as f64);
+        let whole = factored(unknowns) + 2.0 * unknowns.powi(2) * m;
+        let of_block = |block: &HarmonicBlock| {
+            let n = block.structure.size() as f64;
+            4.0 * factored(n) + 8.0 * n * n * m + 4.0 * n * m * m
+        };
+        let linear: f64 = self.blocks().iter().map(of_block).sum();
+        linear + factored(condensed as f64) < whole
+    }
+}
+
+/// Factors of J by contact forces.
+#[derive(Default)]
+pub(super) struct CondensedJacobian {
+    /// Matrices of the linear parts at hand.
+    of: Option<(Arc<Structure>, Arc<ContactStiffnessMatrix>)>,
+    linear: Vec<LinearFactors>,
+    /// Contact rows that have a correction.
+    rows: Vec<usize>,
+    couplings: Vec<Coupling>,
+    /// `dG_c/dd_c'` of every coupling, a column per c'.
+    slopes: Vec<f64>,
+    /// Of `I + G' R`, row after row of contact, in each coefficient after coefficient.
+    factors: Option<LuWorkspace<f64>>,
+    motion: Vec<f64>,
+    forces: Vec<f64>,
+    spread: Vec<f64>,
+}
+
+/// Dependence of the correction at a contact row on the motion at one.
+#[derive(Clone, Copy)]
+struct Coupling {
+    /// Place among the rows that have a correction.
+    to: usize,
+    /// Contact row.
+    from: usize,
+}
+
+impl CondensedJacobian {
+    /// Factors J at the point last given to [`HarmonicSystem::residual`] with derivative; false if it is singular.
+    pub(super) fn factor(
+        &mut self,
+        system: &HarmonicSystem,
+        omega: f64,
+        workspace: &SystemWorkspace,
+    ) -> bool {
+        if !self.factor_linear(system, omega) {
+            return false;
+        }
+        self.gather(system, workspace);
+        let count = system.transform.n_coefficients();
+        let size = count * self.rows.len();
+        if size == 0 {
+            self.factors = None;
+            return true;
+        }
+        if self.factors.as_ref().is_none_or(|f| f.dimension() != size) {
+            self.factors = Some(LuWorkspace::new(size));
+        }
+        let m = system.contact_row_count();
+        let Some(factors) = &mut self.factors else {
+            return false;
+        };
+        let matrix = factors.matrix_mut();
+        matrix.fill(0.0);
+        (0..size).for_each(|i| matrix[i * size + i] = 1.0);
+        for (coupling, slopes) in self
+            .couplings
+            .iter()
+            .zip(self.slopes.chunks_exact(count * count))
+        {
+            for (j, &row) in self.rows.iter().enumerate() {
+                for part in &self.linear {
+                    let place = row * m + coupling.from;
+                    let [re, im] = [part.receptance[0][place], part.receptance[1][place]];
+                    let slopes = &slopes[part.coefficient * count..][..part.parts * count];
+                    let column = (j * count + part.coefficient) * size + coupling.to * count;
+                    let (by_re, by_im) = slopes.split_at(count);
+                    if part.parts == 1 {
+                        let target = &mut matrix[column..column + count];
+                        for (entry, slope) in target.iter_mut().zip(by_re) {
+                            *entry += slope * re;
+                        }
+                        continue;
+                    }
+                    let target = &mut matrix[column..column + count];
+                    for ((entry, by_re), by_im) in target.iter_mut().zip(by_re).zip(by_im) {
+                        *entry += by_re * re + by_im * im;
+                    }
+                    let target = &mut matrix[column + size..column + size + count];
+                    for ((entry, by_re), by_im) in target.iter_mut().zip(by_re).zip(by_im) {
+                        *entry += by_im * re - by_re * im;
+                    }
+                }
+            }
+        }
+        factors.factor()
+    }
+
+    /// Factors S and finds A and R, unless those at hand are the same.
+    fn factor_linear(&mut self, system: &HarmonicSystem, omega: f64) -> bool {
+        let block = &system.blocks()[0];
+        let same = self.of.as_ref().is_some_and(|(structure, stuck)| {
+            Arc::ptr_eq(structure, &block.structure) && Arc::ptr_eq(stuck, &block.stuck)
+        });
+        if !same {
+            let places = system.blocks().iter().zip(&system.coefficient);
+            self.linear = places
+                .map(|(block, &coefficient)| LinearFactors::new(block, coefficient))
+                .collect();
+            self.of = Some((Arc::clone(&block.structure), Arc::clone(&block.stuck)));
+        }
+        let parts = self.linear.iter_mut().zip(system.blocks());
+        parts.fold(true, |regular, (part, block)| {
+            let at_hand = part.at.is_some_and(|at| at.total_cmp(&omega).is_eq());
+            (at_hand || part.factor(block, omega)) && regular
+        })
+    }
+
+    /// The rows that have a correction, and the derivatives of the corrections.
+    fn gather(&mut self, system: &HarmonicSystem, workspace: &SystemWorkspace) {
+        let geometry = &system.interface.geometry;
+        let count = system.transform.n_coefficients();
+        self.rows.clear();
+        self.couplings.clear();
+        self.slopes.clear();
+        for (pair, jacobian) in workspace.jacobians.iter().enumerate() {
+            if !workspace.active[pair] {
+                continue;
+            }
+            let base = pair / geometry.rows.len() * geometry.row_count();
+            let places = &geometry.rows[pair % geometry.rows.len()];
+            let first = usize::from(!workspace.separated);
+            for (direction, place) in places.iter().enumerate().skip(first) {
+                let Some(row) = *place else { continue };
+                for (other, place) in places.iter().enumerate() {
+                    if let (Some(from), Some(block)) = (*place, jacobian.block(direction, other)) {
+                        self.couplings.push(Coupling {
+                            to: self.rows.len(),
+                            from: base + from,
+                        });
+                        let columns = (0..count).flat_map(|by| block[by..].iter().step_by(count));
+                        self.slopes.extend(columns);
+                    }
+                }
+                self.rows.push(base + row);
+            }
+        }
+    }
+
+    /// `J^-1 residual`, in place.
+    pub(super) fn solve(&mut self, residual: &mut [f64]) {
+        let Some((structure, _)) = &self.of else {
+            return;
+        };
+        let contact = &structure.contact().real;
+        let (m, n) = (contact.rows(), contact.columns());
+        let mut rest = &mut *residual;
+        for part in &mut self.linear {
+            let (own, beyond) = rest.split_at_mut(part.parts * n);
+            part.solve(own);
+            rest = beyond;
+        }
+        let Some(factors) = &mut self.factors else {
+            return;
+        };
+        let columns = residual.len() / n;
+        self.motion.clear();
+        self.motion.resize(m * columns, 0.0);
+        add_times(
+            &mut self.motion,
+            contact.as_slice(),
+            residual,
+            (m, columns, n),
+        );
+        self.forces.clear();
+        self.forces.resize(factors.dimension(), 0.0);
+        let slopes = self.slopes.chunks_exact(columns * columns);
+        for (coupling, slopes) in self.couplings.iter().zip(slopes) {
+            let target = &mut self.forces[coupling.to * columns..][..columns];
+            let motion = self.motion[coupling.from..].iter().step_by(m);
+            for (motion, slopes) in motion.zip(slopes.chunks_exact(columns)) {
+                for (force, slope) in target.iter_mut().zip(slopes) {
+                    *force += slope * motion;
+                }
+            }
+        }
+        factors.solve(&mut self.forces);
+        // From now on in the place of the motion: -y at all rows, coefficient after coefficient.
+        self.motion.fill(0.0);
+        for (&row, forces) in self.rows.iter().zip(self.forces.chunks_exact(columns)) {
+            for (c, force) in forces.iter().enumerate() {
+                self.motion[c * m + row] = -force;
+            }
+        }
+        let mut rest = residual;
+        for part in &self.linear {
+            let (own, beyond) = rest.split_at_mut(part.parts * n);
+            let forces = &self.motion[part.coefficient * m..][..part.parts * m];
+            part.add_attached(own, forces, &mut self.spread);
+            rest = beyond;
+        }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::linalg::{Complex64, Matrix};
+    use crate::model::cyclic::ContactGeometry;
+    use crate::response::friction::{ContactLaw, PairParameters};
+    use crate::response::harmonic_balance::{
+        ContactInterface, ContactShares, Damping, HarmonicTransform,
+    };
+    use crate::response::mistuning::{ModalRows, StructuralModes};
+
+    pub(crate) const OMEGA: f64 = 1.1;
+    const MODES: usize = 5;
+
+    /// Five modes with damping between them, four pairs of which some have a normal row.
+    pub(crate) fn system(law: ContactLaw, harmonics: &[usize], samples: usize) -> HarmonicSystem {
+        let rows = |count, factor: f64| ModalRows {
+            real: Matrix::from_fn(count, MODES, |i, j| {
+                (factor * (1 + i + 3 * j + i * j) as f64).sin()
+            }),
+            imaginary: None,
+        };
+        let eigenvalues = vec![1.0, 3.5, 1.7, 9.0, 14.0];
+        let structure = Arc::new(Structure::new(
+            StructuralModes {
+                tuned_eigenvalues: eigenvalues.iter().map(|lambda| 1.1 * lambda).collect(),
+                eigenvalues,
+                rotation: Some(Matrix::from_fn(MODES, MODES, |i, j| {
+                    f64::from(u8::from(i == j)) + 0.2 * ((3 * i + j) as f64).cos()
+                })),
+                added_damping_per_s: vec![0.0; MODES],
+                contact: rows(10, 1.0),
+                observed: rows(3, 2.0),
+                sectors: 2,
+            },
+            Damping::Rayleigh {
+                mass_per_s: 0.02,
+                stiffness_s: 0.01,
+            },
+        ));
+        let stuck = Arc::new(structure.contact_stiffness(&[0.7, 0.9, 0.9, 0.6, 0.8]));
+        let blocks = harmonics.iter().map(|&harmonic| HarmonicBlock {
+            harmonic: harmonic as u32,
+            structure: Arc::clone(&structure),
+            stuck: Arc::clone(&stuck),
+            waves: None,
+        });
+        let pair = PairParameters {
+            normal_load_n: 0.4,
+            normal_stiffness_n_per_m: 0.7,
+            tangential_stiffness_n_per_m: 0.9,
+            friction_coefficient: 0.3,
+        };
+        let loads = [0.4, 0.0, 50.0, 0.2];
+        let interface = ContactInterface {
+            law,
+            geometry: ContactGeometry {
+                weights: vec![0.5; 2],
+                load_weights: vec![0.5; 2],
+                rows: vec![[Some(0), Some(1), Some(2)], [None, Some(3), Some(4)]],
+                ring_motion: vec![[[0.0; 2]; 2]; 2],
+                ring_free: [false; 2],
+            },
+            pairs: loads
+                .map(|normal_load_n| PairParameters {
+                    normal_load_n,
+                    ..pair
+                })
+                .to_vec(),
+        };
+        let force: Vec<Complex64> = (0..MODES)
+            .map(|i| Complex64::new(1.0, 0.3 * i as f64))
+            .collect();
+        let transform = HarmonicTransform::new(harmonics, samples).expect("enough samples");
+        HarmonicSystem::new(blocks.collect(), force, interface, Arc::new(transform))
+    }
+
+    /// A state in which some pairs slip.
+    pub(crate) fn state(system: &HarmonicSystem) -> Vec<f64> {
+        let entry = |i: usize| 0.4 * (0.7 + 1.3 * i as f64).sin() / (1.0 + (i / 10) as f64);
+        (0..system.unknowns()).map(entry).collect()
+    }
+
+    fn factored(
+        system: &HarmonicSystem,
+        x: &[f64],
+    ) -> (CondensedJacobian, Vec<f64>, ContactShares) {
+        let mut workspace = system.workspace();
+        let mut residual = vec![0.0; x.len()];
+        let (_, shares) = system.residual(OMEGA, x, &mut residual, true, &mut workspace);
+        let mut whole = vec![0.0; x.len() * x.len()];
+        system.jacobian(OMEGA, &mut workspace, &mut whole);
+        let mut condensed = CondensedJacobian::default();
+        assert!(condensed.factor(system, OMEGA, &workspace));
+        (condensed, whole, shares)
+    }
+
+    const LAWS: [ContactLaw; 3] = [
+        ContactLaw::MacroSlip1d,
+        ContactLaw::Simplified3d,
+        ContactLaw::Coulomb3d,
+    ];
+
+    #[test]
+    fn the_step_by_contact_forces_is_that_of_the_whole_jacobian() {
+        for law in LAWS {
+            for harmonics in [&[1][..], &[1, 3], &[0, 1, 2]] {
+                let system = system(law, harmonics, 64);
+                let (mut condensed, whole, shares) = factored(&system, &state(&system));
+                assert!((0.3..1.0).contains(&shares.slipping), "{law:?}: {shares:?}");
+                let right = state(&system);
+                let n = right.len();
+                let mut step = right.clone();
+                condensed.solve(&mut step);
+                for (i, right) in right.iter().enumerate() {
+                    let product: f64 = (0..n).map(|j| whole[j * n + i] * step[j]).sum();
+                    assert!((product - right).abs() < 1e-11, "{law:?} {harmonics:?} {i}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_step_by_contact_forces_undoes_a_small_one() {
+        let change = 1e-7;
+        for law in LAWS {
+            let system = system(law, &[1, 3], 64);
+            let x = state(&system);
+            let (mut condensed, _, _) = factored(&system, &x);
+            let mut workspace = system.workspace();
+            for at in 0..x.len() {
+                let mut difference = vec![0.0; x.len()];
+                for sign in [1.0, -1.0] {
+                    let mut moved = x.clone();
+                    moved[at] += sign * change;
+                    let mut residual = vec![0.0; x.len()];
+                    system.residual(OMEGA, &moved, &mut residual, false, &mut workspace);
+                    for (sum, r) in difference.iter_mut().zip(&residual) {
+                        *sum += sign * r / (2.0 * change);
+                    }
+                }
+                condensed.solve(&mut difference);
+                for (i, step) in difference.iter().enumerate() {
+                    let expected = f64::from(u8::from(i == at));
+                    assert!((step - expected).abs() < 1e-6, "{law:?}: {at} {i} {step}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn factors_of_other_frequencies_and_structures_are_not_taken_for_the_present_ones() {
+        let system = system(ContactLaw::MacroSlip1d, &[1, 3], 64);
+        let softer = system.with_tangential_stiffness(0.5);
+        let x = state(&system);
+        let mut kept = CondensedJacobian::default();
+        for (system, omega) in [
+            (&system, OMEGA),
+            (&system, 1.3),
+            (&softer, 1.3),
+            (&system, 1.3),
+        ] {
+            let mut workspace = system.workspace();
+            let mut residual = vec![0.0; x.len()];
+            system.residual(omega, &x, &mut residual, true, &mut workspace);
+            let mut fresh = CondensedJacobian::default();
+            let steps = [&mut kept, &mut fresh].map(|condensed| {
+                assert!(condensed.factor(system, omega, &workspace));
+                let mut step = residual.clone();
+                condensed.solve(&mut step);
+                step
+            });
+            assert_eq!(steps[0], steps[1]);
+        }
+    }
+
+    #[test]
+    fn few_contact_rows_are_condensed_and_many_are_not() {
+        // Ten rows on five modes.
+        assert!(!system(ContactLaw::MacroSlip1d, &[1, 3], 64).condenses());
+    }
+}

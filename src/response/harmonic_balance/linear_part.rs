@@ -1,0 +1,67 @@
+//! The linear part of the harmonic balance equation, on the stuck base.
+
+use super::HarmonicSystem;
+use crate::linalg::{add_times, add_times_vector};
+
+impl HarmonicSystem {
+    /// `(Z + C^H k_c C) x - f` of every harmonic.
+    pub(super) fn linear_part(
+        &self,
+        omega: f64,
+        x: &[f64],
+        residual: &mut [f64],
+        damped: &mut [f64],
+    ) {
+        residual.fill(0.0);
+        if self.shared {
+            let n = self.blocks[0].structure.size();
+            let stuck = self.blocks[0].stuck.real.as_slice();
+            add_times(residual, stuck, x, (n, x.len() / n.max(1), n));
+        }
+        let fundamental = self.fundamental();
+        for (index, block) in self.blocks.iter().enumerate() {
+            let range = self.start[index]..self.start[index + 1];
+            let (x, r) = (&x[range.clone()], &mut residual[range]);
+            if block.waves.is_some() {
+                let stiffness = self.wave_scale.stiffness();
+                r.iter_mut().zip(x).for_each(|(r, x)| *r = stiffness * x);
+                continue;
+            }
+            let n = block.structure.size();
+            let k_omega = f64::from(block.harmonic) * omega;
+            let stuck = &block.stuck;
+            if block.harmonic == 0 {
+                if !self.shared {
+                    add_times_vector(r, 1.0, stuck.real.as_slice(), x);
+                }
+                for (mode, lambda) in block.structure.eigenvalues().iter().enumerate() {
+                    r[mode] += lambda * x[mode];
+                }
+                continue;
+            }
+            let damping = &block.structure;
+            damping.add_damping_force(k_omega, x, r, &mut damped[..2 * n]);
+            let (x_real, x_imaginary) = x.split_at(n);
+            let (r_real, r_imaginary) = r.split_at_mut(n);
+            if !self.shared {
+                add_times_vector(r_real, 1.0, stuck.real.as_slice(), x_real);
+                add_times_vector(r_imaginary, 1.0, stuck.real.as_slice(), x_imaginary);
+            }
+            if let Some(imaginary) = &stuck.imaginary {
+                add_times_vector(r_real, -1.0, imaginary.as_slice(), x_imaginary);
+                add_times_vector(r_imaginary, 1.0, imaginary.as_slice(), x_real);
+            }
+            for (mode, lambda) in block.structure.eigenvalues().iter().enumerate() {
+                let stiffness = lambda - k_omega * k_omega;
+                r_real[mode] += stiffness * x_real[mode];
+                r_imaginary[mode] += stiffness * x_imaginary[mode];
+            }
+            if index == fundamental {
+                for (mode, f) in self.force.iter().enumerate() {
+                    r_real[mode] -= f.re;
+                    r_imaginary[mode] -= f.im;
+                }
+            }
+        }
+    }
+}
