@@ -38,8 +38,8 @@ const LINEARISED_SAMPLES: usize = 128;
 const LINEARISED_SAMPLES_OF_HIGHEST: usize = 4;
 /// Steps of the iteration at most.
 const EVALUATIONS: usize = 14;
-/// Earlier iterates that the acceleration combines: all of them.
-const DEPTH: usize = EVALUATIONS;
+/// The same where harmonics are taken in the tuned wheel: P has the mean contact of its sectors, and a step is cheap.
+const EVALUATIONS_OF_WAVES: usize = 48;
 /// The iteration ends when the next step would change the set by this share of the change so far,
 const SETTLED: f64 = 0.03;
 /// or by this share of the set itself.
@@ -212,11 +212,12 @@ impl Enlargement<'_> {
     ) -> Option<Enlarged> {
         let mut step = self.step(&before);
         let scale = self.in_set(&before);
-        let mut acceleration = Anderson::new(before.len(), DEPTH);
+        let evaluations = self.evaluations();
+        let mut acceleration = Anderson::new(before.len(), evaluations);
         let mut iterate = before.clone();
         let mut next = before.clone();
         let mut best: Option<(f64, Vec<f64>)> = None;
-        for evaluation in 1..=EVALUATIONS {
+        for evaluation in 1..=evaluations {
             let last = self.in_set(&step);
             acceleration.next(&iterate, &step, &mut next);
             std::mem::swap(&mut iterate, &mut next);
@@ -249,6 +250,15 @@ impl Enlargement<'_> {
             unsettled,
             without,
         })
+    }
+
+    /// Steps at most.
+    fn evaluations(&self) -> usize {
+        if self.enlarged.has_waves() {
+            EVALUATIONS_OF_WAVES
+        } else {
+            EVALUATIONS
+        }
     }
 
     fn residual(&mut self, x: &[f64]) -> Vec<f64> {
@@ -304,9 +314,9 @@ impl Enlargement<'_> {
     /// unknowns of the enlarged system: by one Newton correction, or by accelerated steps. None if they diverge.
     fn in_set_of(&mut self, other: &HarmonicSystem, x: &[f64]) -> Option<Vec<f64>> {
         let newton = !matches!(self.factors, Factors::ByHarmonic(_));
-        let evaluations = if newton { 1 } else { EVALUATIONS };
+        let evaluations = if newton { 1 } else { self.evaluations() };
         let mut buffers = other.workspace();
-        let mut acceleration = Anderson::new(self.enlarged.unknowns(), DEPTH);
+        let mut acceleration = Anderson::new(self.enlarged.unknowns(), evaluations);
         let mut iterate = embed(self.system, &self.enlarged, &self.places, x);
         let scale = self.in_set(&iterate);
         let (mut next, mut residual) = (iterate.clone(), vec![0.0; x.len()]);
