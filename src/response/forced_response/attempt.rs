@@ -5,6 +5,9 @@ use crate::response::harmonic_balance::Steps;
 /// Attempts at one point, in order.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Attempt {
+    /// From what the converged points, or a solution with fewer harmonics, lead one to expect, with a Jacobian that
+    /// is renewed often, since it costs little.
+    Renewed,
     /// From what a solution with fewer harmonics and the converged points lead one to expect, with the derivatives
     /// of harmonics by themselves.
     ByHarmonic,
@@ -25,8 +28,9 @@ pub(super) enum Attempt {
     LoadHomotopy,
 }
 
-/// In the order in which they are made; the first two only beside a solution with fewer harmonics.
-const LADDER: [Attempt; 8] = [
+/// In the order in which they are made.
+const LADDER: [Attempt; 9] = [
+    Attempt::Renewed,
     Attempt::ByHarmonic,
     Attempt::Once,
     Attempt::Neighbours,
@@ -38,14 +42,20 @@ const LADDER: [Attempt; 8] = [
 ];
 
 impl Attempt {
-    /// The attempts, with or without a solution with fewer harmonics.
-    pub(super) fn ladder(refines: bool) -> &'static [Self] {
-        if refines { &LADDER } else { &LADDER[2..] }
+    /// The attempts where Newton's steps are condensed or not, with or without a solution with fewer harmonics.
+    pub(super) fn ladder(condenses: bool, refines: bool) -> impl Iterator<Item = Self> {
+        let made = move |attempt: &Self| match attempt {
+            Self::Renewed => condenses,
+            Self::ByHarmonic | Self::Once => refines,
+            _ => true,
+        };
+        LADDER.into_iter().filter(made)
     }
 
     /// How the steps of Newton's method are made.
     pub(super) fn steps(self) -> Steps {
         match self {
+            Self::Renewed => Steps::Renewed,
             Self::ByHarmonic => Steps::ByHarmonic,
             Self::Once => Steps::Once,
             Self::Neighbours => Steps::Accelerated,

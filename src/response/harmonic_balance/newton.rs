@@ -3,7 +3,7 @@
 
 use super::anderson::Anderson;
 use super::kept_jacobian::KeptJacobian;
-use super::serves::{ACCELERATED, ONCE, PLAIN, RENEWED, Serves};
+use super::serves::{ACCELERATED, ONCE, PLAIN, RENEWED};
 use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
 
 /// How the steps of a solve are made.
@@ -14,6 +14,9 @@ pub enum Steps {
     /// Simplified steps combined by Anderson's acceleration, with a Jacobian (its lower block triangle where it is
     /// large) that is renewed where they shrink too slowly.
     Accelerated,
+    /// The same with a Jacobian that is renewed as soon as steps do not shrink fast: for a system that
+    /// [`HarmonicSystem::condenses`].
+    Renewed,
     /// From a good start: the acceleration alone, with the derivatives of harmonic 1 and of every other one by
     /// themselves, found once. Steps may grow on the way.
     ByHarmonic,
@@ -78,20 +81,6 @@ pub(super) trait Equation {
 
     /// Turns a residual into the step `J^-1 R` with the factors at hand, in place.
     fn step(&mut self, residual: &mut [f64]);
-
-    /// Whether a new derivative costs no more than a few steps.
-    fn renews_cheaply(&self) -> bool {
-        false
-    }
-
-    /// When a derivative serves on, where `usual` is what other equations take.
-    fn serving(&self, usual: Serves) -> Serves {
-        if self.renews_cheaply() {
-            RENEWED
-        } else {
-            usual
-        }
-    }
 
     /// Whether `u` serves its purpose already, where `step` is what it still lacks.
     fn is_settled(&self, _u: &[f64], _step: &[f64]) -> bool {
@@ -252,10 +241,6 @@ impl Equation for FixedFrequency<'_> {
         self.jacobian.solve(residual);
     }
 
-    fn renews_cheaply(&self) -> bool {
-        self.system.condenses()
-    }
-
     fn is_settled(&self, x: &[f64], step: &[f64]) -> bool {
         self.settled.is_some_and(|settled| settled(x, step))
     }
@@ -305,7 +290,7 @@ pub(super) fn iterate(
         acceleration,
         steps,
     } = buffers;
-    let once = steps.keep_jacobian() && !equation.renews_cheaply();
+    let once = steps.keep_jacobian();
     if let Some(acceleration) = acceleration {
         acceleration.begin();
     }
@@ -349,18 +334,22 @@ pub(super) fn iterate(
         served += 1;
         let length = norm_of(step);
         // Contact that opens folds the curve, and a step that is too long ends on another branch of it.
-        let serves = equation.serving(match acceleration {
+        let serves = match acceleration {
             Some(acceleration) if *steps != Steps::Plain && state.shares.separated == 0.0 => {
                 acceleration.next(u, step, trial);
                 // A step of such a Jacobian is as good as the first.
                 kept |= once;
-                if once { ONCE } else { ACCELERATED }
+                match steps {
+                    _ if once => ONCE,
+                    Steps::Renewed => RENEWED,
+                    _ => ACCELERATED,
+                }
             }
             _ => {
                 add_scaled(trial, u, 1.0, step);
                 PLAIN
             }
-        });
+        };
         let halvings = if kept { 0 } else { bounds.halvings };
         let accepted = (0..=halvings).find_map(|halving| {
             let factor = 0.5_f64.powi(halving as i32);
