@@ -176,7 +176,8 @@ impl NewtonWorkspace {
     /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
     pub fn factor_at(&mut self, system: &HarmonicSystem, omega: f64, x: &[f64]) -> bool {
         system.residual(omega, x, &mut self.buffers.residual, true, &mut self.system);
-        self.jacobian.factor_whole(system, omega, &mut self.system)
+        self.jacobian
+            .factor_cheaply(system, omega, &mut self.system)
     }
 
     /// `J^-1 residual` with the factors at hand, in place.
@@ -202,9 +203,7 @@ impl Equation for FixedFrequency<'_> {
     }
 
     fn linearise(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
-        let small = self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN
-            || !self.system.is_shared()
-            || self.system.condenses();
+        let small = self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN || !self.system.is_shared();
         let by_harmonic = self.steps == Steps::ByHarmonic && !small;
         if by_harmonic {
             self.system.couple_leading(self.workspace);
@@ -222,6 +221,7 @@ impl Equation for FixedFrequency<'_> {
         }
         let whole = small || shares.separated > 0.0;
         match self.steps {
+            Steps::Renewed => self.jacobian.factor_cheaply(system, omega, self.workspace),
             Steps::ByHarmonic if !whole => {
                 self.jacobian
                     .factor_by_harmonic(system, omega, self.workspace)
