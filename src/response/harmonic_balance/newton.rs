@@ -3,7 +3,7 @@
 
 use super::anderson::Anderson;
 use super::kept_jacobian::KeptJacobian;
-use super::serves::{ACCELERATED, ONCE, PLAIN, RENEWED};
+use super::serves::{ACCELERATED, ONCE, PLAIN, RENEWED, Serves};
 use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
 
 /// How the steps of a solve are made.
@@ -28,6 +28,15 @@ impl Steps {
     /// Whether one Jacobian is to do.
     fn keep_jacobian(self) -> bool {
         matches!(self, Self::ByHarmonic | Self::Once)
+    }
+
+    /// When a Jacobian serves on for accelerated steps.
+    fn serves(self) -> Serves {
+        match self {
+            Self::ByHarmonic | Self::Once => ONCE,
+            Self::Renewed => RENEWED,
+            Self::Accelerated | Self::Plain => ACCELERATED,
+        }
     }
 
     /// `bounds` for steps of this kind: what costs a small part may be more.
@@ -339,11 +348,7 @@ pub(super) fn iterate(
                 acceleration.next(u, step, trial);
                 // A step of such a Jacobian is as good as the first.
                 kept |= once;
-                match steps {
-                    _ if once => ONCE,
-                    Steps::Renewed => RENEWED,
-                    _ => ACCELERATED,
-                }
+                steps.serves()
             }
             _ => {
                 add_scaled(trial, u, 1.0, step);
