@@ -5,6 +5,9 @@ use crate::response::harmonic_balance::Steps;
 /// Attempts at one point, in order.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Attempt {
+    /// From what the converged points, or a solution with fewer harmonics, lead one to expect, with a Jacobian that
+    /// is renewed often, since it costs little.
+    Renewed,
     /// From what a solution with fewer harmonics and the converged points lead one to expect, with the derivatives
     /// of harmonics by themselves.
     ByHarmonic,
@@ -27,12 +30,11 @@ pub(super) enum Attempt {
     LoadHomotopy,
 }
 
-/// Where the whole Jacobian is not to be had: harmonics other than 1 in the tuned wheel.
-const OF_WAVES: [Attempt; 2] = [Attempt::ByHarmonic, Attempt::ByHarmonicAfresh];
-
-/// In the order in which they are made; the first two only beside a solution with fewer harmonics.
-const LADDER: [Attempt; 8] = [
+/// In the order in which they are made.
+const LADDER: [Attempt; 10] = [
+    Attempt::Renewed,
     Attempt::ByHarmonic,
+    Attempt::ByHarmonicAfresh,
     Attempt::Once,
     Attempt::Neighbours,
     Attempt::Line,
@@ -43,19 +45,28 @@ const LADDER: [Attempt; 8] = [
 ];
 
 impl Attempt {
-    /// The attempts, with or without a solution with fewer harmonics; where the others are taken in the tuned wheel,
-    /// the whole Jacobian is not to be had.
-    pub(super) fn ladder(refines: bool, waves: bool) -> &'static [Self] {
-        match (refines, waves) {
-            (_, true) => &OF_WAVES,
-            (true, false) => &LADDER,
-            (false, false) => &LADDER[2..],
-        }
+    /// The attempts where Newton's steps are condensed or not, with or without a solution with fewer harmonics; where
+    /// the others are `waves` of the tuned wheel, the whole Jacobian is not to be had.
+    pub(super) fn ladder(
+        condenses: bool,
+        refines: bool,
+        waves: bool,
+    ) -> impl Iterator<Item = Self> {
+        let made = move |attempt: &Self| match attempt {
+            Self::ByHarmonicAfresh => waves,
+            Self::ByHarmonic => waves || refines,
+            _ if waves => false,
+            Self::Renewed => condenses,
+            Self::Once => refines,
+            _ => true,
+        };
+        LADDER.into_iter().filter(made)
     }
 
     /// How the steps of Newton's method are made.
     pub(super) fn steps(self) -> Steps {
         match self {
+            Self::Renewed => Steps::Renewed,
             Self::ByHarmonic | Self::ByHarmonicAfresh => Steps::ByHarmonic,
             Self::Once => Steps::Once,
             Self::Neighbours => Steps::Accelerated,

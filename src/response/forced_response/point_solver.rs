@@ -329,16 +329,17 @@ impl<'a> PointSolver<'a> {
         self.solve_fundamental(frequency_hz)?;
         self.work.nonlinear_solves += 1;
         let mut last = Status::IterationLimit;
+        let condenses = self.nonlinear.as_ref().is_some_and(|(s, _)| s.condenses());
         let waves = self.excited.fundamental.is_some();
-        let ladder = Attempt::ladder(!self.coarse.is_empty(), waves);
-        for (rung, attempt) in ladder.iter().enumerate() {
+        let ladder = Attempt::ladder(condenses, !self.coarse.is_empty(), waves);
+        for (rung, attempt) in ladder.enumerate() {
             if let Some((_, workspace)) = &mut self.nonlinear {
                 workspace.set_steps(attempt.steps());
                 if matches!(attempt, Attempt::ByHarmonicAfresh) {
                     workspace.forget_jacobian();
                 }
             }
-            match self.attempt(*attempt, frequency_hz) {
+            match self.attempt(attempt, frequency_hz) {
                 Ok(point) => {
                     self.work.retries += u64::from(rung > 0);
                     return Ok(point);
@@ -368,7 +369,11 @@ impl<'a> PointSolver<'a> {
 
     fn attempt(&mut self, attempt: Attempt, frequency_hz: f64) -> Result<Point, Status> {
         match attempt {
-            Attempt::ByHarmonic | Attempt::ByHarmonicAfresh | Attempt::Once => {
+            Attempt::Renewed if self.coarse.is_empty() => {
+                let start = self.expected(frequency_hz)?;
+                self.newton(frequency_hz, start, None)
+            }
+            Attempt::Renewed | Attempt::ByHarmonic | Attempt::ByHarmonicAfresh | Attempt::Once => {
                 let start = self.expected_from_coarse(frequency_hz)?;
                 self.newton(frequency_hz, start, None)
             }

@@ -436,7 +436,7 @@ impl Factors {
         system.residual(omega, x, &mut residual, true, &mut buffers);
         if whole {
             let mut factors = KeptJacobian::new();
-            let regular = factors.factor_whole(system, omega, &mut buffers);
+            let regular = factors.factor_cheaply(system, omega, &mut buffers);
             return regular.then(|| Self::Whole(Box::new(factors)));
         }
         let mut blocks = Vec::with_capacity(places.len());

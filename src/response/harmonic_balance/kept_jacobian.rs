@@ -103,23 +103,34 @@ impl KeptJacobian {
     }
 
     /// Factors the whole Jacobian at the point last given to [`HarmonicSystem::residual`] with derivative; false if
-    /// it is singular. Where contact rows are few that is done by [`CondensedJacobian`].
+    /// it is singular.
     pub(super) fn factor_whole(
         &mut self,
         system: &HarmonicSystem,
         omega: f64,
         workspace: &mut SystemWorkspace,
     ) -> bool {
-        if system.condenses() {
-            let regular = self.condensed.factor(system, omega, workspace);
-            return self.hold(Held::Condensed, regular);
-        }
         let whole = self
             .whole
             .get_or_insert_with(|| LuWorkspace::new(system.unknowns()));
         system.jacobian(omega, workspace, whole.matrix_mut());
         let regular = whole.factor();
         self.hold(Held::Whole, regular)
+    }
+
+    /// The same by the forces at the contact where that is cheaper, see [`HarmonicSystem::condenses`]. Where contact is
+    /// stiff beside what it holds, that takes the difference of nearly equal numbers.
+    pub(super) fn factor_cheaply(
+        &mut self,
+        system: &HarmonicSystem,
+        omega: f64,
+        workspace: &mut SystemWorkspace,
+    ) -> bool {
+        if !system.condenses() {
+            return self.factor_whole(system, omega, workspace);
+        }
+        let regular = self.condensed.factor(system, omega, workspace);
+        self.hold(Held::Condensed, regular)
     }
 
     /// Factors P, see [`self`], at the same point; false if it is singular.

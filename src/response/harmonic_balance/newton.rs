@@ -14,6 +14,9 @@ pub enum Steps {
     /// Simplified steps combined by Anderson's acceleration, with a Jacobian (its lower block triangle where it is
     /// large) that is renewed where they shrink too slowly.
     Accelerated,
+    /// The same with a Jacobian that is renewed as soon as steps do not shrink fast: for a system that
+    /// [`HarmonicSystem::condenses`].
+    Renewed,
     /// From a good start: the acceleration alone, with the derivatives of harmonic 1 and of every other one by
     /// themselves, found once. Steps may grow on the way.
     ByHarmonic,
@@ -25,6 +28,15 @@ impl Steps {
     /// Whether one Jacobian is to do.
     fn keep_jacobian(self) -> bool {
         matches!(self, Self::ByHarmonic | Self::Once)
+    }
+
+    /// When a Jacobian serves on for accelerated steps.
+    fn serves(self) -> Serves {
+        match self {
+            Self::ByHarmonic | Self::Once => ONCE,
+            Self::Renewed => RENEWED,
+            Self::Accelerated | Self::Plain => ACCELERATED,
+        }
     }
 
     /// `bounds` for steps of this kind: what costs a small part may be more.
@@ -78,20 +90,6 @@ pub(super) trait Equation {
 
     /// Turns a residual into the step `J^-1 R` with the factors at hand, in place.
     fn step(&mut self, residual: &mut [f64]);
-
-    /// Whether a new derivative costs no more than a few steps.
-    fn renews_cheaply(&self) -> bool {
-        false
-    }
-
-    /// When a derivative serves on, where `usual` is what other equations take.
-    fn serving(&self, usual: Serves) -> Serves {
-        if self.renews_cheaply() {
-            RENEWED
-        } else {
-            usual
-        }
-    }
 
     /// Whether `u` serves its purpose already, where `step` is what it still lacks.
     fn is_settled(&self, _u: &[f64], _step: &[f64]) -> bool {
@@ -192,7 +190,8 @@ impl NewtonWorkspace {
     /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
     pub fn factor_at(&mut self, system: &HarmonicSystem, omega: f64, x: &[f64]) -> bool {
         system.residual(omega, x, &mut self.buffers.residual, true, &mut self.system);
-        self.jacobian.factor_whole(system, omega, &mut self.system)
+        self.jacobian
+            .factor_cheaply(system, omega, &mut self.system)
     }
 
     /// `J^-1 residual` with the factors at hand, in place.
@@ -218,9 +217,7 @@ impl Equation for FixedFrequency<'_> {
     }
 
     fn linearise(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
-        let small = (self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN
-            || !self.system.is_shared()
-            || self.system.condenses())
+        let small = (self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN || !self.system.is_shared())
             && !self.system.has_waves();
         let by_harmonic = self.steps == Steps::ByHarmonic && !small;
         if by_harmonic {
@@ -243,6 +240,7 @@ impl Equation for FixedFrequency<'_> {
         }
         let whole = small || shares.separated > 0.0;
         match self.steps {
+            Steps::Renewed => self.jacobian.factor_cheaply(system, omega, self.workspace),
             Steps::ByHarmonic if !whole => {
                 self.jacobian
                     .factor_by_harmonic(system, omega, self.workspace)
@@ -260,10 +258,6 @@ impl Equation for FixedFrequency<'_> {
 
     fn step(&mut self, residual: &mut [f64]) {
         self.jacobian.solve(residual);
-    }
-
-    fn renews_cheaply(&self) -> bool {
-        self.system.condenses()
     }
 
     fn is_settled(&self, x: &[f64], step: &[f64]) -> bool {
@@ -315,7 +309,7 @@ pub(super) fn iterate(
         acceleration,
         steps,
     } = buffers;
-    let once = steps.keep_jacobian() && !equation.renews_cheaply();
+    let once = steps.keep_jacobian();
     if let Some(acceleration) = acceleration {
         acceleration.begin();
     }
@@ -359,18 +353,18 @@ pub(super) fn iterate(
         served += 1;
         let length = norm_of(step);
         // Contact that opens folds the curve, and a step that is too long ends on another branch of it.
-        let serves = equation.serving(match acceleration {
+        let serves = match acceleration {
             Some(acceleration) if *steps != Steps::Plain && state.shares.separated == 0.0 => {
                 acceleration.next(u, step, trial);
                 // A step of such a Jacobian is as good as the first.
                 kept |= once;
-                if once { ONCE } else { ACCELERATED }
+                steps.serves()
             }
             _ => {
                 add_scaled(trial, u, 1.0, step);
                 PLAIN
             }
-        });
+        };
         let halvings = if kept { 0 } else { bounds.halvings };
         let accepted = (0..=halvings).find_map(|halving| {
             let factor = 0.5_f64.powi(halving as i32);
