@@ -231,6 +231,7 @@ impl Trade {
             knob: measured.knob.map(Knob::name),
             basis: basis_name(setting),
             harmonics: setting.harmonics.to_string(),
+            higher_harmonics: setting.higher_harmonics.name(),
             samples_per_period: setting.samples_per_period as u32,
             residual_tolerance: setting.residual_tolerance,
             peak_tolerance: setting.peak_tolerance,

@@ -112,9 +112,9 @@ fn the_stated_error_holds_what_the_harmonics_left_out_do() {
     let wheel = Wheel::wheel8();
     let deviations = wheel.deviations(&mut Random(3), 0.03);
     for load in [300.0, 500.0, 800.0] {
-        let row = |set: &[u32], higher_harmonics| {
+        let row = |set: &[u32]| {
             let options = SolverOptions {
-                higher_harmonics,
+                higher_harmonics: HigherHarmonics::Tuned,
                 peak_tolerance: 1e-4,
                 ..SolverOptions::default()
             };
@@ -124,16 +124,18 @@ fn the_stated_error_holds_what_the_harmonics_left_out_do() {
             let scenario = scenario(full(load));
             let tuned = solver.tuned(&scenario);
             let rows = solver.rows(&pattern(&deviations), &[(&scenario, &tuned)]);
+            assert_eq!(rows[0].shortcut, "tuned_harmonics", "{:?}", rows[0]);
             rows[0].clone()
         };
         let all: Vec<u32> = (1..=15).collect();
-        for higher in [HigherHarmonics::Tuned, HigherHarmonics::Mistuned] {
-            let (few, all) = (row(&[1, 3], higher), row(&all, higher));
-            let change = all.peak_amplitude_m.unwrap() / few.peak_amplitude_m.unwrap() - 1.0;
-            println!(
-                "{load} N: {change:.2e}, {:?} {:?} {} {}",
-                few.harmonic_error, few.stated_error, few.shortcut, all.shortcut
-            );
-        }
+        let (few, all) = (row(&[1, 3]), row(&all));
+        let change = all.peak_amplitude_m.unwrap() / few.peak_amplitude_m.unwrap() - 1.0;
+        let (column, stated) = (few.harmonic_error.unwrap(), few.stated_error.unwrap());
+        println!("{load} N: {change:.2e}, column {column:.2e}, stated {stated:.2e}");
+        assert!(change.abs() > 5e-3, "{load} N: {change:.1e}");
+        assert!(change.abs() <= stated, "{load} N: {change} {stated}");
+        // Settled, but where the resonance is.
+        let settled = (column - change).abs() < 0.2 * change.abs();
+        assert!(settled || load < 400.0, "{load} N: {change} {column}");
     }
 }

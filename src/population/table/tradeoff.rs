@@ -29,6 +29,8 @@ pub struct TradeoffRecord {
     pub basis: String,
     /// Harmonics: a set, or `auto` with its tolerance.
     pub harmonics: String,
+    /// Wheel of the harmonics other than 1.
+    pub higher_harmonics: &'static str,
     /// Samples per period.
     pub samples_per_period: u32,
     /// Bound on the residual.
@@ -118,6 +120,7 @@ pub const TRADEOFF_COLUMNS: &[ColumnSpec] = &[
         "",
         "Harmonic set, or auto with solver.harmonic_tolerance",
     ),
+    ColumnSpec::new("higher_harmonics", Text, "", "solver.higher_harmonics"),
     ColumnSpec::new(
         "samples_per_period",
         Int32,
@@ -356,6 +359,7 @@ pub fn write_tradeoff(
         names(&|r| r.knob),
         names(&|r| Some(&r.basis)),
         names(&|r| Some(&r.harmonics)),
+        names(&|r| Some(r.higher_harmonics)),
         ids(&|r| Some(u64::from(r.samples_per_period))),
         floats(&|r| Some(r.residual_tolerance)),
         floats(&|r| Some(r.peak_tolerance)),
