@@ -12,7 +12,6 @@ const MODES: Value = Whole(1, 1000);
 const TRUNCATION: Value = Number(Range::from_to(0.1, 10.0));
 const DEVIATION: Value = Number(Range::from_to(0.0, 0.5));
 const SPEED: Value = Number(Range::above(0.0).up_to(1e6));
-const AUTO: Value = Name(&["auto"]);
 
 /// What stands before the model.
 pub(super) const LEADING_KEYS: &[Entry] = &[
@@ -378,7 +377,7 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
     entry("solver", Table, "", "the solution of a row"),
     entry(
         "solver.harmonics",
-        Either(&[AUTO, Ascending(&Whole(0, 100), None)]),
+        Either(&[Name(&["auto"]), Ascending(&Whole(0, 100), None)]),
         "`\"auto\"`",
         "`auto`: per engine order and load, by the tuned full contact model ([formulation.md](formulation.md)); a list has 1 among them",
     ),
@@ -438,7 +437,7 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
     ),
     entry(
         "solver.frequency_band_hz",
-        Either(&[AUTO, Ascending(&ABOVE_ZERO, Some(2))]),
+        Either(&[Name(&["auto"]), Ascending(&ABOVE_ZERO, Some(2))]),
         "`\"auto\"`",
         "where peaks are sought, Hz",
     ),
