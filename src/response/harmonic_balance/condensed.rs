@@ -21,12 +21,17 @@ use crate::linalg::{LuWorkspace, add_times};
 
 impl HarmonicSystem {
     /// Whether the step by contact forces is the cheaper one: for harmonics of a wheel, with no more coefficients of
-    /// contact rows than a matrix may have that costs next to nothing, by the operations that either takes.
+    /// contact rows than a matrix may have that costs next to nothing, by the operations that either takes. Under a
+    /// constant normal load only.
     #[must_use]
     pub fn condenses(&self) -> bool {
         let rows = self.contact_row_count();
         let condensed = self.transform.n_coefficients() * rows;
         if !self.is_shared() || rows == 0 || condensed > LARGEST_WHOLE_JACOBIAN {
+            return false;
+        }
+        // Where contact may open a renewed step can lead to another branch than damped ones.
+        if self.interface.law.has_variable_load() {
             return false;
         }
         let factored = |n: f64| 2.0 / 3.0 * n.powi(3);
