@@ -15,7 +15,8 @@ use crate::study::{OptimumRequest, ReducedEngineSource, Study, find_optimum};
 /// Arguments of `blisk optimum`.
 #[derive(Debug, Args)]
 pub struct OptimumArguments {
-    /// The study file; one engine order, one standard deviation.
+    /// The study file; one standard deviation. Of several load cases and engine orders, each wheel counts by
+    /// its largest value over them.
     study: PathBuf,
     /// Lowest and highest normal load per sector in N.
     #[arg(long, value_name = "LOW:HIGH", value_parser = between)]

@@ -40,7 +40,7 @@ pub use figures::{FIGURES, Figure, FigureName, figure};
 pub use html::html_report;
 pub use model_report::{ModelReport, NodalDiameterFacts};
 pub use numerical_error::{NumericalError, NumericalFinding};
-pub use optimum::OptimumReport;
+pub use optimum::{OptimumExcitation, OptimumReport};
 pub use peak_audit::PeakAuditReport;
 pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};
 pub use rotation::RotationFacts;

@@ -5,8 +5,9 @@ use std::fmt;
 use serde::Serialize;
 
 use super::BestLoads;
-use super::summary_text::{four_digits, trimmed};
+use super::summary_text::{excitation, four_digits, trimmed};
 use super::text_table::TextTable;
+use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::Quantity;
 
 /// The normal load with the lowest percentile.
@@ -31,7 +32,25 @@ pub struct OptimumReport {
     pub normal_load_upper_n: Option<f64>,
     /// Whether the loads next to the lowest are as close as wanted.
     pub resolved: bool,
-    /// All loads with their percentiles, and which could be best.
+    /// All loads with their percentiles, and which could be best. Of several load cases and engine orders: the
+    /// percentile of the largest value of each wheel over them; each load names those of the highest percentile.
+    pub best: BestLoads,
+    /// The same loads under each load case and engine order alone; absent where there is one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub excitations: Vec<OptimumExcitation>,
+}
+
+/// The loads of a search under one load case and engine order alone.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OptimumExcitation {
+    /// Load case; absent: the study has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_case: Option<LoadCaseName>,
+    /// Engine order.
+    pub engine_order: u32,
+    /// Of the loads solved, that with its lowest percentile, N.
+    pub normal_load_n: Option<f64>,
+    /// Its percentile at every load solved, and which of these could be its best.
     pub best: BestLoads,
 }
 
@@ -49,11 +68,17 @@ impl OptimumReport {
 impl fmt::Display for OptimumReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let percent = trimmed(self.percent);
+        let several = !self.excitations.is_empty();
         writeln!(
             f,
-            "study {}: P{percent} of {} over the same {} patterns at every load\n",
+            "study {}: P{percent} of {}{} over the same {} patterns at every load\n",
             self.name,
             self.quantity.name(),
+            if several {
+                ", each wheel by its largest over load cases and engine orders,"
+            } else {
+                ""
+            },
             self.patterns
         )?;
         let shown = |value: Option<f64>| {
@@ -66,9 +91,12 @@ impl fmt::Display for OptimumReport {
             )
         };
         let heading = format!("P{percent}");
-        let mut table = TextTable::new(&["load N", &heading, "lower", "upper", "could be best"]);
+        let mut headings = vec!["load N", &heading, "lower", "upper", "could be best"];
+        headings.extend(several.then_some("highest under"));
+        let mut table = TextTable::new(&headings);
         for load in &self.best.loads {
-            table.row(vec![
+            let highest = excitation(load.scenario.load_case, load.scenario.engine_order);
+            let mut row = vec![
                 load.scenario
                     .normal_load_n
                     .map_or_else(String::new, trimmed),
@@ -76,7 +104,9 @@ impl fmt::Display for OptimumReport {
                 shown(load.percentile.lower),
                 shown(load.percentile.upper),
                 if load.could_be_best { "yes" } else { "no" }.to_owned(),
-            ]);
+            ];
+            row.extend(several.then_some(highest));
+            table.row(row);
         }
         write!(f, "{table}")?;
         let load = |load: Option<f64>| load.map_or_else(|| "-".to_owned(), trimmed);
@@ -95,6 +125,36 @@ impl fmt::Display for OptimumReport {
                 f,
                 "the search ended before the loads were as close as wanted"
             )?;
+        }
+        if several {
+            writeln!(
+                f,
+                "\nP{percent} under each alone, of the loads solved; * = could be best for it\n"
+            )?;
+            let names = self.excitations.iter();
+            let names: Vec<String> = names
+                .map(|own| excitation(own.load_case, own.engine_order))
+                .collect();
+            let mut headings = vec!["load N"];
+            headings.extend(names.iter().map(String::as_str));
+            let mut table = TextTable::new(&headings);
+            for (place, load) in self.best.loads.iter().enumerate() {
+                let mut row = vec![
+                    load.scenario
+                        .normal_load_n
+                        .map_or_else(String::new, trimmed),
+                ];
+                row.extend(self.excitations.iter().map(|own| {
+                    let own = &own.best.loads[place];
+                    let mark = if own.could_be_best { " *" } else { "  " };
+                    format!("{}{mark}", shown(own.percentile.value))
+                }));
+                table.row(row);
+            }
+            let mut row = vec!["lowest at".to_owned()];
+            row.extend(self.excitations.iter().map(|own| load(own.normal_load_n)));
+            table.row(row);
+            write!(f, "{table}")?;
         }
         Ok(())
     }

@@ -5,7 +5,8 @@ use std::fmt;
 use serde::Serialize;
 
 use super::text_table::TextTable;
-use crate::population::statistics::ErrorBound;
+use crate::population::monte_carlo::LoadCaseName;
+use crate::population::statistics::{ErrorBound, LoadCaseErrors};
 use crate::population::table::TradeoffRecord;
 
 /// A measured trade-off between accuracy and cost.
@@ -25,6 +26,9 @@ pub struct TradeoffReport {
     pub scenarios: Vec<usize>,
     /// Normal load of each, N.
     pub normal_loads_n: Vec<f64>,
+    /// Load case of each; absent in a study without load cases.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub load_cases: Vec<LoadCaseName>,
     /// What all errors refer to.
     pub reference: TradeoffReference,
     /// The cheapest setting for each accepted error.
@@ -61,6 +65,9 @@ pub struct TradeoffReference {
 pub struct FullContactCheck {
     /// Scenario.
     pub scenario: usize,
+    /// Its load case; absent in a study without load cases.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_case: Option<LoadCaseName>,
     /// Pattern.
     pub pattern: u32,
     /// Harmonic set of the full-contact model.
@@ -76,26 +83,28 @@ pub struct FullContactCheck {
 }
 
 /// The cheapest setting for an accepted error.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TradeoffChoice {
     /// Accepted upper bound of the 95th percentile of the amplitude error.
     pub accepted_error: f64,
     /// The setting; none where no setting has it.
     pub setting: Option<u32>,
+    /// Its errors under each load case of the sample; absent in a study without load cases.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub load_cases: Vec<LoadCaseErrors>,
 }
 
 impl fmt::Display for TradeoffReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let reference = &self.reference;
-        let loads: Vec<String> = self.normal_loads_n.iter().map(f64::to_string).collect();
         writeln!(
             f,
-            "study {}: {} patterns x {} scenarios (loads {} N); reference {}, harmonics within {}, \
+            "study {}: {} patterns x {} scenarios ({}); reference {}, harmonics within {}, \
              {} of {} rows without reference",
             self.name,
             self.patterns.len(),
             self.scenarios.len(),
-            loads.join(", "),
+            self.loads(),
             reference.kind,
             percent(reference.harmonic_tolerance),
             reference.without_value,
@@ -119,9 +128,12 @@ impl fmt::Display for TradeoffReport {
         for check in &reference.full_contact {
             writeln!(
                 f,
-                "full-contact model, scenario {} pattern {} harmonics {}: {}; amplitude {}, \
+                "full-contact model, scenario {}{} pattern {} harmonics {}: {}; amplitude {}, \
                  frequency {}, amplification factor {}",
                 check.scenario,
+                check
+                    .load_case
+                    .map_or_else(String::new, |load_case| format!(" ({load_case})")),
                 check.pattern,
                 check.harmonics,
                 check.status,
@@ -158,12 +170,48 @@ impl fmt::Display for TradeoffReport {
                 Some(setting) => writeln!(f, "cheapest within {accepted}: setting {setting}")?,
                 None => writeln!(f, "no setting is within {accepted}")?,
             }
+            for own in &choice.load_cases {
+                let error = |of: fn(&ErrorBound) -> f64| shown(own.amplitude.as_ref().map(of));
+                writeln!(
+                    f,
+                    "  of its rows under load case {}: median {}, worst {}",
+                    own.load_case,
+                    error(|errors| errors.median),
+                    error(|errors| errors.worst),
+                )?;
+            }
         }
         Ok(())
     }
 }
 
 impl TradeoffReport {
+    /// Loads of the sample, under each load case if there are any.
+    fn loads(&self) -> String {
+        let listed = |loads: &[f64]| {
+            let loads: Vec<String> = loads.iter().map(f64::to_string).collect();
+            format!("loads {} N", loads.join(", "))
+        };
+        let cases = self.load_cases.chunk_by(|a, b| a == b);
+        let mut first = 0;
+        let of_cases: Vec<String> = cases
+            .map(|case| {
+                let own = first..first + case.len();
+                first = own.end;
+                format!(
+                    "load case {}: {}",
+                    case[0],
+                    listed(&self.normal_loads_n[own])
+                )
+            })
+            .collect();
+        if of_cases.is_empty() {
+            listed(&self.normal_loads_n)
+        } else {
+            of_cases.join("; ")
+        }
+    }
+
     fn table(
         &self,
         f: &mut fmt::Formatter<'_>,

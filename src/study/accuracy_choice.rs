@@ -12,15 +12,17 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::ladder::{HarmonicLevel, Knob, LadderSetting, LadderSpace};
-use super::ladder_bench::{LadderBench, most_scenarios};
-use super::ladder_measure::{Compared, Measured, error_bound};
+use super::ladder_bench::LadderBench;
+use super::ladder_measure::{Compared, Measured, error_bound, errors_of_load_cases};
 use super::ladder_reference::{LadderEnds, LadderReference};
+use super::ladder_sample::most_scenarios;
 use super::ladder_search::{LadderSearch, Proposal};
 use super::tradeoff::sample_of_patterns;
 use super::{AccuracyOptions, PipelineError, Progress, Study, StudyDigest, pattern_source};
 use crate::model::sector::SectorModel;
 use crate::model::{read_cached, reduction_digest, write_cached};
-use crate::population::statistics::ErrorBound;
+use crate::population::monte_carlo::LoadCaseName;
+use crate::population::statistics::{ErrorBound, LoadCaseErrors};
 use crate::response::friction::ContactLaw;
 use crate::response::mistuning::PatternSource;
 
@@ -79,6 +81,10 @@ pub struct AccuracyEvidence {
     pub operations_of_choice: f64,
     /// Combinations measured, in order.
     pub tried: Vec<TriedSetting>,
+    /// Load case of each scenario of the sample; empty in a study without load cases.
+    pub load_cases: Vec<LoadCaseName>,
+    /// Errors of the peak amplitude under each of these.
+    pub errors_of_load_cases: Vec<LoadCaseErrors>,
 }
 
 /// A combination that was measured.
@@ -178,7 +184,7 @@ impl AccuracyChoice {
             craig_bampton_modes,
             met: amplitude.p95_upper <= accepted,
             evidence: Some(AccuracyEvidence {
-                patterns: sample.patterns,
+                patterns: sample.patterns.clone(),
                 normal_loads_n: sample
                     .scenarios
                     .iter()
@@ -194,6 +200,12 @@ impl AccuracyChoice {
                     + of_reference.map(of_measured).sum::<f64>()
                     + search.levels().iter().map(of_measured).sum::<f64>(),
                 tried: trials.tried,
+                load_cases: sample
+                    .scenarios
+                    .iter()
+                    .filter_map(|scenario| scenario.load_case)
+                    .collect(),
+                errors_of_load_cases: errors_of_load_cases(&measured, &reference.values, &sample),
             }),
             setting: measured.setting,
         })
@@ -214,12 +226,17 @@ impl AccuracyChoice {
             .into_iter()
             .map(|knob| (knob.name(), json!(self.setting.level(knob))))
             .collect();
+        let mut evidence = json!(self.evidence);
+        if let Some(evidence) = evidence.as_object_mut() {
+            // A study without load cases has none in its manifest.
+            evidence.retain(|key, value| !key.contains("load_cases") || *value != json!([]));
+        }
         json!({
             "accepted_error": self.accepted,
             "met": self.met,
             "craig_bampton_modes": self.craig_bampton_modes,
             "setting": setting.into_iter().collect::<std::collections::BTreeMap<_, _>>(),
-            "evidence": self.evidence,
+            "evidence": evidence,
         })
     }
 }

@@ -108,25 +108,16 @@ impl<'a> Judged<'a> {
 }
 
 /// Chooses the basis for `options` by the tuned nonlinear peak on one sector, against the whole
-/// Craig-Bampton sector with every contact dof, under the given engine orders and conditions, each
-/// with its harmonic set, and by the contact displacement that it can follow in every nodal diameter.
+/// Craig-Bampton sector with every contact dof, under every force vector with its engine orders and conditions, each
+/// with its harmonic set, and by the contact displacement that it can follow in every nodal diameter: the largest of
+/// all errors counts.
 ///
 /// # Errors
 /// If a mass or stiffness is not positive definite.
-pub fn choose_basis(
-    reduction: &Reduction<'_>,
-    options: &ReductionOptions,
-    judged: Judged<'_>,
-) -> Result<(BasisChoice, BasisEvidence), PipelineError> {
-    choose_basis_under(reduction, options, &[(None, judged)])
-}
-
-/// The same by the tuned peaks under several force vectors, each with its own settings: the largest of
-/// all errors counts.
 pub(super) fn choose_basis_under(
     reduction: &Reduction<'_>,
     options: &ReductionOptions,
-    cases: &[(Option<&Excitation>, Judged<'_>)],
+    cases: &[(&Excitation, Judged<'_>)],
 ) -> Result<(BasisChoice, BasisEvidence), PipelineError> {
     if reduction.is_whole_space() {
         let evidence = BasisEvidence {
@@ -137,7 +128,7 @@ pub(super) fn choose_basis_under(
         return Ok((BasisChoice::CraigBampton, evidence));
     }
     let whole = reduction.tuned(BasisChoice::CraigBampton)?;
-    let wholes: Vec<ReducedModel> = cases.iter().map(|(case, _)| under(*case, &whole)).collect();
+    let wholes: Vec<ReducedModel> = cases.iter().map(|(case, _)| case.of(&whole)).collect();
     let of_cases = |models: &[ReducedModel]| -> Result<Vec<Peaks>, PipelineError> {
         let models = models.iter().zip(cases);
         models
@@ -152,8 +143,7 @@ pub(super) fn choose_basis_under(
     let mut tried: Vec<(BasisChoice, BasisError)> = Vec::new();
     for choice in candidates(reduction, options) {
         let model = reduction.tuned(choice)?;
-        let models: Vec<ReducedModel> =
-            cases.iter().map(|(case, _)| under(*case, &model)).collect();
+        let models: Vec<ReducedModel> = cases.iter().map(|(case, _)| case.of(&model)).collect();
         let errors = of_cases(&models)?;
         let errors = errors.iter().zip(&reference);
         let own = BasisError {
@@ -194,11 +184,6 @@ pub(super) fn choose_basis_under(
             tried: tried.into_iter().map(|(_, own)| own).collect(),
         },
     ))
-}
-
-/// The model under a load case; without one, as it is.
-fn under(case: Option<&Excitation>, model: &ReducedModel) -> ReducedModel {
-    case.map_or_else(|| model.clone(), |case| case.of(model))
 }
 
 /// Bases to try, the cheapest first; one that the user fixed stands alone.

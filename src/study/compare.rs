@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::pairing::{
     PairedPlaces, Pairing, PatternMatcher, follow_from_the_same, same_contact_factors,
 };
+use super::result_columns::sorted_values;
 use super::{PipelineError, ResultColumns, ScenarioColumns};
 use crate::population::statistics::{
     CONFIDENCE, Expansion, PairFacts, PercentileEstimator, Quantity, RESAMPLES, best_set_at,
@@ -224,13 +225,7 @@ pub(super) fn best_loads(
     seed: u64,
 ) -> Option<BestLoads> {
     let values: Vec<&[Option<f64>]> = loads.iter().map(|(_, values)| *values).collect();
-    let sample = |values: &&[Option<f64>]| {
-        let mut good: Vec<f64> = values.iter().flatten().copied().collect();
-        good.sort_unstable_by(f64::total_cmp);
-        let failed = (values.len() - good.len()) as u64;
-        (good, failed)
-    };
-    let samples: Vec<(Vec<f64>, u64)> = values.iter().map(sample).collect();
+    let samples: Vec<(Vec<f64>, u64)> = values.iter().map(|own| sorted_values(own)).collect();
     let (first, failed) = samples.first()?;
     percentile(first, *failed, percent).achieved_coverage?;
     let estimator = PercentileEstimator::of(&values);

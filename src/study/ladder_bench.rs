@@ -14,6 +14,8 @@ use super::fixed_interface::sensitivity_vectors;
 use super::fixed_interface::{FixedInterface, reduce_sector};
 use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::ladder::{HarmonicLevel, LadderSetting, LadderSpace};
+use super::ladder_sample::{LadderSample, Remainders, distinct, of_sample, sampled_scenarios};
+use super::load_cases::{Excitation, solver_under};
 use super::plan::thread_cpu_s;
 use super::reduced_engine::{contact_stiffness, row_settings};
 use super::{PipelineError, Progress, Study};
@@ -21,8 +23,7 @@ use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, ContactStiffness, Reduction};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{
-    HarmonicChoice, ResponseRow, RowSettings, RowSolver, RowWork, Scenario, SystemSize,
-    TunedReference,
+    ResponseRow, RowSolver, RowWork, Scenario, SystemSize, TunedReference,
 };
 use crate::response::forced_response::{Harmonics, HigherHarmonics};
 use crate::response::friction::ContactLaw;
@@ -31,15 +32,6 @@ use crate::response::mistuning::{Pattern, PatternSource};
 
 /// Largest relative change of a tuned peak by more fixed-interface modes.
 const FIXED_INTERFACE_ERROR: f64 = 1e-3;
-
-/// The rows that settings are compared on.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LadderSample {
-    /// Scenarios under friction, with their indices in the study.
-    pub scenarios: Vec<Scenario>,
-    /// Ids of the patterns.
-    pub patterns: Vec<u32>,
-}
 
 /// What a row of the sample came to at one setting; values are none where it failed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -124,13 +116,10 @@ impl<'a> LadderBench<'a> {
             progress,
         };
         bench.study.contacts = judged_conditions(&study.contacts);
-        let remainders = bench.sets(&row_settings(&alone(study)), None)?;
-        let scenarios = sampled_scenarios(study, &remainders);
+        let scenarios = sampled_scenarios(study, &bench.remainders()?);
         // A study of linear limits alone has a basis to choose, by these.
         if !scenarios.is_empty() {
-            let orders = scenarios.iter().map(|scenario| scenario.engine_order);
-            bench.study.engine_orders = distinct(orders);
-            bench.study.contacts = distinct(scenarios.iter().map(|scenario| scenario.contact));
+            bench.study = of_sample(&bench.study, &scenarios);
         }
         bench.sample.scenarios = scenarios;
         Ok(bench)
@@ -189,7 +178,6 @@ impl<'a> LadderBench<'a> {
     /// The model cannot be reduced, or the samples cannot tell the harmonics apart.
     pub fn engine(&mut self, setting: &LadderSetting) -> Result<LadderEngine<'a>, PipelineError> {
         let study = setting.applied_to(&self.study);
-        let settings = row_settings(&study);
         let place = self.reduction_for(contact_stiffness(study.contact.as_ref()))?;
         let modes = study.mistuning.cantilever_mode_count;
         let model = self.model((place, setting.basis, modes))?;
@@ -197,25 +185,38 @@ impl<'a> LadderBench<'a> {
             .then(|| self.reductions[place].1.tuned(BasisChoice::CraigBampton))
             .transpose()?
             .map(Arc::new);
-        let mut solver = RowSolver::new(Arc::clone(&model), settings.clone())?
-            .with_tuned_harmonics(tuned_harmonics);
-        if let HarmonicLevel::Automatic(tolerance) = setting.harmonics {
-            let full = Arc::new(self.reductions[place].1.tuned(BasisChoice::CraigBampton)?);
+        let full = match setting.harmonics {
+            HarmonicLevel::Automatic(_) => {
+                Some(self.reductions[place].1.tuned(BasisChoice::CraigBampton)?)
+            }
+            HarmonicLevel::Set(_) => None,
+        };
+        let solver = solver_under(&study.excitations(), |case| {
+            let settings = row_settings(&case.study);
+            let model = Arc::new(case.of(&model));
+            let solver = RowSolver::new(Arc::clone(&model), settings.clone())?
+                .with_tuned_harmonics(tuned_harmonics.clone());
+            let (HarmonicLevel::Automatic(tolerance), Some(full)) = (&setting.harmonics, &full)
+            else {
+                return Ok(solver);
+            };
+            let full = Arc::new(case.of(full));
             let sets = choose_harmonics(
                 &full,
                 &settings,
-                &study.engine_orders,
+                &case.study.engine_orders,
                 &study.contacts,
                 &settings.harmonics,
-                Some(tolerance),
+                Some(*tolerance),
             )?;
-            solver = solver.with_choices(sets.clone(), 0.0)?;
-            if setting.law.has_variable_load() {
-                let sets = with_separation(&full, &settings, sets)?;
-                let beyond = RowSolver::new(model, settings)?.with_choices(sets, 0.0)?;
-                solver = solver.with_beyond(beyond, false);
+            let solver = solver.with_choices(sets.clone(), 0.0)?;
+            if !setting.law.has_variable_load() {
+                return Ok(solver);
             }
-        }
+            let sets = with_separation(&full, &settings, sets)?;
+            let beyond = RowSolver::new(model, settings)?.with_choices(sets, 0.0)?;
+            Ok::<_, PipelineError>(solver.with_beyond(beyond, false))
+        })?;
         Ok(LadderEngine::new(
             solver,
             &self.sample.scenarios,
@@ -223,17 +224,27 @@ impl<'a> LadderBench<'a> {
         ))
     }
 
-    /// Harmonic sets of the tuned wheel with what they leave out: those of `settings`, or enlarged to
-    /// `tolerance`.
-    fn sets(
-        &self,
-        settings: &RowSettings,
-        tolerance: Option<f64>,
-    ) -> Result<Vec<HarmonicChoice>, PipelineError> {
-        let full = Arc::new(self.reduction().tuned(BasisChoice::CraigBampton)?);
-        let (orders, contacts) = (&self.study.engine_orders, &self.study.contacts);
-        let first = &settings.harmonics;
-        choose_harmonics(&full, settings, orders, contacts, first, tolerance)
+    /// What harmonic 1 alone leaves out of the tuned peaks, under every force vector.
+    fn remainders(&self) -> Result<Vec<Remainders>, PipelineError> {
+        let full = self.reduction().tuned(BasisChoice::CraigBampton)?;
+        let of_case = |case: &Excitation| {
+            let study = &case.study;
+            let settings = row_settings(study);
+            let choices = choose_harmonics(
+                &Arc::new(case.of(&full)),
+                &settings,
+                &study.engine_orders,
+                &study.contacts,
+                &settings.harmonics,
+                None,
+            )?;
+            Ok((case.name, choices))
+        };
+        alone(&self.study)
+            .excitations()
+            .iter()
+            .map(of_case)
+            .collect()
     }
 
     /// Place of the reduction with the given linear contact springs, made if it is not there.
@@ -273,7 +284,7 @@ impl<'a> LadderEngine<'a> {
         let mut tuned: Vec<TunedReference> = Vec::new();
         for scenario in scenarios {
             let same = scenarios[..tuned.len()].iter().position(|other| {
-                other.engine_order == scenario.engine_order && other.contact == scenario.contact
+                other.same_excitation(scenario) && other.contact == scenario.contact
             });
             tuned.push(match same {
                 Some(same) => tuned[same].clone(),
@@ -402,86 +413,4 @@ fn alone(study: &Study) -> Study {
     let mut own = study.clone();
     own.solver.harmonics = Harmonics::Set(vec![1]);
     own
-}
-
-/// Every value once, in the order of its first appearance.
-fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {
-    let mut found = Vec::new();
-    for value in values {
-        if !found.contains(&value) {
-            found.push(value);
-        }
-    }
-    found
-}
-
-/// The scenarios under friction by which settings are judged: of engine orders and standard deviations
-/// the lowest, middle and highest; of loads the lowest, the highest, and that at which harmonic 1 alone
-/// leaves out most of the tuned peak, by `remainders`: a load in the middle of the list need not be
-/// where the contact is most nonlinear.
-fn sampled_scenarios(study: &Study, remainders: &[HarmonicChoice]) -> Vec<Scenario> {
-    let mut orders = study.engine_orders.clone();
-    orders.sort_unstable();
-    let orders = ends_and_middle(&orders);
-    let mut deviations = study.standard_deviations.clone();
-    deviations.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-    let deviations = ends_and_middle(&deviations);
-    let loads = sampled_loads(study, remainders);
-    let mut scenarios = study.scenarios();
-    scenarios.retain(|scenario| {
-        let load = scenario.contact.normal_load_n();
-        load.is_some_and(|load| loads.contains(&load))
-            && orders.contains(&scenario.engine_order)
-            && deviations.contains(&scenario.standard_deviation)
-    });
-    scenarios
-}
-
-/// Most scenarios that a sample of `study` can have.
-#[must_use]
-pub fn most_scenarios(study: &Study) -> usize {
-    let loads = study.contacts.iter();
-    let loads = loads.filter(|contact| contact.normal_load_n().is_some());
-    let lists = [
-        loads.count(),
-        study.engine_orders.len(),
-        study.standard_deviations.len(),
-    ];
-    lists.into_iter().map(|length| length.min(3)).product()
-}
-
-fn sampled_loads(study: &Study, remainders: &[HarmonicChoice]) -> Vec<f64> {
-    let contacts = study.contacts.iter();
-    let mut loads: Vec<f64> = contacts
-        .filter_map(|contact| contact.normal_load_n())
-        .collect();
-    loads.sort_by(f64::total_cmp);
-    let [first, between @ .., last] = loads.as_slice() else {
-        return loads;
-    };
-    let left_out = |load: f64| {
-        let of_load = |choice: &&HarmonicChoice| choice.contact.normal_load_n() == Some(load);
-        let choices = remainders.iter().filter(of_load);
-        choices
-            .filter_map(|choice| choice.remainder)
-            .fold(0.0, f64::max)
-    };
-    // The first of several that leave out as much.
-    let hardest = between
-        .iter()
-        .copied()
-        .rev()
-        .max_by(|&a, &b| left_out(a).total_cmp(&left_out(b)));
-    let mut sampled = vec![*first];
-    sampled.extend(hardest);
-    sampled.push(*last);
-    sampled
-}
-
-/// First, middle and last of a sorted list.
-fn ends_and_middle<T: Copy>(sorted: &[T]) -> Vec<T> {
-    match sorted {
-        [] | [_] | [_, _] => sorted.to_vec(),
-        [first, .., last] => vec![*first, sorted[(sorted.len() - 1) / 2], *last],
-    }
 }

@@ -2,8 +2,9 @@
 
 use super::ladder::{Knob, LadderSetting};
 use super::ladder_bench::{LadderEngine, LadderRow, LadderValues};
+use super::ladder_sample::LadderSample;
 use crate::population::monte_carlo::{RowWork, SystemSize};
-use crate::population::statistics::ErrorBound;
+use crate::population::statistics::{ErrorBound, LoadCaseErrors};
 
 /// A setting with its rows, ordered by pattern, then scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -151,4 +152,26 @@ pub fn error_bound(
     quantity: Compared,
 ) -> Option<ErrorBound> {
     ErrorBound::of(&relative_errors(values, reference, quantity))
+}
+
+/// Errors of the amplitude of the rows of each load case by themselves; none in a study without load cases.
+#[must_use]
+pub fn errors_of_load_cases(
+    measured: &Measured,
+    reference: &[LadderValues],
+    sample: &LadderSample,
+) -> Vec<LoadCaseErrors> {
+    let of_case = |load_case| {
+        let rows = measured.rows.iter().zip(reference);
+        let rows =
+            rows.filter(|(row, _)| sample.scenarios[row.scenario].load_case == Some(load_case));
+        let (values, reference): (Vec<LadderValues>, Vec<LadderValues>) = rows
+            .map(|(row, &reference)| (row.values, reference))
+            .unzip();
+        LoadCaseErrors {
+            load_case,
+            amplitude: error_bound(&values, &reference, Compared::Amplitude),
+        }
+    };
+    sample.load_cases().into_iter().map(of_case).collect()
 }

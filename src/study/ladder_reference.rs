@@ -11,10 +11,11 @@
 //! Left out is what two knobs do together beyond the product of what they do alone.
 
 use super::PipelineError;
-use super::basis_choice::{Judged, choose_basis, judged_conditions, judged_variations};
+use super::basis_choice::{Judged, choose_basis_under, judged_conditions, judged_variations};
 use super::ladder::{HarmonicLevel, Knob, LadderSetting};
 use super::ladder_bench::{LadderBench, LadderValues};
 use super::ladder_measure::Measured;
+use super::load_cases::Excitation;
 use super::reduced_engine::row_settings;
 use crate::model::reduction::{Basis, BasisChoice, ReductionOptions};
 use crate::response::forced_response::{AmplitudeMeasure, Harmonics, HigherHarmonics};
@@ -168,20 +169,32 @@ fn basis_within(
 ) -> Result<BasisChoice, PipelineError> {
     let mut study = bench.study().clone();
     study.solver.harmonics = Harmonics::Set(BASE_HARMONICS[0].to_vec());
-    let judged = Judged {
-        settings: &row_settings(&study),
-        engine_orders: &study.engine_orders,
-        conditions: &judged_conditions(&study.contacts),
-        sets: &[],
-        varied: &judged_variations(&study.contact_variations),
-        tuned_harmonics: None,
+    let conditions = judged_conditions(&study.contacts);
+    let varied = judged_variations(&study.contact_variations);
+    let excitations = study.excitations();
+    let settings: Vec<_> = excitations
+        .iter()
+        .map(|case| row_settings(&case.study))
+        .collect();
+    let judged = |(case, settings)| {
+        let case: &Excitation = case;
+        let judged = Judged {
+            settings,
+            engine_orders: &case.study.engine_orders,
+            conditions: &conditions,
+            sets: &[],
+            varied: &varied,
+            tuned_harmonics: None,
+        };
+        (case, judged)
     };
+    let cases: Vec<_> = excitations.iter().zip(&settings).map(judged).collect();
     let options = ReductionOptions {
         basis: family,
         error,
         ..ReductionOptions::default()
     };
-    Ok(choose_basis(bench.reduction(), &options, judged)?.0)
+    Ok(choose_basis_under(bench.reduction(), &options, &cases)?.0)
 }
 
 impl LadderReference {

@@ -9,7 +9,7 @@ use crate::linalg::Complex64;
 use crate::model::ReducedModel;
 use crate::model::sector::bundle::read_force;
 use crate::model::sector::{Component, ModelError, SectorModel, validate_force};
-use crate::population::monte_carlo::LoadCaseName;
+use crate::population::monte_carlo::{LoadCaseName, RowSolver};
 
 /// Where the force vector of a load case comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,6 +94,23 @@ impl Excitation {
             Some(_) => model.under(self.column, self.study.force_factors()),
         }
     }
+}
+
+/// One solver for all of `excitations`, of a solver for each: that of the first, which knows the others.
+pub(super) fn solver_under<E>(
+    excitations: &[Excitation],
+    solver: impl FnMut(&Excitation) -> Result<RowSolver, E>,
+) -> Result<RowSolver, E> {
+    let mut solvers = excitations
+        .iter()
+        .map(solver)
+        .collect::<Result<Vec<_>, E>>()?;
+    let others = solvers.split_off(1);
+    let names = excitations.iter().skip(1).map(|case| case.name);
+    let others = names
+        .zip(others)
+        .filter_map(|(name, solver)| Some((name?, solver)));
+    Ok(solvers.remove(0).with_load_cases(others.collect()))
 }
 
 impl Study {

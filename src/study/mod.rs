@@ -21,6 +21,7 @@ mod ladder;
 mod ladder_bench;
 mod ladder_measure;
 mod ladder_reference;
+mod ladder_sample;
 mod ladder_search;
 mod load_cases;
 mod lock;

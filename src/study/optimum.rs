@@ -3,18 +3,20 @@
 //! Golden-section search (Kiefer 1953) over the logarithm of the load. Each load is a run of the study in
 //! a folder of its own, so that a search that was interrupted continues and nothing is solved twice.
 //! All loads see the same patterns (common random numbers), which takes most of the sampling error out
-//! of their differences.
+//! of their differences. A ring serves every load case and engine order of its wheel, so that where there are
+//! several, the percentile is that of the largest value of each wheel over them.
 
 use std::path::{Path, PathBuf};
 
 use super::compare::{best_loads, same_patterns};
+use super::result_columns::sorted_values;
 use super::{
     AccuracyChoice, EngineSource, PipelineError, Progress, ResultColumns, RunRequest, Study,
     load_sector_model, run,
 };
 use crate::population::statistics::CONFIDENCE;
 use crate::population::statistics::{Quantity, percentile, smallest_sample};
-use crate::report::{ComparedScenario, OptimumReport};
+use crate::report::{ComparedScenario, OptimumExcitation, OptimumReport};
 use crate::response::forced_response::ContactCondition;
 
 /// Golden ratio less 1.
@@ -45,8 +47,8 @@ pub struct OptimumRequest<'a> {
 /// Searches as `request` says.
 ///
 /// # Errors
-/// The study has several engine orders or standard deviations, no contact, or too few patterns for the
-/// percentile; or a run failed.
+/// The study has several standard deviations, no contact, or too few patterns for the percentile; or a run
+/// failed.
 pub fn find_optimum(
     request: OptimumRequest<'_>,
     source: &dyn EngineSource,
@@ -72,11 +74,8 @@ pub fn find_optimum(
 fn refuse(request: &OptimumRequest<'_>) -> Result<(), PipelineError> {
     let study = request.study;
     let needed = smallest_sample(request.percent / 100.0, CONFIDENCE);
-    let reason = if study.load_cases.len() > 1 {
-        "a search takes a study with one force vector; accepted: one excitation.load_case, or none"
-            .to_owned()
-    } else if study.engine_orders.len() != 1 || study.standard_deviations.len() != 1 {
-        "a search takes a study with one engine order and one standard deviation".to_owned()
+    let reason = if study.standard_deviations.len() != 1 {
+        "a search takes a study with one standard deviation".to_owned()
     } else if study.contact.is_none() {
         "the study has no [contact], so there is no normal load to search".to_owned()
     } else if study.rotation.is_some() {
@@ -113,7 +112,9 @@ fn settled(request: &OptimumRequest<'_>) -> Result<Study, PipelineError> {
 struct Load {
     normal_load_n: f64,
     columns: ResultColumns,
-    /// The percentile; infinite where failures leave it without a value.
+    /// Value of each pattern: the largest over load cases and engine orders.
+    largest: Vec<Option<f64>>,
+    /// Their percentile; infinite where failures leave it without a value.
     value: f64,
 }
 
@@ -163,12 +164,14 @@ impl Search<'_> {
         };
         run(run_request, self.source, self.progress)?;
         let columns = ResultColumns::read(&folder)?;
-        let (sorted, failed) = columns.scenarios[0].sorted(self.request.quantity);
+        let largest = columns.largest(self.request.quantity);
+        let (sorted, failed) = sorted_values(&largest);
         let found = percentile(&sorted, failed, self.request.percent);
         let value = found.value.unwrap_or(f64::INFINITY);
         self.loads.push(Load {
             normal_load_n,
             columns,
+            largest,
             value,
         });
         Ok(value)
@@ -182,28 +185,30 @@ impl Search<'_> {
         self.loads
             .sort_by(|a, b| a.normal_load_n.total_cmp(&b.normal_load_n));
         let request = &self.request;
+        let alike = self
+            .loads
+            .windows(2)
+            .all(|pair| same_patterns(&pair[0].columns, &pair[1].columns));
+        if !alike {
+            return Err(no_patterns_in_common());
+        }
+        let scenarios = 0..self.loads[0].columns.scenarios.len();
+        let alone = scenarios.map(|scenario| self.under(scenario));
+        let mut excitations = alone.collect::<Result<Vec<OptimumExcitation>, _>>()?;
         let columns: Vec<_> = self
             .loads
             .iter()
             .enumerate()
             .map(|(place, load)| {
-                let scenario = &load.columns.scenarios[0];
-                let name = ComparedScenario {
-                    scenario: place,
-                    ..ComparedScenario::new(place, &scenario.scenario)
-                };
-                (name, scenario.values(request.quantity))
+                let highest = highest_at(place, &excitations);
+                (self.name(place, highest), load.largest.as_slice())
             })
             .collect();
-        let alike = self
-            .loads
-            .windows(2)
-            .all(|pair| same_patterns(&pair[0].columns, &pair[1].columns));
         let best = best_loads(&columns, request.percent, request.study.seed)
-            .filter(|_| alike)
-            .ok_or_else(|| PipelineError::NoOptimum {
-                reason: "the loads have no patterns in common".to_owned(),
-            })?;
+            .ok_or_else(no_patterns_in_common)?;
+        if excitations.len() == 1 {
+            excitations.clear();
+        }
         let possible: Vec<usize> = (0..best.loads.len())
             .filter(|&place| best.loads[place].could_be_best)
             .collect();
@@ -221,7 +226,56 @@ impl Search<'_> {
             normal_load_upper_n: above.filter(|&place| place < self.loads.len()).map(load),
             resolved,
             best,
+            excitations,
         })
+    }
+
+    /// The loads solved under one scenario alone.
+    fn under(&self, scenario: usize) -> Result<OptimumExcitation, PipelineError> {
+        let request = &self.request;
+        let loads = self.loads.iter().enumerate();
+        let columns: Vec<_> = loads
+            .map(|(place, load)| {
+                let values = load.columns.scenarios[scenario].values(request.quantity);
+                (self.name(place, scenario), values)
+            })
+            .collect();
+        let best = best_loads(&columns, request.percent, request.study.seed)
+            .ok_or_else(no_patterns_in_common)?;
+        let own = &self.loads[0].columns.scenarios[scenario].scenario;
+        Ok(OptimumExcitation {
+            load_case: own.load_case,
+            engine_order: own.engine_order,
+            normal_load_n: best.lowest.map(|place| self.loads[place].normal_load_n),
+            best,
+        })
+    }
+
+    /// A scenario of the load at `place`, named by that place.
+    fn name(&self, place: usize, scenario: usize) -> ComparedScenario {
+        let own = &self.loads[place].columns.scenarios[scenario].scenario;
+        ComparedScenario {
+            scenario: place,
+            ..ComparedScenario::new(place, own)
+        }
+    }
+}
+
+/// The first of the excitations with the highest percentile at the load at `place`; failures leave it infinite.
+fn highest_at(place: usize, excitations: &[OptimumExcitation]) -> usize {
+    let value = |own: &OptimumExcitation| {
+        let percentile = &own.best.loads[place].percentile;
+        percentile.value.unwrap_or(f64::INFINITY)
+    };
+    (0..excitations.len())
+        .rev()
+        .max_by(|&a, &b| value(&excitations[a]).total_cmp(&value(&excitations[b])))
+        .unwrap_or(0)
+}
+
+fn no_patterns_in_common() -> PipelineError {
+    PipelineError::NoOptimum {
+        reason: "the loads have no patterns in common".to_owned(),
     }
 }
 

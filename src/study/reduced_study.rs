@@ -9,7 +9,7 @@ use super::basis_choice::{
 };
 use super::fixed_interface::FixedInterface;
 use super::harmonic_choice::{choose_harmonics, with_separation};
-use super::load_cases::Excitation;
+use super::load_cases::{Excitation, solver_under};
 use super::reduced_engine::row_settings;
 use super::{PipelineError, Study};
 use crate::model::ReducedModel;
@@ -108,7 +108,7 @@ pub(super) fn reduced(
                     varied: &varied,
                     tuned_harmonics: tuned_harmonics.then_some(&case.full),
                 };
-                (Some(case.excitation), judged)
+                (case.excitation, judged)
             })
             .collect();
         choose_basis_under(reduction, options, &judged)
@@ -189,8 +189,7 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Tra
         .filter(|own| own.normal_load_n().is_some());
     let loads = nonlinear.count();
     let mut first = 0;
-    let mut solvers = Vec::new();
-    for case in study.excitations() {
+    solver_under(&study.excitations(), |case| {
         // The sets of a case stand together.
         let sets = first..first + loads * case.study.engine_orders.len();
         first = sets.end;
@@ -198,26 +197,17 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Tra
         let solver = RowSolver::new(Arc::new(case.of(&stored.model)), settings.clone())?
             .with_choices(stored.harmonics[sets.clone()].to_vec(), error)?
             .with_tuned_harmonics(tuned_harmonics.clone());
-        let solver = match &stored.beyond {
-            None => solver,
-            Some(beyond) => {
-                let finer = RowSolver::new(Arc::new(case.of(&beyond.model)), settings)?
-                    .with_choices(
-                        beyond.harmonics[sets].to_vec(),
-                        beyond.basis_error + truncation,
-                    )?
-                    .with_tuned_harmonics(tuned_harmonics.clone());
-                solver.with_beyond(finer, inexact)
-            }
+        let Some(beyond) = &stored.beyond else {
+            return Ok(solver);
         };
-        solvers.push((case.name, solver));
-    }
-    let others = solvers.split_off(1);
-    let others = others
-        .into_iter()
-        .filter_map(|(name, solver)| Some((name?, solver)));
-    let (_, solver) = solvers.remove(0);
-    Ok(solver.with_load_cases(others.collect()))
+        let finer = RowSolver::new(Arc::new(case.of(&beyond.model)), settings)?
+            .with_choices(
+                beyond.harmonics[sets].to_vec(),
+                beyond.basis_error + truncation,
+            )?
+            .with_tuned_harmonics(tuned_harmonics.clone());
+        Ok(solver.with_beyond(finer, inexact))
+    })
 }
 
 /// Digest of the reduced models and the errors that their rows state.

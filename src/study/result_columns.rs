@@ -45,15 +45,31 @@ impl ScenarioColumns {
     /// The values that there are, ascending, and the number of failed rows.
     #[must_use]
     pub fn sorted(&self, quantity: Quantity) -> (Vec<f64>, u64) {
-        let values = self.values(quantity);
-        let mut good: Vec<f64> = values.iter().flatten().copied().collect();
-        good.sort_unstable_by(f64::total_cmp);
-        let failed = (values.len() - good.len()) as u64;
-        (good, failed)
+        sorted_values(self.values(quantity))
     }
 }
 
+/// The values that there are, ascending, and the number of those that are missing.
+pub(super) fn sorted_values(values: &[Option<f64>]) -> (Vec<f64>, u64) {
+    let mut good: Vec<f64> = values.iter().flatten().copied().collect();
+    good.sort_unstable_by(f64::total_cmp);
+    let failed = (values.len() - good.len()) as u64;
+    (good, failed)
+}
+
 impl ResultColumns {
+    /// The largest value of each pattern over all scenarios; none where one of its rows failed.
+    #[must_use]
+    pub(super) fn largest(&self, quantity: Quantity) -> Vec<Option<f64>> {
+        let largest = |place: usize| {
+            let values = self.scenarios.iter().map(|own| own.values(quantity)[place]);
+            values
+                .reduce(|largest, value| Some(largest?.max(value?)))
+                .flatten()
+        };
+        (0..self.patterns.len()).map(largest).collect()
+    }
+
     /// Reads the folder `results`.
     ///
     /// # Errors

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use super::ladder::{Knob, LadderSetting, law_name, projection_name};
-use super::ladder_bench::{LadderBench, LadderSample, LadderValues};
-use super::ladder_measure::{Compared, Measured, error_bound};
+use super::ladder_bench::{LadderBench, LadderValues};
+use super::ladder_measure::{Compared, Measured, error_bound, errors_of_load_cases};
 use super::ladder_reference::{LadderEnds, LadderReference};
+use super::ladder_sample::LadderSample;
 use super::ladder_search::LadderSearch;
 use super::pipeline::pool_of;
 use super::replay::harmonics_of;
@@ -68,13 +69,6 @@ pub fn tradeoff(
                 .to_owned(),
         });
     }
-    if !study.load_cases.is_empty() {
-        return Err(PipelineError::NoTradeoff {
-            reason: "settings are measured under one force vector; accepted: a study without \
-                     excitation.load_case"
-                .to_owned(),
-        });
-    }
     let digest = StudyDigest::of(study)?;
     let folder = ResultsFolder::open(request.results)?;
     folder.find(study, &digest, None)?;
@@ -93,7 +87,7 @@ pub fn tradeoff(
     let header = TableHeader {
         study_digest: digest.hex(),
         compression: study.output.compression,
-        load_cases: Vec::new(),
+        load_cases: TableHeader::load_cases_of(&study.scenarios()),
     };
     let records = trade.records();
     let report = trade.report(study, &digest, records, checks);
@@ -326,16 +320,21 @@ impl Trade {
         records: Vec<TradeoffRecord>,
         checks: Vec<FullContactCheck>,
     ) -> TradeoffReport {
-        let choices = TRADEOFF_TARGETS.into_iter().enumerate();
-        let choices = choices.map(|(target, accepted)| TradeoffChoice {
-            accepted_error: accepted,
-            setting: records
-                .iter()
-                .find(|record| record.chosen[target])
-                .map(|record| record.setting),
-        });
         let reference = &self.reference;
         let all = self.all();
+        let choices = TRADEOFF_TARGETS.into_iter().enumerate();
+        let choices = choices.map(|(target, accepted)| {
+            let chosen = records.iter().position(|record| record.chosen[target]);
+            let measured = chosen.map(|place| all[place].1);
+            TradeoffChoice {
+                accepted_error: accepted,
+                setting: chosen.map(|place| records[place].setting),
+                load_cases: measured.map_or_else(Vec::new, |own| {
+                    errors_of_load_cases(own, &reference.values, &self.sample)
+                }),
+            }
+        });
+        let choices = choices.collect();
         TradeoffReport {
             name: study.name.clone(),
             study_digest: digest.hex(),
@@ -349,6 +348,7 @@ impl Trade {
                 .iter()
                 .filter_map(|own| own.contact.normal_load_n())
                 .collect(),
+            load_cases: TableHeader::load_cases_of(&self.sample.scenarios),
             reference: TradeoffReference {
                 kind: reference.kind.name(),
                 rows: reference.values.len() as u64,
@@ -363,7 +363,7 @@ impl Trade {
                 craig_bampton_error: self.fixed_interface.error,
                 full_contact: checks,
             },
-            choices: choices.collect(),
+            choices,
             operations: all
                 .iter()
                 .flat_map(|(_, own)| &own.rows)
@@ -407,6 +407,7 @@ impl Trade {
             let factor = change(found.amplitude_m, tuned.amplitude_m).map(|change| change + 1.0);
             Ok(FullContactCheck {
                 scenario: scenario.index,
+                load_case: scenario.load_case,
                 pattern: row.pattern,
                 harmonics: row.harmonics.clone(),
                 status: found.status.name(),

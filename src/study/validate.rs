@@ -197,10 +197,7 @@ fn resolve(
     let stop = raw
         .stop
         .and_then(|raw| stop(check, &raw, mistuning.patterns));
-    let load_cases = !excited.load_cases.is_empty();
-    let accuracy = raw
-        .accuracy
-        .and_then(|raw| accuracy(check, &raw, load_cases));
+    let accuracy = raw.accuracy.and_then(|raw| accuracy(check, &raw));
     let study = Study {
         path: path.to_owned(),
         map: SourceMap::default(),

@@ -25,19 +25,8 @@ pub(super) const KEYS_OF_ACCURACY: [&str; 13] = [
 ];
 
 /// The accepted error; none where the number is missing or refused.
-pub(super) fn accuracy(
-    check: &mut Check,
-    raw: &RawAccuracy,
-    load_cases: bool,
-) -> Option<AccuracyOptions> {
+pub(super) fn accuracy(check: &mut Check, raw: &RawAccuracy) -> Option<AccuracyOptions> {
     const KEY: &str = "accuracy.amplitude_error";
-    if load_cases {
-        check.conflict(
-            "accuracy",
-            "settings are chosen by the error under one force vector; accepted: a study without \
-             excitation.load_case, or the settings themselves",
-        );
-    }
     for key in KEYS_OF_ACCURACY {
         if check.is_written(key) {
             let reason = format!("{KEY} chooses it; accepted: one of the two keys");

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{CONFIDENCE, percentile_ranks_at, point_rank};
+use crate::population::monte_carlo::LoadCaseName;
 
 /// Share of the rows whose errors a bound is to hold for.
 const SHARE: f64 = 0.95;
@@ -30,6 +31,15 @@ pub struct ErrorBound {
     pub p95_upper: f64,
     /// Largest.
     pub worst: f64,
+}
+
+/// Errors of the rows of one load case.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LoadCaseErrors {
+    /// The load case.
+    pub load_case: LoadCaseName,
+    /// Errors of the peak amplitude; none where no row has a reference.
+    pub amplitude: Option<ErrorBound>,
 }
 
 impl ErrorBound {

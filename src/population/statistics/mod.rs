@@ -29,7 +29,7 @@ pub use comparison::{
     Expansion, IntervalEstimate, PercentileComparison, compare_independent, compare_paired,
 };
 pub use distribution_band::{BandPoint, DistributionBand, dkw_half_width};
-pub use error_bound::ErrorBound;
+pub use error_bound::{ErrorBound, LoadCaseErrors};
 pub use extreme_value::{ExtremeValueLaw, anderson_darling};
 pub use extreme_value_fit::{FEWEST_VALUES, FitStatus, SHAPE_RANGE, fit_extreme_value, fit_gumbel};
 pub use main_effects::{FEWEST_ROWS, MainEffects, VarianceShare, main_effects};
