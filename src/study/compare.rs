@@ -30,8 +30,8 @@ pub struct CompareRequest {
     /// Results folders; the baseline is in the first.
     pub folders: Vec<PathBuf>,
     /// Scenario of the first folder that all others are compared with. Absent: in one folder the
-    /// first scenario of each engine order and standard deviation; of several, the scenario of the
-    /// first folder with the same keys.
+    /// first scenario of each load case, engine order and standard deviation; of several, the scenario of
+    /// the first folder with the same keys.
     pub baseline: Option<usize>,
     /// The percentile in percent.
     pub percent: f64,

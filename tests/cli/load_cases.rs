@@ -314,3 +314,418 @@ fn forces_that_the_model_refuses_are_told_with_key_and_line() {
         }
     }
 }
+
+/// A wheel imported from a finite-element code, its basis left to the program.
+fn imported(bundle: &str, name: &str, excitation: &str) -> String {
+    format!(
+        "schema = 1\n\n[study]\nname = \"{name}\"\nseed = 1\npatterns = 2\n\n[model]\nsource = \"bundle\"\n\n\
+         [model.bundle]\npath = \"{bundle}\"\n\n[reduction]\nbasis = \"auto\"\n\n[contact]\n\
+         friction_coefficient = 0.3\ntangential_stiffness_n_per_m = 2.0e7\nnormal_stiffness_n_per_m = 4.0e7\n\n\
+         [damping]\nstructural_loss_factor = 0.002\n\n[mistuning]\n\
+         distribution = {{ kind = \"normal\", standard_deviation = 0.01 }}\n\n[sweep]\n\
+         normal_load_n = [\"stuck\", 40]\n\n[solver]\nharmonics = [1]\n\n{excitation}"
+    )
+}
+
+#[test]
+fn an_imported_finite_element_wheel_has_one_basis_for_all_its_forces() {
+    let wheel = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let wheel = wheel.join("tests/data/calculix_wheel/wheel_rest.toml");
+    let wheel = wheel.to_str().expect("a path");
+    let place = Place::new();
+    // The tip along r and t; the wheel's own force is along z.
+    let second = "dof,re,im\n192,0.6,0.0\n193,0.0,0.8\n";
+    place.write("second.csv", second);
+    for bundle in ["own", "other"] {
+        let ended = place.run(&["import", wheel, "--out", bundle]);
+        assert_eq!(ended.code, 0, "{}", ended.stderr);
+    }
+    assert_ne!(
+        std::fs::read_to_string(place.path("own/force.csv")).expect("a force"),
+        second
+    );
+    place.write("other/force.csv", second);
+    let cases = "[excitation]\nengine_orders = [2]\n\n[[excitation.load_case]]\nname = \"own\"\n\n\
+                 [[excitation.load_case]]\nname = \"second\"\nforce = \"second.csv\"\namplitude_n = 30.0\n";
+    let plain = "[excitation]\nengine_orders = [2]\n";
+    let strong = "[excitation]\nengine_orders = [2]\namplitude_n = 30.0\n";
+    let mut bases = Vec::new();
+    for (bundle, name, excitation) in [
+        ("own", "cases", cases),
+        ("own", "first", plain),
+        ("other", "second", strong),
+    ] {
+        place.write("study.toml", &imported(bundle, name, excitation));
+        let ended = place.run(&["run", "study.toml"]);
+        assert_eq!(ended.code, 0, "{name}: {}{}", ended.stdout, ended.stderr);
+        let manifest = Manifest::read(&place.path(&format!("results/{name}")));
+        let chosen = manifest.expect("a manifest").expect("there").chosen;
+        bases.push(chosen["basis"].as_str().expect("a basis").to_owned());
+    }
+    let stated = |row: &ResponseRow| ResponseRow {
+        // The error of the basis is the largest under both forces.
+        stated_error: None,
+        ..row.clone()
+    };
+    let of_case = |case| rows(&place, "cases", Some(case));
+    let (own, other) = (of_case("own"), of_case("second"));
+    let (first, second) = (rows(&place, "first", None), rows(&place, "second", None));
+    // The harder of the two forces decides the basis of both, and has what it has alone.
+    assert_eq!(bases[0], bases[1]);
+    assert_eq!(own.len(), 4);
+    assert!(own.iter().map(stated).eq(first.iter().map(stated)));
+    // The other one meets its error with fewer vectors too.
+    assert_ne!(bases[0], bases[2]);
+    for (own, alone) in other.iter().zip(&second) {
+        assert!(own.slipping_fraction == alone.slipping_fraction);
+        let amplitude = |row: &ResponseRow| row.peak_amplitude_m.expect("a peak");
+        let ratio = amplitude(own) / amplitude(alone);
+        assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+        assert!(own.stated_error >= Some((ratio - 1.0).abs()));
+    }
+    assert!(other.iter().any(|row| row.slipping_fraction > Some(0.0)));
+}
+
+/// [`study`] with this accepted error in the place of its harmonics, at two loads.
+fn accurate(name: &str, excitation: &str, accepted: f64) -> String {
+    let study = study(name, excitation)
+        .replace("[solver]\nharmonics = [1, 3]\n", "")
+        .replace("[\"slide\", 50, \"stuck\"]", "[50, \"stuck\", 150]")
+        .replace("patterns = 10", "patterns = 40");
+    format!("{study}\n[accuracy]\namplitude_error = {accepted}\n")
+}
+
+fn chosen(place: &Place, name: &str) -> serde_json::Value {
+    let manifest = Manifest::read(&place.path(&format!("results/{name}")));
+    manifest.expect("a manifest").expect("there").chosen["accuracy"].clone()
+}
+
+#[test]
+fn an_accepted_error_chooses_settings_that_hold_under_every_load_case() {
+    let place = Place::new();
+    place.write("disk.csv", "dof,re,im\n1,1.0,0.5\n");
+    let run = |name: &str, study: &str, more: &[&str]| {
+        place.write("study.toml", study);
+        let out = format!("results/{name}");
+        let ended = place.run(&[&["run", "study.toml", "--out", &out], more].concat());
+        assert_eq!(ended.code, 0, "{}{}", ended.stdout, ended.stderr);
+    };
+    // One load case is the study without it, evidence included.
+    let plain = "[excitation]\nengine_orders = [2]\namplitude_n = 10.0\n";
+    run("plain", &accurate("a", plain, 0.02), &[]);
+    run("first", &accurate("a", ON_BLADE, 0.02), &[]);
+    let (of_plain, mut of_first) = (chosen(&place, "plain"), chosen(&place, "first"));
+    let evidence = of_first["evidence"].as_object_mut().expect("evidence");
+    let names = evidence.remove("load_cases").expect("named scenarios");
+    assert_eq!(names, serde_json::json!(["blade", "blade"]));
+    let of_blade = evidence.remove("errors_of_load_cases").expect("errors");
+    assert_eq!(of_blade[0]["amplitude"], of_plain["evidence"]["amplitude"]);
+    assert_eq!(of_first, of_plain);
+    assert_eq!(
+        rows(&place, "first", Some("blade")),
+        rows(&place, "plain", None)
+    );
+
+    let both = accurate("a", &format!("{ON_BLADE}{ON_DISK}"), 0.02);
+    run("both", &both, &["--threads", "1"]);
+    run("threads", &both, &["--threads", "2"]);
+    for table in ["responses.parquet", "manifest.json"] {
+        let read = |name| std::fs::read(place.path(&format!("results/{name}/{table}")));
+        assert!(read("both").expect(table) == read("threads").expect(table));
+    }
+    let of_both = chosen(&place, "both");
+    assert_eq!(of_both["met"], true);
+    let evidence = &of_both["evidence"];
+    let names = ["blade", "blade", "disk", "disk", "disk", "disk"];
+    assert_eq!(evidence["load_cases"], serde_json::json!(names));
+    let errors = evidence["errors_of_load_cases"].as_array().expect("errors");
+    let counts: Vec<_> = errors
+        .iter()
+        .map(|own| {
+            let worst = own["amplitude"]["worst"].as_f64().expect("an error");
+            assert!(worst <= 0.02, "{own}");
+            (own["load_case"].as_str(), own["amplitude"]["rows"].as_u64())
+        })
+        .collect();
+    assert_eq!(
+        counts,
+        [(Some("blade"), Some(12)), (Some("disk"), Some(24))]
+    );
+    // What is claimed holds on all rows of each case, against settings that leave nothing out.
+    let tight = accurate("a", &format!("{ON_BLADE}{ON_DISK}"), 0.02).replace(
+        "[accuracy]\namplitude_error = 0.02\n",
+        "[solver]\nharmonic_tolerance = 1e-3\nsamples_per_period = 512\n\
+         residual_tolerance = 1e-10\npeak_tolerance = 1e-4\n",
+    );
+    run("tight", &tight, &[]);
+    for case in ["blade", "disk"] {
+        let (own, exact) = (
+            rows(&place, "both", Some(case)),
+            rows(&place, "tight", Some(case)),
+        );
+        let error = |(own, exact): (&ResponseRow, &ResponseRow)| {
+            (own.peak_amplitude_m.expect("a peak") / exact.peak_amplitude_m.expect("a peak") - 1.0)
+                .abs()
+        };
+        let errors: Vec<f64> = own.iter().zip(&exact).map(error).collect();
+        let within = errors.iter().filter(|&&error| error <= 0.02).count();
+        assert!(
+            within as f64 >= 0.95 * errors.len() as f64,
+            "{case}: {errors:?}"
+        );
+        assert!(errors.iter().any(|&error| error > 0.0), "{case}");
+    }
+    let replay = [
+        "replay",
+        "results/both",
+        "--scenario",
+        "5",
+        "--pattern",
+        "3",
+    ];
+    let replay = place.run(&replay);
+    assert!(replay.stdout.contains("bit-identical"), "{}", replay.stdout);
+}
+
+#[test]
+fn a_trade_off_says_under_which_load_case_its_rows_are() {
+    let place = Place::new();
+    place.write("disk.csv", "dof,re,im\n1,1.0,0.5\n");
+    let trade = |excitation: &str, out: &str, more: &[&str]| {
+        place.write("study.toml", &study("a", excitation));
+        let ended = place.run(
+            &[
+                &["tradeoff", "study.toml", "--patterns", "3", "--out", out],
+                more,
+            ]
+            .concat(),
+        );
+        assert_eq!(ended.code, 0, "{}", ended.stderr);
+        ended.stdout
+    };
+    let json = |text: String| serde_json::from_str::<serde_json::Value>(&text).expect("JSON");
+    let both = format!("{ON_BLADE}{ON_DISK}");
+    let more = ["--reference", "full", "--json"];
+    let report = json(trade(&both, "both", &more));
+    assert_eq!(
+        report["load_cases"],
+        serde_json::json!(["blade", "disk", "disk"])
+    );
+    assert_eq!(report["scenarios"], serde_json::json!([1, 4, 7]));
+    let checks = report["reference"]["full_contact"]
+        .as_array()
+        .expect("checks");
+    for (check, name) in checks.iter().zip(["blade", "disk", "disk"]) {
+        assert_eq!(check["load_case"], name);
+        let error = check["amplitude_error"].as_f64().expect("an error");
+        assert!(error.abs() < 3e-4, "{check}");
+    }
+    assert_eq!(checks.len(), 3);
+    for choice in report["choices"].as_array().expect("choices") {
+        let cases = choice["load_cases"].as_array().expect("errors");
+        let chosen = choice["setting"].as_u64().expect("a setting") as usize;
+        let of = |own: &serde_json::Value| own["amplitude"]["worst"].as_f64().expect("an error");
+        let worst = cases.iter().map(of).fold(0.0, f64::max);
+        assert!((worst - of(&report["settings"][chosen])).abs() == 0.0);
+    }
+    let names = text_column(&place.path("both/tradeoff_rows.parquet"), "load_case");
+    let settings = report["settings"].as_array().expect("settings").len();
+    let of_blade = names.iter().filter(|name| *name == "blade").count();
+    assert_eq!((names.len(), of_blade), (9 * settings, 3 * settings));
+    let shown = trade(&both, "shown", &[]);
+    for words in [
+        "load case blade: loads 50 N; load case disk: loads 50, 50 N",
+        "of its rows under load case disk: median",
+    ] {
+        assert!(shown.contains(words), "{words}: {shown}");
+    }
+    // One load case costs and errs as the study without it, whose report names none.
+    let plain = "[excitation]\nengine_orders = [2]\namplitude_n = 10.0\n";
+    let of_settings = |report: &serde_json::Value| {
+        let mut settings = report["settings"].clone();
+        for setting in settings.as_array_mut().expect("settings") {
+            setting["cpu_s"] = serde_json::Value::Null;
+        }
+        settings
+    };
+    let plain = json(trade(plain, "plain", &["--json"]));
+    let first = json(trade(ON_BLADE, "first", &["--json"]));
+    assert_eq!(of_settings(&plain), of_settings(&first));
+    assert!(plain.get("load_cases").is_none());
+}
+
+#[test]
+fn the_best_load_is_that_of_the_worst_load_case_of_each_wheel() {
+    let place = Place::new();
+    place.write("disk.csv", "dof,re,im\n1,1.0,0.5\n");
+    let search = |excitation: &str, out: &str, more: &[&str]| {
+        let study = study("a", excitation);
+        place.write("study.toml", &study);
+        let request = [
+            "optimum",
+            "study.toml",
+            "--between",
+            "50:400",
+            "--percentile",
+            "50",
+        ];
+        let ended = place.run(&[&request, &["--resolution", "1", "--out", out][..], more].concat());
+        assert_eq!(ended.code, 0, "{}", ended.stderr);
+        ended.stdout
+    };
+    let json = |text: String| serde_json::from_str::<serde_json::Value>(&text).expect("JSON");
+    let both = format!("{ON_BLADE}{ON_DISK}");
+    let report = json(search(&both, "results/search", &["--json"]));
+    let excitations = report["excitations"].as_array().expect("excitations");
+    let names: Vec<_> = excitations
+        .iter()
+        .map(|own| (own["load_case"].as_str(), own["engine_order"].as_u64()))
+        .collect();
+    assert_eq!(
+        names,
+        [
+            (Some("blade"), Some(2)),
+            (Some("disk"), Some(1)),
+            (Some("disk"), Some(2))
+        ]
+    );
+    let loads = report["best"]["loads"].as_array().expect("loads");
+    assert!(loads.len() >= 3);
+    let value = |load: &serde_json::Value| load["percentile"]["value"].as_f64().expect("a value");
+    let mut highest = Vec::new();
+    for (place_of_load, load) in loads.iter().enumerate() {
+        // By hand from the rows: the median of the largest amplitude of each wheel.
+        let folder = format!(
+            "search/load-{}",
+            load["normal_load_n"].as_f64().expect("a load")
+        );
+        let [blade, disk] = ["blade", "disk"].map(|case| rows(&place, &folder, Some(case)));
+        let mut largest: Vec<f64> = (0..10)
+            .map(|pattern| {
+                let of_wheel = blade
+                    .iter()
+                    .chain(&disk)
+                    .filter(|row| row.pattern == pattern);
+                let amplitudes = of_wheel.map(|row| row.peak_amplitude_m.expect("a peak"));
+                amplitudes.fold(0.0, f64::max)
+            })
+            .collect();
+        largest.sort_by(f64::total_cmp);
+        assert!(value(load).total_cmp(&largest[4]).is_eq());
+        let alone = excitations.iter();
+        let alone = alone.map(|own| (value(&own["best"]["loads"][place_of_load]), own));
+        let (most, own) = alone
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .expect("excitations");
+        assert!(value(load) >= most);
+        assert_eq!(load["load_case"], own["load_case"]);
+        assert_eq!(load["engine_order"], own["engine_order"]);
+        highest.push(load["engine_order"].as_u64());
+    }
+    // The wave under which the wheels are worst is another at low and at high loads, and the best load between.
+    assert_eq!((highest[0], highest[loads.len() - 1]), (Some(2), Some(1)));
+    let lowest = loads.iter().map(value).fold(f64::INFINITY, f64::min);
+    let best = report["normal_load_n"].as_f64().expect("a load");
+    let place_of_best = loads
+        .iter()
+        .position(|load| load["normal_load_n"].as_f64() == Some(best));
+    assert!(
+        value(&loads[place_of_best.expect("solved")])
+            .total_cmp(&lowest)
+            .is_eq()
+    );
+    assert!(
+        excitations
+            .iter()
+            .any(|own| own["normal_load_n"].as_f64() != Some(best))
+    );
+    let shown = search(&both, "results/search", &[]);
+    for words in [
+        "each wheel by its largest",
+        "highest under",
+        "lowest at",
+        "load case disk, engine order 1",
+    ] {
+        assert!(shown.contains(words), "{words}: {shown}");
+    }
+    // One load case is searched as the study without it.
+    let plain = "[excitation]\nengine_orders = [2]\namplitude_n = 10.0\n";
+    let plain = json(search(plain, "plain", &["--json"]));
+    let mut first = json(search(ON_BLADE, "first", &["--json"]));
+    for load in first["best"]["loads"].as_array_mut().expect("loads") {
+        let name = load.as_object_mut().expect("a load").remove("load_case");
+        assert_eq!(name, Some(serde_json::json!("blade")));
+    }
+    assert_eq!(first, plain);
+    assert!(plain.get("excitations").is_none());
+    // A search with settings by error chooses them for all load cases.
+    let study = accurate("a", &both, 0.05).replace("patterns = 40", "patterns = 10");
+    place.write("study.toml", &study);
+    let request = [
+        "optimum",
+        "study.toml",
+        "--between",
+        "50:100",
+        "--percentile",
+        "50",
+    ];
+    let ended = place.run(&[&request[..], &["--resolution", "1", "--out", "accurate"]].concat());
+    assert_eq!(ended.code, 0, "{}", ended.stderr);
+}
+
+#[test]
+fn folders_with_the_same_load_cases_are_compared_case_by_case() {
+    let place = Place::new();
+    place.write("disk.csv", "dof,re,im\n1,1.0,0.5\n");
+    let third = ON_DISK.replace("\"disk\"", "\"third\"");
+    let write = |name: &str, excitation: &str, friction: &str| {
+        let study = study(name, excitation).replace("friction_coefficient = 0.3", friction);
+        place.write("study.toml", &study);
+        let ended = place.run(&["run", "study.toml"]);
+        assert_eq!(ended.code, 0, "{}", ended.stderr);
+    };
+    write(
+        "one",
+        &format!("{ON_BLADE}{ON_DISK}"),
+        "friction_coefficient = 0.3",
+    );
+    // Another order of the cases, and one more.
+    write(
+        "two",
+        &format!("{ON_DISK}{third}{ON_BLADE}"),
+        "friction_coefficient = 0.2",
+    );
+    let request = [
+        "compare",
+        "results/one",
+        "results/two",
+        "--percentile",
+        "50",
+        "--json",
+    ];
+    let ended = place.run(&request);
+    assert_eq!(ended.code, 0, "{}", ended.stderr);
+    let report: serde_json::Value = serde_json::from_str(&ended.stdout).expect("JSON");
+    let of_amplitude = &report["quantities"][0];
+    let comparisons = of_amplitude["comparisons"].as_array().expect("pairs");
+    assert_eq!(comparisons.len(), 9);
+    for pair in comparisons {
+        for key in ["load_case", "engine_order", "contact", "normal_load_n"] {
+            assert_eq!(pair["baseline"][key], pair["candidate"][key], "{pair}");
+        }
+        assert_eq!(pair["pairing"], "same_patterns");
+        assert_eq!(
+            (&pair["baseline"]["folder"], &pair["candidate"]["folder"]),
+            (&0.into(), &1.into())
+        );
+    }
+    let names: Vec<_> = comparisons
+        .iter()
+        .map(|pair| pair["candidate"]["load_case"].as_str())
+        .collect();
+    let count = |name| names.iter().filter(|own| **own == Some(name)).count();
+    assert_eq!((count("blade"), count("disk")), (3, 6));
+    let unmatched = report["unmatched"].as_array().expect("a list");
+    assert_eq!(unmatched.len(), 6);
+    assert!(unmatched.iter().all(|own| own["load_case"] == "third"));
+}

@@ -549,8 +549,10 @@ fn keys_of_load_cases_that_do_not_fit_together_are_refused() {
             .any(|(own, problem)| own == key && format!("{problem:?}").contains(words));
         assert!(told, "{bad}: {found:?}");
     }
-    let accuracy = good + "\n[accuracy]\namplitude_error = 0.01\n";
-    assert!(findings(&accuracy).iter().any(|(key, _)| key == "accuracy"));
+    let open = good.replace("[solver]\nharmonics = [1, 3]\n", "");
+    assert_ne!(open, good);
+    let accurate = findings(&(open + "\n[accuracy]\namplitude_error = 0.01\n"));
+    assert!(accurate.is_empty(), "{accurate:?}");
 }
 
 fn as_json(text: &str) -> Json {
