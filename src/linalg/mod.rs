@@ -5,6 +5,7 @@ mod lu;
 mod matrix;
 mod sparse;
 mod symmetric_sparse;
+mod vectors;
 
 pub use dense::{
     NotPositiveDefinite, OrthonormalBasis, eigenvalues, hermitian_eigen, hermitian_pencil,
@@ -12,8 +13,9 @@ pub use dense::{
 };
 pub use lu::LuWorkspace;
 pub use matrix::{
-    Matrix, Scalar, add_times, add_times_vector, add_transpose_times, add_transpose_times_vector,
+    Matrix, Scalar, add_times, add_transpose_times,
 };
 pub use rustfft::num_complex::Complex64;
 pub use sparse::{HermitianSparse, SparseFactor, lowest_modes};
 pub use symmetric_sparse::SymmetricSparse;
+pub use vectors::{Loops, add_times_vector, add_transpose_times_vector, dot, vectorized};

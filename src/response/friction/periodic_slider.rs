@@ -26,6 +26,13 @@
 //!
 //! The transitions between stick, slip and separation are those of Yang, Chu & Menq (1998).
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined is compiled for vectors"
+)]
+
+use crate::linalg::{Loops, vectorized};
+
 /// Stretches of the period that are marched side by side: the chain of clips is bound by latency,
 /// not by work.
 const STRETCHES: usize = 4;
@@ -85,19 +92,13 @@ impl PeriodicSlider {
             self.offset.len(),
             "samples of the normal load"
         );
-        let (highest_lower, lowest_upper) = self.bound(
-            tangential_stiffness_n_per_m,
-            friction_coefficient,
-            displacement_m,
-            normal_load_n,
-        );
-        self.n_clips = 0;
-        self.slipping = highest_lower > lowest_upper;
-        if self.slipping {
-            self.march();
-        } else {
-            self.offset.fill(clip(0.0, highest_lower, lowest_upper));
-        }
+        vectorized(Solve {
+            slider: self,
+            kt: tangential_stiffness_n_per_m,
+            mu: friction_coefficient,
+            x: displacement_m,
+            load: normal_load_n,
+        });
         self.slipping
     }
 
@@ -214,6 +215,7 @@ impl PeriodicSlider {
     }
 
     /// Fills `a` and `b`; returns `(max a, min b)`.
+    #[inline(always)]
     fn bound(&mut self, kt: f64, mu: f64, x: &[f64], load: &[f64]) -> (f64, f64) {
         const LANES: usize = 4;
         let mut highest_lower = [f64::NEG_INFINITY; LANES];
@@ -240,6 +242,7 @@ impl PeriodicSlider {
     }
 
     /// Fills the offsets of a slipping slider.
+    #[inline(always)]
     fn march(&mut self) {
         let length = self.offset.len() / STRETCHES;
         let (lower, lower_rest) = self.lower.split_at(STRETCHES * length);
@@ -289,6 +292,40 @@ impl PeriodicSlider {
     }
 }
 
+/// What [`PeriodicSlider::solve`] is asked for.
+struct Solve<'a> {
+    slider: &'a mut PeriodicSlider,
+    kt: f64,
+    mu: f64,
+    x: &'a [f64],
+    load: &'a [f64],
+}
+
+impl Loops for Solve<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self {
+            slider,
+            kt,
+            mu,
+            x,
+            load,
+        } = self;
+        let (highest_lower, lowest_upper) = slider.bound(kt, mu, x, load);
+        slider.n_clips = 0;
+        slider.slipping = highest_lower > lowest_upper;
+        if slider.slipping {
+            slider.march();
+        } else {
+            slider
+                .offset
+                .fill(clip(0.0, highest_lower, lowest_upper));
+        }
+    }
+}
+
 /// `values` (`STRETCHES * length`) cut into its stretches.
 fn stretches(values: &[f64], length: usize) -> [&[f64]; STRETCHES] {
     std::array::from_fn(|s| &values[s * length..][..length])
@@ -303,17 +340,17 @@ fn stretches_mut(values: &mut [f64], length: usize) -> [&mut [f64]; STRETCHES] {
 }
 
 /// `y` confined to `[a, b]`; plain comparisons, each of which is one machine instruction.
-#[inline]
+#[inline(always)]
 fn clip(y: f64, a: f64, b: f64) -> f64 {
     smaller(b, larger(a, y))
 }
 
-#[inline]
+#[inline(always)]
 fn larger(a: f64, y: f64) -> f64 {
     if a > y { a } else { y }
 }
 
-#[inline]
+#[inline(always)]
 fn smaller(b: f64, y: f64) -> f64 {
     if b < y { b } else { y }
 }

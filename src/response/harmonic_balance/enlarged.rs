@@ -31,8 +31,8 @@ const HIGHEST_HARMONIC: u32 = 15;
 /// Unknowns of a wheel up to which the whole Jacobian is factored.
 const SMALL_WHEEL: usize = 1200;
 /// Samples per period of the enlarged set at least, and per period of its highest harmonic.
-const SAMPLES: usize = 256;
-const SAMPLES_OF_HIGHEST: usize = 16;
+const SAMPLES: usize = 128;
+const SAMPLES_OF_HIGHEST: usize = 8;
 /// Samples per period of the derivatives in P at least, and per period of the highest harmonic.
 const LINEARISED_SAMPLES: usize = 128;
 const LINEARISED_SAMPLES_OF_HIGHEST: usize = 4;
@@ -177,8 +177,12 @@ pub fn enlarge(
     let before = embed(system, &enlarged, &places, x);
     let linearised = with(blocks, &set.linearised);
     let large = system.unknowns() > LARGEST_WHOLE_JACOBIAN && system.is_shared();
+    let mut buffers = enlarged.workspace();
     let factors = if large || enlarged.has_waves() {
-        Factors::by_harmonic(&linearised, omega, &before)?
+        let mut linearised_buffers = linearised.workspace();
+        let factors = Factors::by_harmonic(&linearised, omega, &before, &mut linearised_buffers)?;
+        buffers.waves = linearised_buffers.waves;
+        factors
     } else {
         if !workspace.factor_at(system, omega, x) {
             return None;
@@ -186,7 +190,7 @@ pub fn enlarge(
         Factors::of(&linearised, &places, omega, &before)?
     };
     let mut enlargement = Enlargement {
-        buffers: enlarged.workspace(),
+        buffers,
         system,
         workspace,
         enlarged,
@@ -316,9 +320,13 @@ impl Enlargement<'_> {
         let newton = !matches!(self.factors, Factors::ByHarmonic(_));
         let evaluations = if newton { 1 } else { self.evaluations() };
         let mut buffers = other.workspace();
+        if let (Some(own), Some(all)) = (&mut buffers.waves, &self.buffers.waves) {
+            own.take_over(all, &self.places);
+        }
         let mut acceleration = Anderson::new(self.enlarged.unknowns(), evaluations);
         let mut iterate = embed(self.system, &self.enlarged, &self.places, x);
         let scale = self.in_set(&iterate);
+        let first = iterate.clone();
         let (mut next, mut residual) = (iterate.clone(), vec![0.0; x.len()]);
         for _ in 0..evaluations {
             let own = self.restricted(&iterate);
@@ -331,7 +339,8 @@ impl Enlargement<'_> {
             let left = self.in_set(&step) / scale;
             acceleration.next(&iterate, &step, &mut next);
             std::mem::swap(&mut iterate, &mut next);
-            if left <= NEGLIGIBLE {
+            let change: Vec<f64> = iterate.iter().zip(&first).map(|(a, b)| a - b).collect();
+            if left <= f64::max(NEGLIGIBLE, SETTLED * self.in_set(&change) / scale) {
                 break;
             }
         }
@@ -408,13 +417,17 @@ fn embed(
 
 impl Factors {
     /// Of every harmonic of `system` by itself at `x`; none if one is singular.
-    fn by_harmonic(system: &HarmonicSystem, omega: f64, x: &[f64]) -> Option<Self> {
-        let mut buffers = system.workspace();
-        system.couple_leading(&mut buffers);
+    fn by_harmonic(
+        system: &HarmonicSystem,
+        omega: f64,
+        x: &[f64],
+        buffers: &mut SystemWorkspace,
+    ) -> Option<Self> {
+        system.couple_leading(buffers);
         let mut residual = vec![0.0; system.unknowns()];
-        system.residual(omega, x, &mut residual, true, &mut buffers);
+        system.residual(omega, x, &mut residual, true, buffers);
         let mut factors = KeptJacobian::new();
-        let regular = factors.factor_by_harmonic(system, omega, &mut buffers);
+        let regular = factors.factor_by_harmonic(system, omega, buffers);
         regular.then(|| Self::ByHarmonic(Box::new(factors)))
     }
 

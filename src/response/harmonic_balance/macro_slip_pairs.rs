@@ -14,13 +14,11 @@
 
 use std::sync::Arc;
 
+use super::lanes::{LANES, clip, lanes_at, larger, smaller};
 use super::pair_harmonics::wanted;
 use super::{ContactShares, HarmonicSystem, HarmonicTransform, PairJacobian, SystemWorkspace};
 use crate::linalg::add_times;
 use crate::response::friction::{ContactLaw, PairParameters};
-
-/// Pairs that are marched in one block.
-const LANES: usize = 8;
 
 /// Buffers for the pairs of one wheel. Matrices are column-major, a row per lane.
 #[derive(Debug)]
@@ -330,28 +328,6 @@ impl HarmonicSystem {
         let (sector, own) = (pair / geometry.rows.len(), pair % geometry.rows.len());
         geometry.rows[own][1].map(|row| sector * geometry.row_count() + row)
     }
-}
-
-/// The lanes of one block.
-fn lanes_at(values: &[f64], block: usize) -> [f64; LANES] {
-    std::array::from_fn(|lane| values[block + lane])
-}
-
-/// The offset `y` confined to `[-limit - elastic, limit - elastic]`; plain comparisons, each of which is one machine
-/// instruction.
-#[inline]
-fn clip(y: f64, limit: f64, elastic: f64) -> f64 {
-    smaller(limit - elastic, larger(-limit - elastic, y))
-}
-
-#[inline]
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
-#[inline]
-fn smaller(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
 }
 
 #[cfg(test)]

@@ -21,8 +21,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::coupled_derivative::{CoupledDerivative, Slopes};
-use super::transform::dot;
 use super::{HarmonicTransform, PairJacobian, TransformScratch};
+use crate::linalg::dot;
 use crate::response::friction::{
     ContactHistory, ContactLaw, PairDisplacement, PairParameters, PairState,
 };

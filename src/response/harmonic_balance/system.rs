@@ -14,6 +14,7 @@
 use std::sync::Arc;
 
 use super::macro_slip_pairs::MacroSlipPairs;
+use super::simplified_3d_pairs::Simplified3dPairs;
 use super::wave_blocks::{WaveScale, WaveWorkspace};
 use super::{ContactInterface, HarmonicBlock, HarmonicTransform, PairHarmonics, PairJacobian};
 use crate::linalg::{
@@ -69,6 +70,7 @@ pub struct SystemWorkspace {
     pub(super) active: Vec<bool>,
     /// Pairs that are evaluated side by side.
     pub(super) together: Option<MacroSlipPairs>,
+    pub(super) together_3d: Option<Simplified3dPairs>,
     /// Whether a pair separates.
     pub(super) separated: bool,
     /// Contact rows of the active pairs; those of them that have a correction; then `dG/dd C`.
@@ -215,6 +217,7 @@ impl HarmonicSystem {
             jacobians: vec![PairJacobian::new(coefficients); pairs],
             active: vec![false; pairs],
             together: None,
+            together_3d: None,
             separated: false,
             active_rows: vec![0.0; self.rows * largest],
             left_rows: vec![0.0; self.rows * largest],
@@ -364,6 +367,9 @@ impl HarmonicSystem {
         workspace.correction.fill(0.0);
         if self.marches_together() {
             return self.correction_together(derivative, workspace);
+        }
+        if self.responds_together() && !derivative {
+            return self.response_together(workspace);
         }
         let coefficients = self.transform.n_coefficients();
         let per_sector = self.interface.per_sector();

@@ -14,13 +14,18 @@
 //! where R is the receptance of the contact with stuck springs and G the correction of the contact force, both
 //! in waves `d_h = sum_n d_n e^{-i h n alpha}` over the sectors n.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined is compiled for vectors"
+)]
+
 use std::sync::Arc;
 
 use rustfft::{Fft, FftPlanner};
 
 use super::Damping;
 use super::structure::Structure;
-use crate::linalg::{Complex64, LuWorkspace, Matrix};
+use crate::linalg::{Complex64, LuWorkspace, Loops, Matrix, vectorized};
 use crate::model::ReducedModel;
 use crate::model::cyclic::NodalDiameter;
 use crate::response::mistuning::StructuralModes;
@@ -35,16 +40,44 @@ pub struct TunedWaves {
     /// Nodal diameters 0..=N/2.
     waves: Vec<Structure>,
     /// R of harmonic 0.
-    at_rest: Vec<Complex64>,
+    at_rest: WaveTable,
     forward: Arc<dyn Fft<f64>>,
     inverse: Arc<dyn Fft<f64>>,
+}
+
+/// A matrix of the contact rows of a sector for every wave: entry (i, j) of wave h at `(i rows + j) N + h`.
+#[derive(Debug, Clone, Default)]
+pub(super) struct WaveTable {
+    re: Vec<f64>,
+    im: Vec<f64>,
+}
+
+impl WaveTable {
+    fn zeros(entries: usize) -> Self {
+        Self {
+            re: vec![0.0; entries],
+            im: vec![0.0; entries],
+        }
+    }
+
+    fn set(&mut self, at: usize, entry: Complex64) {
+        (self.re[at], self.im[at]) = (entry.re, entry.im);
+    }
+
+    fn at(&self, at: usize) -> Complex64 {
+        Complex64::new(self.re[at], self.im[at])
+    }
 }
 
 /// Buffers of one thread.
 #[derive(Debug)]
 pub(super) struct WaveBuffers {
+    /// One value per row and sector, then per row and wave.
     values: Vec<Complex64>,
-    product: Vec<Complex64>,
+    /// The same in two parts.
+    parts: [Vec<f64>; 2],
+    /// One row of the product.
+    row: [Vec<f64>; 2],
     scratch: Vec<Complex64>,
 }
 
@@ -75,7 +108,7 @@ impl TunedWaves {
             rows,
             springs: model.springs.stick.clone(),
             waves: waves.collect(),
-            at_rest: Vec::new(),
+            at_rest: WaveTable::default(),
             forward: planner.plan_fft_forward(sectors),
             inverse: planner.plan_fft_inverse(sectors),
         };
@@ -89,16 +122,21 @@ impl TunedWaves {
         self.sectors * self.rows
     }
 
-    /// Entries of R over all waves.
-    pub(super) fn table_size(&self) -> usize {
-        self.rows * self.size()
+    /// A table without a number in it.
+    pub(super) fn not_a_number(&self) -> WaveTable {
+        let entries = vec![f64::NAN; self.rows * self.size()];
+        WaveTable {
+            re: entries.clone(),
+            im: entries,
+        }
     }
 
     pub(super) fn buffers(&self) -> WaveBuffers {
         let scratch = self.forward.get_inplace_scratch_len();
         WaveBuffers {
             values: vec![Complex64::default(); self.size()],
-            product: vec![Complex64::default(); self.size()],
+            parts: [vec![0.0; self.size()], vec![0.0; self.size()]],
+            row: [vec![0.0; self.sectors], vec![0.0; self.sectors]],
             scratch: vec![
                 Complex64::default();
                 scratch.max(self.inverse.get_inplace_scratch_len())
@@ -106,26 +144,25 @@ impl TunedWaves {
         }
     }
 
-    /// R of a harmonic at angular frequency `omega`: entry (i, j) of wave h at `(i rows + j) N + h`. None where the
-    /// stuck wheel has an undamped resonance.
-    pub(super) fn receptance(&self, harmonic: u32, omega: f64) -> Option<Vec<Complex64>> {
+    /// R of a harmonic at angular frequency `omega`. None where the stuck wheel has an undamped resonance.
+    pub(super) fn receptance(&self, harmonic: u32, omega: f64) -> Option<WaveTable> {
         if harmonic == 0 {
             return Some(self.at_rest.clone());
         }
         self.spread(|wave| self.receptance_in_motion(wave, f64::from(harmonic) * omega))
     }
 
-    /// `(I + R g)^-1` of every wave, laid out as R; `g` is `rows x rows`, row after row.
+    /// `(I + R g)^-1` of every wave; `g` is `rows x rows`, row after row.
     pub(super) fn inverse_with(
         &self,
-        receptance: &[Complex64],
+        receptance: &WaveTable,
         g: &[Complex64],
-    ) -> Option<Vec<Complex64>> {
+    ) -> Option<WaveTable> {
         let (n, sectors) = (self.rows, self.sectors);
-        let mut all = vec![Complex64::default(); n * n * sectors];
+        let mut all = WaveTable::zeros(n * n * sectors);
         let mut lu = LuWorkspace::new(n);
         for h in 0..sectors {
-            let of = |i: usize, j: usize| receptance[(i * n + j) * sectors + h];
+            let of = |i: usize, j: usize| receptance.at((i * n + j) * sectors + h);
             for (at, entry) in lu.matrix_mut().iter_mut().enumerate() {
                 let (j, i) = (at / n, at % n);
                 *entry = (0..n).map(|l| of(i, l) * g[l * n + j]).sum();
@@ -136,17 +173,17 @@ impl TunedWaves {
             let inverse = inverse(&mut lu)?;
             for (at, entry) in inverse.iter().enumerate() {
                 let (j, i) = (at / n, at % n);
-                all[(i * n + j) * sectors + h] = *entry;
+                all.set((i * n + j) * sectors + h, *entry);
             }
         }
         Some(all)
     }
 
-    /// The circulant `table`, laid out as R, times contact coefficients of one harmonic: real and imaginary parts,
-    /// sector after sector; times `factor` into `sum`.
+    /// The circulant `table` times contact coefficients of one harmonic: real and imaginary parts, sector after sector;
+    /// times `factor` into `sum`.
     pub(super) fn add_product(
         &self,
-        table: &[Complex64],
+        table: &WaveTable,
         factor: f64,
         [real, imaginary]: [&[f64]; 2],
         sum: &mut [f64],
@@ -155,7 +192,8 @@ impl TunedWaves {
         let (rows, sectors) = (self.rows, self.sectors);
         let WaveBuffers {
             values,
-            product,
+            parts: [re, im],
+            row: [row_re, row_im],
             scratch,
         } = buffers;
         for (row, values) in values.chunks_exact_mut(sectors).enumerate() {
@@ -165,19 +203,20 @@ impl TunedWaves {
             }
         }
         self.forward.process_with_scratch(values, scratch);
-        for (row, product) in product.chunks_exact_mut(sectors).enumerate() {
-            product.fill(Complex64::default());
-            for (column, values) in values.chunks_exact(sectors).enumerate() {
-                let table = &table[(row * rows + column) * sectors..][..sectors];
-                for ((product, r), value) in product.iter_mut().zip(table).zip(values) {
-                    *product += r * value;
-                }
-            }
+        for ((re, im), value) in re.iter_mut().zip(im.iter_mut()).zip(&*values) {
+            (*re, *im) = (value.re, value.im);
         }
-        self.inverse.process_with_scratch(product, scratch);
+        vectorized(Products {
+            table,
+            sectors,
+            parts: [re, im],
+            row: [row_re, row_im],
+            products: values,
+        });
+        self.inverse.process_with_scratch(values, scratch);
         let (real, imaginary) = sum.split_at_mut(self.size());
         let factor = factor / sectors as f64;
-        for (row, product) in product.chunks_exact(sectors).enumerate() {
+        for (row, product) in values.chunks_exact(sectors).enumerate() {
             for (n, value) in product.iter().enumerate() {
                 let at = n * rows + row;
                 real[at] += factor * value.re;
@@ -193,16 +232,16 @@ impl TunedWaves {
     fn spread(
         &self,
         mut of: impl FnMut(&Structure) -> Option<Vec<Complex64>>,
-    ) -> Option<Vec<Complex64>> {
+    ) -> Option<WaveTable> {
         let (n, sectors) = (self.rows, self.sectors);
-        let mut all = vec![Complex64::default(); n * n * sectors];
+        let mut all = WaveTable::zeros(n * n * sectors);
         for (h, wave) in self.waves.iter().enumerate() {
             let matrix = of(wave)?;
             let mirrored = (sectors - h) % sectors;
             for (at, entry) in matrix.iter().enumerate() {
                 let (j, i) = (at / n, at % n);
-                all[(j * n + i) * sectors + mirrored] = *entry;
-                all[(i * n + j) * sectors + h] = *entry;
+                all.set((j * n + i) * sectors + mirrored, *entry);
+                all.set((i * n + j) * sectors + h, *entry);
             }
         }
         Some(all)
@@ -210,31 +249,13 @@ impl TunedWaves {
 
     fn receptance_in_motion(&self, wave: &Structure, k_omega: f64) -> Option<Vec<Complex64>> {
         let n = self.rows;
-        let contact = wave.contact();
-        let imaginary = contact.imaginary.as_ref();
         // Real and imaginary parts apart, so that the loops over rows become vector operations.
         let (mut free_re, mut free_im) = (vec![0.0; n * n], vec![0.0; n * n]);
-        for (mode, lambda) in wave.eigenvalues().iter().enumerate() {
-            let z = Complex64::new(
-                lambda - k_omega * k_omega,
-                wave.damping_diagonal(mode, k_omega),
-            );
-            let re = contact.real.column(mode);
-            let im = imaginary.map_or(&re[..0], |imaginary| imaginary.column(mode));
-            for j in 0..n {
-                let c = Complex64::new(re[j], im.get(j).copied().unwrap_or(0.0));
-                let w = c.conj() / z;
-                let (to_re, to_im) = (&mut free_re[j * n..][..n], &mut free_im[j * n..][..n]);
-                for i in 0..n {
-                    to_re[i] += re[i] * w.re;
-                    to_im[i] += re[i] * w.im;
-                }
-                for (i, im) in im.iter().enumerate() {
-                    to_re[i] -= im * w.im;
-                    to_im[i] += im * w.re;
-                }
-            }
-        }
+        vectorized(ModalSums {
+            wave,
+            k_omega,
+            sums: [&mut free_re, &mut free_im],
+        });
         let free = |i: usize, j: usize| Complex64::new(free_re[j * n + i], free_im[j * n + i]);
         let mut lu = LuWorkspace::new(n);
         for (at, entry) in lu.matrix_mut().iter_mut().enumerate() {
@@ -286,6 +307,89 @@ impl TunedWaves {
     }
 }
 
+/// The product of a table with one value per row and wave.
+struct Products<'a> {
+    table: &'a WaveTable,
+    sectors: usize,
+    parts: [&'a [f64]; 2],
+    row: [&'a mut [f64]; 2],
+    products: &'a mut [Complex64],
+}
+
+impl Loops for Products<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self {
+            table,
+            sectors,
+            parts: [re, im],
+            row: [row_re, row_im],
+            products,
+        } = self;
+        let width = re.len();
+        let rows = products
+            .chunks_exact_mut(sectors)
+            .zip(table.re.chunks_exact(width))
+            .zip(table.im.chunks_exact(width));
+        for ((product, table_re), table_im) in rows {
+            row_re.fill(0.0);
+            row_im.fill(0.0);
+            let table = table_re.chunks_exact(sectors).zip(table_im.chunks_exact(sectors));
+            let values = re.chunks_exact(sectors).zip(im.chunks_exact(sectors));
+            for ((r_re, r_im), (v_re, v_im)) in table.zip(values) {
+                for h in 0..sectors {
+                    row_re[h] += r_re[h] * v_re[h] - r_im[h] * v_im[h];
+                    row_im[h] += r_re[h] * v_im[h] + r_im[h] * v_re[h];
+                }
+            }
+            for (product, (re, im)) in product.iter_mut().zip(row_re.iter().zip(&*row_im)) {
+                *product = Complex64::new(*re, *im);
+            }
+        }
+    }
+}
+
+/// `sum_m c_m c_m^H / (lambda_m - (k omega)^2 + i D_m)`, real and imaginary parts, column-major.
+struct ModalSums<'a> {
+    wave: &'a Structure,
+    k_omega: f64,
+    sums: [&'a mut [f64]; 2],
+}
+
+impl Loops for ModalSums<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self {
+            wave,
+            k_omega,
+            sums: [sum_re, sum_im],
+        } = self;
+        let contact = wave.contact();
+        let n = contact.real.rows();
+        let none = vec![0.0; n];
+        for (mode, lambda) in wave.eigenvalues().iter().enumerate() {
+            let damping = wave.damping_diagonal(mode, k_omega);
+            let modal = Complex64::new(lambda - k_omega * k_omega, damping).inv();
+            let re = contact.real.column(mode);
+            let imaginary = contact.imaginary.as_ref();
+            let im = imaginary.map_or(&*none, |imaginary| imaginary.column(mode));
+            for j in 0..n {
+                let w = Complex64::new(re[j], -im[j]) * modal;
+                let to_re = &mut sum_re[j * n..][..n];
+                let to_im = &mut sum_im[j * n..][..n];
+                for i in 0..n {
+                    to_re[i] += re[i] * w.re - im[i] * w.im;
+                    to_im[i] += re[i] * w.im + im[i] * w.re;
+                }
+            }
+        }
+    }
+}
+
 /// The inverse of the matrix in `lu`, column-major; none if it is singular.
 fn inverse(lu: &mut LuWorkspace<Complex64>) -> Option<Vec<Complex64>> {
     if !lu.factor() {
@@ -331,7 +435,7 @@ mod tests {
             rows: 2,
             springs: SPRINGS.to_vec(),
             waves: vec![wave(Damping::ModalRatio(0.02))],
-            at_rest: Vec::new(),
+            at_rest: WaveTable::default(),
             forward: planner.plan_fft_forward(1),
             inverse: planner.plan_fft_inverse(1),
         }

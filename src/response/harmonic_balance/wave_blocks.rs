@@ -17,7 +17,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::system::{HarmonicSystem, SystemWorkspace};
-use super::tuned_waves::WaveBuffers;
+use super::tuned_waves::{WaveBuffers, WaveTable};
 use super::{ContactInterface, HarmonicBlock, PairJacobian, TunedWaves};
 use crate::linalg::Complex64;
 
@@ -62,8 +62,20 @@ impl WaveScale {
 pub(super) struct WaveWorkspace {
     omega: f64,
     /// Of every block; empty for those that are not waves.
-    receptance: Vec<Vec<Complex64>>,
+    receptance: Vec<WaveTable>,
     buffers: WaveBuffers,
+}
+
+impl WaveWorkspace {
+    /// Takes over R of another set at its frequency; `places` are those of its blocks in this one.
+    pub(super) fn take_over(&mut self, other: &Self, places: &[Option<usize>]) {
+        self.omega = other.omega;
+        for (receptance, place) in other.receptance.iter().zip(places) {
+            if let Some(place) = *place {
+                self.receptance[place].clone_from(receptance);
+            }
+        }
+    }
 }
 
 impl HarmonicSystem {
@@ -76,7 +88,7 @@ impl HarmonicSystem {
         let waves = self.blocks.iter().find_map(|block| block.waves.as_ref())?;
         Some(WaveWorkspace {
             omega: f64::NAN,
-            receptance: vec![Vec::new(); self.blocks.len()],
+            receptance: vec![WaveTable::default(); self.blocks.len()],
             buffers: waves.buffers(),
         })
     }
@@ -127,7 +139,7 @@ impl HarmonicSystem {
             if let Some(waves) = &block.waves {
                 *receptance = waves
                     .receptance(block.harmonic, omega)
-                    .unwrap_or_else(|| vec![Complex64::new(f64::NAN, 0.0); waves.table_size()]);
+                    .unwrap_or_else(|| waves.not_a_number());
             }
         }
     }
@@ -191,7 +203,7 @@ pub(super) struct WaveFactors {
 struct WaveBlock {
     waves: Arc<TunedWaves>,
     unknowns: Range<usize>,
-    inverse: Vec<Complex64>,
+    inverse: WaveTable,
     stiffness: f64,
 }
 
@@ -243,6 +255,9 @@ impl WaveFactors {
         };
         for block in &self.blocks {
             let own = &mut residual[block.unknowns.clone()];
+            if own.iter().all(|r| *r == 0.0) {
+                continue;
+            }
             let (real, imaginary) = own.split_at(block.waves.size());
             self.step.clear();
             self.step.resize(own.len(), 0.0);

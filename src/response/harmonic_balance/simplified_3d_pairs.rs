@@ -1,0 +1,261 @@
+//! The pairs of a wheel under `simplified_3d` side by side, a vector lane each: their forces, without derivatives.
+//!
+//! As in [`super::macro_slip_pairs`], with a normal load that varies and two elements per pair: histories of all
+//! directions by one matrix product, the chains of clips of [`crate::response::friction::PeriodicSlider`] marched
+//! together, one product back. From wherever it starts, a slider that slips is in its periodic state after one period.
+
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined is compiled for vectors"
+)]
+
+use std::sync::Arc;
+
+use super::lanes::{LANES, clip, larger, smaller};
+use super::{ContactShares, HarmonicSystem, HarmonicTransform, SystemWorkspace};
+use crate::linalg::{Loops, add_times, vectorized};
+use crate::response::friction::ContactLaw;
+
+/// Buffers for the pairs of one wheel. Matrices are column-major; a column has the lanes of n, then those of t1, then t2.
+#[derive(Debug)]
+pub(super) struct Simplified3dPairs {
+    transform: Arc<HarmonicTransform>,
+    /// `phi_c(tau_j)`, a column per sample, and `psi_c(tau_j)`, a column per coefficient.
+    basis: Vec<f64>,
+    projection: Vec<f64>,
+    /// Pairs that may slip or separate, each in its lane; lanes beyond are idle.
+    pairs: Vec<usize>,
+    /// `N0`, N, and `mu` of each lane.
+    normal_load: Vec<f64>,
+    friction: Vec<f64>,
+    /// Coefficients of `kn g`, `kt x1`, `kt x2`, N, then of the corrections.
+    coefficients: Vec<f64>,
+    /// Samples of the same.
+    histories: Vec<f64>,
+    /// Whether the lane separates, slips along t1, along t2.
+    states: Vec<[bool; 3]>,
+}
+
+impl Simplified3dPairs {
+    fn new(pairs: usize, transform: &Arc<HarmonicTransform>) -> Self {
+        let lanes = pairs.next_multiple_of(LANES);
+        let (coefficients, samples) = (transform.n_coefficients(), transform.n_samples());
+        let basis = (0..samples)
+            .flat_map(|j| (0..coefficients).map(move |c| transform.basis(c)[j]))
+            .collect();
+        let projection = (0..coefficients)
+            .flat_map(|c| {
+                let scale = transform.projection_scale(c);
+                transform.basis(c).iter().map(move |phi| scale * phi)
+            })
+            .collect();
+        Self {
+            basis,
+            projection,
+            pairs: Vec::with_capacity(pairs),
+            normal_load: vec![0.0; lanes],
+            friction: vec![0.0; lanes],
+            coefficients: vec![0.0; 3 * lanes * coefficients],
+            histories: vec![0.0; 3 * lanes * samples],
+            states: vec![[false; 3]; lanes],
+            transform: Arc::clone(transform),
+        }
+    }
+
+    /// Lanes in use, whole blocks.
+    fn lanes(&self) -> usize {
+        self.pairs.len().next_multiple_of(LANES)
+    }
+
+    /// The corrections in the place of the displacements.
+    fn respond(&mut self) {
+        let height = 3 * self.lanes();
+        let (count, samples) = (self.transform.n_coefficients(), self.transform.n_samples());
+        let coefficients = &mut self.coefficients[..height * count];
+        let histories = &mut self.histories[..height * samples];
+        histories.fill(0.0);
+        let size = (height, samples, count);
+        add_times(histories, coefficients, &self.basis, size);
+        vectorized(March {
+            histories,
+            height,
+            normal_load: &self.normal_load,
+            friction: &self.friction,
+            states: &mut self.states,
+        });
+        coefficients.fill(0.0);
+        let size = (height, count, samples);
+        add_times(coefficients, histories, &self.projection, size);
+    }
+}
+
+/// Through one period to the periodic state, and through another one that is kept.
+struct March<'a> {
+    histories: &'a mut [f64],
+    height: usize,
+    normal_load: &'a [f64],
+    friction: &'a [f64],
+    states: &'a mut [[bool; 3]],
+}
+
+impl Loops for March<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let blocks = self.height / (3 * LANES);
+        let (load, _) = self.normal_load.as_chunks::<LANES>();
+        let (friction, _) = self.friction.as_chunks::<LANES>();
+        let (states, _) = self.states.as_chunks_mut::<LANES>();
+        for block in 0..blocks {
+            let (load, friction) = (&load[block], &friction[block]);
+            let mut lowest = [f64::INFINITY; LANES];
+            let mut bounds = [[[f64::NEG_INFINITY; LANES], [f64::INFINITY; LANES]]; 2];
+            let mut y = [[0.0; LANES]; 2];
+            for column in self.histories.chunks_exact(self.height) {
+                let (column, _) = column.as_chunks::<LANES>();
+                let bilateral = sum(load, &column[block]);
+                let limit = std::array::from_fn(|i| friction[i] * larger(bilateral[i], 0.0));
+                for i in 0..LANES {
+                    lowest[i] = smaller(bilateral[i], lowest[i]);
+                }
+                for direction in 0..2 {
+                    let elastic = &column[(1 + direction) * blocks + block];
+                    let [highest_lower, lowest_upper] = &mut bounds[direction];
+                    for i in 0..LANES {
+                        let (lower, upper) = (-limit[i] - elastic[i], limit[i] - elastic[i]);
+                        highest_lower[i] = larger(lower, highest_lower[i]);
+                        lowest_upper[i] = smaller(upper, lowest_upper[i]);
+                    }
+                    march(&mut y[direction], &limit, elastic);
+                }
+            }
+            let mut slips = [[0.0; LANES]; 2];
+            for (i, state) in states[block].iter_mut().enumerate() {
+                state[0] = lowest[i] <= 0.0;
+                for direction in 0..2 {
+                    let [highest_lower, lowest_upper] = &bounds[direction];
+                    state[1 + direction] = highest_lower[i] > lowest_upper[i];
+                    slips[direction][i] = f64::from(u8::from(state[1 + direction]));
+                }
+            }
+            for column in self.histories.chunks_exact_mut(self.height) {
+                let (column, _) = column.as_chunks_mut::<LANES>();
+                let bilateral = sum(load, &column[block]);
+                let limit = std::array::from_fn(|i| friction[i] * larger(bilateral[i], 0.0));
+                column[block] = bilateral.map(|bilateral| larger(0.0 - bilateral, 0.0));
+                for direction in 0..2 {
+                    let elastic = &mut column[(1 + direction) * blocks + block];
+                    march(&mut y[direction], &limit, elastic);
+                    // A slider that sticks has a constant offset, whose harmonics are zero.
+                    for i in 0..LANES {
+                        elastic[i] = slips[direction][i] * y[direction][i];
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn sum(a: &[f64; LANES], b: &[f64; LANES]) -> [f64; LANES] {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// The offsets one sample later.
+#[inline(always)]
+fn march(y: &mut [f64; LANES], limit: &[f64; LANES], elastic: &[f64; LANES]) {
+    for i in 0..LANES {
+        y[i] = clip(y[i], limit[i], elastic[i]);
+    }
+}
+
+impl HarmonicSystem {
+    /// Whether the forces of the pairs can be found side by side.
+    pub(super) fn responds_together(&self) -> bool {
+        let drifts = self.ring_drift_m().iter().any(|drift| drift.abs() > 0.0);
+        self.interface.law == ContactLaw::Simplified3d && !drifts
+    }
+
+    /// [`Self::contact_correction`] of all pairs at once, without derivatives.
+    pub(super) fn response_together(&self, workspace: &mut SystemWorkspace) -> ContactShares {
+        let count = workspace.active.len();
+        let geometry = &self.interface.geometry;
+        let (per_sector, sector_rows) = (self.interface.per_sector(), geometry.row_count());
+        let coefficients = self.transform.n_coefficients();
+        let mean = usize::from(self.transform.has_mean());
+        let places = |pair: usize| {
+            let base = pair / per_sector * sector_rows;
+            geometry.rows[pair % per_sector].map(|row| row.map(|row| base + row))
+        };
+        let together = workspace
+            .together_3d
+            .get_or_insert_with(|| Simplified3dPairs::new(count, &self.transform));
+        let displacement = &workspace.displacement;
+        let columns = || displacement.chunks_exact(self.rows.max(1));
+        together.pairs.clear();
+        for pair in 0..count {
+            let places = places(pair);
+            let mut excursions = places.map(|row| {
+                row.map_or(0.0, |row| self.transform.excursion(columns().map(|d| d[row])))
+            });
+            if let (Some(row), 1) = (places[0], mean) {
+                excursions[0] += displacement[row].abs();
+            }
+            let parameters = self.interface.pair(pair);
+            workspace.active[pair] = false;
+            if !parameters.surely_sticks(ContactLaw::Simplified3d, excursions) {
+                together.pairs.push(pair);
+            }
+        }
+        let lanes = together.lanes();
+        // An idle lane rests under no load: it has no correction.
+        together.normal_load[..lanes].fill(0.0);
+        together.friction[..lanes].fill(0.0);
+        together.coefficients[..3 * lanes * coefficients].fill(0.0);
+        for (lane, &pair) in together.pairs.iter().enumerate() {
+            let parameters = self.interface.pair(pair);
+            together.normal_load[lane] = parameters.normal_load_n;
+            together.friction[lane] = parameters.friction_coefficient;
+            for (direction, row) in places(pair).into_iter().enumerate() {
+                let Some(row) = row else { continue };
+                let (stiffness, first) = if direction == 0 {
+                    (parameters.normal_stiffness_n_per_m, 0)
+                } else {
+                    (parameters.tangential_stiffness_n_per_m, mean)
+                };
+                for (c, column) in columns().enumerate().skip(first) {
+                    together.coefficients[(3 * c + direction) * lanes + lane] =
+                        stiffness * column[row];
+                }
+            }
+        }
+        if lanes > 0 {
+            together.respond();
+        }
+        let (mut slipping, mut separated) = (0_usize, 0_usize);
+        for (lane, &pair) in together.pairs.iter().enumerate() {
+            let state = together.states[lane];
+            separated += usize::from(state[0]);
+            slipping += usize::from(state[1] || state[2]);
+            workspace.active[pair] = state.contains(&true);
+            for (direction, row) in places(pair).into_iter().enumerate() {
+                let Some(row) = row.filter(|_| state[direction]) else {
+                    continue;
+                };
+                let first = if direction == 0 { 0 } else { mean };
+                for c in first..coefficients {
+                    workspace.correction[c * self.rows + row] =
+                        together.coefficients[(3 * c + direction) * lanes + lane];
+                }
+            }
+        }
+        workspace.separated = separated > 0;
+        let share = |number: usize| number as f64 / count as f64;
+        ContactShares {
+            slipping: share(slipping),
+            separated: share(separated),
+            unclosed: 0.0,
+        }
+    }
+}
