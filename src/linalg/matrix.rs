@@ -360,6 +360,23 @@ fn multiply<T: Scalar>(product: MatMut<'_, T>, left: MatRef<'_, T>, right: MatRe
     );
 }
 
+/// `product = left right`, as [`add_times`].
+pub fn set_times(
+    product: &mut [f64],
+    left: &[f64],
+    right: &[f64],
+    (m, n, k): (usize, usize, usize),
+) {
+    matmul(
+        MatMut::from_column_major_slice_mut(product, m, n),
+        Accum::Replace,
+        MatRef::from_column_major_slice(left, m, k),
+        MatRef::from_column_major_slice(right, k, n),
+        1.0,
+        Par::Seq,
+    );
+}
+
 /// `product += left right`, all column-major and contiguous: `left` is `m x k`, `right` is `k x n`. Nothing
 /// is allocated.
 pub fn add_times(

@@ -197,53 +197,62 @@ impl PairHarmonics {
 
     /// Blocks of the Jacobian that are not zero, into cleared blocks.
     fn differentiate(&mut self, parameters: &PairParameters, jacobian: &mut PairJacobian) {
-        let PairParameters {
-            normal_stiffness_n_per_m: kn,
-            tangential_stiffness_n_per_m: kt,
-            friction_coefficient: mu,
+        let variable_load = self.law.has_variable_load();
+        if self.law != ContactLaw::Coulomb3d {
+            self.history.locate_clips();
+        }
+        let Self {
+            history,
+            transform,
+            sums,
             ..
-        } = *parameters;
-        // The derivative of the limit; a constant load has none.
-        let limit_slope = if self.law.has_variable_load() {
-            mu * kn
-        } else {
-            0.0
+        } = self;
+        let slopes = ClipSlopes {
+            transform,
+            coupled: self.coupled_first,
+            variable_load,
+            parameters,
         };
-        if self.law.has_variable_load() && self.history.state().separated {
-            self.sums
-                .gather_separated(&self.transform, self.history.normal_load_n());
-            let wanted = |c| wanted(&self.transform, self.coupled_first, c);
-            self.sums
-                .fill_normal(-kn, wanted, &mut jacobian.normal_normal);
+        if variable_load && history.state().separated {
+            slopes.normal(sums, history.normal_load_n(), jacobian);
         }
         if self.law == ContactLaw::Coulomb3d {
             let slopes = Slopes {
-                tangential_n_per_m: kt,
-                limit_n_per_m: limit_slope,
+                tangential_n_per_m: parameters.tangential_stiffness_n_per_m,
+                limit_n_per_m: slopes.limit(),
             };
             self.differentiate_coupled(slopes, jacobian);
             return;
         }
-        self.history.locate_clips();
-        let blocks = jacobian
-            .tangential_tangential
-            .iter_mut()
-            .zip(&mut jacobian.tangential_normal);
-        for (slider, (by_tangential, by_normal)) in self.history.sliders().iter().zip(blocks) {
-            if !slider.is_slipping() {
-                continue;
+        for (tangent, slider) in history.sliders().iter().enumerate() {
+            if slider.is_slipping() {
+                let clips = (slider.clip_samples(), slider.clip_signs());
+                slopes.tangential(sums, tangent, clips, jacobian);
             }
-            self.sums
-                .gather_clips(&self.transform, slider.clip_samples(), slider.clip_signs());
-            let wanted = |c| wanted(&self.transform, self.coupled_first, c);
-            let factors = [-kt, limit_slope];
-            self.sums
-                .fill_tangential(factors, wanted, by_tangential, by_normal);
-            if self.transform.has_mean() {
-                let n_coefficients = self.transform.n_coefficients();
-                clear_mean_row(by_tangential, n_coefficients);
-                clear_mean_row(by_normal, n_coefficients);
-                clear_mean_column(by_tangential, n_coefficients);
+        }
+    }
+
+    /// The same from what is known of a pair under `simplified_3d`: its normal load where it separates, and the clips
+    /// (samples, signs) of its sliders that slip.
+    pub(super) fn differentiate_clips(
+        &mut self,
+        parameters: &PairParameters,
+        normal_load: Option<&[f64]>,
+        clips: [Option<(&[usize], &[f64])>; 2],
+        jacobian: &mut PairJacobian,
+    ) {
+        let slopes = ClipSlopes {
+            transform: &self.transform,
+            coupled: self.coupled_first,
+            variable_load: true,
+            parameters,
+        };
+        if let Some(load) = normal_load {
+            slopes.normal(&mut self.sums, load, jacobian);
+        }
+        for (tangent, clips) in clips.into_iter().enumerate() {
+            if let Some(clips) = clips {
+                slopes.tangential(&mut self.sums, tangent, clips, jacobian);
             }
         }
     }
@@ -307,6 +316,54 @@ fn clear_mean_row(block: &mut [f64], n_coefficients: usize) {
 fn clear_mean_column(block: &mut [f64], n_coefficients: usize) {
     let column = block.iter_mut().step_by(n_coefficients);
     column.for_each(|entry| *entry = 0.0);
+}
+
+/// Derivatives of the laws that leave the tangents uncoupled.
+struct ClipSlopes<'a> {
+    transform: &'a HarmonicTransform,
+    /// See [`PairHarmonics::couple_first`].
+    coupled: usize,
+    variable_load: bool,
+    parameters: &'a PairParameters,
+}
+
+impl ClipSlopes<'_> {
+    /// The derivative of the limit by the normal displacement, N/m; a constant load has none.
+    fn limit(&self) -> f64 {
+        if self.variable_load {
+            self.parameters.friction_coefficient * self.parameters.normal_stiffness_n_per_m
+        } else {
+            0.0
+        }
+    }
+
+    fn normal(&self, sums: &mut ClipSums, normal_load: &[f64], jacobian: &mut PairJacobian) {
+        sums.gather_separated(self.transform, normal_load);
+        let wanted = |c| wanted(self.transform, self.coupled, c);
+        let stiffness = self.parameters.normal_stiffness_n_per_m;
+        sums.fill_normal(-stiffness, wanted, &mut jacobian.normal_normal);
+    }
+
+    fn tangential(
+        &self,
+        sums: &mut ClipSums,
+        tangent: usize,
+        (samples, signs): (&[usize], &[f64]),
+        jacobian: &mut PairJacobian,
+    ) {
+        let by_tangential = &mut jacobian.tangential_tangential[tangent];
+        let by_normal = &mut jacobian.tangential_normal[tangent];
+        sums.gather_clips(self.transform, samples, signs);
+        let wanted = |c| wanted(self.transform, self.coupled, c);
+        let factors = [-self.parameters.tangential_stiffness_n_per_m, self.limit()];
+        sums.fill_tangential(factors, wanted, by_tangential, by_normal);
+        if self.transform.has_mean() {
+            let n_coefficients = self.transform.n_coefficients();
+            clear_mean_row(by_tangential, n_coefficients);
+            clear_mean_row(by_normal, n_coefficients);
+            clear_mean_column(by_tangential, n_coefficients);
+        }
+    }
 }
 
 /// Factors of the sums over events (clips, or separated samples), coefficient after coefficient

@@ -1,4 +1,4 @@
-//! The pairs of a wheel under `simplified_3d` side by side, a vector lane each: their forces, without derivatives.
+//! The pairs of a wheel under `simplified_3d` side by side, a vector lane each.
 //!
 //! As in [`super::macro_slip_pairs`], with a normal load that varies and two elements per pair: histories of all
 //! directions by one matrix product, the chains of clips of [`crate::response::friction::PeriodicSlider`] marched
@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use super::lanes::{LANES, clip, larger, smaller};
 use super::{ContactShares, HarmonicSystem, HarmonicTransform, SystemWorkspace};
-use crate::linalg::{Loops, add_times, vectorized};
+use crate::linalg::{Loops, set_times, vectorized};
 use crate::response::friction::ContactLaw;
 
 /// Buffers for the pairs of one wheel. Matrices are column-major; a column has the lanes of n, then those of t1, then t2.
@@ -25,6 +25,8 @@ pub(super) struct Simplified3dPairs {
     projection: Vec<f64>,
     /// Pairs that may slip or separate, each in its lane; lanes beyond are idle.
     pairs: Vec<usize>,
+    /// Sum of the amplitudes of the harmonics of every contact row, m.
+    excursions: Vec<f64>,
     /// `N0`, N, and `mu` of each lane.
     normal_load: Vec<f64>,
     friction: Vec<f64>,
@@ -34,6 +36,30 @@ pub(super) struct Simplified3dPairs {
     histories: Vec<f64>,
     /// Whether the lane separates, slips along t1, along t2.
     states: Vec<[bool; 3]>,
+    /// Where a direction is at a bound, a row per lane and direction as in the histories: see [`Bound`].
+    bounds: Vec<f64>,
+    clips: Clips,
+}
+
+/// Bounds at which a sample may be.
+struct Bound;
+
+impl Bound {
+    /// Of a slider: neither; else the sign of the one, 0.5 where both are one. Of a normal load: not 0.
+    const NEITHER: f64 = 0.0;
+    const UPPER: f64 = 1.0;
+    const LOWER: f64 = -1.0;
+    const BOTH: f64 = 0.5;
+    /// A normal load of 0.
+    const OPEN: f64 = 1.0;
+}
+
+/// What the derivatives of one pair need.
+#[derive(Debug, Default)]
+struct Clips {
+    normal_load: Vec<f64>,
+    samples: [Vec<usize>; 2],
+    signs: [Vec<f64>; 2],
 }
 
 impl Simplified3dPairs {
@@ -53,11 +79,14 @@ impl Simplified3dPairs {
             basis,
             projection,
             pairs: Vec::with_capacity(pairs),
+            excursions: Vec::new(),
             normal_load: vec![0.0; lanes],
             friction: vec![0.0; lanes],
             coefficients: vec![0.0; 3 * lanes * coefficients],
             histories: vec![0.0; 3 * lanes * samples],
             states: vec![[false; 3]; lanes],
+            bounds: Vec::new(),
+            clips: Clips::default(),
             transform: Arc::clone(transform),
         }
     }
@@ -67,25 +96,73 @@ impl Simplified3dPairs {
         self.pairs.len().next_multiple_of(LANES)
     }
 
-    /// The corrections in the place of the displacements.
-    fn respond(&mut self) {
+    /// The corrections in the place of the displacements; with the bounds where the `derivative` is wanted.
+    fn respond(&mut self, derivative: bool) {
         let height = 3 * self.lanes();
         let (count, samples) = (self.transform.n_coefficients(), self.transform.n_samples());
         let coefficients = &mut self.coefficients[..height * count];
         let histories = &mut self.histories[..height * samples];
-        histories.fill(0.0);
         let size = (height, samples, count);
-        add_times(histories, coefficients, &self.basis, size);
+        set_times(histories, coefficients, &self.basis, size);
+        let bounds = if derivative { height * samples } else { 0 };
+        self.bounds.resize(bounds, 0.0);
         vectorized(March {
             histories,
             height,
             normal_load: &self.normal_load,
             friction: &self.friction,
             states: &mut self.states,
+            bounds: &mut self.bounds,
         });
-        coefficients.fill(0.0);
         let size = (height, count, samples);
-        add_times(coefficients, histories, &self.projection, size);
+        set_times(coefficients, histories, &self.projection, size);
+    }
+}
+
+impl Clips {
+    /// Those of a lane.
+    fn gather(&mut self, bounds: &[f64], height: usize, lane: usize, state: [bool; 3]) {
+        let lanes = height / 3;
+        let of = |direction: usize| bounds[direction * lanes + lane..].iter().step_by(height);
+        self.normal_load.clear();
+        if state[0] {
+            let load = |open: &f64| if *open == Bound::OPEN { 0.0 } else { 1.0 };
+            self.normal_load.extend(of(0).map(load));
+        }
+        for tangent in 0..2 {
+            let (samples, signs) = (&mut self.samples[tangent], &mut self.signs[tangent]);
+            samples.clear();
+            signs.clear();
+            if state[1 + tangent] {
+                for (j, &bound) in of(1 + tangent).enumerate() {
+                    if bound != Bound::NEITHER {
+                        samples.push(j);
+                        signs.push(if bound == Bound::BOTH { 0.0 } else { bound });
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Sums of the amplitudes of the harmonics, a column of real parts and one of imaginary parts each.
+struct Excursions<'a> {
+    oscillation: &'a [f64],
+    sums: &'a mut [f64],
+}
+
+impl Loops for Excursions<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let rows = self.sums.len();
+        for columns in self.oscillation.chunks_exact(2 * rows.max(1)) {
+            let (re, im) = columns.split_at(rows);
+            for i in 0..rows {
+                self.sums[i] += (re[i] * re[i] + im[i] * im[i]).sqrt();
+            }
+        }
     }
 }
 
@@ -96,6 +173,8 @@ struct March<'a> {
     normal_load: &'a [f64],
     friction: &'a [f64],
     states: &'a mut [[bool; 3]],
+    /// As long as the histories, or empty.
+    bounds: &'a mut [f64],
 }
 
 impl Loops for March<'_> {
@@ -139,14 +218,24 @@ impl Loops for March<'_> {
                     slips[direction][i] = f64::from(u8::from(state[1 + direction]));
                 }
             }
+            let mut bounds = self.bounds.chunks_exact_mut(self.height);
             for column in self.histories.chunks_exact_mut(self.height) {
                 let (column, _) = column.as_chunks_mut::<LANES>();
                 let bilateral = sum(load, &column[block]);
                 let limit = std::array::from_fn(|i| friction[i] * larger(bilateral[i], 0.0));
                 column[block] = bilateral.map(|bilateral| larger(0.0 - bilateral, 0.0));
+                let mut bounds = bounds.next().map(|bounds| bounds.as_chunks_mut::<LANES>().0);
+                if let Some(bounds) = &mut bounds {
+                    bounds[block] =
+                        bilateral.map(|load| if load > 0.0 { 0.0 } else { Bound::OPEN });
+                }
                 for direction in 0..2 {
                     let elastic = &mut column[(1 + direction) * blocks + block];
                     march(&mut y[direction], &limit, elastic);
+                    if let Some(bounds) = &mut bounds {
+                        bounds[(1 + direction) * blocks + block] =
+                            attained(&y[direction], &limit, elastic);
+                    }
                     // A slider that sticks has a constant offset, whose harmonics are zero.
                     for i in 0..LANES {
                         elastic[i] = slips[direction][i] * y[direction][i];
@@ -170,6 +259,21 @@ fn march(y: &mut [f64; LANES], limit: &[f64; LANES], elastic: &[f64; LANES]) {
     }
 }
 
+/// The bounds at which the offsets are: they are attained, never passed, so these are equalities.
+#[inline(always)]
+fn attained(y: &[f64; LANES], limit: &[f64; LANES], elastic: &[f64; LANES]) -> [f64; LANES] {
+    std::array::from_fn(|i| {
+        let lower = y[i] <= -limit[i] - elastic[i];
+        let upper = y[i] >= limit[i] - elastic[i];
+        match (lower, upper) {
+            (true, true) => Bound::BOTH,
+            (true, false) => Bound::LOWER,
+            (false, true) => Bound::UPPER,
+            (false, false) => Bound::NEITHER,
+        }
+    })
+}
+
 impl HarmonicSystem {
     /// Whether the forces of the pairs can be found side by side.
     pub(super) fn responds_together(&self) -> bool {
@@ -177,8 +281,12 @@ impl HarmonicSystem {
         self.interface.law == ContactLaw::Simplified3d && !drifts
     }
 
-    /// [`Self::contact_correction`] of all pairs at once, without derivatives.
-    pub(super) fn response_together(&self, workspace: &mut SystemWorkspace) -> ContactShares {
+    /// [`Self::contact_correction`] of all pairs at once.
+    pub(super) fn response_together(
+        &self,
+        derivative: bool,
+        workspace: &mut SystemWorkspace,
+    ) -> ContactShares {
         let count = workspace.active.len();
         let geometry = &self.interface.geometry;
         let (per_sector, sector_rows) = (self.interface.per_sector(), geometry.row_count());
@@ -194,16 +302,23 @@ impl HarmonicSystem {
         let displacement = &workspace.displacement;
         let columns = || displacement.chunks_exact(self.rows.max(1));
         together.pairs.clear();
+        together.excursions.clear();
+        together.excursions.resize(self.rows, 0.0);
+        vectorized(Excursions {
+            oscillation: &displacement[mean * self.rows..],
+            sums: &mut together.excursions,
+        });
         for pair in 0..count {
             let places = places(pair);
-            let mut excursions = places.map(|row| {
-                row.map_or(0.0, |row| self.transform.excursion(columns().map(|d| d[row])))
-            });
+            let mut excursions = places.map(|row| row.map_or(0.0, |row| together.excursions[row]));
             if let (Some(row), 1) = (places[0], mean) {
                 excursions[0] += displacement[row].abs();
             }
             let parameters = self.interface.pair(pair);
             workspace.active[pair] = false;
+            if derivative {
+                workspace.jacobians[pair].clear();
+            }
             if !parameters.surely_sticks(ContactLaw::Simplified3d, excursions) {
                 together.pairs.push(pair);
             }
@@ -231,7 +346,7 @@ impl HarmonicSystem {
             }
         }
         if lanes > 0 {
-            together.respond();
+            together.respond(derivative);
         }
         let (mut slipping, mut separated) = (0_usize, 0_usize);
         for (lane, &pair) in together.pairs.iter().enumerate() {
@@ -239,6 +354,20 @@ impl HarmonicSystem {
             separated += usize::from(state[0]);
             slipping += usize::from(state[1] || state[2]);
             workspace.active[pair] = state.contains(&true);
+            if derivative && workspace.active[pair] {
+                let clips = &mut together.clips;
+                clips.gather(&together.bounds, 3 * lanes, lane, state);
+                let sliders = [0, 1].map(|tangent| {
+                    let clips = (&*clips.samples[tangent], &*clips.signs[tangent]);
+                    state[1 + tangent].then_some(clips)
+                });
+                workspace.pairs.differentiate_clips(
+                    self.interface.pair(pair),
+                    state[0].then_some(&clips.normal_load),
+                    sliders,
+                    &mut workspace.jacobians[pair],
+                );
+            }
             for (direction, row) in places(pair).into_iter().enumerate() {
                 let Some(row) = row.filter(|_| state[direction]) else {
                     continue;

@@ -280,6 +280,13 @@ impl HarmonicSystem {
             return;
         }
         self.displacement_of_waves(x, displacement);
+        if let Some(own) = self.real_fundamental() {
+            let rows = &self.blocks[own].structure.contact().real;
+            let x = &x[self.start[own]..self.start[own + 1]];
+            let d = &mut displacement[self.coefficient[own] * self.rows..][..2 * self.rows];
+            add_times(d, rows.as_slice(), x, (self.rows, 2, rows.columns()));
+            return;
+        }
         for link in self.links() {
             let x = &x[link.unknown..link.unknown + link.size];
             let d = &mut displacement[link.coefficient * self.rows..][..self.rows];
@@ -296,11 +303,28 @@ impl HarmonicSystem {
             add_transpose_times(residual, n, 1.0, rows.as_slice(), correction, size);
             return;
         }
+        if let Some(own) = self.real_fundamental() {
+            let rows = &self.blocks[own].structure.contact().real;
+            let n = rows.columns();
+            let r = &mut residual[self.start[own]..self.start[own + 1]];
+            let g = &correction[self.coefficient[own] * self.rows..][..2 * self.rows];
+            add_transpose_times(r, n, 1.0, rows.as_slice(), g, (n, 2, self.rows));
+            return;
+        }
         for link in self.links() {
             let r = &mut residual[link.unknown..link.unknown + link.size];
             let g = &correction[link.coefficient * self.rows..][..self.rows];
             add_transpose_times_vector(r, link.sign, link.rows.as_slice(), g);
         }
+    }
+
+    /// The fundamental, where all other harmonics are waves and its rows are real: a matrix with two right-hand sides.
+    fn real_fundamental(&self) -> Option<usize> {
+        let own = self.fundamental();
+        let alone = self.blocks.iter().enumerate();
+        let mut alone = alone.map(|(at, block)| (at == own) != block.waves.is_some());
+        let real = self.blocks[own].structure.contact().imaginary.is_none();
+        (real && self.has_waves() && alone.all(|alone| alone)).then_some(own)
     }
 
     /// Mean friction force on the ring at `x` per sector, N, averaged over the sectors: along theta
@@ -368,8 +392,8 @@ impl HarmonicSystem {
         if self.marches_together() {
             return self.correction_together(derivative, workspace);
         }
-        if self.responds_together() && !derivative {
-            return self.response_together(workspace);
+        if self.responds_together() {
+            return self.response_together(derivative, workspace);
         }
         let coefficients = self.transform.n_coefficients();
         let per_sector = self.interface.per_sector();
