@@ -107,3 +107,37 @@ pub fn add_transpose_times_vector(y: &mut [f64], factor: f64, a: &[f64], x: &[f6
         *sum += factor * dot(column, x);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of every length around the blocks that the loops take at once.
+    #[test]
+    fn products_are_the_plain_sums() {
+        let value = |i: usize| (1.3 * i as f64).sin();
+        for rows in [0, 1, 3, 31, 32, 33, 70] {
+            for columns in [0, 1, 3, 4, 5, 9] {
+                let a: Vec<f64> = (0..rows * columns).map(value).collect();
+                let x: Vec<f64> = (0..columns).map(|j| value(j + 5)).collect();
+                let mut y: Vec<f64> = (0..rows).map(|i| value(i + 9)).collect();
+                let expected: Vec<f64> = (0..rows)
+                    .map(|i| y[i] - 0.7 * (0..columns).map(|j| a[j * rows + i] * x[j]).sum::<f64>())
+                    .collect();
+                add_times_vector(&mut y, -0.7, &a, &x);
+                for (found, expected) in y.iter().zip(expected) {
+                    assert!((found - expected).abs() < 1e-14, "{rows} {columns}");
+                }
+                let mut z = x.clone();
+                add_transpose_times_vector(&mut z, 0.3, &a, &y);
+                for (j, (found, before)) in z.iter().zip(&x).enumerate() {
+                    let product: f64 = (0..rows).map(|i| a[j * rows + i] * y[i]).sum();
+                    assert!(
+                        (found - before - 0.3 * product).abs() < 1e-13,
+                        "{rows} {columns}"
+                    );
+                }
+            }
+        }
+    }
+}

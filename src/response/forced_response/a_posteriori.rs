@@ -16,7 +16,7 @@ use crate::response::harmonic_balance::{
 
 /// Samples per period of the check, over those of the solution.
 const FINER: usize = 4;
-/// Samples per period of the check at least: 16 per period of its highest harmonic.
+/// Samples per period of the check at least.
 const FINEST: usize = 256;
 
 /// The enlarged set of a study with the amplitude in it.

@@ -319,9 +319,7 @@ impl Loops for Solve<'_> {
         if slider.slipping {
             slider.march();
         } else {
-            slider
-                .offset
-                .fill(clip(0.0, highest_lower, lowest_upper));
+            slider.offset.fill(clip(0.0, highest_lower, lowest_upper));
         }
     }
 }

@@ -14,8 +14,8 @@
 
 use std::sync::Arc;
 
+use super::clip_slopes::wanted;
 use super::lanes::{LANES, clip, lanes_at, larger, smaller};
-use super::pair_harmonics::wanted;
 use super::{ContactShares, HarmonicSystem, HarmonicTransform, PairJacobian, SystemWorkspace};
 use crate::linalg::add_times;
 use crate::response::friction::{ContactLaw, PairParameters};

@@ -1,6 +1,7 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
 mod anderson;
+mod clip_slopes;
 mod condensed;
 mod contact_interface;
 mod contact_states;
@@ -15,10 +16,10 @@ mod frequency_derivative;
 mod harmonic_block;
 mod jacobian;
 mod kept_jacobian;
+mod lanes;
 mod linear;
 mod linear_factors;
 mod linear_part;
-mod lanes;
 mod macro_slip_pairs;
 mod newton;
 mod other_contact;
@@ -33,6 +34,7 @@ mod system;
 mod transform;
 mod tuned_waves;
 mod wave_blocks;
+mod wave_table;
 
 pub use contact_interface::ContactInterface;
 pub use contact_states::PairContact;

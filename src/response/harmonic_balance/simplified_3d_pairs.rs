@@ -224,7 +224,9 @@ impl Loops for March<'_> {
                 let bilateral = sum(load, &column[block]);
                 let limit = std::array::from_fn(|i| friction[i] * larger(bilateral[i], 0.0));
                 column[block] = bilateral.map(|bilateral| larger(0.0 - bilateral, 0.0));
-                let mut bounds = bounds.next().map(|bounds| bounds.as_chunks_mut::<LANES>().0);
+                let mut bounds = bounds
+                    .next()
+                    .map(|bounds| bounds.as_chunks_mut::<LANES>().0);
                 if let Some(bounds) = &mut bounds {
                     bounds[block] =
                         bilateral.map(|load| if load > 0.0 { 0.0 } else { Bound::OPEN });
@@ -385,6 +387,90 @@ impl HarmonicSystem {
             slipping: share(slipping),
             separated: share(separated),
             unclosed: 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::harmonic_balance::condensed::tests::{OMEGA, state, system};
+    use crate::response::harmonic_balance::{PairHarmonics, PairJacobian};
+
+    /// With the mean and without, odd numbers of samples, derivatives between harmonics and without.
+    #[test]
+    fn pairs_side_by_side_are_the_pairs_one_by_one() {
+        let sets: [(&[usize], usize); 5] = [
+            (&[1], 64),
+            (&[1, 3], 128),
+            (&[1, 3, 5], 33),
+            (&[1, 2], 64),
+            // By sums, not by an FFT, which leaves rounding in the normal motion of a pair that has none.
+            (&[0, 1, 2, 3], 60),
+        ];
+        let law = ContactLaw::Simplified3d;
+        for ((harmonics, samples), coupled) in sets.into_iter().zip([0, 99, 2, 99, 0]) {
+            let system = system(law, harmonics, samples);
+            let mut workspace = system.workspace();
+            workspace.pairs.couple_first(coupled);
+            // Small motions, too: then pairs stick.
+            for scale in [1.0, 0.4, 0.02] {
+                let x: Vec<f64> = state(&system).iter().map(|x| scale * x).collect();
+                let mut residual = vec![0.0; x.len()];
+                let (_, shares) = system.residual(OMEGA, &x, &mut residual, true, &mut workspace);
+                let mut one = PairHarmonics::new(law, Arc::clone(&system.transform));
+                one.couple_first(coupled);
+                let count = system.transform.n_coefficients();
+                let (mut slipping, mut separated) = (0, 0);
+                let pairs = workspace.active.len();
+                for pair in 0..pairs {
+                    system.gather_pair(pair, &mut workspace);
+                    let mut correction = vec![0.0; 3 * count];
+                    let mut jacobian = PairJacobian::new(count);
+                    let state = one.evaluate(
+                        system.interface.pair(pair),
+                        &workspace.pair_input,
+                        &mut correction,
+                        Some(&mut jacobian),
+                    );
+                    slipping += usize::from(state.slipping);
+                    separated += usize::from(state.separated);
+                    assert_eq!(workspace.active[pair], state.slipping || state.separated);
+                    let per_sector = system.interface.per_sector();
+                    let base = pair / per_sector * system.interface.geometry.row_count();
+                    let places = system.interface.geometry.rows[pair % per_sector];
+                    for (direction, place) in places.iter().enumerate() {
+                        let Some(row) = place else { continue };
+                        let expected = &correction[direction * count..][..count];
+                        for (c, expected) in expected.iter().enumerate() {
+                            let found = workspace.correction[c * system.rows + base + row];
+                            assert!((found - expected).abs() < 1e-13, "{harmonics:?} {pair} {c}");
+                        }
+                    }
+                    let found = &workspace.jacobians[pair];
+                    let blocks = |of: &PairJacobian| {
+                        let tangential = of.tangential_tangential.clone();
+                        let normal = of.tangential_normal.clone();
+                        [
+                            tangential.concat(),
+                            normal.concat(),
+                            of.normal_normal.clone(),
+                        ]
+                        .concat()
+                    };
+                    for (found, expected) in blocks(found).iter().zip(blocks(&jacobian)) {
+                        assert!((found - expected).abs() < 1e-12, "{harmonics:?} {pair}");
+                    }
+                }
+                let share = |number: usize| number as f64 / pairs as f64;
+                assert!((shares.slipping - share(slipping)).abs() < 1e-15);
+                assert!((shares.separated - share(separated)).abs() < 1e-15);
+                match scale {
+                    1.0 => assert!(slipping > 1 && separated > 0, "{slipping} {separated}"),
+                    0.02 => assert!(slipping < pairs, "{slipping}"),
+                    _ => {}
+                }
+            }
         }
     }
 }

@@ -14,18 +14,14 @@
 //! where R is the receptance of the contact with stuck springs and G the correction of the contact force, both
 //! in waves `d_h = sum_n d_n e^{-i h n alpha}` over the sectors n.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined is compiled for vectors"
-)]
-
 use std::sync::Arc;
 
 use rustfft::{Fft, FftPlanner};
 
 use super::Damping;
 use super::structure::Structure;
-use crate::linalg::{Complex64, LuWorkspace, Loops, Matrix, vectorized};
+use super::wave_table::{ModalSums, Products, WaveTable};
+use crate::linalg::{Complex64, LuWorkspace, Matrix, vectorized};
 use crate::model::ReducedModel;
 use crate::model::cyclic::NodalDiameter;
 use crate::response::mistuning::StructuralModes;
@@ -43,30 +39,6 @@ pub struct TunedWaves {
     at_rest: WaveTable,
     forward: Arc<dyn Fft<f64>>,
     inverse: Arc<dyn Fft<f64>>,
-}
-
-/// A matrix of the contact rows of a sector for every wave: entry (i, j) of wave h at `(i rows + j) N + h`.
-#[derive(Debug, Clone, Default)]
-pub(super) struct WaveTable {
-    re: Vec<f64>,
-    im: Vec<f64>,
-}
-
-impl WaveTable {
-    fn zeros(entries: usize) -> Self {
-        Self {
-            re: vec![0.0; entries],
-            im: vec![0.0; entries],
-        }
-    }
-
-    fn set(&mut self, at: usize, entry: Complex64) {
-        (self.re[at], self.im[at]) = (entry.re, entry.im);
-    }
-
-    fn at(&self, at: usize) -> Complex64 {
-        Complex64::new(self.re[at], self.im[at])
-    }
 }
 
 /// Buffers of one thread.
@@ -124,11 +96,7 @@ impl TunedWaves {
 
     /// A table without a number in it.
     pub(super) fn not_a_number(&self) -> WaveTable {
-        let entries = vec![f64::NAN; self.rows * self.size()];
-        WaveTable {
-            re: entries.clone(),
-            im: entries,
-        }
+        WaveTable::filled(f64::NAN, self.rows * self.size())
     }
 
     pub(super) fn buffers(&self) -> WaveBuffers {
@@ -159,7 +127,7 @@ impl TunedWaves {
         g: &[Complex64],
     ) -> Option<WaveTable> {
         let (n, sectors) = (self.rows, self.sectors);
-        let mut all = WaveTable::zeros(n * n * sectors);
+        let mut all = WaveTable::filled(0.0, n * n * sectors);
         let mut lu = LuWorkspace::new(n);
         for h in 0..sectors {
             let of = |i: usize, j: usize| receptance.at((i * n + j) * sectors + h);
@@ -234,7 +202,7 @@ impl TunedWaves {
         mut of: impl FnMut(&Structure) -> Option<Vec<Complex64>>,
     ) -> Option<WaveTable> {
         let (n, sectors) = (self.rows, self.sectors);
-        let mut all = WaveTable::zeros(n * n * sectors);
+        let mut all = WaveTable::filled(0.0, n * n * sectors);
         for (h, wave) in self.waves.iter().enumerate() {
             let matrix = of(wave)?;
             let mirrored = (sectors - h) % sectors;
@@ -304,89 +272,6 @@ impl TunedWaves {
             (0..size).map(|mode| c(i, mode) * right[(mode, j)]).sum()
         });
         Some(entries.collect())
-    }
-}
-
-/// The product of a table with one value per row and wave.
-struct Products<'a> {
-    table: &'a WaveTable,
-    sectors: usize,
-    parts: [&'a [f64]; 2],
-    row: [&'a mut [f64]; 2],
-    products: &'a mut [Complex64],
-}
-
-impl Loops for Products<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self {
-            table,
-            sectors,
-            parts: [re, im],
-            row: [row_re, row_im],
-            products,
-        } = self;
-        let width = re.len();
-        let rows = products
-            .chunks_exact_mut(sectors)
-            .zip(table.re.chunks_exact(width))
-            .zip(table.im.chunks_exact(width));
-        for ((product, table_re), table_im) in rows {
-            row_re.fill(0.0);
-            row_im.fill(0.0);
-            let table = table_re.chunks_exact(sectors).zip(table_im.chunks_exact(sectors));
-            let values = re.chunks_exact(sectors).zip(im.chunks_exact(sectors));
-            for ((r_re, r_im), (v_re, v_im)) in table.zip(values) {
-                for h in 0..sectors {
-                    row_re[h] += r_re[h] * v_re[h] - r_im[h] * v_im[h];
-                    row_im[h] += r_re[h] * v_im[h] + r_im[h] * v_re[h];
-                }
-            }
-            for (product, (re, im)) in product.iter_mut().zip(row_re.iter().zip(&*row_im)) {
-                *product = Complex64::new(*re, *im);
-            }
-        }
-    }
-}
-
-/// `sum_m c_m c_m^H / (lambda_m - (k omega)^2 + i D_m)`, real and imaginary parts, column-major.
-struct ModalSums<'a> {
-    wave: &'a Structure,
-    k_omega: f64,
-    sums: [&'a mut [f64]; 2],
-}
-
-impl Loops for ModalSums<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self {
-            wave,
-            k_omega,
-            sums: [sum_re, sum_im],
-        } = self;
-        let contact = wave.contact();
-        let n = contact.real.rows();
-        let none = vec![0.0; n];
-        for (mode, lambda) in wave.eigenvalues().iter().enumerate() {
-            let damping = wave.damping_diagonal(mode, k_omega);
-            let modal = Complex64::new(lambda - k_omega * k_omega, damping).inv();
-            let re = contact.real.column(mode);
-            let imaginary = contact.imaginary.as_ref();
-            let im = imaginary.map_or(&*none, |imaginary| imaginary.column(mode));
-            for j in 0..n {
-                let w = Complex64::new(re[j], -im[j]) * modal;
-                let to_re = &mut sum_re[j * n..][..n];
-                let to_im = &mut sum_im[j * n..][..n];
-                for i in 0..n {
-                    to_re[i] += re[i] * w.re - im[i] * w.im;
-                    to_im[i] += re[i] * w.im + im[i] * w.re;
-                }
-            }
-        }
     }
 }
 

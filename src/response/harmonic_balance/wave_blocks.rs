@@ -17,7 +17,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::system::{HarmonicSystem, SystemWorkspace};
-use super::tuned_waves::{WaveBuffers, WaveTable};
+use super::tuned_waves::WaveBuffers;
+use super::wave_table::WaveTable;
 use super::{ContactInterface, HarmonicBlock, PairJacobian, TunedWaves};
 use crate::linalg::Complex64;
 
