@@ -190,10 +190,10 @@ pub fn enlarge(
         Factors::of(&linearised, &places, omega, &before)?
     };
     let mut enlargement = Enlargement {
-        buffers,
         system,
         workspace,
         enlarged,
+        buffers,
         places,
         omega,
         factors,

@@ -179,7 +179,7 @@ impl TunedWaves {
             sectors,
             parts: [re, im],
             row: [row_re, row_im],
-            products: values,
+            into: values,
         });
         self.inverse.process_with_scratch(values, scratch);
         let (real, imaginary) = sum.split_at_mut(self.size());

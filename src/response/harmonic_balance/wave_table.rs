@@ -41,7 +41,7 @@ pub(super) struct Products<'a> {
     pub(super) parts: [&'a [f64]; 2],
     /// Room for one row of the product.
     pub(super) row: [&'a mut [f64]; 2],
-    pub(super) products: &'a mut [Complex64],
+    pub(super) into: &'a mut [Complex64],
 }
 
 impl Loops for Products<'_> {
@@ -54,10 +54,10 @@ impl Loops for Products<'_> {
             sectors,
             parts: [re, im],
             row: [row_re, row_im],
-            products,
+            into,
         } = self;
         let width = re.len();
-        let rows = products
+        let rows = into
             .chunks_exact_mut(sectors)
             .zip(table.re.chunks_exact(width))
             .zip(table.im.chunks_exact(width));
