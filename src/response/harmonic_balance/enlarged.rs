@@ -39,7 +39,7 @@ const LINEARISED_SAMPLES_OF_HIGHEST: usize = 4;
 /// Steps of the iteration at most.
 const EVALUATIONS: usize = 14;
 /// The same where harmonics are taken in the tuned wheel: P has the mean contact of its sectors, and a step is cheap.
-const EVALUATIONS_OF_WAVES: usize = 48;
+const EVALUATIONS_OF_WAVES: usize = 120;
 /// The iteration ends when the next step would change the set by this share of the change so far,
 const SETTLED: f64 = 0.03;
 /// or by this share of the set itself.
