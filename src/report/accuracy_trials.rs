@@ -12,6 +12,8 @@ pub struct AccuracyTrials {
     pub rows: u64,
     /// Upper bound of the error of 95 % of the rows at the setting taken; none without a bound.
     pub p95_upper: Option<f64>,
+    /// What the worst error at that setting is claimed to be at most; none without a bound.
+    pub worst_upper: Option<f64>,
     /// The settings, in the order of the trials.
     pub tried: Vec<AccuracyTrial>,
 }
@@ -41,6 +43,7 @@ struct Choice {
 #[derive(Deserialize)]
 struct Evidence {
     amplitude: Errors,
+    amplitude_worst_upper: Option<f64>,
     operations_per_row: f64,
     tried: Vec<Tried>,
 }
@@ -84,6 +87,7 @@ impl AccuracyTrials {
             accepted: choice.accepted_error,
             rows: evidence.amplitude.rows,
             p95_upper: evidence.amplitude.p95_upper,
+            worst_upper: evidence.amplitude_worst_upper,
             tried: evidence.tried.into_iter().enumerate().map(trial).collect(),
         })
     }
@@ -102,6 +106,7 @@ mod tests {
             "accepted_error": 0.01,
             "evidence": {
                 "amplitude": { "rows": 18, "p95_upper": 0.005 },
+                "amplitude_worst_upper": 0.009,
                 "operations_per_row": 2e9,
                 "tried": [trial(1e9, 3, Value::Null), trial(2e9, 18, json!(0.004)), trial(3e9, 18, json!(0.001))],
             },
@@ -110,8 +115,8 @@ mod tests {
         let taken: Vec<bool> = trials.tried.iter().map(|own| own.taken).collect();
         assert_eq!(taken, [false, true, false]);
         assert_eq!(
-            (trials.tried[0].worst, trials.p95_upper),
-            (None, Some(0.005))
+            (trials.tried[0].worst, trials.p95_upper, trials.worst_upper),
+            (None, Some(0.005), Some(0.009))
         );
         // Linear limits need no trial, and a study without [accuracy] has none.
         let untried = json!({ "accepted_error": 0.01, "evidence": null });

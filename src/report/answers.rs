@@ -369,8 +369,14 @@ fn measured(error: NumericalError) -> String {
         ),
         (None, _) => "without a bound".to_owned(),
     };
+    let worst = error.worst_upper.map_or(String::new(), |worst| {
+        format!(
+            ", and the worst is claimed to be within {}",
+            share_words(worst)
+        )
+    });
     format!(
-        "The settings were chosen on a sample of rows for an error of {accepted} (accuracy.amplitude_error): {kept}."
+        "The settings were chosen on a sample of rows for an error of {accepted} (accuracy.amplitude_error): {kept}{worst}."
     )
 }
 

@@ -19,6 +19,8 @@ pub struct NumericalError {
     pub accepted: f64,
     /// Upper bound of the error of 95 % of the rows, measured on a sample; none where it has no bound.
     pub p95_upper: Option<f64>,
+    /// What the worst is claimed to be at most.
+    pub worst_upper: Option<f64>,
     /// Whether that is accepted.
     pub met: bool,
 }
@@ -145,6 +147,7 @@ mod tests {
             let error = NumericalError {
                 accepted: 0.01,
                 p95_upper: Some(share * width),
+                worst_upper: None,
                 met,
             };
             error.warnings(&[found])

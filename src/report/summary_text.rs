@@ -97,9 +97,12 @@ fn numerical_line(error: &NumericalError) -> String {
     let bound = error.p95_upper.map_or("no bound".to_owned(), |bound| {
         format!("95 % of the amplitudes within {:.2} %", 100.0 * bound)
     });
+    let worst = error.worst_upper.map_or(String::new(), |worst| {
+        format!(", the worst within {:.2} %", 100.0 * worst)
+    });
     let accepted = 100.0 * error.accepted;
     format!(
-        "settings chosen by an accepted numerical error of {accepted} %: {bound}, measured on a sample"
+        "settings chosen by an accepted numerical error of {accepted} %: {bound}{worst}, measured on a sample"
     )
 }
 

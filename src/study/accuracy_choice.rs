@@ -71,6 +71,8 @@ pub struct AccuracyEvidence {
     pub reference: String,
     /// Errors of the peak amplitude.
     pub amplitude: ErrorBound,
+    /// What the worst of them over all rows is claimed to be at most, see [`ErrorBound::worst_upper`].
+    pub amplitude_worst_upper: f64,
     /// Errors of its frequency.
     pub frequency: Option<ErrorBound>,
     /// Errors of the amplification factor.
@@ -119,7 +121,7 @@ impl AccuracyChoice {
         let keys = StudyDigest::of(study)?.hex();
         // A study with more patterns than the sample has the same sample.
         let sampled = sampled_patterns(study).min(study.patterns as usize);
-        let digest = reduction_digest(sector, &format!("accuracy {keys} {sampled}"));
+        let digest = reduction_digest(sector, &format!("accuracy with its worst {keys} {sampled}"));
         if let Some(stored) = cache.and_then(|folder| read_cached(folder, &digest)) {
             return Ok(stored);
         }
@@ -193,6 +195,7 @@ impl AccuracyChoice {
                 reference_tolerance: tolerance,
                 reference: reference.kind.name().to_owned(),
                 amplitude,
+                amplitude_worst_upper: amplitude.worst_upper(measured.setting.peak_tolerance),
                 frequency: bound(Compared::Frequency),
                 amplification_factor: bound(Compared::AmplificationFactor),
                 operations_per_row: measured.operations(),

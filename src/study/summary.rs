@@ -180,6 +180,7 @@ fn numerical_error_of(manifest: &Manifest) -> Option<NumericalError> {
     Some(NumericalError {
         accepted: choice["accepted_error"].as_f64()?,
         p95_upper: choice["evidence"]["amplitude"]["p95_upper"].as_f64(),
+        worst_upper: choice["evidence"]["amplitude_worst_upper"].as_f64(),
         met: choice["met"].as_bool()?,
     })
 }

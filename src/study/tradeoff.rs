@@ -218,6 +218,7 @@ impl Trade {
     fn record(&self, place: usize, role: &'static str, measured: &Measured) -> TradeoffRecord {
         let values = measured.values();
         let bound = |quantity| error_bound(&values, &self.reference.values, quantity);
+        let amplitude = bound(Compared::Amplitude);
         let setting = &measured.setting;
         TradeoffRecord {
             setting: place as u32,
@@ -231,7 +232,8 @@ impl Trade {
             peak_tolerance: setting.peak_tolerance,
             contact_law: law_name(setting.law),
             projection: projection_name(setting.projection),
-            amplitude: bound(Compared::Amplitude),
+            amplitude,
+            amplitude_worst_upper: amplitude.map(|own| own.worst_upper(setting.peak_tolerance)),
             frequency: bound(Compared::Frequency),
             amplification_factor: bound(Compared::AmplificationFactor),
             knob_amplitude: self.knob_error(measured),

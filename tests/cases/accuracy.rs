@@ -1,7 +1,10 @@
 //! The errors that a choice of settings claims, on wheels that it did not see.
 
+use blisk::model::reduction::{Basis, BasisChoice};
 use blisk::population::statistics::ErrorBound;
-use blisk::response::forced_response::{ContactCondition, Harmonics};
+use blisk::response::forced_response::{
+    ContactCondition, Harmonics, HigherHarmonics, SearchHarmonics,
+};
 use blisk::study::{AccuracyChoice, AccuracyEvidence, AccuracyOptions, Study, load_sector_model};
 use rayon::prelude::*;
 
@@ -21,14 +24,32 @@ fn lumped(sectors: u32, patterns: u32) -> Study {
     Study::parse(&package("studies/lumped24.toml"), &text).unwrap()
 }
 
+/// The built-in bladed disk of the quickstart, its settings left to a choice.
+fn quickstart(patterns: u32) -> Study {
+    let text = std::fs::read_to_string(package("studies/quickstart.toml")).unwrap();
+    let (before, _) = text.split_once("[sweep]").unwrap();
+    let before = before
+        .replace("patterns = 200", &format!("patterns = {patterns}"))
+        .replace("basis = \"stick_partial_slide\"\nerror = 0.01\n", "");
+    let text =
+        format!("{before}[sweep]\nnormal_load_n = [240, 480, 1600]\nstandard_deviation = [0.03]\n");
+    Study::parse(&package("studies/quickstart.toml"), &text).unwrap()
+}
+
 /// All knobs at their best, as the joint reference of a choice has them.
-fn best(study: &Study, tolerance: f64) -> Study {
+fn best(study: &Study, choice: &AccuracyChoice, tolerance: f64) -> Study {
     let mut best = study.clone();
     best.solver.harmonics = Harmonics::Auto;
     best.solver.harmonic_tolerance = tolerance;
     best.solver.samples_per_period = 512;
     best.solver.residual_tolerance = 1e-10;
     best.solver.peak_tolerance = 1e-4;
+    if choice.setting.basis != BasisChoice::CraigBampton {
+        best.reduction.basis = Basis::StickAttachment;
+        best.reduction.stick_modes = Some(8);
+        best.reduction.craig_bampton_modes = Some(choice.craig_bampton_modes);
+        best.solver.higher_harmonics = HigherHarmonics::Tuned;
+    }
     best
 }
 
@@ -77,7 +98,7 @@ impl Chosen {
         Self {
             accepted,
             own: Case::new(choice.applied_to(study)),
-            reference: Case::new(best(study, evidence.reference_tolerance)),
+            reference: Case::new(best(study, &choice, evidence.reference_tolerance)),
             evidence,
         }
     }
@@ -98,6 +119,7 @@ impl Chosen {
         assert!(fresh.iter().all(|id| !self.evidence.patterns.contains(id)));
         let found = self.errors(fresh);
         let claimed = self.evidence.amplitude;
+        let worst_claimed = self.evidence.amplitude_worst_upper;
         let within = |error: &&Option<f64>| error.is_some_and(|e| e.abs() <= claimed.p95_upper);
         let share = found.iter().filter(within).count() as f64 / found.len() as f64;
         let seen = ErrorBound::of(&found).unwrap();
@@ -106,19 +128,20 @@ impl Chosen {
             .max_by(|a, b| size(a).total_cmp(&size(b)))
             .unwrap();
         println!(
-            "accepted {}: claimed P95 <= {:.3e} (worst {:.3e}, {} rows); of {} fresh rows {:.2} % within; \
-             P95 {:.3e}, worst {:.3e} (pattern {})",
+            "accepted {}: claimed P95 <= {:.3e}, worst <= {:.3e} ({} rows, worst {:.3e}); of {} fresh rows {:.2} % \
+             within; P95 {:.3e}, worst {:.3e} (pattern {})",
             self.accepted,
             claimed.p95_upper,
-            claimed.worst,
+            worst_claimed,
             claimed.rows,
+            claimed.worst,
             found.len(),
             100.0 * share,
             seen.p95,
             seen.worst,
             fresh[worst / self.own.study.contacts.len()],
         );
-        share >= 0.95 && seen.worst <= 3.0 * claimed.worst
+        share >= 0.95 && seen.worst <= 3.0 * worst_claimed
     }
 }
 
@@ -129,6 +152,23 @@ fn claimed_errors_are_those_of_delivered_rows_and_hold_on_wheels_that_were_not_s
     assert!(chosen.holds_on(&(6..16).collect::<Vec<u32>>()));
 }
 
+/// Harmonics of these rows meet resonances of the ring at their tops: humps that the points of a broad top do not see,
+/// which were missed by up to 0.54 %.
+#[test]
+fn humps_on_broad_tops_are_found_within_the_tolerance_of_the_peak() {
+    let mut study = lumped(24, 506);
+    study.solver.harmonics = Harmonics::Set(vec![1, 3, 5]);
+    study.solver.peak_tolerance = 3e-3;
+    let mut whole = study.clone();
+    whole.solver.search_harmonics = SearchHarmonics::All;
+    whole.solver.peak_tolerance = 1e-4;
+    let [own, whole] = [study, whole].map(Case::new);
+    let found = errors(&own, &whole, &[234, 237, 295, 342]);
+    println!("{found:?}");
+    let within = |error: &Option<f64>| error.is_some_and(|error| error.abs() <= 3e-3);
+    assert!(found.iter().all(within), "{found:?}");
+}
+
 #[test]
 #[ignore = "minutes: cargo test --release --test cases claimed_errors_hold_on_500 -- --ignored --nocapture"]
 fn claimed_errors_hold_on_500_wheels_that_were_not_seen() {
@@ -137,4 +177,13 @@ fn claimed_errors_hold_on_500_wheels_that_were_not_seen() {
     let held = [0.05, 0.01, 0.003]
         .map(|accepted| Chosen::new(&lumped(24, 506), accepted).holds_on(&fresh));
     assert_eq!(held, [true; 3]);
+}
+
+#[test]
+#[ignore = "minutes: cargo test --release --test cases claimed_errors_hold_on_100 -- --ignored --nocapture"]
+fn claimed_errors_hold_on_100_wheels_of_the_default_model_that_were_not_seen() {
+    let fresh: Vec<u32> = (6..106).collect();
+    let chosen = Chosen::new(&quickstart(106), 0.01);
+    chosen.is_made_of_delivered_rows();
+    assert!(chosen.holds_on(&fresh));
 }

@@ -259,6 +259,7 @@ fn a_numerical_error_is_held_against_the_interval_of_the_wanted_percentile() {
             numerical_error: Some(NumericalError {
                 accepted: 0.01,
                 p95_upper: Some(p95_upper),
+                worst_upper: None,
                 met: true,
             }),
             ..context(Harmonics::Auto)

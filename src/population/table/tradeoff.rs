@@ -43,6 +43,8 @@ pub struct TradeoffRecord {
     pub projection: &'static str,
     /// Errors of the peak amplitude.
     pub amplitude: Option<ErrorBound>,
+    /// What the worst of these over all rows is claimed to be at most.
+    pub amplitude_worst_upper: Option<f64>,
     /// Errors of its frequency.
     pub frequency: Option<ErrorBound>,
     /// Errors of the amplification factor.
@@ -171,6 +173,12 @@ pub const TRADEOFF_COLUMNS: &[ColumnSpec] = &[
         Float64,
         "1",
         "Largest of these errors",
+    ),
+    ColumnSpec::new(
+        "amplitude_error_worst_upper",
+        Float64,
+        "1",
+        "Upper bound of their 99.9th percentile over all rows, 95 % confidence, with peak_tolerance added",
     ),
     ColumnSpec::new(
         "frequency_error_median",
@@ -371,6 +379,7 @@ pub fn write_tradeoff(
         bound(|r| r.amplitude, |errors| errors.p95),
         bound(|r| r.amplitude, |errors| errors.p95_upper),
         bound(|r| r.amplitude, |errors| errors.worst),
+        floats(&|r| r.amplitude_worst_upper),
         bound(|r| r.frequency, |errors| errors.median),
         bound(|r| r.frequency, |errors| errors.p95),
         bound(|r| r.frequency, |errors| errors.worst),

@@ -153,8 +153,12 @@ fn of_trials(trials: &AccuracyTrials) -> Option<Figure> {
     );
     let bound = trials.p95_upper.map_or(String::new(), |bound| {
         format!(
-            " At the setting taken 95 % of the amplitudes are within {} with 95 % confidence.",
-            share_words(bound)
+            " At the setting taken 95 % of the amplitudes are within {} with 95 % confidence{}.",
+            share_words(bound),
+            trials.worst_upper.map_or(String::new(), |worst| format!(
+                "; the worst is claimed to be within {}",
+                share_words(worst)
+            ))
         )
     });
     Some(Figure {

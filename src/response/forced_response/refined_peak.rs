@@ -30,6 +30,12 @@ const NEIGHBOURS: f64 = 0.35;
 const POINTS_OF_TOP: usize = 40;
 /// Times that a top may be followed beyond its neighbours.
 const EXTENSIONS: usize = 12;
+/// Share of the height that a hump may add to a top: what is lower by more is not looked into.
+const HUMP: f64 = 0.01;
+/// Gaps beside a top that are looked into, in half-bandwidths of a linear resonance.
+const WIDE: f64 = 0.5;
+/// Times that they are looked into at most; each halves them.
+const LOOKS: usize = 4;
 
 /// What a search with few harmonics is made with.
 #[derive(Debug, Clone, Copy)]
@@ -162,6 +168,60 @@ fn tops(found: &SearchResult, envelope: Envelope) -> Vec<Top> {
     tops
 }
 
+/// The highest sample of a search that found a peak.
+fn summit_of(found: &SearchResult) -> Option<&Sample> {
+    let sample = found.best.map(|best| &found.samples[best]);
+    sample.filter(|_| found.end == SearchEnd::Found && found.bracketed)
+}
+
+/// The point at a frequency, solved to its end; the work done where that fails or a contact opens.
+fn finished(solver: &mut PointSolver<'_>, frequency_hz: f64) -> Result<Point, Work> {
+    let mut points = solver.points().iter();
+    if points.any(|point| point.shares.separated > 0.0) {
+        return Err(solver.work());
+    }
+    let finished = solver.finish(frequency_hz).cloned();
+    finished.map_err(|_| solver.work())
+}
+
+/// What a search of one top found, or finds with the middles of the gaps beside its best, where these promise more than
+/// the tolerance above it.
+///
+/// A broad top is believed by three or four points far apart, which do not see where another harmonic meets a resonance
+/// of its own: a hump of half a percent, narrower than they are apart.
+fn looked_into(
+    found: SearchResult,
+    envelope: Envelope,
+    settings: SearchSettings,
+    mut evaluate: impl FnMut(f64) -> Option<Vec<f64>>,
+) -> SearchResult {
+    let wide = WIDE * envelope.linear_half_bandwidth_hz;
+    let mut found = found;
+    for _ in 0..LOOKS {
+        let mut samples = Samples(found.samples.clone());
+        let beside = found.best.and_then(|best| samples.neighbours(best));
+        let (Some(best), Some((left, right))) = (found.best, beside) else {
+            return found;
+        };
+        let hz = |at: usize| samples.0[at].frequency_hz;
+        let gaps = [(hz(left), hz(best)), (hz(best), hz(right))];
+        let height = samples.0[best].largest;
+        for (from, to) in gaps.into_iter().filter(|(from, to)| to - from > wide) {
+            let middle = 0.5 * (from + to);
+            samples.insert(middle, evaluate(middle));
+        }
+        let kept = samples.0.len() == found.samples.len()
+            || samples.promised() <= (1.0 + settings.tolerance) * height;
+        let (Some(first), Some(last), false) = (samples.0.first(), samples.0.last(), kept) else {
+            return found;
+        };
+        let band = (first.frequency_hz, last.frequency_hz);
+        let all: Vec<f64> = samples.0.iter().map(|own| own.frequency_hz).collect();
+        found = find_peak(band, &all, envelope, settings, &mut evaluate);
+    }
+    found
+}
+
 /// The highest of the `tops` with the harmonics of `solver`; the work done where one of them that may be it is lost.
 fn highest(
     mut solver: PointSolver<'_>,
@@ -177,6 +237,7 @@ fn highest(
     };
     // Height and place of the highest so far, and its height over that with few harmonics.
     let mut best: Option<(f64, f64, f64)> = None;
+    let mut searched = Vec::new();
     for top in tops {
         let lower =
             |height: f64| best.is_some_and(|(highest, ..)| height * (1.0 + MADE_UP) < highest);
@@ -192,27 +253,33 @@ fn highest(
         let found = find_peak(band, &[top.frequency_hz], envelope, settings, |hz| {
             amplitudes(&mut solver, hz)
         });
-        let sample = found.best.map(|best| &found.samples[best]);
-        let Some(sample) = sample.filter(|_| found.end == SearchEnd::Found && found.bracketed)
-        else {
+        let Some(sample) = summit_of(&found) else {
             return Err(solver.work());
         };
         if best.is_none_or(|(height, ..)| sample.largest > height) {
             let grown = sample.largest / top.amplitude_m;
             best = Some((sample.largest, sample.frequency_hz, grown));
         }
+        searched.push(found);
     }
-    let opens = solver
-        .points()
-        .iter()
-        .any(|point| point.shares.separated > 0.0);
-    let Some((_, frequency_hz, _)) = best.filter(|_| !opens) else {
-        return Err(solver.work());
-    };
-    let point = solver.finish(frequency_hz).cloned();
-    let Ok(point) = point else {
-        return Err(solver.work());
-    };
+    let (height, frequency_hz, _) = best.ok_or(solver.work())?;
+    let mut point = finished(&mut solver, frequency_hz)?;
+    // What was found stays as it is unless something higher is seen beside it.
+    solver = solver.with_precision(REFINED_PRECISION * tolerance);
+    let mut highest = (height, None);
+    for found in searched {
+        if summit_of(&found).is_none_or(|own| own.largest < (1.0 - HUMP) * height) {
+            continue;
+        }
+        let looked = looked_into(found, envelope, settings, |hz| amplitudes(&mut solver, hz));
+        let sample = summit_of(&looked).ok_or(solver.work())?;
+        if sample.largest > highest.0 {
+            highest = (sample.largest, Some(sample.frequency_hz));
+        }
+    }
+    if let Some(frequency_hz) = highest.1 {
+        point = finished(&mut solver, frequency_hz)?;
+    }
     Ok(Peak {
         status: Status::Ok,
         blade: point.largest_blade(),

@@ -106,6 +106,20 @@ impl Samples {
             .collect()
     }
 
+    /// The height of the best, or what polynomials through it and its neighbours promise above it.
+    pub fn promised(&self) -> f64 {
+        let Some(best) = self.best() else {
+            return 0.0;
+        };
+        let parabola = self.neighbours(best).and_then(|(left, right)| {
+            summit::of_parabola(self.points([left, best, right], self.0[best].blade))
+        });
+        let summits = self.skewed_summits(best).into_iter().chain(parabola);
+        summits.fold(self.0[best].largest, |height, summit| {
+            height.max(summit.amplitude)
+        })
+    }
+
     pub fn points(&self, at: [usize; 3], blade: usize) -> [CurvePoint; 3] {
         at.map(|i| self.point(i, blade))
     }
