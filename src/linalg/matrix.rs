@@ -415,3 +415,46 @@ pub fn add_transpose_times(
         Par::Seq,
     );
 }
+
+/// `y += factor A x` for a column-major `A` with `y.len()` rows.
+pub fn add_times_vector(y: &mut [f64], factor: f64, a: &[f64], x: &[f64]) {
+    let rows = y.len();
+    if rows == 0 {
+        return;
+    }
+    for (column, &x) in a.chunks_exact(rows).zip(x) {
+        let scale = factor * x;
+        for (sum, &entry) in y.iter_mut().zip(column) {
+            *sum += scale * entry;
+        }
+    }
+}
+
+/// `y += factor A^T x` for a column-major `A` with `x.len()` rows.
+pub fn add_transpose_times_vector(y: &mut [f64], factor: f64, a: &[f64], x: &[f64]) {
+    let rows = x.len();
+    if rows == 0 {
+        return;
+    }
+    for (sum, column) in y.iter_mut().zip(a.chunks_exact(rows)) {
+        *sum += factor * dot(column, x);
+    }
+}
+
+/// Scalar product in eight partial sums, which the compiler keeps in vector registers.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut partial = [0.0; 8];
+    let (a_chunks, b_chunks) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = a_chunks
+        .remainder()
+        .iter()
+        .zip(b_chunks.remainder())
+        .map(|(a, b)| a * b)
+        .sum();
+    for (a, b) in a_chunks.zip(b_chunks) {
+        for lane in 0..8 {
+            partial[lane] += a[lane] * b[lane];
+        }
+    }
+    partial.iter().sum::<f64>() + rest
+}

@@ -12,8 +12,11 @@ pub use dense::{
     orthonormal_basis,
 };
 pub use lu::LuWorkspace;
-pub use matrix::{Matrix, Scalar, add_times, add_transpose_times, set_times};
+pub use matrix::{
+    Matrix, Scalar, add_times, add_times_vector, add_transpose_times, add_transpose_times_vector,
+    set_times,
+};
 pub use rustfft::num_complex::Complex64;
 pub use sparse::{HermitianSparse, SparseFactor, lowest_modes};
 pub use symmetric_sparse::SymmetricSparse;
-pub use vectors::{Loops, add_times_vector, add_transpose_times_vector, dot, vectorized};
+pub use vectors::{Loops, vectorized};

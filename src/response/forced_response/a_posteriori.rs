@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::excited::Excited;
 use super::observed_amplitude::{ObservedAmplitude, ObservedBlock};
-use super::options::{ContactCondition, HigherHarmonics, SolverOptions};
+use super::options::{ContactCondition, SolverOptions};
 use super::point_settings::{PointSettings, samples_per_period};
 use super::point_solver::{Point, PointSolver};
 use crate::response::friction::ContactLaw;
@@ -56,9 +56,8 @@ impl ErrorSettings {
         law: Option<ContactLaw>,
     ) -> Result<Self, TransformError> {
         let variable_load = law.is_some_and(ContactLaw::has_variable_load);
-        let waves = options.higher_harmonics == HigherHarmonics::Tuned;
         let samples = FINEST.max(FINER * samples_per_period(options, harmonics));
-        let set = EnlargedSet::new(harmonics, variable_load, samples, waves)?;
+        let set = EnlargedSet::new(harmonics, variable_load, samples)?;
         let instants = options.time_samples.max(samples);
         Ok(Self {
             amplitude: ObservedAmplitude::new(options.amplitude, set.harmonics(), instants)?,

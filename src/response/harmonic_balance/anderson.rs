@@ -1,12 +1,10 @@
 //! Anderson's acceleration of a fixed-point iteration (Anderson 1965; Walker & Ni 2011, SIAM J. Numer.
 //! Anal. 49(4)).
 
-use crate::linalg::{add_times_vector, add_transpose_times_vector, dot};
+use super::transform::dot;
 
 /// A difference of steps that depends on the earlier ones up to this share of itself says nothing new.
 const DEPENDENT: f64 = 1e-8;
-/// Share of a column that an orthogonalisation leaves at least for another to be needless.
-const ENOUGH_LEFT: f64 = 0.5;
 
 /// Anderson's acceleration of `x <- x + f(x)`; allocates nothing after its creation.
 pub(super) struct Anderson {
@@ -64,8 +62,12 @@ impl Anderson {
             *next = x + f;
         }
         self.find_shares(step);
-        let moves = &self.moves[..self.unknowns * self.columns];
-        add_times_vector(next, -1.0, moves, &self.shares[..self.columns]);
+        let moves = self.moves.chunks_exact(self.unknowns.max(1));
+        for (share, moves) in self.shares[..self.columns].iter().zip(moves) {
+            for (next, moved) in next.iter_mut().zip(moves) {
+                *next -= share * moved;
+            }
+        }
     }
 
     /// Takes in the differences to the last iterate.
@@ -85,19 +87,17 @@ impl Anderson {
         let length = dot(direction, direction).sqrt();
         let triangle = &mut self.triangle[self.depth * column..][..self.depth];
         triangle.fill(0.0);
-        let shares = &mut self.shares[..column];
-        let mut left = length;
-        for again in [false, true] {
-            // Where much is left, hardly any of the others is still in it.
-            if again && left > ENOUGH_LEFT * length {
-                break;
+        // Twice: once leaves too much of the others where the columns are almost dependent.
+        for _ in 0..2 {
+            for (entry, other) in triangle.iter_mut().zip(known.chunks_exact(n)) {
+                let share = dot(other, direction);
+                *entry += share;
+                for (d, o) in direction.iter_mut().zip(other) {
+                    *d -= share * o;
+                }
             }
-            shares.fill(0.0);
-            add_transpose_times_vector(shares, 1.0, known, direction);
-            add_times_vector(direction, -1.0, known, shares);
-            triangle.iter_mut().zip(&*shares).for_each(|(r, s)| *r += s);
-            left = dot(direction, direction).sqrt();
         }
+        let left = dot(direction, direction).sqrt();
         if left.is_nan() || left <= DEPENDENT * length {
             return;
         }
@@ -115,15 +115,13 @@ impl Anderson {
 
     /// Shares by which the differences of steps come nearest to `step`: `R shares = Q^T step`.
     fn find_shares(&mut self, step: &[f64]) {
-        let directions = &self.directions[..self.unknowns * self.columns];
-        self.shares[..self.columns].fill(0.0);
-        add_transpose_times_vector(&mut self.shares[..self.columns], 1.0, directions, step);
         for column in (0..self.columns).rev() {
+            let direction = &self.directions[self.unknowns * column..][..self.unknowns];
             let known: f64 = (column + 1..self.columns)
                 .map(|j| self.triangle[self.depth * j + column] * self.shares[j])
                 .sum();
             self.shares[column] =
-                (self.shares[column] - known) / self.triangle[self.depth * column + column];
+                (dot(direction, step) - known) / self.triangle[self.depth * column + column];
         }
     }
 }

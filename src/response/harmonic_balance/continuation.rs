@@ -17,10 +17,9 @@
 //! way on is told by the sign of `det (DR; t^T)`, which is the same on all pieces of one curve
 //! (Allgower & Georg 1990, Numerical Continuation Methods, section 2.1 and chapter 15).
 
-use super::curve::{AtFrequency, Curve, distance};
+use super::curve::{AtFrequency, Curve, distance, dot};
 use super::newton::{Equation, NewtonBuffers, iterate, norm_of};
 use super::{ContactShares, HarmonicSystem, NewtonBounds, NewtonOutcome, Status};
-use crate::linalg::dot;
 
 /// Wanted distance from predicted to corrected point over the step.
 const WANTED_DEVIATION: f64 = 0.1;

@@ -9,7 +9,7 @@
 
 use super::newton::Equation;
 use super::{ContactShares, HarmonicSystem, SystemWorkspace};
-use crate::linalg::{LuWorkspace, dot};
+use crate::linalg::LuWorkspace;
 
 /// `R(u) = 0` with one unknown more than equations; residuals have a zero at the end.
 pub(super) struct Curve<'a> {
@@ -171,6 +171,11 @@ impl Equation for AtFrequency<'_, '_> {
     fn step(&mut self, residual: &mut [f64]) {
         self.0.factors.solve(residual);
     }
+}
+
+/// Inner product.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Euclidean distance.

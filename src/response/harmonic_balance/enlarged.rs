@@ -33,8 +33,6 @@ const SMALL_WHEEL: usize = 1200;
 /// Samples per period of the enlarged set at least, and per period of its highest harmonic.
 const SAMPLES: usize = 256;
 const SAMPLES_OF_HIGHEST: usize = 16;
-/// Share of these that will do where harmonics are taken in the tuned wheel: there what the last step leaves is more.
-const SHARE_FOR_WAVES: usize = 2;
 /// Samples per period of the derivatives in P at least, and per period of the highest harmonic.
 const LINEARISED_SAMPLES: usize = 128;
 const LINEARISED_SAMPLES_OF_HIGHEST: usize = 4;
@@ -60,17 +58,11 @@ pub struct EnlargedSet {
 
 impl EnlargedSet {
     /// The harmonics 0 to 15 (odd ones where the normal load is constant, since no law then
-    /// excites the others) and those of `set`, whose sampling is checked with `samples` per period; `waves` where those
-    /// other than 1 are taken in the tuned wheel.
+    /// excites the others) and those of `set`, whose sampling is checked with `samples` per period.
     ///
     /// # Errors
     /// If the harmonics cannot be told apart with the samples asked for.
-    pub fn new(
-        set: &[u32],
-        variable_load: bool,
-        samples: usize,
-        waves: bool,
-    ) -> Result<Self, TransformError> {
+    pub fn new(set: &[u32], variable_load: bool, samples: usize) -> Result<Self, TransformError> {
         let mut harmonics: Vec<u32> = (0..=HIGHEST_HARMONIC)
             .filter(|k| variable_load || k % 2 == 1)
             .chain(set.iter().copied())
@@ -83,8 +75,7 @@ impl EnlargedSet {
         };
         let highest = harmonics.last().map_or(1, |&k| k as usize);
         let of_highest = |least: usize, per_period: usize| least.max(per_period * highest);
-        let share = if waves { SHARE_FOR_WAVES } else { 1 };
-        let of_enlarged = of_highest(SAMPLES / share, SAMPLES_OF_HIGHEST / share);
+        let of_enlarged = of_highest(SAMPLES, SAMPLES_OF_HIGHEST);
         Ok(Self {
             fine: transform(set, samples)?,
             alone: transform(set, of_enlarged)?,

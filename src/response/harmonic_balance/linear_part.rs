@@ -41,11 +41,12 @@ impl HarmonicSystem {
             }
             let damping = &block.structure;
             damping.add_damping_force(k_omega, x, r, &mut damped[..2 * n]);
-            if !self.shared {
-                add_times(r, stuck.real.as_slice(), x, (n, 2, n));
-            }
             let (x_real, x_imaginary) = x.split_at(n);
             let (r_real, r_imaginary) = r.split_at_mut(n);
+            if !self.shared {
+                add_times_vector(r_real, 1.0, stuck.real.as_slice(), x_real);
+                add_times_vector(r_imaginary, 1.0, stuck.real.as_slice(), x_imaginary);
+            }
             if let Some(imaginary) = &stuck.imaginary {
                 add_times_vector(r_real, -1.0, imaginary.as_slice(), x_imaginary);
                 add_times_vector(r_imaginary, 1.0, imaginary.as_slice(), x_real);
