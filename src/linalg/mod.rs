@@ -3,6 +3,7 @@
 mod dense;
 mod lu;
 mod matrix;
+mod small_complex;
 mod sparse;
 mod symmetric_sparse;
 mod vectors;
@@ -17,6 +18,7 @@ pub use matrix::{
     set_times,
 };
 pub use rustfft::num_complex::Complex64;
+pub use small_complex::SmallComplex;
 pub use sparse::{HermitianSparse, SparseFactor, lowest_modes};
 pub use symmetric_sparse::SymmetricSparse;
 pub use vectors::{Loops, vectorized};

@@ -21,11 +21,13 @@ await_rows() {
         sleep 0.02
     done
 }
-await_rows 2
 await_rows 3
+await_rows 2
 nodes=$(squeue -h -t R -o %N | sort -u | tr '\n' ' ')
+# It tries again for seconds after the signal has gone.
+scancel --verbose --batch --signal=USR1 "${array}_3" &
 scontrol requeue "${array}_2"
-scancel --verbose --batch --signal=USR1 "${array}_3" || true
+wait || true
 echo "running on: $nodes"
 
 for _ in $(seq 600); do

@@ -45,26 +45,14 @@ impl PointSolver<'_> {
 
     fn of_least_residual(
         &mut self,
-        mut starts: Vec<Vec<f64>>,
+        starts: Vec<Vec<f64>>,
         frequency_hz: f64,
     ) -> Result<Vec<f64>, Status> {
-        if let [_] = starts[..] {
-            return Ok(starts.remove(0));
-        }
         let Some((system, workspace)) = &mut self.nonlinear else {
             return Err(Status::SingularJacobian);
         };
-        let mut residual = vec![0.0; system.unknowns()];
-        let mut best: Option<(f64, Vec<f64>)> = None;
-        for start in starts {
-            let buffers = workspace.system_mut();
-            let (norm, _) =
-                system.residual(TAU * frequency_hz, &start, &mut residual, false, buffers);
-            if best.as_ref().is_none_or(|(least, _)| norm < *least) {
-                best = Some((norm, start));
-            }
-        }
-        best.map(|(_, start)| start).ok_or(Status::NonFinite)
+        let best = workspace.of_least_residual(system, TAU * frequency_hz, starts);
+        best.ok_or(Status::NonFinite)
     }
 
     pub(super) fn nearest(&self, frequency_hz: f64) -> Option<&Point> {

@@ -2,11 +2,13 @@
 //! Anal. 49(4)).
 
 use super::transform::dot;
+use super::vector_sums::{Columns, Dots, Orthogonalised, Subtracted};
+use crate::linalg::vectorized;
 
 /// A difference of steps that depends on the earlier ones up to this share of itself says nothing new.
 const DEPENDENT: f64 = 1e-8;
 
-/// Anderson's acceleration of `x <- x + f(x)`; allocates nothing after its creation.
+/// Anderson's acceleration of `x <- x + f(x)`; allocates for as many iterates as it ever combined.
 pub(super) struct Anderson {
     unknowns: usize,
     depth: usize,
@@ -14,14 +16,18 @@ pub(super) struct Anderson {
     last: Option<(Vec<f64>, Vec<f64>)>,
     /// Whether `last` belongs to the present iteration.
     begun: bool,
-    /// Differences of iterates plus those of steps, `unknowns x depth`, of which `columns` are used.
+    /// Differences of iterates plus those of steps, a column of `unknowns` each, of which `columns` are used.
     moves: Vec<f64>,
-    /// Orthonormal columns Q of the differences of steps, `unknowns x depth`.
+    /// Orthonormal columns Q of the differences of steps.
     directions: Vec<f64>,
     /// R of the differences of steps `Q R`, `depth x depth`, column after column.
     triangle: Vec<f64>,
     columns: usize,
     shares: Vec<f64>,
+    /// What the entries of steps count, all the same unless given.
+    weights: Vec<f64>,
+    /// The last step as it counts.
+    weighted: Vec<f64>,
 }
 
 impl Anderson {
@@ -33,12 +39,19 @@ impl Anderson {
             depth,
             last: None,
             begun: false,
-            moves: vec![0.0; unknowns * depth],
-            directions: vec![0.0; unknowns * depth],
+            moves: Vec::new(),
+            directions: Vec::new(),
             triangle: vec![0.0; depth * depth],
             columns: 0,
             shares: vec![0.0; depth],
+            weights: Vec::new(),
+            weighted: Vec::new(),
         }
+    }
+
+    /// The same where a step is the shorter, the shorter it is entry by entry times `weights`.
+    pub(super) fn weighted(self, weights: Vec<f64>) -> Self {
+        Self { weights, ..self }
     }
 
     /// Forgets the iterates: another function follows.
@@ -62,12 +75,12 @@ impl Anderson {
             *next = x + f;
         }
         self.find_shares(step);
-        let moves = self.moves.chunks_exact(self.unknowns.max(1));
-        for (share, moves) in self.shares[..self.columns].iter().zip(moves) {
-            for (next, moved) in next.iter_mut().zip(moves) {
-                *next -= share * moved;
-            }
-        }
+        let moves = Columns::of(&self.moves, self.unknowns);
+        vectorized(Subtracted {
+            columns: moves,
+            shares: &self.shares[..self.columns],
+            from: next,
+        });
     }
 
     /// Takes in the differences to the last iterate.
@@ -79,23 +92,29 @@ impl Anderson {
             self.columns = 0;
         }
         let (n, column) = (self.unknowns, self.columns);
+        let used = n * (column + 1);
+        if self.moves.len() < used {
+            self.moves.resize(used, 0.0);
+            self.directions.resize(used, 0.0);
+        }
         let (known, free) = self.directions.split_at_mut(n * column);
         let direction = &mut free[..n];
         for ((d, f), last) in direction.iter_mut().zip(step).zip(last_step) {
             *d = f - last;
+        }
+        for (d, weight) in direction.iter_mut().zip(&self.weights) {
+            *d *= weight;
         }
         let length = dot(direction, direction).sqrt();
         let triangle = &mut self.triangle[self.depth * column..][..self.depth];
         triangle.fill(0.0);
         // Twice: once leaves too much of the others where the columns are almost dependent.
         for _ in 0..2 {
-            for (entry, other) in triangle.iter_mut().zip(known.chunks_exact(n)) {
-                let share = dot(other, direction);
-                *entry += share;
-                for (d, o) in direction.iter_mut().zip(other) {
-                    *d -= share * o;
-                }
-            }
+            vectorized(Orthogonalised {
+                columns: Columns::of(known, n),
+                shares: &mut triangle[..column],
+                vector: direction,
+            });
         }
         let left = dot(direction, direction).sqrt();
         if left.is_nan() || left <= DEPENDENT * length {
@@ -115,13 +134,24 @@ impl Anderson {
 
     /// Shares by which the differences of steps come nearest to `step`: `R shares = Q^T step`.
     fn find_shares(&mut self, step: &[f64]) {
+        self.weighted.clear();
+        let weighted = step.iter().zip(&self.weights).map(|(f, weight)| weight * f);
+        self.weighted.extend(weighted);
+        vectorized(Dots {
+            columns: Columns::of(&self.directions, self.unknowns),
+            vector: if self.weights.is_empty() {
+                step
+            } else {
+                &self.weighted
+            },
+            products: &mut self.shares[..self.columns],
+        });
         for column in (0..self.columns).rev() {
-            let direction = &self.directions[self.unknowns * column..][..self.unknowns];
             let known: f64 = (column + 1..self.columns)
                 .map(|j| self.triangle[self.depth * j + column] * self.shares[j])
                 .sum();
             self.shares[column] =
-                (dot(direction, step) - known) / self.triangle[self.depth * column + column];
+                (self.shares[column] - known) / self.triangle[self.depth * column + column];
         }
     }
 }
@@ -153,6 +183,33 @@ mod tests {
                 assert!((x - 1.0 / a).abs() < 1e-9, "{attempt}: {x} for {}", 1.0 / a);
             }
         }
+    }
+
+    /// The first entry follows the second: combined by what the second lacks, the iterates lose both at once.
+    #[test]
+    fn entries_that_count_nothing_follow_those_that_count() {
+        let steps = |weights: Option<Vec<f64>>| {
+            let plain = Anderson::new(2, 6);
+            let mut acceleration = match weights {
+                Some(weights) => plain.weighted(weights),
+                None => plain,
+            };
+            let (mut x, mut next) = (vec![0.0; 2], vec![0.0; 2]);
+            acceleration.begin();
+            for count in 1.. {
+                let step = [(x[1] - 1.0) * 100.0 - x[0], 1.0 - 1.8 * x[1]];
+                if step.iter().all(|s| s.abs() < 1e-9) {
+                    return (count, x);
+                }
+                acceleration.next(&x, &step, &mut next);
+                std::mem::swap(&mut x, &mut next);
+            }
+            (0, x)
+        };
+        let (plain, _) = steps(None);
+        let (weighted, x) = steps(Some(vec![1e-6, 1.0]));
+        assert!((x[1] - 1.0 / 1.8).abs() < 1e-9, "{x:?}");
+        assert!(weighted <= plain, "{weighted} {plain}");
     }
 
     #[test]

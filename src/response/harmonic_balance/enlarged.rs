@@ -3,7 +3,7 @@
 //! With s the harmonics of the set, o those outside and the residual `R` of the enlarged system,
 //!
 //! ```text
-//! R_s(x_s, x_o) = 0,    R_o(x_s, x_o) = 0,    from (x_s, 0)
+//! R_s(x_s, x_o) = 0,    R_o(x_s, x_o) = 0,    from (x_s, 0) where R_s(x_s, 0) = 0
 //! P = J    or    P = [J_ss, 0; 0, diag_k (part of J_kk linear in complex unknowns)]
 //! ```
 //!
@@ -20,6 +20,7 @@ use std::sync::Arc;
 
 use super::anderson::Anderson;
 use super::kept_jacobian::{KeptJacobian, solve_complex};
+use super::newton::norm_of;
 use super::{
     HarmonicBlock, HarmonicSystem, HarmonicTransform, LARGEST_WHOLE_JACOBIAN, NewtonWorkspace,
     SystemWorkspace, TransformError,
@@ -42,6 +43,8 @@ const EVALUATIONS: usize = 14;
 const EVALUATIONS_OF_WAVES: usize = 120;
 /// The iteration ends when the next step would change the set by this share of the change so far,
 const SETTLED: f64 = 0.03;
+/// (where harmonics are taken in the tuned wheel; the set then follows the others, and changes last)
+const SETTLED_OF_WAVES: f64 = 0.01;
 /// or by this share of the set itself.
 const NEGLIGIBLE: f64 = 5e-5;
 
@@ -214,12 +217,13 @@ impl Enlargement<'_> {
         [resampled, alone]: [Vec<f64>; 2],
         wanted: Effects,
     ) -> Option<Enlarged> {
-        let mut step = self.step(&before);
-        let scale = self.in_set(&before);
+        let mut step = self.step(&alone);
+        let scale = self.in_set(&alone);
         let evaluations = self.evaluations();
-        let mut acceleration = Anderson::new(before.len(), evaluations);
-        let mut iterate = before.clone();
-        let mut next = before.clone();
+        let weights = self.enlarged.weights_of_steps();
+        let mut acceleration = Anderson::new(before.len(), evaluations).weighted(weights);
+        let mut iterate = alone.clone();
+        let mut next = alone.clone();
         let mut best: Option<(f64, Vec<f64>)> = None;
         for evaluation in 1..=evaluations {
             let last = self.in_set(&step);
@@ -234,9 +238,9 @@ impl Enlargement<'_> {
             if best.as_ref().is_none_or(|(least, _)| left < *least) && evaluation > 1 {
                 best = Some((left, iterate.clone()));
             }
-            let change: Vec<f64> = iterate.iter().zip(&before).map(|(a, b)| a - b).collect();
+            let change: Vec<f64> = iterate.iter().zip(&alone).map(|(a, b)| a - b).collect();
             if evaluation > 1
-                && left <= f64::max(NEGLIGIBLE, SETTLED * self.in_set(&change) / scale)
+                && left <= f64::max(NEGLIGIBLE, self.settled() * self.in_set(&change) / scale)
             {
                 break;
             }
@@ -262,6 +266,15 @@ impl Enlargement<'_> {
             EVALUATIONS_OF_WAVES
         } else {
             EVALUATIONS
+        }
+    }
+
+    /// Share of the change at which the iteration ends.
+    fn settled(&self) -> f64 {
+        if self.enlarged.has_waves() {
+            SETTLED_OF_WAVES
+        } else {
+            SETTLED
         }
     }
 
@@ -323,28 +336,28 @@ impl Enlargement<'_> {
         if let (Some(own), Some(all)) = (&mut buffers.waves, &self.buffers.waves) {
             own.take_over(all, &self.places);
         }
-        let mut acceleration = Anderson::new(self.enlarged.unknowns(), evaluations);
-        let mut iterate = embed(self.system, &self.enlarged, &self.places, x);
-        let scale = self.in_set(&iterate);
-        let first = iterate.clone();
+        let weights = other.weights_of_steps();
+        let mut acceleration = Anderson::new(x.len(), evaluations).weighted(weights);
+        let scale = norm_of(x);
+        let mut iterate = x.to_vec();
         let (mut next, mut residual) = (iterate.clone(), vec![0.0; x.len()]);
         for _ in 0..evaluations {
-            let own = self.restricted(&iterate);
-            other.residual(self.omega, &own, &mut residual, false, &mut buffers);
+            other.residual(self.omega, &iterate, &mut residual, false, &mut buffers);
             let residual = embed(self.system, &self.enlarged, &self.places, &residual);
-            let step: Vec<f64> = self.set_step(&residual).iter().map(|s| -s).collect();
+            let step = self.set_step(&residual);
+            let mut step = self.restricted(&step);
             if !step.iter().all(|s| s.is_finite()) {
                 return None;
             }
-            let left = self.in_set(&step) / scale;
+            step.iter_mut().for_each(|s| *s = -*s);
             acceleration.next(&iterate, &step, &mut next);
             std::mem::swap(&mut iterate, &mut next);
-            let change: Vec<f64> = iterate.iter().zip(&first).map(|(a, b)| a - b).collect();
-            if left <= f64::max(NEGLIGIBLE, SETTLED * self.in_set(&change) / scale) {
+            let change: Vec<f64> = iterate.iter().zip(x).map(|(a, b)| a - b).collect();
+            if norm_of(&step) <= f64::max(NEGLIGIBLE * scale, self.settled() * norm_of(&change)) {
                 break;
             }
         }
-        Some(iterate)
+        Some(embed(self.system, &self.enlarged, &self.places, &iterate))
     }
 
     /// The unknowns of the set.

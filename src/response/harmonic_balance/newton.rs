@@ -3,6 +3,7 @@
 
 use super::anderson::Anderson;
 use super::kept_jacobian::KeptJacobian;
+use super::newton_workspace::{NewtonWorkspace, Start};
 use super::serves::{ACCELERATED, ONCE, PLAIN, RENEWED, Serves};
 use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
 
@@ -26,7 +27,7 @@ pub enum Steps {
 
 impl Steps {
     /// Whether one Jacobian is to do.
-    fn keep_jacobian(self) -> bool {
+    pub(super) fn keep_jacobian(self) -> bool {
         matches!(self, Self::ByHarmonic | Self::Once)
     }
 
@@ -57,9 +58,9 @@ impl Steps {
 pub const LARGEST_WHOLE_JACOBIAN: usize = 400;
 
 /// Earlier iterates that the acceleration combines.
-const DEPTH: usize = 16;
+pub(super) const DEPTH: usize = 16;
 /// The same where all are needed, see [`ONCE`].
-const DEPTH_OF_ONCE: usize = 120;
+pub(super) const DEPTH_OF_ONCE: usize = 120;
 
 /// Outcome of one nonlinear solve; the solution itself is left in the caller's vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,12 +103,12 @@ pub type Settled<'a> = &'a dyn Fn(&[f64], &[f64]) -> bool;
 
 /// Vectors of the iteration.
 pub(super) struct NewtonBuffers {
-    residual: Vec<f64>,
-    step: Vec<f64>,
+    pub(super) residual: Vec<f64>,
+    pub(super) step: Vec<f64>,
     trial: Vec<f64>,
     trial_step: Vec<f64>,
     acceleration: Option<Anderson>,
-    steps: Steps,
+    pub(super) steps: Steps,
 }
 
 impl NewtonBuffers {
@@ -124,79 +125,20 @@ impl NewtonBuffers {
     }
 
     /// The same with room to accelerate simplified steps.
-    fn accelerated(n: usize, depth: usize) -> Self {
+    pub(super) fn accelerated(n: usize, depth: usize) -> Self {
         Self {
             acceleration: Some(Anderson::new(n, depth)),
             ..Self::new(n)
         }
     }
-}
 
-/// Buffers of Newton's method for one system.
-pub struct NewtonWorkspace {
-    system: SystemWorkspace,
-    /// Of the last point at which it was factored.
-    jacobian: KeptJacobian,
-    buffers: NewtonBuffers,
-}
-
-impl NewtonWorkspace {
-    /// Buffers for `system`.
-    #[must_use]
-    pub fn new(system: &HarmonicSystem) -> Self {
-        let n = system.unknowns();
+    /// The same where entries of steps count as much as `weights`, all the same if there are none.
+    pub(super) fn weighted(self, weights: &[f64]) -> Self {
+        let weights = weights.to_vec();
         Self {
-            system: system.workspace(),
-            jacobian: KeptJacobian::new(),
-            buffers: NewtonBuffers::accelerated(n, DEPTH),
+            acceleration: self.acceleration.map(|a| a.weighted(weights)),
+            ..self
         }
-    }
-
-    /// Buffers of the system itself, whose residual was last taken anywhere.
-    pub fn system_mut(&mut self) -> &mut SystemWorkspace {
-        &mut self.system
-    }
-
-    /// How steps are made.
-    #[must_use]
-    pub fn steps(&self) -> Steps {
-        self.buffers.steps
-    }
-
-    /// How steps are made from now on; at first they are accelerated.
-    pub fn set_steps(&mut self, steps: Steps) {
-        if self.buffers.steps == steps {
-            return;
-        }
-        if steps.keep_jacobian() || self.buffers.steps.keep_jacobian() {
-            // Factors of another kind are of no use.
-            self.jacobian.forget();
-            let depth = if steps.keep_jacobian() {
-                DEPTH_OF_ONCE
-            } else {
-                DEPTH
-            };
-            let n = self.buffers.step.len();
-            self.buffers = NewtonBuffers::accelerated(n, depth);
-        }
-        self.buffers.steps = steps;
-    }
-
-    /// Lets go of the factors of an earlier point.
-    pub fn forget_jacobian(&mut self) {
-        self.jacobian.forget();
-    }
-
-    /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
-    pub fn factor_at(&mut self, system: &HarmonicSystem, omega: f64, x: &[f64]) -> bool {
-        system.residual(omega, x, &mut self.buffers.residual, true, &mut self.system);
-        self.jacobian
-            .factor_cheaply(system, omega, &mut self.system)
-    }
-
-    /// `J^-1 residual` with the factors at hand, in place.
-    pub fn solve_linear(&mut self, residual: &mut [f64]) {
-        self.jacobian.solve(residual);
     }
 }
 
@@ -208,10 +150,15 @@ struct FixedFrequency<'a> {
     jacobian: &'a mut KeptJacobian,
     steps: Steps,
     settled: Option<Settled<'a>>,
+    start: Option<Start>,
 }
 
 impl Equation for FixedFrequency<'_> {
     fn residual(&mut self, x: &[f64], residual: &mut [f64]) -> (f64, ContactShares) {
+        if let Some(start) = self.start.take() {
+            residual.copy_from_slice(&start.residual);
+            return (start.norm, start.shares);
+        }
         self.system
             .residual(self.omega, x, residual, false, self.workspace)
     }
@@ -275,7 +222,9 @@ pub fn solve(
     settled: Option<Settled<'_>>,
     workspace: &mut NewtonWorkspace,
 ) -> NewtonOutcome {
+    let same = |start: &Start| start.omega.total_cmp(&omega).is_eq() && start.x == *x;
     let mut equation = FixedFrequency {
+        start: workspace.start.take().filter(same),
         system,
         omega,
         workspace: &mut workspace.system,

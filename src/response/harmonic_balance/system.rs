@@ -66,6 +66,7 @@ pub struct SystemWorkspace {
     pub(super) correction: Vec<f64>,
     pub(super) pair_input: Vec<f64>,
     pub(super) pair_output: Vec<f64>,
+    /// Of every pair, once a derivative was asked for: they are large.
     pub(super) jacobians: Vec<PairJacobian>,
     pub(super) active: Vec<bool>,
     /// Pairs that are evaluated side by side.
@@ -214,7 +215,7 @@ impl HarmonicSystem {
             correction: vec![0.0; coefficients * self.rows],
             pair_input: vec![0.0; 3 * coefficients],
             pair_output: vec![0.0; 3 * coefficients],
-            jacobians: vec![PairJacobian::new(coefficients); pairs],
+            jacobians: Vec::new(),
             active: vec![false; pairs],
             together: None,
             together_3d: None,
@@ -389,6 +390,10 @@ impl HarmonicSystem {
         workspace: &mut SystemWorkspace,
     ) -> ContactShares {
         workspace.correction.fill(0.0);
+        if derivative && workspace.jacobians.is_empty() {
+            let zero = PairJacobian::new(self.transform.n_coefficients());
+            workspace.jacobians = vec![zero; workspace.active.len()];
+        }
         if self.marches_together() {
             return self.correction_together(derivative, workspace);
         }

@@ -21,7 +21,7 @@ use rustfft::{Fft, FftPlanner};
 use super::Damping;
 use super::structure::Structure;
 use super::wave_table::{ModalSums, Products, WaveTable};
-use crate::linalg::{Complex64, LuWorkspace, Matrix, vectorized};
+use crate::linalg::{Complex64, LuWorkspace, Matrix, SmallComplex, vectorized};
 use crate::model::ReducedModel;
 use crate::model::cyclic::NodalDiameter;
 use crate::response::mistuning::StructuralModes;
@@ -48,8 +48,6 @@ pub(super) struct WaveBuffers {
     values: Vec<Complex64>,
     /// The same in two parts.
     parts: [Vec<f64>; 2],
-    /// One row of the product.
-    row: [Vec<f64>; 2],
     scratch: Vec<Complex64>,
 }
 
@@ -104,7 +102,6 @@ impl TunedWaves {
         WaveBuffers {
             values: vec![Complex64::default(); self.size()],
             parts: [vec![0.0; self.size()], vec![0.0; self.size()]],
-            row: [vec![0.0; self.sectors], vec![0.0; self.sectors]],
             scratch: vec![
                 Complex64::default();
                 scratch.max(self.inverse.get_inplace_scratch_len())
@@ -128,20 +125,20 @@ impl TunedWaves {
     ) -> Option<WaveTable> {
         let (n, sectors) = (self.rows, self.sectors);
         let mut all = WaveTable::filled(0.0, n * n * sectors);
-        let mut lu = LuWorkspace::new(n);
+        let mut system = SmallComplex::new(n, n);
         for h in 0..sectors {
             let of = |i: usize, j: usize| receptance.at((i * n + j) * sectors + h);
-            for (at, entry) in lu.matrix_mut().iter_mut().enumerate() {
-                let (j, i) = (at / n, at % n);
-                *entry = (0..n).map(|l| of(i, l) * g[l * n + j]).sum();
-                if i == j {
-                    *entry += 1.0;
-                }
+            for (i, j) in (0..n * n).map(|at| (at / n, at % n)) {
+                let product: Complex64 = (0..n).map(|l| of(i, l) * g[l * n + j]).sum();
+                let own = Complex64::from(if i == j { 1.0 } else { 0.0 });
+                system.set(i, j, own + product);
+                system.set_right(i, j, own);
             }
-            let inverse = inverse(&mut lu)?;
-            for (at, entry) in inverse.iter().enumerate() {
-                let (j, i) = (at / n, at % n);
-                all.set((i * n + j) * sectors + h, *entry);
+            if !system.solve() {
+                return None;
+            }
+            for (i, j) in (0..n * n).map(|at| (at / n, at % n)) {
+                all.set((i * n + j) * sectors + h, system.solution(i, j));
             }
         }
         Some(all)
@@ -161,7 +158,6 @@ impl TunedWaves {
         let WaveBuffers {
             values,
             parts: [re, im],
-            row: [row_re, row_im],
             scratch,
         } = buffers;
         for (row, values) in values.chunks_exact_mut(sectors).enumerate() {
@@ -178,7 +174,6 @@ impl TunedWaves {
             table,
             sectors,
             parts: [re, im],
-            row: [row_re, row_im],
             into: values,
         });
         self.inverse.process_with_scratch(values, scratch);
@@ -224,21 +219,18 @@ impl TunedWaves {
             k_omega,
             sums: [&mut free_re, &mut free_im],
         });
-        let free = |i: usize, j: usize| Complex64::new(free_re[j * n + i], free_im[j * n + i]);
-        let mut lu = LuWorkspace::new(n);
-        for (at, entry) in lu.matrix_mut().iter_mut().enumerate() {
-            let (j, i) = (at / n, at % n);
-            *entry = free(i, j) * self.springs[j];
-            if i == j {
-                *entry += 1.0;
-            }
+        let mut system = SmallComplex::new(n, n);
+        for (i, j) in (0..n * n).map(|at| (at / n, at % n)) {
+            let free = Complex64::new(free_re[j * n + i], free_im[j * n + i]);
+            let own = if i == j { 1.0 } else { 0.0 };
+            system.set(i, j, free * self.springs[j] + own);
+            system.set_right(i, j, free);
         }
-        if !lu.factor() {
+        if !system.solve() {
             return None;
         }
-        let mut right = Matrix::from_fn(n, n, free);
-        lu.solve_columns(&mut right);
-        let stuck = right.as_slice().to_vec();
+        let entries = (0..n * n).map(|at| system.solution(at % n, at / n));
+        let stuck: Vec<Complex64> = entries.collect();
         stuck.iter().all(|r| r.is_finite()).then_some(stuck)
     }
 
@@ -273,17 +265,6 @@ impl TunedWaves {
         });
         Some(entries.collect())
     }
-}
-
-/// The inverse of the matrix in `lu`, column-major; none if it is singular.
-fn inverse(lu: &mut LuWorkspace<Complex64>) -> Option<Vec<Complex64>> {
-    if !lu.factor() {
-        return None;
-    }
-    let n = lu.dimension();
-    let mut inverse = Matrix::<Complex64>::identity(n);
-    lu.solve_columns(&mut inverse);
-    Some(inverse.as_slice().to_vec())
 }
 
 #[cfg(test)]

@@ -22,6 +22,9 @@ use super::wave_table::WaveTable;
 use super::{ContactInterface, HarmonicBlock, PairJacobian, TunedWaves};
 use crate::linalg::Complex64;
 
+/// What a step of the fundamental counts beside one of the waves.
+const FUNDAMENTAL_WEIGHT: f64 = 0.01;
+
 /// Units of the unknowns of waves.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct WaveScale {
@@ -83,6 +86,18 @@ impl HarmonicSystem {
     /// Whether harmonics are taken in the tuned wheel.
     pub(super) fn has_waves(&self) -> bool {
         self.blocks.iter().any(|block| block.waves.is_some())
+    }
+
+    /// What the entries of steps count where harmonics are taken in the tuned wheel; nothing where none is. The
+    /// fundamental follows the others by its whole derivative: iterates are combined by what they lack in the others.
+    pub(super) fn weights_of_steps(&self) -> Vec<f64> {
+        if !self.has_waves() {
+            return Vec::new();
+        }
+        let mut weights = vec![1.0; self.unknowns()];
+        let own = self.fundamental();
+        weights[self.start[own]..self.start[own + 1]].fill(FUNDAMENTAL_WEIGHT);
+        weights
     }
 
     pub(super) fn wave_workspace(&self) -> Option<WaveWorkspace> {

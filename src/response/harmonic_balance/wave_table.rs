@@ -8,6 +8,10 @@
 use super::structure::Structure;
 use crate::linalg::{Complex64, Loops};
 
+/// Waves, or contact rows, whose sums are taken at a time.
+const LANES: usize = 8;
+const HALF: usize = 4;
+
 /// A matrix of the contact rows of a sector for every wave: entry (i, j) of wave h at `(i rows + j) N + h`.
 #[derive(Debug, Clone, Default)]
 pub(super) struct WaveTable {
@@ -39,8 +43,6 @@ pub(super) struct Products<'a> {
     pub(super) sectors: usize,
     /// The values, real and imaginary parts.
     pub(super) parts: [&'a [f64]; 2],
-    /// Room for one row of the product.
-    pub(super) row: [&'a mut [f64]; 2],
     pub(super) into: &'a mut [Complex64],
 }
 
@@ -49,36 +51,41 @@ impl Loops for Products<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self {
-            table,
-            sectors,
-            parts: [re, im],
-            row: [row_re, row_im],
-            into,
-        } = self;
-        let width = re.len();
-        let rows = into
-            .chunks_exact_mut(sectors)
-            .zip(table.re.chunks_exact(width))
-            .zip(table.im.chunks_exact(width));
-        for ((product, table_re), table_im) in rows {
-            row_re.fill(0.0);
-            row_im.fill(0.0);
-            let table = table_re
-                .chunks_exact(sectors)
-                .zip(table_im.chunks_exact(sectors));
-            let values = re.chunks_exact(sectors).zip(im.chunks_exact(sectors));
-            for ((r_re, r_im), (v_re, v_im)) in table.zip(values) {
-                for h in 0..sectors {
-                    row_re[h] += r_re[h] * v_re[h] - r_im[h] * v_im[h];
-                    row_im[h] += r_re[h] * v_im[h] + r_im[h] * v_re[h];
-                }
+        let width = self.parts[0].len();
+        let rows = self.into.chunks_exact_mut(self.sectors);
+        let table = [&self.table.re, &self.table.im].map(|part| part.chunks_exact(width));
+        let [table_re, table_im] = table;
+        for (product, row) in rows.zip(table_re.zip(table_im)) {
+            let (blocks, rest) = product.as_chunks_mut::<LANES>();
+            let done = LANES * blocks.len();
+            for (block, product) in blocks.iter_mut().enumerate() {
+                *product = waves_from(LANES * block, row.into(), self.parts, self.sectors);
             }
-            for (product, (re, im)) in product.iter_mut().zip(row_re.iter().zip(&*row_im)) {
-                *product = Complex64::new(*re, *im);
+            for (wave, product) in rest.iter_mut().enumerate() {
+                [*product] = waves_from(done + wave, row.into(), self.parts, self.sectors);
             }
         }
     }
+}
+
+/// Products of one row of a table in `COUNT` waves from `first` on.
+#[inline(always)]
+fn waves_from<const COUNT: usize>(
+    first: usize,
+    [row_re, row_im]: [&[f64]; 2],
+    [re, im]: [&[f64]; 2],
+    sectors: usize,
+) -> [Complex64; COUNT] {
+    let (mut sum_re, mut sum_im) = ([0.0; COUNT], [0.0; COUNT]);
+    for from in (first..row_re.len()).step_by(sectors) {
+        let own = [row_re, row_im, re, im].map(|part| &part[from..from + COUNT]);
+        let [row_re, row_im, re, im] = own;
+        for wave in 0..COUNT {
+            sum_re[wave] += row_re[wave] * re[wave] - row_im[wave] * im[wave];
+            sum_im[wave] += row_re[wave] * im[wave] + row_im[wave] * re[wave];
+        }
+    }
+    std::array::from_fn(|wave| Complex64::new(sum_re[wave], sum_im[wave]))
 }
 
 /// `sum_m c_m c_m^H / (lambda_m - (k omega)^2 + i D_m)`, real and imaginary parts, column-major.
@@ -93,29 +100,69 @@ impl Loops for ModalSums<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self {
-            wave,
-            k_omega,
-            sums: [sum_re, sum_im],
-        } = self;
-        let contact = wave.contact();
+        let contact = self.wave.contact();
         let n = contact.real.rows();
-        let none = vec![0.0; n];
-        for (mode, lambda) in wave.eigenvalues().iter().enumerate() {
-            let damping = wave.damping_diagonal(mode, k_omega);
-            let modal = Complex64::new(lambda - k_omega * k_omega, damping).inv();
-            let re = contact.real.column(mode);
-            let imaginary = contact.imaginary.as_ref();
-            let im = imaginary.map_or(&*none, |imaginary| imaginary.column(mode));
-            for j in 0..n {
-                let w = Complex64::new(re[j], -im[j]) * modal;
-                let to_re = &mut sum_re[j * n..][..n];
-                let to_im = &mut sum_im[j * n..][..n];
-                for i in 0..n {
-                    to_re[i] += re[i] * w.re - im[i] * w.im;
-                    to_im[i] += re[i] * w.im + im[i] * w.re;
-                }
+        let re = contact.real.as_slice();
+        let none = vec![0.0; re.len()];
+        let imaginary = contact.imaginary.as_ref();
+        let im = imaginary.map_or(&*none, |imaginary| imaginary.as_slice());
+        let modal = |(mode, lambda): (usize, &f64)| {
+            let damping = self.wave.damping_diagonal(mode, self.k_omega);
+            Complex64::new(lambda - self.k_omega * self.k_omega, damping).inv()
+        };
+        let modal: Vec<Complex64> = self
+            .wave
+            .eigenvalues()
+            .iter()
+            .enumerate()
+            .map(modal)
+            .collect();
+        let mut weights = vec![Complex64::default(); modal.len()];
+        let [sum_re, sum_im] = self.sums;
+        for j in 0..n {
+            for (mode, (weight, modal)) in weights.iter_mut().zip(&modal).enumerate() {
+                let at = mode * n + j;
+                *weight = Complex64::new(re[at], -im[at]) * modal;
             }
+            let column = [&mut sum_re[j * n..][..n], &mut sum_im[j * n..][..n]];
+            weighted_rows([re, im], &weights, column);
         }
     }
+}
+
+/// Sums over modes of `c_m w_m` for all rows, in blocks whose sums stay in registers.
+#[inline(always)]
+fn weighted_rows([re, im]: [&[f64]; 2], weights: &[Complex64], [sum_re, sum_im]: [&mut [f64]; 2]) {
+    let n = sum_re.len();
+    let mut row = 0;
+    while row < n {
+        let sums = [&mut sum_re[row..], &mut sum_im[row..]];
+        row += match n - row {
+            LANES.. => weighted::<LANES>(row, n, [re, im], weights, sums),
+            HALF..LANES => weighted::<HALF>(row, n, [re, im], weights, sums),
+            _ => weighted::<1>(row, n, [re, im], weights, sums),
+        };
+    }
+}
+
+/// The same for `COUNT` rows from `first` on; returns how many that are.
+#[inline(always)]
+fn weighted<const COUNT: usize>(
+    first: usize,
+    n: usize,
+    [re, im]: [&[f64]; 2],
+    weights: &[Complex64],
+    [to_re, to_im]: [&mut [f64]; 2],
+) -> usize {
+    let (mut sum_re, mut sum_im) = ([0.0; COUNT], [0.0; COUNT]);
+    for (mode, w) in weights.iter().enumerate() {
+        let [re, im] = [re, im].map(|part| &part[mode * n + first..][..COUNT]);
+        for row in 0..COUNT {
+            sum_re[row] += re[row] * w.re - im[row] * w.im;
+            sum_im[row] += re[row] * w.im + im[row] * w.re;
+        }
+    }
+    to_re[..COUNT].copy_from_slice(&sum_re);
+    to_im[..COUNT].copy_from_slice(&sum_im);
+    COUNT
 }
