@@ -194,7 +194,7 @@ mod tests {
                 Some(weights) => plain.weighted(weights),
                 None => plain,
             };
-            let (mut x, mut next) = (vec![0.0; 2], vec![0.0; 2]);
+            let (mut x, mut next) = (vec![0.0_f64; 2], vec![0.0_f64; 2]);
             acceleration.begin();
             for count in 1.. {
                 let step = [(x[1] - 1.0) * 100.0 - x[0], 1.0 - 1.8 * x[1]];

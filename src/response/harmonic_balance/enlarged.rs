@@ -349,7 +349,9 @@ impl Enlargement<'_> {
             if !step.iter().all(|s| s.is_finite()) {
                 return None;
             }
-            step.iter_mut().for_each(|s| *s = -*s);
+            for s in &mut step {
+                *s = -*s;
+            }
             acceleration.next(&iterate, &step, &mut next);
             std::mem::swap(&mut iterate, &mut next);
             let change: Vec<f64> = iterate.iter().zip(x).map(|(a, b)| a - b).collect();

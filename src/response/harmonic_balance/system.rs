@@ -413,7 +413,7 @@ impl HarmonicSystem {
                 self.interface.pair(pair),
                 &workspace.pair_input,
                 &mut workspace.pair_output,
-                derivative.then_some(&mut workspace.jacobians[pair]),
+                workspace.jacobians.get_mut(pair).filter(|_| derivative),
             );
             slipping += usize::from(state.slipping);
             separated += usize::from(state.separated);
