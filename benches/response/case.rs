@@ -50,7 +50,8 @@ impl Case {
         Self::of(name, study, patterns)
     }
 
-    fn of(name: &'static str, study: Study, patterns: u32) -> Self {
+    /// A study as it is given; its basis is a fixed one.
+    pub fn of(name: &'static str, study: Study, patterns: u32) -> Self {
         let model = load_sector_model(&study).expect("a valid model");
         let contact = study.contact.as_ref().expect("a study with contact");
         let tangential = contact.tangential_stiffness_n_per_m;

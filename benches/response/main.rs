@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 
 use blisk::linalg::{LuWorkspace, Matrix};
 use blisk::population::monte_carlo::Scenario;
-use blisk::response::forced_response::{ContactCondition, Work};
-use blisk::study::{Progress, ReducedEngineSource, RunRequest, run};
+use blisk::response::forced_response::{ContactCondition, Harmonics, Work};
+use blisk::study::{Progress, ReducedEngineSource, RunRequest, Study, run};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 use case::{Case, study};
@@ -146,37 +146,64 @@ fn peaks(_: &mut Criterion) {
     for (name, patterns) in CASES {
         let case = Case::new(name, patterns);
         println!("\n{name}: one peak on one thread, mean over {patterns} pattern(s)");
-        println!("load N   time ms   solves   iterations   factorisations   retries   status");
-        let excited: Vec<_> = case
-            .patterns
-            .iter()
-            .map(|p| case.excited(p, case.harmonics()))
-            .collect();
-        for load in case.loads() {
-            let condition = ContactCondition::Full {
-                normal_load_n: load,
-            };
-            let (time, found) = smallest(2, || {
-                let each = case.patterns.iter().zip(&excited);
-                each.map(|(pattern, excited)| case.peak(pattern, excited, condition))
-                    .collect::<Vec<_>>()
-            });
-            let mean = |count: fn(&Work) -> u64| {
-                let sum: u64 = found.iter().map(|peak| count(&peak.work)).sum();
-                sum as f64 / found.len() as f64
-            };
-            let statuses: Vec<&str> = found.iter().map(|peak| peak.status.name()).collect();
-            println!(
-                "{load:6} {:9.1} {:8.1} {:12.1} {:16.1} {:9.1}   {}",
-                1e3 * time.as_secs_f64() / found.len() as f64,
-                mean(|work| work.nonlinear_solves),
-                mean(|work| work.newton_iterations),
-                mean(|work| work.factorisations),
-                mean(|work| work.retries),
-                statuses.join(" ")
-            );
-        }
+        peaks_of(&case);
         rows_of_a_pattern(&case);
+    }
+    for (error, modes, samples, tolerance) in [
+        ("0.3 %", [2, 1, 1], 32, 3e-3),
+        ("0.1 %", [3, 2, 3], 64, 1e-3),
+    ] {
+        let case = Case::of("quickstart", at_error(modes, samples, tolerance), 3);
+        println!("\nquickstart, settings for an error of {error} (docs/accuracy.md), 3 patterns");
+        peaks_of(&case);
+    }
+}
+
+/// The quickstart with settings of docs/accuracy.md; its basis, with these modes; harmonics as many as at the load that needs most.
+fn at_error(modes: [usize; 3], samples: usize, peak_tolerance: f64) -> Study {
+    let mut study = study("quickstart");
+    let [stick, partial, slide] = modes.map(Some);
+    study.reduction.stick_modes = stick;
+    study.reduction.partial_modes = partial;
+    study.reduction.slide_modes = slide;
+    study.solver.harmonics = Harmonics::Set((1..=10).collect());
+    study.solver.samples_per_period = samples;
+    study.solver.residual_tolerance = 1e-4;
+    study.solver.peak_tolerance = peak_tolerance;
+    study
+}
+
+/// Time and counts of the peaks of a case under every load.
+fn peaks_of(case: &Case) {
+    println!("load N   time ms   solves   iterations   factorisations   retries   status");
+    let excited: Vec<_> = case
+        .patterns
+        .iter()
+        .map(|p| case.excited(p, case.harmonics()))
+        .collect();
+    for load in case.loads() {
+        let condition = ContactCondition::Full {
+            normal_load_n: load,
+        };
+        let (time, found) = smallest(2, || {
+            let each = case.patterns.iter().zip(&excited);
+            each.map(|(pattern, excited)| case.peak(pattern, excited, condition))
+                .collect::<Vec<_>>()
+        });
+        let mean = |count: fn(&Work) -> u64| {
+            let sum: u64 = found.iter().map(|peak| count(&peak.work)).sum();
+            sum as f64 / found.len() as f64
+        };
+        let statuses: Vec<&str> = found.iter().map(|peak| peak.status.name()).collect();
+        println!(
+            "{load:6} {:9.1} {:8.1} {:12.1} {:16.1} {:9.1}   {}",
+            1e3 * time.as_secs_f64() / found.len() as f64,
+            mean(|work| work.nonlinear_solves),
+            mean(|work| work.newton_iterations),
+            mean(|work| work.factorisations),
+            mean(|work| work.retries),
+            statuses.join(" ")
+        );
     }
 }
 
