@@ -29,7 +29,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 16] = [
+const NOT_RUN: [(&str, &str); 17] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -56,6 +56,7 @@ const NOT_RUN: [(&str, &str); 16] = [
         "python3 benches/peers/run.py",
         "needs the other programs that it measures",
     ),
+    ("python3 benches/scaling/run.py", "measures for minutes"),
     ("gmsh", "is no part of a clone"),
     ("ccx", "is no part of a clone"),
 ];
