@@ -1,4 +1,5 @@
-//! Linear algebra of the project: a thin, named layer over faer, the only place that names it.
+//! Linear algebra of the project: a thin, named layer over faer, the only place that names it, and loops that faer has
+//! no fast form of.
 
 mod dense;
 mod lu;
@@ -15,7 +16,7 @@ pub use dense::{
 pub use lu::LuWorkspace;
 pub use matrix::{
     Matrix, Scalar, add_times, add_times_vector, add_transpose_times, add_transpose_times_vector,
-    set_times,
+    dot, set_times,
 };
 pub use rustfft::num_complex::Complex64;
 pub use small_complex::SmallComplex;

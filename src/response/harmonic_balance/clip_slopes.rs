@@ -13,8 +13,8 @@
 
 use std::ops::Range;
 
-use super::transform::dot;
 use super::{HarmonicTransform, PairJacobian};
+use crate::linalg::dot;
 use crate::response::friction::PairParameters;
 
 /// Coefficients by which the derivatives of coefficient `c` are wanted: all `coupled` ones, or those of its

@@ -23,7 +23,7 @@ use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 use thiserror::Error;
 
-use crate::linalg::add_times;
+use crate::linalg::{add_times, dot};
 
 /// Number of coefficients from which on the FFT is the faster one for a batch of three channels:
 /// measured crossing at 6 for 128 samples and at 7 to 10 for 512.
@@ -426,20 +426,4 @@ fn largest(values: &[f64]) -> f64 {
         }
     }
     most.iter().chain(rest).copied().fold(0.0, f64::max)
-}
-
-/// Sum of `a_j b_j` in eight partial sums, which a compiler can vectorise; the order of summation
-/// is fixed.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    const LANES: usize = 8;
-    let (a, a_rest) = a.as_chunks::<LANES>();
-    let (b, b_rest) = b.as_chunks::<LANES>();
-    let mut sums = [0.0; LANES];
-    for (a, b) in a.iter().zip(b) {
-        for lane in 0..LANES {
-            sums[lane] += a[lane] * b[lane];
-        }
-    }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
-    sums.into_iter().sum::<f64>() + rest
 }

@@ -1,6 +1,6 @@
 //! Sums over long vectors with several columns of a matrix at a time, compiled for vectors.
 //!
-//! Every scalar product is summed in the order of [`super::transform::dot`], and every entry takes its columns one after
+//! Every scalar product is summed in the order of [`crate::linalg::dot`], and every entry takes its columns one after
 //! the other: the numbers are those of plain loops, column by column.
 
 #![expect(
@@ -162,9 +162,8 @@ fn take_off(vector: &mut [f64], share: f64, column: &[f64], next: &[f64]) -> f64
 
 #[cfg(test)]
 mod tests {
-    use super::super::transform::dot;
     use super::*;
-    use crate::linalg::vectorized;
+    use crate::linalg::{dot, vectorized};
 
     /// Of no round length, so that every remainder occurs.
     const LENGTH: usize = 29;
