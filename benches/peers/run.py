@@ -80,6 +80,7 @@ def main():
     line("curve of 121 points", peer["curve_s"], own["curve_ms"])
     line("the same, whole process `blisk response`", peer["curve_s"], 1e3 * process)
     line("peak to 0.1 %", peer["peak_s"], own["peak_ms"])
+    line(f"the same, pyHarm by a curve of {peer['swept_points']} points", peer["swept_s"], own["peak_ms"])
     line("peak with blisk's error columns", peer["peak_s"], own["row_ms"])
     print(f"\nbar of the curve: {CURVE_BAR_MS} ms")
     print(f"worst blade: pyHarm {peer['curve_difference']:.1e}, blisk {own['curve_difference']:.1e} from the reference")

@@ -11,7 +11,7 @@ use blisk::response::forced_response::{
 };
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{
-    ContactInterface, HarmonicSystem, HarmonicTransform, LARGEST_WHOLE_JACOBIAN, TunedWaves,
+    ContactInterface, HarmonicSystem, HarmonicTransform, TunedWaves,
 };
 use blisk::response::mistuning::{ContactFactors, Deviations, Pattern, StructuralModes};
 use blisk::study::{Study, load_sector_model, pattern_source};
@@ -183,10 +183,13 @@ impl Case {
         let window = mistuned_window(span, pattern.largest_deviation(), FrequencyBand::Auto);
         let (options, settings) = (&self.study.solver, &self.settings);
         let tolerance = options.peak_tolerance;
-        let unknowns = 2 * self.harmonics.len() * self.solver.basis().size();
-        match settings.search() {
-            Some(search) if self.waves.is_some() || unknowns > LARGEST_WHOLE_JACOBIAN => {
-                let coarse = self.excited(pattern, search.harmonics());
+        let search = match self.waves {
+            Some(_) => settings.search(),
+            None => self.solver.search(settings),
+        };
+        match search {
+            Some(search) => {
+                let coarse = excited.in_harmonics(search.harmonics());
                 let search = Search {
                     excited: &coarse,
                     settings: search,

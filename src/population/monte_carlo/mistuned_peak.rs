@@ -54,7 +54,8 @@ impl RowSolver {
     }
 
     /// Settings of a search with fewer harmonics, where rows with `points` have one.
-    pub(super) fn search<'a>(&self, points: &'a PointSettings) -> Option<&'a PointSettings> {
+    #[must_use]
+    pub fn search<'a>(&self, points: &'a PointSettings) -> Option<&'a PointSettings> {
         let coordinates: usize = 2 * points.harmonics().len() * self.basis().size();
         let pays = self.settings.solver.search_harmonics != SearchHarmonics::Auto
             || coordinates > LARGEST_WHOLE_JACOBIAN;

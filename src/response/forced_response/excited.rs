@@ -254,6 +254,16 @@ impl Excited {
         self
     }
 
+    /// The same in some of its harmonics, 1 among them.
+    #[must_use]
+    pub fn in_harmonics(&self, harmonics: &[u32]) -> Self {
+        let mut own = self.clone();
+        own.blocks
+            .retain(|block| harmonics.contains(&block.harmonic));
+        own.fundamental = None;
+        own
+    }
+
     /// The same tuned wheel with the harmonics other than 1 of `other`, which has more modes.
     #[must_use]
     pub fn with_harmonics_of(mut self, other: Self) -> Self {

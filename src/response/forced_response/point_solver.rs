@@ -310,6 +310,11 @@ impl<'a> PointSolver<'a> {
     }
 
     pub(super) fn stuck_start(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
+        if let Some((system, workspace)) = &mut self.nonlinear
+            && let Some(stuck) = workspace.stuck_response(system, TAU * frequency_hz)
+        {
+            return Ok(stuck);
+        }
         let stuck = self.linear_at(frequency_hz)?;
         self.start_from(&stuck)
     }

@@ -51,7 +51,7 @@ impl HarmonicSystem {
 pub(super) struct CondensedJacobian {
     /// Matrices of the linear parts at hand.
     of: Option<(Arc<Structure>, Arc<ContactStiffnessMatrix>)>,
-    linear: Vec<LinearFactors>,
+    pub(super) linear: Vec<LinearFactors>,
     /// Contact rows that have a correction.
     rows: Vec<usize>,
     couplings: Vec<Coupling>,
@@ -59,9 +59,11 @@ pub(super) struct CondensedJacobian {
     slopes: Vec<f64>,
     /// Of `I + G' R`, row after row of contact, in each coefficient after coefficient.
     factors: Option<LuWorkspace<f64>>,
-    motion: Vec<f64>,
+    pub(super) motion: Vec<f64>,
     forces: Vec<f64>,
-    spread: Vec<f64>,
+    room: Vec<f64>,
+    /// Residual that a motion of every row amounts to at most, 1/m.
+    pub(super) stiffness: Vec<f64>,
 }
 
 /// Dependence of the correction at a contact row on the motion at one.
@@ -134,8 +136,8 @@ impl CondensedJacobian {
         factors.factor()
     }
 
-    /// Factors S and finds A and R, unless those at hand are the same.
-    fn factor_linear(&mut self, system: &HarmonicSystem, omega: f64) -> bool {
+    /// Factors S and finds A and R, unless those at hand are the same; false if S is singular.
+    pub(super) fn factor_linear(&mut self, system: &HarmonicSystem, omega: f64) -> bool {
         let block = &system.blocks()[0];
         let same = self.of.as_ref().is_some_and(|(structure, stuck)| {
             Arc::ptr_eq(structure, &block.structure) && Arc::ptr_eq(stuck, &block.stuck)
@@ -146,11 +148,12 @@ impl CondensedJacobian {
                 .map(|(block, &coefficient)| LinearFactors::new(block, coefficient))
                 .collect();
             self.of = Some((Arc::clone(&block.structure), Arc::clone(&block.stuck)));
+            self.stiffness = super::contact_motions::residual_of_motion(system);
         }
         let parts = self.linear.iter_mut().zip(system.blocks());
         parts.fold(true, |regular, (part, block)| {
             let at_hand = part.at.is_some_and(|at| at.total_cmp(&omega).is_eq());
-            (at_hand || part.factor(block, omega)) && regular
+            (at_hand || part.factor(block, omega, system.force())) && regular
         })
     }
 
@@ -198,9 +201,6 @@ impl CondensedJacobian {
             part.solve(own);
             rest = beyond;
         }
-        let Some(factors) = &mut self.factors else {
-            return;
-        };
         let columns = residual.len() / n;
         self.motion.clear();
         self.motion.resize(m * columns, 0.0);
@@ -210,6 +210,19 @@ impl CondensedJacobian {
             residual,
             (m, columns, n),
         );
+        self.answer(columns);
+        self.each_harmonic(residual, &self.motion, |part, residual, forces| {
+            part.add_attached(residual, -1.0, forces);
+        });
+    }
+
+    /// y of `motion`, into its place: at all rows, coefficient after coefficient.
+    pub(super) fn answer(&mut self, columns: usize) {
+        let m = self.motion.len() / columns;
+        let Some(factors) = &mut self.factors else {
+            self.motion.fill(0.0);
+            return;
+        };
         self.forces.clear();
         self.forces.resize(factors.dimension(), 0.0);
         let slopes = self.slopes.chunks_exact(columns * columns);
@@ -222,19 +235,29 @@ impl CondensedJacobian {
                 }
             }
         }
-        factors.solve(&mut self.forces);
-        // From now on in the place of the motion: -y at all rows, coefficient after coefficient.
+        factors.solve_small(&mut self.forces, &mut self.room);
         self.motion.fill(0.0);
         for (&row, forces) in self.rows.iter().zip(self.forces.chunks_exact(columns)) {
             for (c, force) in forces.iter().enumerate() {
-                self.motion[c * m + row] = -force;
+                self.motion[c * m + row] = *force;
             }
         }
-        let mut rest = residual;
+    }
+
+    /// Parts of `x` and of `forces` that belong to the same harmonic.
+    pub(super) fn each_harmonic(
+        &self,
+        x: &mut [f64],
+        forces: &[f64],
+        mut visit: impl FnMut(&LinearFactors, &mut [f64], &[f64]),
+    ) {
+        let coefficients: usize = self.linear.iter().map(|part| part.parts).sum();
+        let (width, rows) = (x.len() / coefficients, forces.len() / coefficients);
+        let mut rest = x;
         for part in &self.linear {
-            let (own, beyond) = rest.split_at_mut(part.parts * n);
-            let forces = &self.motion[part.coefficient * m..][..part.parts * m];
-            part.add_attached(own, forces, &mut self.spread);
+            let (own, beyond) = rest.split_at_mut(part.parts * width);
+            let forces = &forces[part.coefficient * rows..][..part.parts * rows];
+            visit(part, own, forces);
             rest = beyond;
         }
     }

@@ -92,6 +92,16 @@ impl KeptJacobian {
         }
     }
 
+    /// The factors by contact forces and what they are made of.
+    pub(super) fn condensed(&mut self) -> &mut CondensedJacobian {
+        &mut self.condensed
+    }
+
+    /// [`Self::condensed`], to look at.
+    pub(super) fn condensed_at_hand(&self) -> &CondensedJacobian {
+        &self.condensed
+    }
+
     /// Lets go of the factors at hand.
     pub(super) fn forget(&mut self) {
         self.held = Held::Nothing;
@@ -100,6 +110,11 @@ impl KeptJacobian {
     /// Whether there are factors, of this or of an earlier point.
     pub(super) fn is_factored(&self) -> bool {
         self.held != Held::Nothing
+    }
+
+    /// Whether they are those by the forces at the contact.
+    pub(super) fn is_condensed(&self) -> bool {
+        self.held == Held::Condensed
     }
 
     /// Factors the whole Jacobian at the point last given to [`HarmonicSystem::residual`] with derivative; false if
@@ -129,6 +144,16 @@ impl KeptJacobian {
         if !system.condenses() {
             return self.factor_whole(system, omega, workspace);
         }
+        self.factor_condensed(system, omega, workspace)
+    }
+
+    /// The same by the forces at the contact.
+    pub(super) fn factor_condensed(
+        &mut self,
+        system: &HarmonicSystem,
+        omega: f64,
+        workspace: &SystemWorkspace,
+    ) -> bool {
         let regular = self.condensed.factor(system, omega, workspace);
         self.hold(Held::Condensed, regular)
     }

@@ -1,7 +1,8 @@
 //! The linear part of one harmonic at one frequency, factored, and what it makes of forces at the contact rows.
 
 use super::HarmonicBlock;
-use crate::linalg::{Complex64, LuWorkspace, Matrix, add_times};
+use super::vector_sums::ComplexProduct;
+use crate::linalg::{Complex64, LuWorkspace, Matrix, add_times, add_times_vector, vectorized};
 
 /// `S_k`, `A_k` and `R_k` of one harmonic; real and imaginary parts column-major.
 pub(super) struct LinearFactors {
@@ -9,9 +10,13 @@ pub(super) struct LinearFactors {
     pub(super) at: Option<f64>,
     factors: LuWorkspace<Complex64>,
     /// A, `n_modes x rows`.
-    attachment: [Vec<f64>; 2],
+    pub(super) attachment: [Vec<f64>; 2],
     /// R, `rows x rows`.
     pub(super) receptance: [Vec<f64>; 2],
+    /// What the excitation does alone, unknowns of the harmonic.
+    pub(super) response: Vec<f64>,
+    /// Its motion at the contact rows.
+    pub(super) motion: Vec<f64>,
     /// Number of its first coefficient.
     pub(super) coefficient: usize,
     /// One for harmonic 0, else two.
@@ -24,19 +29,27 @@ impl LinearFactors {
     pub(super) fn new(block: &HarmonicBlock, coefficient: usize) -> Self {
         let contact = &block.structure.contact().real;
         let (m, n) = (contact.rows(), contact.columns());
+        let parts = if block.harmonic == 0 { 1 } else { 2 };
         Self {
             at: None,
             factors: LuWorkspace::new(n),
             attachment: [vec![0.0; n * m], vec![0.0; n * m]],
             receptance: [vec![0.0; m * m], vec![0.0; m * m]],
+            response: vec![0.0; parts * n],
+            motion: vec![0.0; parts * m],
             coefficient,
-            parts: if block.harmonic == 0 { 1 } else { 2 },
+            parts,
             right: vec![Complex64::default(); n],
         }
     }
 
-    /// False if `S_k` is singular.
-    pub(super) fn factor(&mut self, block: &HarmonicBlock, omega: f64) -> bool {
+    /// False if `S_k` is singular; `force` excites harmonic 1.
+    pub(super) fn factor(
+        &mut self,
+        block: &HarmonicBlock,
+        omega: f64,
+        force: &[Complex64],
+    ) -> bool {
         let structure = &block.structure;
         let contact = &structure.contact().real;
         let (m, n) = (contact.rows(), contact.columns());
@@ -66,6 +79,17 @@ impl LinearFactors {
             receptance.fill(0.0);
             add_times(receptance, contact.as_slice(), own, (m, m, n));
         }
+        if block.harmonic == 1 {
+            // By itself, so that it is the linear response to the last bit.
+            self.right.copy_from_slice(force);
+            self.factors.solve(&mut self.right);
+            for (mode, z) in self.right.iter().enumerate() {
+                (self.response[mode], self.response[n + mode]) = (z.re, z.im);
+            }
+            self.motion.fill(0.0);
+            let size = (m, 2, n);
+            add_times(&mut self.motion, contact.as_slice(), &self.response, size);
+        }
         self.at = Some(omega);
         true
     }
@@ -86,27 +110,28 @@ impl LinearFactors {
         }
     }
 
-    /// Adds `A_k forces`; both real parts, then imaginary ones where it is not harmonic 0.
-    pub(super) fn add_attached(&self, sum: &mut [f64], forces: &[f64], spread: &mut Vec<f64>) {
-        let n = self.right.len();
-        let m = forces.len() / self.parts;
-        let size = (n, self.parts, m);
-        add_times(sum, &self.attachment[0], forces, size);
-        if let ([sum_re, sum_im], 2) = (split(sum, n), self.parts) {
-            spread.clear();
-            spread.resize(2 * n, 0.0);
-            add_times(spread, &self.attachment[1], forces, size);
-            let (by_re, by_im) = spread.split_at(n);
-            for i in 0..n {
-                sum_re[i] -= by_im[i];
-                sum_im[i] += by_re[i];
-            }
-        }
+    /// Adds `factor A_k forces`; both real parts, then imaginary ones where it is not harmonic 0.
+    pub(super) fn add_attached(&self, sum: &mut [f64], factor: f64, forces: &[f64]) {
+        add_product(sum, factor, &self.attachment, forces, self.parts);
+    }
+
+    /// Adds `factor R_k forces`, as [`Self::add_attached`].
+    pub(super) fn add_motion(&self, sum: &mut [f64], factor: f64, forces: &[f64]) {
+        add_product(sum, factor, &self.receptance, forces, self.parts);
     }
 }
 
-/// `values` before and from `n` on.
-fn split(values: &mut [f64], n: usize) -> [&mut [f64]; 2] {
-    let (first, second) = values.split_at_mut(n);
-    [first, second]
+fn add_product(sum: &mut [f64], factor: f64, matrix: &[Vec<f64>; 2], x: &[f64], parts: usize) {
+    if parts == 1 {
+        add_times_vector(sum, factor, &matrix[0], x);
+        return;
+    }
+    let (half, rows) = (x.len() / 2, sum.len() / 2);
+    let (sum_re, sum_im) = sum.split_at_mut(rows);
+    vectorized(ComplexProduct {
+        sum: [sum_re, sum_im],
+        factor,
+        matrix: [&matrix[0], &matrix[1]],
+        x: [&x[..half], &x[half..]],
+    });
 }

@@ -1,10 +1,13 @@
 //! The linear part of the harmonic balance equation, on the stuck base.
+//!
+//! A wheel leaves the stuck springs to the contact forces: where contact is stiff and slips, these are far smaller than
+//! spring and correction by themselves, whose rounding would be left.
 
 use super::HarmonicSystem;
-use crate::linalg::{add_times, add_times_vector};
+use crate::linalg::add_times_vector;
 
 impl HarmonicSystem {
-    /// `(Z + C^H k_c C) x - f` of every harmonic.
+    /// `(Z + C^H k_c C) x - f` of every harmonic, `Z x - f` where all share the matrices of a wheel.
     pub(super) fn linear_part(
         &self,
         omega: f64,
@@ -13,11 +16,6 @@ impl HarmonicSystem {
         damped: &mut [f64],
     ) {
         residual.fill(0.0);
-        if self.shared {
-            let n = self.blocks[0].structure.size();
-            let stuck = self.blocks[0].stuck.real.as_slice();
-            add_times(residual, stuck, x, (n, x.len() / n.max(1), n));
-        }
         let fundamental = self.fundamental();
         for (index, block) in self.blocks.iter().enumerate() {
             let range = self.start[index]..self.start[index + 1];

@@ -77,6 +77,19 @@ pub struct NewtonOutcome {
     pub shares: ContactShares,
 }
 
+impl NewtonOutcome {
+    /// A solve that ended before its first step.
+    pub(super) fn failed(status: Status) -> Self {
+        Self {
+            status,
+            iterations: 0,
+            factorisations: 0,
+            residual: f64::INFINITY,
+            shares: ContactShares::default(),
+        }
+    }
+}
+
 /// An equation `R(u) = 0` as the iteration sees it.
 pub(super) trait Equation {
     /// Residual at `u` into `residual`; returns its norm relative to the excitation and the shares
@@ -222,6 +235,14 @@ pub fn solve(
     settled: Option<Settled<'_>>,
     workspace: &mut NewtonWorkspace,
 ) -> NewtonOutcome {
+    let mut before = None;
+    if workspace.moves_contact(system) {
+        let (outcome, done) = workspace.solve_motions(system, omega, x, bounds, settled);
+        if done {
+            return outcome;
+        }
+        before = Some(outcome);
+    }
     let same = |start: &Start| start.omega.total_cmp(&omega).is_eq() && start.x == *x;
     let mut equation = FixedFrequency {
         start: workspace.start.take().filter(same),
@@ -232,7 +253,12 @@ pub fn solve(
         steps: workspace.buffers.steps,
         settled,
     };
-    iterate(&mut equation, x, bounds, &mut workspace.buffers)
+    let mut outcome = iterate(&mut equation, x, bounds, &mut workspace.buffers);
+    if let Some(before) = before {
+        outcome.iterations += before.iterations;
+        outcome.factorisations += before.factorisations;
+    }
+    outcome
 }
 
 /// Solves `R(u) = 0` from the given `u`, in place.

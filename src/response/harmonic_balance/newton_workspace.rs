@@ -1,5 +1,6 @@
 //! Buffers of Newton's method for one system, and the choice of where it starts.
 
+use super::contact_motions::MotionStart;
 use super::kept_jacobian::KeptJacobian;
 use super::newton::{DEPTH, DEPTH_OF_ONCE, NewtonBuffers, Steps};
 use super::{ContactShares, HarmonicSystem, SystemWorkspace};
@@ -12,6 +13,9 @@ pub struct NewtonWorkspace {
     pub(super) buffers: NewtonBuffers,
     /// The start of the solve that follows, where several were compared.
     pub(super) start: Option<Start>,
+    /// The same in motions at the contact rows, and the buffers of steps of them.
+    pub(super) motion_start: Option<MotionStart>,
+    pub(super) motions: Option<NewtonBuffers>,
     /// What the entries of steps count where one Jacobian is to do.
     weights: Vec<f64>,
 }
@@ -35,6 +39,8 @@ impl NewtonWorkspace {
             jacobian: KeptJacobian::new(),
             buffers: NewtonBuffers::accelerated(n, DEPTH),
             start: None,
+            motion_start: None,
+            motions: None,
             weights: system.weights_of_steps(),
         }
     }
@@ -47,7 +53,10 @@ impl NewtonWorkspace {
         omega: f64,
         mut starts: Vec<Vec<f64>>,
     ) -> Option<Vec<f64>> {
-        self.start = None;
+        (self.start, self.motion_start) = (None, None);
+        if self.moves_contact(system) {
+            return self.of_least_motion(system, omega, starts);
+        }
         if let [_] = starts[..] {
             return starts.pop();
         }

@@ -44,6 +44,8 @@ pub struct ContactStiffnessMatrix {
     pub real: Matrix<f64>,
     /// Imaginary part, antisymmetric; none where the contact rows are real.
     pub imaginary: Option<Matrix<f64>>,
+    /// `diag(springs)`, N/m, a spring per contact row.
+    pub springs: Vec<f64>,
 }
 
 impl Structure {
@@ -243,6 +245,7 @@ impl Structure {
         ContactStiffnessMatrix {
             real: stiffness,
             imaginary,
+            springs: springs.iter().copied().cycle().take(real.rows()).collect(),
         }
     }
 

@@ -64,6 +64,8 @@ pub struct SystemWorkspace {
     /// Displacement and correction at the contact rows, coefficient after coefficient (`n_coefficients x rows`).
     pub(super) displacement: Vec<f64>,
     pub(super) correction: Vec<f64>,
+    /// Both together, see [`HarmonicSystem::residual`].
+    contact_force: Vec<f64>,
     pub(super) pair_input: Vec<f64>,
     pub(super) pair_output: Vec<f64>,
     /// Of every pair, once a derivative was asked for: they are large.
@@ -213,6 +215,7 @@ impl HarmonicSystem {
             waves: self.wave_workspace(),
             displacement: vec![0.0; coefficients * self.rows],
             correction: vec![0.0; coefficients * self.rows],
+            contact_force: vec![0.0; coefficients * self.rows],
             pair_input: vec![0.0; 3 * coefficients],
             pair_output: vec![0.0; 3 * coefficients],
             jacobians: Vec::new(),
@@ -259,7 +262,9 @@ impl HarmonicSystem {
         let shares = if self.rows > 0 {
             self.contact_displacement(x, &mut workspace.displacement);
             let shares = self.contact_correction(derivative, workspace);
-            if shares != ContactShares::default() {
+            if self.shared {
+                self.add_shared_force(workspace, residual);
+            } else if shares != ContactShares::default() {
                 self.add_contact_force(&workspace.correction, residual);
                 self.add_motion_of_waves(omega, workspace, residual);
             }
@@ -297,13 +302,6 @@ impl HarmonicSystem {
 
     /// `residual += C^H G`.
     fn add_contact_force(&self, correction: &[f64], residual: &mut [f64]) {
-        if self.shared {
-            let rows = &self.blocks[0].structure.contact().real;
-            let (n, count) = (rows.columns(), residual.len() / rows.columns().max(1));
-            let size = (n, count, rows.rows());
-            add_transpose_times(residual, n, 1.0, rows.as_slice(), correction, size);
-            return;
-        }
         if let Some(own) = self.real_fundamental() {
             let rows = &self.blocks[own].structure.contact().real;
             let n = rows.columns();
@@ -317,6 +315,26 @@ impl HarmonicSystem {
             let g = &correction[link.coefficient * self.rows..][..self.rows];
             add_transpose_times_vector(r, link.sign, link.rows.as_slice(), g);
         }
+    }
+
+    /// `residual += C^T (k_c d + G)`, where all harmonics have the same matrices.
+    fn add_shared_force(&self, workspace: &mut SystemWorkspace, residual: &mut [f64]) {
+        let block = &self.blocks[0];
+        let columns = workspace.displacement.chunks_exact(self.rows);
+        let corrections = workspace.correction.chunks_exact(self.rows);
+        let forces = workspace.contact_force.chunks_exact_mut(self.rows);
+        for ((force, displacement), correction) in forces.zip(columns).zip(corrections) {
+            let springs = block.stuck.springs.iter();
+            let both = displacement.iter().zip(correction);
+            for ((force, spring), (d, g)) in force.iter_mut().zip(springs).zip(both) {
+                *force = spring * d + g;
+            }
+        }
+        let rows = &block.structure.contact().real;
+        let (n, count) = (rows.columns(), residual.len() / rows.columns().max(1));
+        let forces = &workspace.contact_force;
+        let size = (n, count, self.rows);
+        add_transpose_times(residual, n, 1.0, rows.as_slice(), forces, size);
     }
 
     /// The fundamental, where all other harmonics are waves and its rows are real: a matrix with two right-hand sides.

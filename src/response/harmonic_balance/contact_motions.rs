@@ -1,0 +1,404 @@
+//! Newton's method for the motions at the contact rows of a wheel with few of them: nothing else is unknown.
+//!
+//! With `S`, `A` and `R` of [`super::condensed`] and the correction G of the contact forces,
+//!
+//! ```text
+//! x = S^-1 f - A G(d),    F(d) = d - C x = d - C S^-1 f + R G(d) = 0,
+//! (dF/dd)^-1 F = (I + R G')^-1 F = F - R y,    (I + G' R) y = G' F
+//! ```
+//!
+//! The residual of this x is `C^T (G(d - F) - G(d))`, which is not known before the contact is asked again. On the way
+//! it is taken for `|C^T| k_c |F|`; what is delivered has one step more and is judged by the residual of the whole
+//! equation.
+
+use super::condensed::CondensedJacobian;
+use super::kept_jacobian::KeptJacobian;
+use super::newton::{DEPTH, Equation, NewtonBuffers, NewtonOutcome, Settled, Steps, iterate};
+use super::newton_workspace::NewtonWorkspace;
+use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
+
+/// A start with what its choice has found.
+pub(super) struct MotionStart {
+    omega: f64,
+    /// In the unknowns of the whole equation.
+    x: Vec<f64>,
+    motion: Vec<f64>,
+    correction: Vec<f64>,
+    left: Vec<f64>,
+    norm: f64,
+    shares: ContactShares,
+}
+
+/// F at one frequency, whose linear part is at hand.
+struct ContactMotions<'a> {
+    system: &'a HarmonicSystem,
+    omega: f64,
+    workspace: &'a mut SystemWorkspace,
+    jacobian: &'a mut KeptJacobian,
+    settled: Option<Settled<'a>>,
+    start: Option<MotionStart>,
+    /// Contact forces `G - y` that the last step leads to, and those of the step before.
+    forces: [Vec<f64>; 2],
+}
+
+impl<'a> ContactMotions<'a> {
+    fn new(
+        system: &'a HarmonicSystem,
+        omega: f64,
+        workspace: &'a mut SystemWorkspace,
+        jacobian: &'a mut KeptJacobian,
+    ) -> Self {
+        Self {
+            system,
+            omega,
+            workspace,
+            jacobian,
+            settled: None,
+            start: None,
+            forces: [Vec::new(), Vec::new()],
+        }
+    }
+
+    /// F into `left`.
+    fn left(&mut self, motion: &[f64], left: &mut [f64], derivative: bool) -> (f64, ContactShares) {
+        self.workspace.displacement.copy_from_slice(motion);
+        let shares = self.system.contact_correction(derivative, self.workspace);
+        let condensed = self.jacobian.condensed();
+        condensed.motion_left(motion, &self.workspace.correction, left);
+        (condensed.force_of(left), shares)
+    }
+
+    /// x under these corrections of the contact forces.
+    fn response(&self, forces: &[f64]) -> Vec<f64> {
+        let mut x = vec![0.0; self.system.unknowns()];
+        self.jacobian.condensed_at_hand().response(forces, &mut x);
+        x
+    }
+}
+
+impl Equation for ContactMotions<'_> {
+    fn residual(&mut self, motion: &[f64], left: &mut [f64]) -> (f64, ContactShares) {
+        if let Some(start) = self.start.take() {
+            left.copy_from_slice(&start.left);
+            self.workspace.correction.clone_from(&start.correction);
+            return (start.norm, start.shares);
+        }
+        self.left(motion, left, false)
+    }
+
+    fn linearise(&mut self, motion: &[f64], left: &mut [f64]) -> bool {
+        HarmonicSystem::couple_all(self.workspace);
+        self.left(motion, left, true);
+        let (system, omega) = (self.system, self.omega);
+        self.jacobian
+            .factor_condensed(system, omega, self.workspace)
+    }
+
+    fn is_linearised(&self) -> bool {
+        self.jacobian.is_condensed()
+    }
+
+    fn step(&mut self, left: &mut [f64]) {
+        let condensed = self.jacobian.condensed();
+        condensed.solve_motion(left);
+        self.forces.swap(0, 1);
+        let forces = &mut self.forces[0];
+        forces.clear();
+        forces.extend_from_slice(&self.workspace.correction);
+        condensed.subtract_answer(forces);
+    }
+
+    /// Asked with x before the last step, and with the change that this step makes of it.
+    fn is_settled(&self, _motion: &[f64], _step: &[f64]) -> bool {
+        self.settled.is_some_and(|settled| {
+            let [after, before] = self.forces.each_ref().map(|forces| self.response(forces));
+            let step: Vec<f64> = after.iter().zip(&before).map(|(a, b)| a - b).collect();
+            settled(&before, &step)
+        })
+    }
+}
+
+impl CondensedJacobian {
+    /// `forces -= y` with the last y.
+    pub(super) fn subtract_answer(&self, forces: &mut [f64]) {
+        for (force, y) in forces.iter_mut().zip(&self.motion) {
+            *force -= y;
+        }
+    }
+
+    /// `x = S^-1 f`.
+    pub(super) fn stuck_response(&self, x: &mut [f64]) {
+        let mut rest = x;
+        for part in &self.linear {
+            let (own, beyond) = rest.split_at_mut(part.response.len());
+            own.copy_from_slice(&part.response);
+            rest = beyond;
+        }
+    }
+
+    /// `x = S^-1 f - A forces`.
+    pub(super) fn response(&self, forces: &[f64], x: &mut [f64]) {
+        self.each_harmonic(x, forces, |part, x, forces| {
+            x.copy_from_slice(&part.response);
+            part.add_attached(x, -1.0, forces);
+        });
+    }
+
+    /// `left = motion - C (S^-1 f - A forces)`.
+    pub(super) fn motion_left(&self, motion: &[f64], forces: &[f64], left: &mut [f64]) {
+        left.copy_from_slice(motion);
+        self.each_harmonic(left, forces, |part, left, forces| {
+            for (left, alone) in left.iter_mut().zip(&part.motion) {
+                *left -= alone;
+            }
+            part.add_motion(left, 1.0, forces);
+        });
+    }
+
+    /// The residual that a motion amounts to at most, relative to the excitation.
+    pub(super) fn force_of(&self, motion: &[f64]) -> f64 {
+        let columns = motion.chunks_exact(self.stiffness.len());
+        let forces = columns.flat_map(|column| column.iter().zip(&self.stiffness));
+        let square: f64 = forces.map(|(motion, k)| (k * motion).powi(2)).sum();
+        square.sqrt()
+    }
+
+    /// `(I + R G')^-1 left`, in place.
+    pub(super) fn solve_motion(&mut self, left: &mut [f64]) {
+        self.motion.clear();
+        self.motion.extend_from_slice(left);
+        self.answer(self.linear.iter().map(|part| part.parts).sum());
+        self.each_harmonic(left, &self.motion, |part, left, forces| {
+            part.add_motion(left, -1.0, forces);
+        });
+    }
+}
+
+/// What a motion of every contact row changes the residual by at most, relative to the excitation, 1/m: its correction
+/// changes by no more than its spring times the motion.
+pub(super) fn residual_of_motion(system: &HarmonicSystem) -> Vec<f64> {
+    let contact = &system.blocks()[0].structure.contact().real;
+    let square = contact.times(&contact.adjoint());
+    let sum = |i: usize| -> f64 { (0..square.columns()).map(|j| square[(i, j)].abs()).sum() };
+    // |C^T|^2, the largest eigenvalue of C C^T, is at most this.
+    let largest = (0..square.rows()).map(sum).fold(0.0, f64::max);
+    let springs = system.blocks()[0].stuck.springs.iter();
+    springs
+        .map(|spring| spring * largest.sqrt() / system.force_norm())
+        .collect()
+}
+
+impl NewtonWorkspace {
+    /// Whether the motions at the contact rows are what is solved for.
+    pub(super) fn moves_contact(&self, system: &HarmonicSystem) -> bool {
+        self.steps() == Steps::Renewed && system.condenses()
+    }
+
+    /// The response with every pair stuck, where what it takes is needed anyway; none where it is not, or is singular.
+    pub fn stuck_response(&mut self, system: &HarmonicSystem, omega: f64) -> Option<Vec<f64>> {
+        if !self.moves_contact(system) {
+            return None;
+        }
+        let condensed = self.jacobian.condensed();
+        let mut x = vec![0.0; system.unknowns()];
+        condensed.factor_linear(system, omega).then(|| {
+            condensed.stuck_response(&mut x);
+            x
+        })
+    }
+
+    /// The one of `starts` that leaves the least at `omega`; none if none is finite or the linear part is singular.
+    pub(super) fn of_least_motion(
+        &mut self,
+        system: &HarmonicSystem,
+        omega: f64,
+        starts: Vec<Vec<f64>>,
+    ) -> Option<Vec<f64>> {
+        if !self.jacobian.condensed().factor_linear(system, omega) {
+            return None;
+        }
+        let mut best: Option<MotionStart> = None;
+        for x in starts {
+            let start = self.motion_start(system, omega, x);
+            if best.as_ref().is_none_or(|best| start.norm < best.norm) {
+                best = Some(start);
+            }
+        }
+        let x = best.as_ref().map(|best| best.x.clone());
+        self.motion_start = best;
+        x
+    }
+
+    fn motion_start(&mut self, system: &HarmonicSystem, omega: f64, x: Vec<f64>) -> MotionStart {
+        let mut motion = vec![0.0; self.system.displacement.len()];
+        system.contact_displacement(&x, &mut motion);
+        let mut left = vec![0.0; motion.len()];
+        let (workspace, jacobian) = (&mut self.system, &mut self.jacobian);
+        let mut equation = ContactMotions::new(system, omega, workspace, jacobian);
+        let (norm, shares) = equation.left(&motion, &mut left, false);
+        MotionStart {
+            omega,
+            x,
+            motion,
+            correction: equation.workspace.correction.clone(),
+            left,
+            norm,
+            shares,
+        }
+    }
+
+    /// [`super::solve`] for the motions; x stays as it is unless they are found. The second is whether x is what was asked
+    /// for then: the residual of the whole equation may be above what it was taken for.
+    pub(super) fn solve_motions(
+        &mut self,
+        system: &HarmonicSystem,
+        omega: f64,
+        x: &mut Vec<f64>,
+        bounds: NewtonBounds,
+        settled: Option<Settled<'_>>,
+    ) -> (NewtonOutcome, bool) {
+        if !self.jacobian.condensed().factor_linear(system, omega) {
+            return (NewtonOutcome::failed(Status::SingularJacobian), false);
+        }
+        let same = |start: &MotionStart| start.omega.total_cmp(&omega).is_eq() && start.x == *x;
+        let start = match self.motion_start.take().filter(same) {
+            Some(start) => start,
+            None => self.motion_start(system, omega, x.clone()),
+        };
+        let mut motion = start.motion.clone();
+        let buffers = self.motions.get_or_insert_with(|| {
+            let mut buffers = NewtonBuffers::accelerated(motion.len(), DEPTH);
+            buffers.steps = Steps::Renewed;
+            buffers
+        });
+        let (workspace, jacobian) = (&mut self.system, &mut self.jacobian);
+        let mut equation = ContactMotions {
+            settled,
+            start: Some(start),
+            ..ContactMotions::new(system, omega, workspace, jacobian)
+        };
+        let mut outcome = iterate(&mut equation, &mut motion, bounds, buffers);
+        if outcome.status != Status::Ok {
+            return (outcome, false);
+        }
+        let [forces, _] = &equation.forces;
+        *x = if forces.is_empty() {
+            equation.response(&equation.workspace.correction)
+        } else {
+            equation.response(forces)
+        };
+        let ended_early = outcome.residual > bounds.residual_tolerance;
+        let residual = &mut self.buffers.residual;
+        let (norm, shares) = system.residual(omega, x, residual, false, &mut self.system);
+        (outcome.residual, outcome.shares) = (norm, shares);
+        let proven = ended_early || norm <= bounds.residual_tolerance;
+        (outcome, proven && shares.unclosed == 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::condensed::tests::{OMEGA, state, system};
+    use super::super::newton::solve;
+    use super::*;
+    use crate::response::friction::ContactLaw;
+
+    const TOLERANCE: f64 = 1e-10;
+
+    #[test]
+    fn motions_and_whole_unknowns_have_the_same_solution() {
+        for harmonics in [&[1][..], &[1, 3], &[0, 1, 2]] {
+            let system = system(ContactLaw::MacroSlip1d, harmonics, 64);
+            let bounds = NewtonBounds::with_tolerance(TOLERANCE);
+            let start = vec![0.0; system.unknowns()];
+            let mut whole = start.clone();
+            let mut plain = NewtonWorkspace::new(&system);
+            plain.set_steps(Steps::Plain);
+            let expected = solve(&system, OMEGA, &mut whole, bounds, None, &mut plain);
+            assert_eq!(expected.status, Status::Ok);
+            assert!(
+                (0.2..1.0).contains(&expected.shares.slipping),
+                "{expected:?}"
+            );
+            let mut workspace = NewtonWorkspace::new(&system);
+            let mut x = start;
+            let (found, done) = workspace.solve_motions(&system, OMEGA, &mut x, bounds, None);
+            assert!(done && found.status == Status::Ok, "{found:?}");
+            assert!(found.iterations > 0 && found.residual <= TOLERANCE);
+            assert_eq!(found.shares, expected.shares);
+            for (x, whole) in x.iter().zip(&whole) {
+                assert!((x - whole).abs() < 1e-8, "{harmonics:?}: {x} {whole}");
+            }
+        }
+    }
+
+    /// By central differences of F, and the size of F by the residual of the whole equation.
+    #[test]
+    fn a_step_of_the_motions_undoes_a_small_one_and_the_residual_is_no_larger_than_it_is_taken_for()
+    {
+        let system = system(ContactLaw::MacroSlip1d, &[1, 3], 64);
+        let mut workspace = NewtonWorkspace::new(&system);
+        let condensed = workspace.jacobian.condensed();
+        assert!(condensed.factor_linear(&system, OMEGA));
+        let start = workspace.motion_start(&system, OMEGA, state(&system));
+        let (own, jacobian) = (&mut workspace.system, &mut workspace.jacobian);
+        let mut equation = ContactMotions::new(&system, OMEGA, own, jacobian);
+        let mut motion = start.motion;
+        let mut left = vec![0.0; motion.len()];
+        assert!(equation.linearise(&motion, &mut left));
+        let mut x = equation.response(&equation.workspace.correction);
+        let taken_for = equation.jacobian.condensed().force_of(&left);
+        let change = 1e-7;
+        for at in 0..motion.len() {
+            let mut difference = vec![0.0; motion.len()];
+            for sign in [1.0, -1.0] {
+                motion[at] += sign * change;
+                equation.left(&motion, &mut left, false);
+                motion[at] -= sign * change;
+                for (sum, f) in difference.iter_mut().zip(&left) {
+                    *sum += sign * f / (2.0 * change);
+                }
+            }
+            equation.step(&mut difference);
+            for (i, step) in difference.iter().enumerate() {
+                let expected = f64::from(u8::from(i == at));
+                assert!((step - expected).abs() < 1e-6, "{at} {i}: {step}");
+            }
+        }
+        let mut residual = vec![0.0; x.len()];
+        let (norm, _) = system.residual(OMEGA, &x, &mut residual, false, equation.workspace);
+        assert!(
+            norm > 0.01 * taken_for && norm <= taken_for,
+            "{norm} {taken_for}"
+        );
+        // Where every pair sticks the response needs no step.
+        equation.jacobian.condensed().stuck_response(&mut x);
+        assert!(x.iter().any(|x| x.abs() > 0.1));
+    }
+
+    /// Steps that are settled before the residual is met are told by what they change in x.
+    #[test]
+    fn what_is_settled_is_asked_with_the_step_of_the_whole_unknowns() {
+        let system = system(ContactLaw::MacroSlip1d, &[1, 3], 64);
+        let bounds = NewtonBounds::with_tolerance(1e-12);
+        let mut exact = vec![0.0; system.unknowns()];
+        let mut workspace = NewtonWorkspace::new(&system);
+        let (outcome, _) = workspace.solve_motions(&system, OMEGA, &mut exact, bounds, None);
+        assert_eq!(outcome.status, Status::Ok);
+        let length = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        for share in [1e-1, 1e-3, 1e-5] {
+            let settled = |x: &[f64], step: &[f64]| length(step) <= share * length(x);
+            let mut x = vec![0.0; system.unknowns()];
+            let mut workspace = NewtonWorkspace::new(&system);
+            let (outcome, done) =
+                workspace.solve_motions(&system, OMEGA, &mut x, bounds, Some(&settled));
+            assert!(done && outcome.status == Status::Ok);
+            let missed: Vec<f64> = x.iter().zip(&exact).map(|(x, e)| x - e).collect();
+            assert!(
+                length(&missed) <= share * length(&exact),
+                "{share}: {:e}",
+                length(&missed)
+            );
+        }
+    }
+}
