@@ -64,7 +64,7 @@ pub struct SystemWorkspace {
     /// Displacement and correction at the contact rows, coefficient after coefficient (`n_coefficients x rows`).
     pub(super) displacement: Vec<f64>,
     pub(super) correction: Vec<f64>,
-    /// Both together, see [`HarmonicSystem::residual`].
+    /// `k_c d + G`, of both.
     contact_force: Vec<f64>,
     pub(super) pair_input: Vec<f64>,
     pub(super) pair_output: Vec<f64>,
@@ -300,7 +300,7 @@ impl HarmonicSystem {
         }
     }
 
-    /// `residual += C^H G`.
+    /// `residual += C^H G`, where harmonics have matrices of their own.
     fn add_contact_force(&self, correction: &[f64], residual: &mut [f64]) {
         if let Some(own) = self.real_fundamental() {
             let rows = &self.blocks[own].structure.contact().real;
