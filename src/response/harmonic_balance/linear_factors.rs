@@ -10,7 +10,7 @@ pub(super) struct LinearFactors {
     pub(super) at: Option<f64>,
     factors: LuWorkspace<Complex64>,
     /// A, `n_modes x rows`.
-    pub(super) attachment: [Vec<f64>; 2],
+    attachment: [Vec<f64>; 2],
     /// R, `rows x rows`.
     pub(super) receptance: [Vec<f64>; 2],
     /// What the excitation does alone, unknowns of the harmonic.
