@@ -1,23 +1,27 @@
 //! Linear algebra of the project: a thin, named layer over faer, the only place that names it, and loops that faer has
 //! no fast form of.
 
+mod complex_cholesky;
 mod dense;
 mod lu;
 mod matrix;
+mod row_blocks;
 mod small_complex;
 mod sparse;
 mod symmetric_sparse;
 mod vectors;
 
+pub use complex_cholesky::{ComplexCholesky, ComplexSymmetric};
 pub use dense::{
     NotPositiveDefinite, OrthonormalBasis, eigenvalues, hermitian_eigen, hermitian_pencil,
-    orthonormal_basis,
+    householder_qr, orthonormal_basis,
 };
 pub use lu::LuWorkspace;
 pub use matrix::{
     Matrix, Scalar, add_times, add_times_vector, add_transpose_times, add_transpose_times_vector,
     dot, set_times,
 };
+pub use row_blocks::{BlockVector, RowBlocks};
 pub use rustfft::num_complex::Complex64;
 pub use small_complex::SmallComplex;
 pub use sparse::{HermitianSparse, SparseFactor, lowest_modes};

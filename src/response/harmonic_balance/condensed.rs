@@ -143,9 +143,11 @@ impl CondensedJacobian {
             Arc::ptr_eq(structure, &block.structure) && Arc::ptr_eq(stuck, &block.stuck)
         });
         if !same {
+            let stuck = block.structure.contact_coordinates().stuck(&block.stuck);
+            let stuck = Arc::new(stuck);
             let places = system.blocks().iter().zip(&system.coefficient);
             self.linear = places
-                .map(|(block, &coefficient)| LinearFactors::new(block, coefficient))
+                .map(|(block, &at)| LinearFactors::new(block, Arc::clone(&stuck), at))
                 .collect();
             self.of = Some((Arc::clone(&block.structure), Arc::clone(&block.stuck)));
             self.stiffness = super::contact_motions::residual_of_motion(system);

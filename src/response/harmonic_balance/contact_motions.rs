@@ -15,7 +15,10 @@ use super::condensed::CondensedJacobian;
 use super::kept_jacobian::KeptJacobian;
 use super::newton::{DEPTH, Equation, NewtonBuffers, NewtonOutcome, Settled, Steps, iterate};
 use super::newton_workspace::NewtonWorkspace;
-use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
+use super::{
+    ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace, linear_response,
+};
+use crate::linalg::LuWorkspace;
 
 /// A start with what its choice has found.
 pub(super) struct MotionStart {
@@ -39,6 +42,8 @@ struct ContactMotions<'a> {
     start: Option<MotionStart>,
     /// Contact forces `G - y` that the last step leads to, and those of the step before.
     forces: [Vec<f64>; 2],
+    /// x under either, where it was asked for.
+    responses: [Option<Vec<f64>>; 2],
 }
 
 impl<'a> ContactMotions<'a> {
@@ -56,6 +61,7 @@ impl<'a> ContactMotions<'a> {
             settled: None,
             start: None,
             forces: [Vec::new(), Vec::new()],
+            responses: [None, None],
         }
     }
 
@@ -68,11 +74,26 @@ impl<'a> ContactMotions<'a> {
         (condensed.force_of(left), shares)
     }
 
-    /// x under these corrections of the contact forces.
-    fn response(&self, forces: &[f64]) -> Vec<f64> {
-        let mut x = vec![0.0; self.system.unknowns()];
-        self.jacobian.condensed_at_hand().response(forces, &mut x);
-        x
+    /// x that the last step leads to. With every pair stuck it is the linear response to the last bit, however the
+    /// factors at hand came about.
+    fn delivered(&mut self) -> Vec<f64> {
+        let [last, _] = &self.forces;
+        let forces = if last.is_empty() {
+            &self.workspace.correction
+        } else {
+            last
+        };
+        if forces.iter().all(|&force| force == 0.0)
+            && let Some(x) = self.system.stuck_response(self.omega)
+        {
+            return x;
+        }
+        let known = self.responses[0].take();
+        known.unwrap_or_else(|| {
+            self.jacobian
+                .condensed_at_hand()
+                .response_of(self.system, forces)
+        })
     }
 }
 
@@ -102,6 +123,7 @@ impl Equation for ContactMotions<'_> {
         let condensed = self.jacobian.condensed();
         condensed.solve_motion(left);
         self.forces.swap(0, 1);
+        self.responses = [None, self.responses[0].take()];
         let forces = &mut self.forces[0];
         forces.clear();
         forces.extend_from_slice(&self.workspace.correction);
@@ -109,12 +131,18 @@ impl Equation for ContactMotions<'_> {
     }
 
     /// Asked with x before the last step, and with the change that this step makes of it.
-    fn is_settled(&self, _motion: &[f64], _step: &[f64]) -> bool {
-        self.settled.is_some_and(|settled| {
-            let [after, before] = self.forces.each_ref().map(|forces| self.response(forces));
-            let step: Vec<f64> = after.iter().zip(&before).map(|(a, b)| a - b).collect();
-            settled(&before, &step)
-        })
+    fn is_settled(&mut self, _motion: &[f64], _step: &[f64]) -> bool {
+        let Some(settled) = self.settled else {
+            return false;
+        };
+        let system = self.system;
+        let condensed = self.jacobian.condensed_at_hand();
+        let [after, before] = &mut self.responses;
+        let [after, before] = [(after, 0), (before, 1)].map(|(response, at)| {
+            &*response.get_or_insert_with(|| condensed.response_of(system, &self.forces[at]))
+        });
+        let step: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
+        settled(before, &step)
     }
 }
 
@@ -126,22 +154,11 @@ impl CondensedJacobian {
         }
     }
 
-    /// `x = S^-1 f`.
-    pub(super) fn stuck_response(&self, x: &mut [f64]) {
-        let mut rest = x;
-        for part in &self.linear {
-            let (own, beyond) = rest.split_at_mut(part.response.len());
-            own.copy_from_slice(&part.response);
-            rest = beyond;
-        }
-    }
-
     /// `x = S^-1 f - A forces`.
-    pub(super) fn response(&self, forces: &[f64], x: &mut [f64]) {
-        self.each_harmonic(x, forces, |part, x, forces| {
-            x.copy_from_slice(&part.response);
-            part.add_attached(x, -1.0, forces);
-        });
+    fn response_of(&self, system: &HarmonicSystem, forces: &[f64]) -> Vec<f64> {
+        let mut x = vec![0.0; system.unknowns()];
+        self.each_harmonic(&mut x, forces, |part, x, forces| part.response(forces, x));
+        x
     }
 
     /// `left = motion - C (S^-1 f - A forces)`.
@@ -188,6 +205,22 @@ pub(super) fn residual_of_motion(system: &HarmonicSystem) -> Vec<f64> {
         .collect()
 }
 
+impl HarmonicSystem {
+    /// The linear response with every pair stuck, harmonic 1 and nothing else; none if it has none.
+    fn stuck_response(&self, omega: f64) -> Option<Vec<f64>> {
+        let (at, block) = (self.fundamental(), &self.blocks()[self.fundamental()]);
+        let mut factors = LuWorkspace::new(block.structure.size());
+        let (structure, stuck) = (&block.structure, Some(&*block.stuck));
+        let response = linear_response(structure, stuck, omega, self.force(), &mut factors)?;
+        let mut x = vec![0.0; self.unknowns()];
+        let (real, imaginary) = x[self.start[at]..self.start[at + 1]].split_at_mut(response.len());
+        for ((real, imaginary), z) in real.iter_mut().zip(imaginary).zip(&response) {
+            (*real, *imaginary) = (z.re, z.im);
+        }
+        Some(x)
+    }
+}
+
 impl NewtonWorkspace {
     /// Whether the motions at the contact rows are what is solved for.
     pub(super) fn moves_contact(&self, system: &HarmonicSystem) -> bool {
@@ -200,10 +233,9 @@ impl NewtonWorkspace {
             return None;
         }
         let condensed = self.jacobian.condensed();
-        let mut x = vec![0.0; system.unknowns()];
         condensed.factor_linear(system, omega).then(|| {
-            condensed.stuck_response(&mut x);
-            x
+            let forces = vec![0.0; self.system.displacement.len()];
+            condensed.response_of(system, &forces)
         })
     }
 
@@ -281,12 +313,7 @@ impl NewtonWorkspace {
         if outcome.status != Status::Ok {
             return (outcome, false);
         }
-        let [forces, _] = &equation.forces;
-        *x = if forces.is_empty() {
-            equation.response(&equation.workspace.correction)
-        } else {
-            equation.response(forces)
-        };
+        *x = equation.delivered();
         let ended_early = outcome.residual > bounds.residual_tolerance;
         let residual = &mut self.buffers.residual;
         let (norm, shares) = system.residual(omega, x, residual, false, &mut self.system);
@@ -346,7 +373,7 @@ mod tests {
         let mut motion = start.motion;
         let mut left = vec![0.0; motion.len()];
         assert!(equation.linearise(&motion, &mut left));
-        let mut x = equation.response(&equation.workspace.correction);
+        let mut x = equation.delivered();
         let taken_for = equation.jacobian.condensed().force_of(&left);
         let change = 1e-7;
         for at in 0..motion.len() {
@@ -372,7 +399,7 @@ mod tests {
             "{norm} {taken_for}"
         );
         // Where every pair sticks the response needs no step.
-        equation.jacobian.condensed().stuck_response(&mut x);
+        x = system.stuck_response(OMEGA).expect("damped");
         assert!(x.iter().any(|x| x.abs() > 0.1));
     }
 

@@ -1,45 +1,60 @@
 //! The linear part of one harmonic at one frequency, factored, and what it makes of forces at the contact rows.
+//!
+//! In [`ContactCoordinates`] by [`ComplexCholesky`]: with `S = Q L L^T Q^T`, `X = C Q L^-T` and `g = L^-1 Q^T f`
+//!
+//! ```text
+//! R = X X^T,    C S^-1 f = X g,    S^-1 (f - C^T y) = Q L^-T (g - X^T y)
+//! ```
+
+use std::sync::Arc;
 
 use super::HarmonicBlock;
-use super::vector_sums::ComplexProduct;
-use crate::linalg::{Complex64, LuWorkspace, Matrix, add_times, add_times_vector, vectorized};
+use super::contact_coordinates::ContactCoordinates;
+use super::pivoted_factors::{PivotedFactors, add_product};
+use crate::linalg::{BlockVector, Complex64, ComplexCholesky, ComplexSymmetric, RowBlocks};
 
-/// `S_k`, `A_k` and `R_k` of one harmonic; real and imaginary parts column-major.
+/// `S_k` and `R_k` of one harmonic; real and imaginary parts column-major.
 pub(super) struct LinearFactors {
     /// omega of the factors.
     pub(super) at: Option<f64>,
-    factors: LuWorkspace<Complex64>,
-    /// A, `n_modes x rows`.
-    attachment: [Vec<f64>; 2],
+    coordinates: Arc<ContactCoordinates>,
+    /// `Q^T (diag(lambda) + C^T k C) Q`.
+    stuck: Arc<RowBlocks>,
+    symmetric: ComplexCholesky,
+    /// g.
+    excitation: BlockVector,
+    /// Where the symmetric factors are none to rely on, and whether it is so.
+    pivoted: Option<PivotedFactors>,
+    is_pivoted: bool,
     /// R, `rows x rows`.
     pub(super) receptance: [Vec<f64>; 2],
-    /// What the excitation does alone, unknowns of the harmonic.
-    pub(super) response: Vec<f64>,
-    /// Its motion at the contact rows.
+    /// Motion at the contact rows under the excitation alone.
     pub(super) motion: Vec<f64>,
     /// Number of its first coefficient.
     pub(super) coefficient: usize,
     /// One for harmonic 0, else two.
     pub(super) parts: usize,
-    right: Vec<Complex64>,
 }
 
 impl LinearFactors {
-    /// No factors yet; `coefficient` is the first of the harmonic.
-    pub(super) fn new(block: &HarmonicBlock, coefficient: usize) -> Self {
-        let contact = &block.structure.contact().real;
-        let (m, n) = (contact.rows(), contact.columns());
+    /// No factors yet; `stuck` is the stiffness with contact springs in the coordinates of the structure, `coefficient` the
+    /// first of the harmonic.
+    pub(super) fn new(block: &HarmonicBlock, stuck: Arc<RowBlocks>, coefficient: usize) -> Self {
+        let coordinates = Arc::clone(block.structure.contact_coordinates());
+        let (m, n) = (coordinates.rows().rows(), coordinates.rows().columns());
         let parts = if block.harmonic == 0 { 1 } else { 2 };
         Self {
             at: None,
-            factors: LuWorkspace::new(n),
-            attachment: [vec![0.0; n * m], vec![0.0; n * m]],
+            symmetric: ComplexCholesky::new(coordinates.rows()),
+            coordinates,
+            stuck,
+            excitation: BlockVector::zeros(n),
+            pivoted: None,
+            is_pivoted: false,
             receptance: [vec![0.0; m * m], vec![0.0; m * m]],
-            response: vec![0.0; parts * n],
             motion: vec![0.0; parts * m],
             coefficient,
             parts,
-            right: vec![Complex64::default(); n],
         }
     }
 
@@ -50,88 +65,108 @@ impl LinearFactors {
         omega: f64,
         force: &[Complex64],
     ) -> bool {
-        let structure = &block.structure;
-        let contact = &structure.contact().real;
-        let (m, n) = (contact.rows(), contact.columns());
+        self.is_pivoted = !self.factor_symmetric(block, omega, force);
+        let regular = !self.is_pivoted || {
+            let pivoted = self
+                .pivoted
+                .get_or_insert_with(|| PivotedFactors::new(block));
+            pivoted.factor(block, omega, force, &mut self.receptance, &mut self.motion)
+        };
+        self.at = regular.then_some(omega);
+        regular
+    }
+
+    /// The same without exchange of rows; false also if that is not to be relied on.
+    fn factor_symmetric(&mut self, block: &HarmonicBlock, omega: f64, force: &[Complex64]) -> bool {
         let k_omega = f64::from(block.harmonic) * omega;
-        self.at = None;
-        let matrix = self.factors.matrix_mut();
-        structure.dynamic_stiffness(k_omega, Some(&block.stuck), matrix);
-        if block.harmonic == 0 {
+        let damping = match block.harmonic {
             // Harmonic 0 has no damping.
-            for entry in matrix {
-                entry.im = 0.0;
-            }
-        }
-        if !self.factors.factor() {
+            0 => Vec::new(),
+            _ => self.coordinates.damping(k_omega),
+        };
+        let reliable = self.symmetric.factor(&ComplexSymmetric {
+            real: &self.stuck,
+            shift: k_omega * k_omega,
+            imaginary: &damping,
+        });
+        if !reliable {
             return false;
         }
-        let mut attachment = Matrix::from_fn(n, m, |i, j| Complex64::new(contact[(j, i)], 0.0));
-        self.factors.solve_columns(&mut attachment);
-        let parts: [fn(&Complex64) -> f64; 2] = [|z| z.re, |z| z.im];
-        for (part, (own, receptance)) in parts
-            .into_iter()
-            .zip(self.attachment.iter_mut().zip(&mut self.receptance))
-        {
-            for (entry, z) in own.iter_mut().zip(attachment.as_slice()) {
-                *entry = part(z);
-            }
-            receptance.fill(0.0);
-            add_times(receptance, contact.as_slice(), own, (m, m, n));
-        }
+        let [real, imaginary] = &mut self.receptance;
+        self.symmetric.schur_complement([real, imaginary]);
         if block.harmonic == 1 {
-            // By itself, so that it is the linear response to the last bit.
-            self.right.copy_from_slice(force);
-            self.factors.solve(&mut self.right);
-            for (mode, z) in self.right.iter().enumerate() {
-                (self.response[mode], self.response[n + mode]) = (z.re, z.im);
-            }
+            let [real, imaginary] = [|z: &Complex64| z.re, |z: &Complex64| z.im]
+                .map(|part| -> Vec<f64> { force.iter().map(part).collect() });
+            let force = BlockVector::of(&real, &imaginary);
+            self.excitation = self.coordinates.from_modes(&force);
+            self.symmetric.forward(&mut self.excitation);
+            let motion = self.symmetric.border_times(&self.excitation);
             self.motion.fill(0.0);
-            let size = (m, 2, n);
-            add_times(&mut self.motion, contact.as_slice(), &self.response, size);
+            let rows = self.motion.len() / 2;
+            let (real, imaginary) = self.motion.split_at_mut(rows);
+            motion.add_to(1.0, real, imaginary);
         }
-        self.at = Some(omega);
         true
+    }
+
+    /// `S_k^-1 (f - C^T forces)`.
+    pub(super) fn response(&self, forces: &[f64], x: &mut [f64]) {
+        if let Some(pivoted) = self.pivoted_at_hand() {
+            return pivoted.response(forces, x);
+        }
+        let mut right = self.excitation.clone();
+        self.add_reduced(&mut right, -1.0, forces);
+        x.fill(0.0);
+        self.add_substituted(x, right);
     }
 
     /// `S_k^-1 right`, in place; real parts, then imaginary ones where it is not harmonic 0.
     pub(super) fn solve(&mut self, right: &mut [f64]) {
-        let n = self.right.len();
-        let imaginary = |i: usize| right.get(n + i).copied().unwrap_or(0.0);
-        for (i, z) in self.right.iter_mut().enumerate() {
-            *z = Complex64::new(right[i], imaginary(i));
+        if self.is_pivoted
+            && let Some(pivoted) = &mut self.pivoted
+        {
+            return pivoted.solve(right);
         }
-        self.factors.solve(&mut self.right);
-        for (i, z) in self.right.iter().enumerate() {
-            right[i] = z.re;
-            if let Some(imaginary) = right.get_mut(n + i) {
-                *imaginary = z.im;
-            }
-        }
+        let (real, imaginary) = right.split_at(right.len() / self.parts);
+        let mut turned = self
+            .coordinates
+            .from_modes(&BlockVector::of(real, imaginary));
+        self.symmetric.forward(&mut turned);
+        right.fill(0.0);
+        self.add_substituted(right, turned);
     }
 
-    /// Adds `factor A_k forces`; both real parts, then imaginary ones where it is not harmonic 0.
+    /// Adds `factor S_k^-1 C^T forces`; both real parts, then imaginary ones where it is not harmonic 0.
     pub(super) fn add_attached(&self, sum: &mut [f64], factor: f64, forces: &[f64]) {
-        add_product(sum, factor, &self.attachment, forces, self.parts);
+        if let Some(pivoted) = self.pivoted_at_hand() {
+            return pivoted.add_attached(sum, factor, forces);
+        }
+        let mut right = BlockVector::zeros(sum.len() / self.parts);
+        self.add_reduced(&mut right, factor, forces);
+        self.add_substituted(sum, right);
     }
 
     /// Adds `factor R_k forces`, as [`Self::add_attached`].
     pub(super) fn add_motion(&self, sum: &mut [f64], factor: f64, forces: &[f64]) {
-        add_product(sum, factor, &self.receptance, forces, self.parts);
+        add_product(sum, factor, &self.receptance, forces);
     }
-}
 
-fn add_product(sum: &mut [f64], factor: f64, matrix: &[Vec<f64>; 2], x: &[f64], parts: usize) {
-    if parts == 1 {
-        add_times_vector(sum, factor, &matrix[0], x);
-        return;
+    fn pivoted_at_hand(&self) -> Option<&PivotedFactors> {
+        self.pivoted.as_ref().filter(|_| self.is_pivoted)
     }
-    let (half, rows) = (x.len() / 2, sum.len() / 2);
-    let (sum_re, sum_im) = sum.split_at_mut(rows);
-    vectorized(ComplexProduct {
-        sum: [sum_re, sum_im],
-        factor,
-        matrix: [&matrix[0], &matrix[1]],
-        x: [&x[..half], &x[half..]],
-    });
+
+    /// `sum += factor X^T forces`.
+    fn add_reduced(&self, sum: &mut BlockVector, factor: f64, forces: &[f64]) {
+        let (real, imaginary) = forces.split_at(forces.len() / self.parts);
+        let forces = BlockVector::of(real, imaginary);
+        self.symmetric.add_border_transposed(sum, factor, &forces);
+    }
+
+    /// `x += Q L^-T right`.
+    fn add_substituted(&self, x: &mut [f64], mut right: BlockVector) {
+        self.symmetric.backward(&mut right);
+        let modes = self.coordinates.to_modes(&right);
+        let (real, imaginary) = x.split_at_mut(x.len() / self.parts);
+        modes.add_to(1.0, real, imaginary);
+    }
 }

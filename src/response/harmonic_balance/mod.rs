@@ -3,6 +3,7 @@
 mod anderson;
 mod clip_slopes;
 mod condensed;
+mod contact_coordinates;
 mod contact_interface;
 mod contact_motions;
 mod contact_states;
@@ -27,6 +28,7 @@ mod newton_workspace;
 mod other_contact;
 mod pair_harmonics;
 mod pair_jacobian;
+mod pivoted_factors;
 mod ring_drift;
 mod serves;
 mod simplified_3d_pairs;

@@ -106,7 +106,7 @@ pub(super) trait Equation {
     fn step(&mut self, residual: &mut [f64]);
 
     /// Whether `u` serves its purpose already, where `step` is what it still lacks.
-    fn is_settled(&self, _u: &[f64], _step: &[f64]) -> bool {
+    fn is_settled(&mut self, _u: &[f64], _step: &[f64]) -> bool {
         false
     }
 }
@@ -220,7 +220,7 @@ impl Equation for FixedFrequency<'_> {
         self.jacobian.solve(residual);
     }
 
-    fn is_settled(&self, x: &[f64], step: &[f64]) -> bool {
+    fn is_settled(&mut self, x: &[f64], step: &[f64]) -> bool {
         self.settled.is_some_and(|settled| settled(x, step))
     }
 }
