@@ -49,7 +49,9 @@ impl RowBlocks {
     /// Product with a vector of as many numbers as there are columns.
     #[must_use]
     pub fn times(&self, x: &BlockVector) -> BlockVector {
-        vectorized(Times(self, x))
+        let mut product = BlockVector::zeros(self.lanes.len() / self.columns * LANES);
+        vectorized(Times(self, x, &mut product));
+        product
     }
 }
 
@@ -97,16 +99,16 @@ pub(super) fn add_times_lanes(sum: &mut ComplexLanes, column: &ComplexLanes, x: 
     }
 }
 
-struct Times<'a>(&'a RowBlocks, &'a BlockVector);
+struct Times<'a>(&'a RowBlocks, &'a BlockVector, &'a mut BlockVector);
 
 impl Loops for Times<'_> {
-    type Output = BlockVector;
+    type Output = ();
 
     #[inline(always)]
-    fn call(self) -> BlockVector {
-        let Self(matrix, x) = self;
+    fn call(self) {
+        let Self(matrix, x, product) = self;
         let blocks = matrix.lanes.chunks_exact(matrix.columns);
-        let products = blocks.map(|block| {
+        for (block, product) in blocks.zip(&mut product.0) {
             let mut sum = [[0.0; LANES]; 2];
             for (columns, x) in block.as_chunks::<LANES>().0.iter().zip(&x.0) {
                 for (q, column) in columns.iter().enumerate() {
@@ -116,9 +118,8 @@ impl Loops for Times<'_> {
                     }
                 }
             }
-            sum
-        });
-        BlockVector(products.collect())
+            *product = sum;
+        }
     }
 }
 

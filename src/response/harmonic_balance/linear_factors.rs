@@ -115,9 +115,9 @@ impl LinearFactors {
             return pivoted.response(forces, x);
         }
         let mut right = self.excitation.clone();
-        self.add_reduced(&mut right, -1.0, forces);
+        self.subtract_reduced(&mut right, forces);
         x.fill(0.0);
-        self.add_substituted(x, right);
+        self.add_substituted(x, 1.0, right);
     }
 
     /// `S_k^-1 right`, in place; real parts, then imaginary ones where it is not harmonic 0.
@@ -133,7 +133,7 @@ impl LinearFactors {
             .from_modes(&BlockVector::of(real, imaginary));
         self.symmetric.forward(&mut turned);
         right.fill(0.0);
-        self.add_substituted(right, turned);
+        self.add_substituted(right, 1.0, turned);
     }
 
     /// Adds `factor S_k^-1 C^T forces`; both real parts, then imaginary ones where it is not harmonic 0.
@@ -142,8 +142,8 @@ impl LinearFactors {
             return pivoted.add_attached(sum, factor, forces);
         }
         let mut right = BlockVector::zeros(sum.len() / self.parts);
-        self.add_reduced(&mut right, factor, forces);
-        self.add_substituted(sum, right);
+        self.subtract_reduced(&mut right, forces);
+        self.add_substituted(sum, -factor, right);
     }
 
     /// Adds `factor R_k forces`, as [`Self::add_attached`].
@@ -155,18 +155,18 @@ impl LinearFactors {
         self.pivoted.as_ref().filter(|_| self.is_pivoted)
     }
 
-    /// `sum += factor X^T forces`.
-    fn add_reduced(&self, sum: &mut BlockVector, factor: f64, forces: &[f64]) {
+    /// `sum -= X^T forces`.
+    fn subtract_reduced(&self, sum: &mut BlockVector, forces: &[f64]) {
         let (real, imaginary) = forces.split_at(forces.len() / self.parts);
         let forces = BlockVector::of(real, imaginary);
-        self.symmetric.add_border_transposed(sum, factor, &forces);
+        self.symmetric.subtract_border_transposed(sum, &forces);
     }
 
-    /// `x += Q L^-T right`.
-    fn add_substituted(&self, x: &mut [f64], mut right: BlockVector) {
+    /// `x += factor Q L^-T right`.
+    fn add_substituted(&self, x: &mut [f64], factor: f64, mut right: BlockVector) {
         self.symmetric.backward(&mut right);
         let modes = self.coordinates.to_modes(&right);
         let (real, imaginary) = x.split_at_mut(x.len() / self.parts);
-        modes.add_to(1.0, real, imaginary);
+        modes.add_to(factor, real, imaginary);
     }
 }
