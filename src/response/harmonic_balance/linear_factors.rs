@@ -170,3 +170,213 @@ impl LinearFactors {
         modes.add_to(factor, real, imaginary);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::Matrix;
+    use crate::response::harmonic_balance::{Damping, Structure};
+    use crate::response::mistuning::{ModalRows, StructuralModes};
+
+    const UNDAMPED: Damping = Damping::StructuralLossFactor(0.0);
+
+    /// `n` modes and `m` contact rows, of which the last is the first again.
+    fn block(harmonic: u32, (m, n): (usize, usize), damping: Damping) -> HarmonicBlock {
+        let rows = |count: usize, phase: f64| ModalRows {
+            real: Matrix::from_fn(count, n, |i, j| {
+                (phase + 1.3 * (i % (count - 1)) as f64 + 2.9 * (j * (j + i % (count - 1))) as f64)
+                    .sin()
+            }),
+            imaginary: None,
+        };
+        let eigenvalues: Vec<f64> = (0..n).map(|j| 1.0 + 0.3 * (j * j) as f64).collect();
+        let structure = Structure::new(
+            StructuralModes {
+                tuned_eigenvalues: eigenvalues.iter().map(|lambda| 1.1 * lambda).collect(),
+                rotation: Some(Matrix::from_fn(n, n, |i, j| {
+                    f64::from(u8::from(i == j)) + 0.1 * ((3 * i + j) as f64).cos()
+                })),
+                added_damping_per_s: vec![0.0; n],
+                contact: rows(m, 0.2),
+                observed: rows(3, 0.4),
+                sectors: 1,
+                eigenvalues,
+            },
+            damping,
+        );
+        let springs: Vec<f64> = (0..m).map(|i| 0.5 + 0.1 * i as f64).collect();
+        let stuck = Arc::new(structure.contact_stiffness(&springs));
+        HarmonicBlock {
+            harmonic,
+            structure: Arc::new(structure),
+            stuck,
+            waves: None,
+        }
+    }
+
+    fn linear(block: &HarmonicBlock) -> LinearFactors {
+        let coordinates = block.structure.contact_coordinates();
+        LinearFactors::new(block, Arc::new(coordinates.stuck(&block.stuck)), 0)
+    }
+
+    fn numbers(count: usize, phase: f64) -> Vec<f64> {
+        (0..count).map(|i| (phase + 1.7 * i as f64).sin()).collect()
+    }
+
+    /// Both kinds of factors at `omega`, and how far they are from each other in all that they do, relative to the largest.
+    fn difference(block: &HarmonicBlock, omega: f64) -> (LinearFactors, f64) {
+        let contact = &block.structure.contact().real;
+        let (m, n) = (contact.rows(), contact.columns());
+        let force: Vec<Complex64> = numbers(n, 0.6)
+            .into_iter()
+            .map(|re| Complex64::new(re, 0.3))
+            .collect();
+        let mut found = linear(block);
+        assert!(found.factor(block, omega, &force));
+        let parts = found.parts;
+        let mut pivoted = PivotedFactors::new(block);
+        let mut receptance = [vec![0.0; m * m], vec![0.0; m * m]];
+        let mut motion = vec![0.0; parts * m];
+        assert!(pivoted.factor(block, omega, &force, &mut receptance, &mut motion));
+        let (forces, right) = (numbers(parts * m, 0.1), numbers(parts * n, 0.8));
+
+        let mut pairs = vec![(found.motion.clone(), motion)];
+        pairs.extend(found.receptance.iter().cloned().zip(receptance));
+        let (mut own, mut other) = (right.clone(), right.clone());
+        found.response(&forces, &mut own);
+        pivoted.response(&forces, &mut other);
+        pairs.push((own, other));
+        let (mut own, mut other) = (right.clone(), right.clone());
+        found.solve(&mut own);
+        pivoted.solve(&mut other);
+        pairs.push((own, other));
+        let (mut own, mut other) = (right.clone(), right);
+        found.add_attached(&mut own, -0.7, &forces);
+        pivoted.add_attached(&mut other, -0.7, &forces);
+        pairs.push((own, other));
+        let far = pairs.iter().map(|(own, other)| {
+            let largest = other
+                .iter()
+                .fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
+            let missed = own
+                .iter()
+                .zip(other)
+                .map(|(own, other)| (own - other).abs());
+            missed.fold(0.0, f64::max) / largest
+        });
+        let far = far.fold(0.0, f64::max);
+        (found, far)
+    }
+
+    #[test]
+    fn factors_do_what_those_with_exchanged_rows_do_under_every_damping() {
+        let rayleigh = Damping::Rayleigh {
+            mass_per_s: 0.02,
+            stiffness_s: 0.01,
+        };
+        for damping in [
+            UNDAMPED,
+            Damping::StructuralLossFactor(0.02),
+            Damping::ModalRatio(0.01),
+            rayleigh,
+        ] {
+            for size in [(24, 72), (5, 17), (7, 7), (9, 4)] {
+                for harmonic in [0, 1, 3] {
+                    let (found, far) = difference(&block(harmonic, size, damping), 1.37);
+                    assert!(!found.is_pivoted);
+                    assert!(far < 1e-10, "{damping:?} {size:?} {harmonic}: {far:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rows_are_exchanged_where_a_pivot_is_nearly_zero() {
+        let block = block(1, (5, 17), UNDAMPED);
+        // The motion of the first coordinate alone is in resonance there.
+        let coordinates = block.structure.contact_coordinates();
+        let (mut shape, mut none) = ([0.0; 17], [0.0; 17]);
+        let mut first = shape;
+        first[0] = 1.0;
+        let modes = coordinates.to_modes(&BlockVector::of(&first, &none));
+        modes.add_to(1.0, &mut shape, &mut none);
+        let lambda = block.structure.eigenvalues().iter();
+        let square: f64 = lambda.zip(shape).map(|(lambda, x)| lambda * x * x).sum();
+        for (factor, pivoted) in [(1.0, true), (1.0 + 1e-9, true), (1.1, false)] {
+            let (found, far) = difference(&block, factor * square.sqrt());
+            assert_eq!(found.is_pivoted, pivoted, "{factor}");
+            assert!(
+                if pivoted { far == 0.0 } else { far < 1e-10 },
+                "{factor}: {far:e}"
+            );
+        }
+    }
+
+    #[test]
+    fn temporary_times() {
+        let block = block(
+            1,
+            (24, 72),
+            Damping::Rayleigh {
+                mass_per_s: 0.02,
+                stiffness_s: 0.01,
+            },
+        );
+        let force = vec![Complex64::new(1.0, 0.5); 72];
+        let mut own = linear(&block);
+        let mut other = PivotedFactors::new(&block);
+        let mut receptance = [vec![0.0; 24 * 24], vec![0.0; 24 * 24]];
+        let mut motion = vec![0.0; 48];
+        let forces = numbers(48, 0.1);
+        let mut x = vec![0.0; 144];
+        let mut least = [f64::MAX; 11];
+        let mut omega = 1.0;
+        for _ in 0..3000 {
+            omega += 0.0001;
+            let mut clock = std::time::Instant::now();
+            let mut at = 0;
+            let mut lap = || {
+                least[at] = f64::min(least[at], clock.elapsed().as_secs_f64() * 1e6);
+                at += 1;
+                clock = std::time::Instant::now();
+            };
+            own.factor(&block, omega, &force);
+            lap();
+            other.factor(&block, omega, &force, &mut receptance, &mut motion);
+            lap();
+            own.response(&forces, &mut x);
+            lap();
+            other.response(&forces, &mut x);
+            lap();
+            own.solve(&mut x);
+            lap();
+            other.solve(&mut x);
+            lap();
+            let damping = own.coordinates.damping(omega);
+            let s = ComplexSymmetric {
+                real: &own.stuck,
+                shift: omega * omega,
+                imaginary: &damping,
+            };
+            lap();
+            own.symmetric.factor(&s);
+            lap();
+            let [re, im] = &mut own.receptance;
+            own.symmetric.schur_complement([re, im]);
+            lap();
+            let mut v = BlockVector::of(&x[..72], &x[72..]);
+            own.symmetric.backward(&mut v);
+            lap();
+            std::hint::black_box(own.coordinates.to_modes(&v));
+            lap();
+        }
+        println!("{least:.2?}");
+        let clock = std::time::Instant::now();
+        let fresh = super::super::Structure::clone(&block.structure).with_viscous_damping(1.0);
+        std::hint::black_box(fresh.contact_coordinates());
+        println!("coordinates {:?}", clock.elapsed());
+        let clock = std::time::Instant::now();
+        std::hint::black_box(fresh.contact_coordinates().stuck(&block.stuck));
+        println!("stuck {:?}", clock.elapsed());
+    }
+}
