@@ -29,11 +29,16 @@ impl RowBlocks {
         let columns = matrix.columns().next_multiple_of(LANES);
         let mut lanes = vec![[0.0; LANES]; matrix.rows().div_ceil(LANES) * columns];
         for column in 0..matrix.columns() {
-            for (row, &entry) in matrix.column(column).iter().enumerate() {
-                lanes[row / LANES * columns + column][row % LANES] = entry;
+            for (block, rows) in matrix.column(column).chunks(LANES).enumerate() {
+                lanes[block * columns + column][..rows.len()].copy_from_slice(rows);
             }
         }
         Self { columns, lanes }
+    }
+
+    /// Adds to one entry.
+    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+        self.lanes[row / LANES * self.columns + column][row % LANES] += value;
     }
 
     /// Columns with those that fill up.

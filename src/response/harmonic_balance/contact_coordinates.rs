@@ -14,10 +14,8 @@ pub(super) struct ContactCoordinates {
     turn_back: RowBlocks,
     /// `C Q`.
     rows: Matrix<f64>,
-    /// `Q^T diag(lambda) Q`.
-    stiffness: Matrix<f64>,
-    /// The same in blocks, and the viscous damping, 1/s.
-    stiffness_blocks: RowBlocks,
+    /// `Q^T diag(lambda) Q`, and the viscous damping, 1/s.
+    stiffness: RowBlocks,
     viscous: Option<RowBlocks>,
     loss_factor: f64,
 }
@@ -34,11 +32,9 @@ impl ContactCoordinates {
         let n = eigenvalues.len();
         let turn = Matrix::from_fn(n, n, |i, j| orthogonal[(i, n - 1 - j)]);
         let scaled = Matrix::from_fn(n, n, |i, j| eigenvalues[i] * turn[(i, j)]);
-        let stiffness = turn.adjoint_times(&scaled);
         Self {
             rows: Matrix::from_fn(contact.rows(), n, |i, j| upper[(n - 1 - j, i)]),
-            stiffness_blocks: RowBlocks::of(&stiffness),
-            stiffness,
+            stiffness: RowBlocks::of(&turn.adjoint_times(&scaled)),
             viscous: viscous.map(|times| RowBlocks::of(&turn.adjoint_times(&times(&turn)))),
             loss_factor,
             turn_back: RowBlocks::of(&turn.adjoint()),
@@ -60,21 +56,19 @@ impl ContactCoordinates {
             springs[i] * moving[(i, j)]
         });
         let springs = moving.adjoint_times(&scaled);
-        let mut stiffness = self.stiffness.clone();
+        let mut stuck = self.stiffness.clone();
         for j in first..rows.columns() {
-            let own = &mut stiffness.column_mut(j)[first..];
-            for (sum, spring) in own.iter_mut().zip(springs.column(j - first)) {
-                *sum += spring;
+            for i in first..rows.columns() {
+                stuck.add(i, j, springs[(i - first, j - first)]);
             }
         }
-        RowBlocks::of(&stiffness)
+        stuck
     }
 
     /// Real matrices whose sum `D(omega)` is, and their factors.
     pub(super) fn damping(&self, omega: f64) -> Vec<(f64, &RowBlocks)> {
         let viscous = self.viscous.iter().map(|viscous| (omega, viscous));
-        let structural =
-            (self.loss_factor != 0.0).then_some((self.loss_factor, &self.stiffness_blocks));
+        let structural = (self.loss_factor != 0.0).then_some((self.loss_factor, &self.stiffness));
         viscous.chain(structural).collect()
     }
 
