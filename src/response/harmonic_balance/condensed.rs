@@ -136,7 +136,7 @@ impl CondensedJacobian {
         factors.factor()
     }
 
-    /// Factors S and finds A and R, unless those at hand are the same; false if S is singular.
+    /// Factors S and finds R, unless those at hand are the same; false if S is singular.
     pub(super) fn factor_linear(&mut self, system: &HarmonicSystem, omega: f64) -> bool {
         let block = &system.blocks()[0];
         let same = self.of.as_ref().is_some_and(|(structure, stuck)| {
