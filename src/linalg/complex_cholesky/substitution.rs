@@ -21,7 +21,7 @@ impl Loops for SchurComplement<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self(factors, target) = self;
+        let Self(factors, mut target) = self;
         let m = factors.rows;
         for (a, (first, left)) in factors.border_blocks().enumerate() {
             for (b, (other, right)) in factors.border_blocks().take(a + 1).enumerate() {
@@ -29,11 +29,11 @@ impl Loops for SchurComplement<'_> {
                 let mut tile = [[[0.0; LANES]; 2]; LANES];
                 subtract_products(&mut tile, &left[from - first..], &right[from - other..]);
                 for (q, column) in tile.iter().enumerate().take(m - b * LANES) {
-                    for lane in 0..LANES.min(m - a * LANES) {
-                        let (i, j) = (a * LANES + lane, b * LANES + q);
-                        for part in 0..2 {
-                            target[part][j * m + i] = -column[part][lane];
-                            target[part][i * m + j] = -column[part][lane];
+                    for (target, entries) in target.iter_mut().zip(column) {
+                        for (lane, entry) in entries.iter().enumerate().take(m - a * LANES) {
+                            let (i, j) = (a * LANES + lane, b * LANES + q);
+                            target[j * m + i] = -entry;
+                            target[i * m + j] = -entry;
                         }
                     }
                 }

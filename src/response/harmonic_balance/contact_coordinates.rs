@@ -73,12 +73,12 @@ impl ContactCoordinates {
     }
 
     /// Modal amplitudes from coordinates.
-    pub(super) fn to_modes(&self, coordinates: &BlockVector) -> BlockVector {
+    pub(super) fn modes_of(&self, coordinates: &BlockVector) -> BlockVector {
         self.turn.times(coordinates)
     }
 
     /// Coordinates from modal amplitudes.
-    pub(super) fn from_modes(&self, modes: &BlockVector) -> BlockVector {
+    pub(super) fn turned(&self, modes: &BlockVector) -> BlockVector {
         self.turn_back.times(modes)
     }
 }

@@ -98,7 +98,7 @@ impl LinearFactors {
             let [real, imaginary] = [|z: &Complex64| z.re, |z: &Complex64| z.im]
                 .map(|part| -> Vec<f64> { force.iter().map(part).collect() });
             let force = BlockVector::of(&real, &imaginary);
-            self.excitation = self.coordinates.from_modes(&force);
+            self.excitation = self.coordinates.turned(&force);
             self.symmetric.forward(&mut self.excitation);
             let motion = self.symmetric.border_times(&self.excitation);
             self.motion.fill(0.0);
@@ -128,9 +128,7 @@ impl LinearFactors {
             return pivoted.solve(right);
         }
         let (real, imaginary) = right.split_at(right.len() / self.parts);
-        let mut turned = self
-            .coordinates
-            .from_modes(&BlockVector::of(real, imaginary));
+        let mut turned = self.coordinates.turned(&BlockVector::of(real, imaginary));
         self.symmetric.forward(&mut turned);
         right.fill(0.0);
         self.add_substituted(right, 1.0, turned);
@@ -165,7 +163,7 @@ impl LinearFactors {
     /// `x += factor Q L^-T right`.
     fn add_substituted(&self, x: &mut [f64], factor: f64, mut right: BlockVector) {
         self.symmetric.backward(&mut right);
-        let modes = self.coordinates.to_modes(&right);
+        let modes = self.coordinates.modes_of(&right);
         let (real, imaginary) = x.split_at_mut(x.len() / self.parts);
         modes.add_to(factor, real, imaginary);
     }
@@ -298,7 +296,7 @@ mod tests {
         let (mut shape, mut none) = ([0.0; 17], [0.0; 17]);
         let mut first = shape;
         first[0] = 1.0;
-        let modes = coordinates.to_modes(&BlockVector::of(&first, &none));
+        let modes = coordinates.modes_of(&BlockVector::of(&first, &none));
         modes.add_to(1.0, &mut shape, &mut none);
         let lambda = block.structure.eigenvalues().iter();
         let square: f64 = lambda.zip(shape).map(|(lambda, x)| lambda * x * x).sum();
