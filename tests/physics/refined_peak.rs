@@ -95,3 +95,48 @@ fn where_few_harmonics_mislead_the_search_is_made_with_all() {
         assert_eq!(separates, load < 100.0);
     }
 }
+
+/// Wheels with few contact rows read far points from harmonic 1; with `search_harmonics = "all"` they do not.
+#[test]
+fn a_screened_search_finds_the_peaks_of_one_with_all_harmonics() {
+    let wheel = Wheel {
+        amplitude_n: 10.0,
+        ..Wheel::lumped24()
+    };
+    let mut random = Random(17);
+    for load in [15.0, 25.0, 50.0, 75.0, 150.0, 200.0, 400.0] {
+        for _ in 0..3 {
+            let deviations = wheel.deviations(&mut random, 0.03);
+            let largest = deviations.iter().fold(0.0, |a: f64, d| a.max(d.abs()));
+            let span = tuned_span(&wheel.tuned(&SET), full(load), None).unwrap();
+            let window = mistuned_window(span, largest, FrequencyBand::Auto);
+            let excited = wheel.mistuned(&deviations, &SET);
+            let contact = Some((wheel.law, wheel.sector));
+            let found = [SearchHarmonics::All, SearchHarmonics::Auto].map(|search_harmonics| {
+                let options = SolverOptions {
+                    harmonics: Harmonics::Set(SET.to_vec()),
+                    search_harmonics,
+                    ..SolverOptions::default()
+                };
+                let geometry = wheel.model.contact.clone();
+                let settings = PointSettings::new(&options, &SET, contact, geometry).unwrap();
+                peak(
+                    &excited,
+                    full(load),
+                    &settings,
+                    window,
+                    options.peak_tolerance,
+                )
+            });
+            let [whole, screened] = &found;
+            let error = relative(amplitude(screened), amplitude(whole));
+            assert!(error < 1e-3, "{load} N: {error:e}");
+            let point = screened.point.as_ref().unwrap();
+            assert!(point.residual <= 1e-8 && screened.bracketed);
+            assert_eq!(
+                point.solution.len(),
+                whole.point.as_ref().unwrap().solution.len()
+            );
+        }
+    }
+}

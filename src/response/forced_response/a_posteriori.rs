@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::excited::Excited;
 use super::observed_amplitude::{ObservedAmplitude, ObservedBlock};
 use super::options::{ContactCondition, SolverOptions};
+use super::point::Point;
 use super::point_settings::{PointSettings, samples_per_period};
-use super::point_solver::{Point, PointSolver};
+use super::point_solver::PointSolver;
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{
     ContactShares, Effects, EnlargedSet, HarmonicBlock, TransformError, enlarge,

@@ -7,7 +7,8 @@
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-use super::point_solver::{Point, PointSolver};
+use super::point::Point;
+use super::point_solver::PointSolver;
 use crate::response::harmonic_balance::{Continuation, ContinuationBounds, PathPoint, Status};
 
 /// Frequency scale where no linear resonance tells it, over the frequency.
@@ -258,6 +259,7 @@ impl PointSolver<'_> {
             residual: point.residual,
             shares: point.shares,
             ring_drift_m: [0.0; 2],
+            slope: None,
         }
     }
 

@@ -42,7 +42,7 @@ impl LinearStructure {
         }
     }
 
-    /// Linear contact stiffness of a condition; none without contact springs. The full law
+    /// Linear contact stiffness of a condition; none without contact springs or where all are zero. The full law
     /// starts from the stuck springs.
     #[must_use]
     pub fn contact(&self, condition: ContactCondition) -> Option<&ContactStiffnessMatrix> {
@@ -51,7 +51,9 @@ impl LinearStructure {
             ContactCondition::Slide => &self.slide,
             ContactCondition::Free => return None,
         };
-        (self.structure.contact().real.rows() > 0).then_some(&**stiffness)
+        // Springs that are all zero are none: where a law has no stiffness once it slides.
+        let acts = stiffness.springs.iter().any(|&spring| spring != 0.0);
+        acts.then_some(&**stiffness)
     }
 }
 

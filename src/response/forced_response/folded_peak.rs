@@ -9,7 +9,8 @@ use std::ops::ControlFlow;
 
 use super::branch::BranchPlace;
 use super::peak_search::Envelope;
-use super::point_solver::{Point, PointSolver};
+use super::point::Point;
+use super::point_solver::PointSolver;
 use super::samples::Sample;
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{ContinuationBounds, Status};

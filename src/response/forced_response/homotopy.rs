@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::point_solver::{Point, PointSolver};
+use super::point::Point;
+use super::point_solver::PointSolver;
 use crate::response::friction::PairParameters;
 use crate::response::harmonic_balance::{HarmonicSystem, Status, linear_response};
 

@@ -58,11 +58,12 @@ impl LinearModes {
     /// Resonances with a frequency above zero under the modal force `force`.
     #[must_use]
     pub fn peaks(&self, structure: &Structure, force: &[Complex64]) -> Vec<LinearPeak> {
+        let damping = self.damping(structure);
         (0..self.omega.len())
             .filter(|&mode| self.omega[mode] > 0.0)
             .map(|mode| {
                 let omega = self.omega[mode];
-                let (drive, damping) = self.drive_and_damping(structure, force, mode);
+                let (drive, damping) = (self.drive(force, mode), damping[mode]);
                 let reach = self
                     .observed
                     .column(mode)
@@ -82,27 +83,38 @@ impl LinearModes {
             .collect()
     }
 
-    /// `|v^H f|` and `v^H D v` of a mode.
-    fn drive_and_damping(
-        &self,
-        structure: &Structure,
-        force: &[Complex64],
-        mode: usize,
-    ) -> (f64, f64) {
-        let omega = self.omega[mode];
+    /// `|v^H f|` of a mode.
+    fn drive(&self, force: &[Complex64], mode: usize) -> f64 {
         let Some(shapes) = &self.shapes else {
-            return (force[mode].norm(), structure.damping_diagonal(mode, omega));
+            return force[mode].norm();
         };
-        let real = shapes.real.column(mode);
-        let mut drive: Complex64 = real.iter().zip(force).map(|(&v, &f)| f * v).sum();
-        let mut damping = structure.damping_of(real, omega);
+        let along = |rows: &Matrix<f64>| -> Complex64 {
+            let shape = rows.column(mode).iter();
+            shape.zip(force).map(|(&v, &f)| f * v).sum()
+        };
+        let mut drive = along(&shapes.real);
         if let Some(imaginary) = &shapes.imaginary {
-            let imaginary = imaginary.column(mode);
-            let part: Complex64 = imaginary.iter().zip(force).map(|(&v, &f)| f * v).sum();
-            drive -= Complex64::i() * part;
-            damping += structure.damping_of(imaginary, omega);
+            drive -= Complex64::i() * along(imaginary);
         }
-        (drive.norm(), damping)
+        drive.norm()
+    }
+
+    /// `v^H D v` of every mode at its own frequency.
+    fn damping(&self, structure: &Structure) -> Vec<f64> {
+        let Some(shapes) = &self.shapes else {
+            let modes = self.omega.iter().enumerate();
+            let own = modes.map(|(mode, &omega)| structure.damping_diagonal(mode, omega));
+            return own.collect();
+        };
+        let mut damping = structure.damping_of(&shapes.real, &self.omega);
+        if let Some(imaginary) = &shapes.imaginary {
+            let part = structure.damping_of(imaginary, &self.omega);
+            damping
+                .iter_mut()
+                .zip(part)
+                .for_each(|(sum, part)| *sum += part);
+        }
+        damping
     }
 }
 

@@ -12,11 +12,14 @@ mod observed_amplitude;
 mod options;
 mod peak;
 mod peak_search;
+mod point;
 mod point_settings;
 mod point_solver;
 mod refined_peak;
 mod rivals;
 mod samples;
+mod screened;
+mod sloped;
 mod starts;
 mod summit;
 
@@ -32,6 +35,7 @@ pub use options::{
 };
 pub use peak::{Peak, SearchPlan, Window, mistuned_window, peak, search_plan, tuned_span};
 pub use peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
+pub use point::{Point, Slope, Work};
 pub use point_settings::PointSettings;
-pub use point_solver::{Point, PointSolver, Work};
+pub use point_solver::PointSolver;
 pub use refined_peak::{Search, refined, refined_peak};

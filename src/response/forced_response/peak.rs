@@ -5,9 +5,11 @@ use super::folded_peak::falls_off;
 use super::linear_peaks::LinearPeak;
 use super::options::{ContactCondition, FrequencyBand};
 use super::peak_search::{Envelope, SearchEnd, SearchSettings, find_peak};
+use super::point::{Point, Work};
 use super::point_settings::PointSettings;
-use super::point_solver::{Point, PointSolver, Work};
+use super::point_solver::PointSolver;
 use super::samples::Sample;
+use super::screened::Screened;
 use crate::response::harmonic_balance::Status;
 
 /// Tolerance of peaks of linear limits, which cost almost nothing.
@@ -17,8 +19,17 @@ pub(super) const EVALUATIONS: usize = 1500;
 /// Precision of the amplitudes that the search compares, over its tolerance: far below the share of it that a
 /// summit may be missed by.
 pub(super) const SEARCH_PRECISION: f64 = 0.01;
+/// Tolerance from which on slopes lead a search: they jump where contact begins to slip at one more sample of the period, and
+/// what is asked for more exactly is told by values alone.
+const LEAST_FOR_SLOPES: f64 = 2e-4;
+/// Precision of the amplitudes that only tell where all harmonics need not be solved.
+const SCREENING_PRECISION: f64 = 1e-3;
 /// Starting points between the dominant stuck and slide peaks.
 const STARTS_BETWEEN: usize = 5;
+/// The same where points have slopes.
+const SPARSE_BETWEEN: usize = 2;
+/// Least distance of starting points that have slopes, in half-bandwidths of a linear resonance.
+const SPARSE: f64 = 1.5;
 /// Times the automatic band is widened while the largest value lies at its end.
 const BAND_EXTENSIONS: usize = 5;
 
@@ -110,6 +121,10 @@ pub struct SearchPlan {
     pub band_hz: (f64, f64),
     /// First frequencies to try, Hz.
     pub starts_hz: Vec<f64>,
+    /// The same where points have slopes, which say more of what lies between, ascending, Hz.
+    pub sparse_starts_hz: Vec<f64>,
+    /// Resonances of the stuck limit, or of the limit itself.
+    pub stuck: Vec<LinearPeak>,
     /// Least width of a peak.
     pub envelope: Envelope,
     /// Times the band may be widened while the largest value lies at its end.
@@ -148,8 +163,13 @@ pub fn search_plan(
             .fold(f64::INFINITY, f64::min),
     };
     Ok(SearchPlan {
+        stuck: limits.first().cloned().unwrap_or_default(),
         band_hz,
-        starts_hz: starting_points(&limits, &candidates),
+        starts_hz: starting_points(&limits, &candidates, STARTS_BETWEEN),
+        sparse_starts_hz: thinned(
+            starting_points(&limits, &candidates, SPARSE_BETWEEN),
+            SPARSE * envelope.linear_half_bandwidth_hz,
+        ),
         envelope,
         extensions,
     })
@@ -189,19 +209,42 @@ pub fn peak(
         rivals_from: 1.0,
     };
     let precision = SEARCH_PRECISION * search.tolerance;
-    let mut solver = PointSolver::new(excited, condition, settings).with_precision(precision);
+    let solver_of = |excited, settings, precision| {
+        let solver = PointSolver::new(excited, condition, settings).with_precision(precision);
+        if search.tolerance >= LEAST_FOR_SLOPES {
+            solver.with_slopes()
+        } else {
+            solver
+        }
+    };
+    let solver = solver_of(excited, settings, precision);
+    let starts_hz = if solver.is_sloped() {
+        &plan.sparse_starts_hz
+    } else {
+        &plan.starts_hz
+    };
+    let few = settings.search().filter(|_| solver.is_sloped());
+    let few = few.map(|few| (excited.in_harmonics(few.harmonics()), few));
+    let few = few.as_ref();
+    let few = few.map(|(excited, settings)| {
+        let precision = precision.max(SCREENING_PRECISION);
+        (excited, solver_of(excited, settings, precision))
+    });
+    let stuck = if solver.is_sloped() {
+        &plan.stuck[..]
+    } else {
+        &[]
+    };
+    let mut screened = Screened::new(solver, few, stuck);
+    screened.begin(starts_hz);
     let result = find_peak(
         plan.band_hz,
-        &plan.starts_hz,
+        starts_hz,
         plan.envelope,
         search,
-        |frequency| {
-            solver
-                .solve(frequency)
-                .ok()
-                .map(|point| point.amplitudes_m.clone())
-        },
+        &mut screened,
     );
+    let (mut solver, screening) = screened.into_parts();
     let best = result.best.map(|best| &result.samples[best]);
     let (point, unfinished) = match best.map(|best| solver.finish(best.frequency_hz).cloned()) {
         Some(Ok(point)) => (Some(point), None),
@@ -240,7 +283,7 @@ pub fn peak(
         point,
         bracketed: result.bracketed,
         mean_friction_n,
-        work: solver.work(),
+        work: solver.work().plus(screening),
     }
 }
 
@@ -303,8 +346,19 @@ fn band_of(candidates: &[LinearPeak]) -> (f64, f64) {
         })
 }
 
-/// Every candidate resonance, and points between the dominant ones of the limits.
-fn starting_points(limits: &[Vec<LinearPeak>], candidates: &[LinearPeak]) -> Vec<f64> {
+/// The points in ascending order without those that follow another one by no more than `distance`.
+fn thinned(mut points: Vec<f64>, distance: f64) -> Vec<f64> {
+    points.sort_by(f64::total_cmp);
+    points.dedup_by(|later, earlier| *later - *earlier <= distance);
+    points
+}
+
+/// Every candidate resonance, and as many points `between` the dominant ones of the limits.
+fn starting_points(
+    limits: &[Vec<LinearPeak>],
+    candidates: &[LinearPeak],
+    between: usize,
+) -> Vec<f64> {
     let mut starts: Vec<f64> = candidates.iter().map(|peak| peak.frequency_hz).collect();
     let dominant: Vec<f64> = limits
         .iter()
@@ -316,8 +370,8 @@ fn starting_points(limits: &[Vec<LinearPeak>], candidates: &[LinearPeak]) -> Vec
         .map(|peak| peak.frequency_hz)
         .collect();
     if let [first, second] = dominant[..] {
-        for i in 1..=STARTS_BETWEEN {
-            let share = i as f64 / (STARTS_BETWEEN + 1) as f64;
+        for i in 1..=between {
+            let share = i as f64 / (between + 1) as f64;
             starts.push(first + share * (second - first));
         }
     }

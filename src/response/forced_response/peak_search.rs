@@ -10,7 +10,7 @@
 //! seen is at least as wide as [`Envelope::half_bandwidth`] says. The search ends when no interval can
 //! hide a higher peak and the vertex of the best is found.
 
-use super::samples::{Evaluation, Sample, Samples};
+use super::samples::{Curve, Sample, Samples};
 use super::summit::{self, Summit};
 
 /// What is known beforehand of the width of peaks.
@@ -78,13 +78,14 @@ pub struct SearchResult {
 
 /// Finds the highest peak in `[start_hz, stop_hz]`, widened where the largest value lies at an end.
 ///
-/// `starts` are the first frequencies tried besides the ends of the band.
+/// `starts` are the first frequencies tried besides the ends of the band. Where all readings have slopes these tell where
+/// to look, see [`super::sloped`].
 pub fn find_peak(
     band_hz: (f64, f64),
     starts: &[f64],
     envelope: Envelope,
     settings: SearchSettings,
-    mut evaluate: impl FnMut(f64) -> Evaluation,
+    mut curve: impl Curve,
 ) -> SearchResult {
     let mut search = Search {
         samples: Samples::default(),
@@ -102,7 +103,7 @@ pub fn find_peak(
     let resolution = 0.05 * envelope.linear_half_bandwidth_hz;
     first.dedup_by(|later, earlier| *later - *earlier < resolution);
     for frequency in first {
-        search.evaluate(frequency, &mut evaluate);
+        search.evaluate(frequency, &mut curve);
     }
     let mut extensions = 0;
     let end = loop {
@@ -112,11 +113,12 @@ pub fn find_peak(
         let Some(best) = search.samples.best() else {
             break SearchEnd::Incomplete;
         };
-        if best == 0 || best + 1 == search.samples.0.len() {
+        let outermost = best == 0 || best + 1 == search.samples.0.len();
+        if outermost && !search.samples.rises_inward(best) {
             if extensions == settings.extensions {
                 // The band ends here, but the peak may still lie just inside of its end.
                 match search.inside_of_end(best) {
-                    Some(frequency) => search.evaluate(frequency, &mut evaluate),
+                    Some(frequency) => search.evaluate(frequency, &mut curve),
                     None => break SearchEnd::Open,
                 }
                 continue;
@@ -132,13 +134,16 @@ pub fn find_peak(
             if next <= 0.0 {
                 break SearchEnd::Open;
             }
-            search.evaluate(next, &mut evaluate);
+            search.evaluate(next, &mut curve);
             continue;
         }
         match search.next_frequency(best) {
-            Next::Evaluate(frequency) => search.evaluate(frequency, &mut evaluate),
+            Next::Evaluate(frequency) => search.evaluate(frequency, &mut curve),
             Next::Hole => break SearchEnd::Incomplete,
-            Next::Done => break SearchEnd::Found,
+            Next::Done => match curve.unseen(&search.samples.0, best) {
+                Some(frequency) => search.evaluate(frequency, &mut curve),
+                None => break SearchEnd::Found,
+            },
         }
     };
     let best = search.samples.best();
@@ -161,7 +166,7 @@ pub(super) const RESOLVED: f64 = 1e-3;
 
 pub(super) struct Search {
     pub(super) samples: Samples,
-    envelope: Envelope,
+    pub(super) envelope: Envelope,
     pub(super) settings: SearchSettings,
     evaluations: usize,
 }
@@ -174,9 +179,9 @@ enum Next {
 }
 
 impl Search {
-    fn evaluate(&mut self, frequency_hz: f64, evaluate: &mut impl FnMut(f64) -> Evaluation) {
+    fn evaluate(&mut self, frequency_hz: f64, curve: &mut impl Curve) {
         self.evaluations += 1;
-        self.samples.insert(frequency_hz, evaluate(frequency_hz));
+        self.samples.insert(frequency_hz, curve.read(frequency_hz));
     }
 
     /// A point inside of the end of the band that is the best so far, until the next one inside is
@@ -196,7 +201,11 @@ impl Search {
     /// The summit of the best peak first; then those of others; then the widest interval that could
     /// hide a higher one.
     fn next_frequency(&self, best: usize) -> Next {
-        if let Some(vertex) = self.unsettled_vertex(best) {
+        if let Some(frequency) = self.promising(best) {
+            return Next::Evaluate(frequency);
+        }
+        let unsettled = self.unsettled_vertex(best);
+        if let Some(vertex) = unsettled.and_then(|vertex| self.not_known(best, vertex)) {
             return self.short_of_failures(best, vertex);
         }
         match self.rival(best) {
@@ -205,44 +214,61 @@ impl Search {
         }
     }
 
+    /// Half-bandwidth, Hz, assumed of a hidden peak that is higher than the best.
+    fn hidden_half_bandwidth(&self, best: usize) -> f64 {
+        let top = self.samples.0[best].largest;
+        self.envelope
+            .half_bandwidth((1.0 + self.settings.tolerance) * top)
+    }
+
+    /// Distance at which a peak of the height that counts between samples of heights `own` and `other`, at least as high as
+    /// they, and of this width would read `own`.
+    fn reach(&self, best: usize, own: f64, other: f64) -> f64 {
+        let counts = self.settings.rivals_from * self.samples.0[best].largest;
+        let height = (1.0 + self.settings.tolerance) * f64::max(counts, own.max(other));
+        self.hidden_half_bandwidth(best) * ((height / own).powi(2) - 1.0).max(0.0).sqrt()
+    }
+
+    /// Where between two samples a peak higher than the best could hide.
+    pub(super) fn hiding_place(
+        &self,
+        best: usize,
+        left: usize,
+        right: usize,
+    ) -> Option<(f64, f64)> {
+        let (left, right) = (&self.samples.0[left], &self.samples.0[right]);
+        let from = left.frequency_hz + self.reach(best, left.largest, right.largest);
+        let to = right.frequency_hz - self.reach(best, right.largest, left.largest);
+        (from < to).then_some((from, to))
+    }
+
     /// The middle of the widest interval that could hide a peak higher than the best.
     fn hidden(&self, best: usize) -> Next {
-        let top = self.samples.0[best].largest;
-        let over = 1.0 + self.settings.tolerance;
-        let gamma = self.envelope.half_bandwidth(over * top);
+        let gamma = self.hidden_half_bandwidth(best);
         let good: Vec<usize> = (0..self.samples.0.len())
             .filter(|&i| !self.samples.0[i].amplitudes.is_empty())
             .collect();
-        // Distance at which a peak of the height that counts between two samples, at least as high as they, and of this
-        // width would read what was seen.
-        let reach = |a: f64, other: f64| {
-            let height = over * f64::max(self.settings.rivals_from * top, a.max(other));
-            gamma * ((height / a).powi(2) - 1.0).max(0.0).sqrt()
-        };
         let mut widest: Option<(f64, f64)> = None;
         let mut hole = false;
         if let (Some(&first), Some(&last)) = (good.first(), good.last()) {
             // Out to the ends of the band all points failed.
             let all = &self.samples.0;
             let (start, stop) = (&all[0], &all[all.len() - 1]);
-            let alone = |at: usize| reach(all[at].largest, 0.0);
+            let alone = |at: usize| self.reach(best, all[at].largest, 0.0);
             hole |= all[first].frequency_hz - alone(first) > start.frequency_hz;
             hole |= all[last].frequency_hz + alone(last) < stop.frequency_hz;
         }
         for pair in good.windows(2) {
             let (left, right) = (&self.samples.0[pair[0]], &self.samples.0[pair[1]]);
-            if pair[0] == best || pair[1] == best {
-                // Beside the best the parabola through it has judged already, unless it is far away.
-                let distance = right.frequency_hz - left.frequency_hz;
-                if distance <= 2.0 * gamma {
-                    continue;
-                }
-            }
-            let from = left.frequency_hz + reach(left.largest, right.largest);
-            let to = right.frequency_hz - reach(right.largest, left.largest);
-            if to <= from {
+            // Beside the best the parabola through it has judged already, and cubics everywhere, unless it is far away.
+            let beside_best = pair[0] == best || pair[1] == best;
+            let judged = beside_best || self.samples.are_sloped();
+            if judged && right.frequency_hz - left.frequency_hz <= 2.0 * gamma {
                 continue;
             }
+            let Some((from, to)) = self.hiding_place(best, pair[0], pair[1]) else {
+                continue;
+            };
             if pair[1] > pair[0] + 1 {
                 hole = true;
                 continue;
@@ -277,7 +303,7 @@ impl Search {
     /// Where the summit of the best sample and its neighbours is, unless the best is known to lie
     /// within tolerance of it.
     fn unsettled_vertex(&self, best: usize) -> Option<f64> {
-        let (left, right) = self.samples.neighbours(best)?;
+        let (left, right) = self.beside(best)?;
         let points = self
             .samples
             .points([left, best, right], self.samples.0[best].blade);
@@ -292,7 +318,8 @@ impl Search {
         if gain <= tolerance && left_gap.max(right_gap) <= trusted {
             let told = left_gap.max(right_gap) > NEAR * trusted;
             let skewed = self.samples.skewed_summits(best);
-            if told && self.settings.extensions > 0 && !self.samples.has_fourth(best) {
+            let skew_is_known = self.samples.has_fourth(best) || self.samples.are_sloped();
+            if told && self.settings.extensions > 0 && !skew_is_known {
                 // Three points say nothing of how skewed the top is; a band that is asked for is not left for a fourth.
                 return Some(if points[2].1 < points[0].1 {
                     x2 + right_gap
@@ -463,7 +490,7 @@ mod tests {
             &[95.0, 100.0, 105.0],
             envelope,
             SETTINGS,
-            |f| ((f - 100.0).abs() > 1.0).then(|| curves(&[(100.0, 0.5)], &[&[1.0]], f)),
+            |f: f64| ((f - 100.0).abs() > 1.0).then(|| curves(&[(100.0, 0.5)], &[&[1.0]], f)),
         );
         assert_eq!(result.end, SearchEnd::Incomplete);
     }

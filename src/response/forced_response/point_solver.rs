@@ -7,6 +7,7 @@ use super::attempt::Attempt;
 use super::excited::Excited;
 use super::observed_amplitude::ObservedBlock;
 use super::options::ContactCondition;
+use super::point::{Point, Slope, Work};
 use super::point_settings::PointSettings;
 use super::starts::between;
 use crate::linalg::{Complex64, LuWorkspace};
@@ -15,74 +16,6 @@ use crate::response::harmonic_balance::{
     ContactInterface, ContactShares, HarmonicBlock, HarmonicSystem, NewtonWorkspace, PairContact,
     Status, linear_response, solve, solve_creeping,
 };
-
-/// Work done for a row.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Work {
-    /// Points solved nonlinearly.
-    pub nonlinear_solves: u64,
-    /// Newton iterations, all attempts.
-    pub newton_iterations: u64,
-    /// Jacobians assembled and factored.
-    pub factorisations: u64,
-    /// Points that needed more than the first attempt.
-    pub retries: u64,
-    /// Folds of the response curve passed by continuation.
-    pub folds: u64,
-}
-
-impl Work {
-    /// Both together.
-    #[must_use]
-    pub fn plus(self, other: Self) -> Self {
-        Self {
-            nonlinear_solves: self.nonlinear_solves + other.nonlinear_solves,
-            newton_iterations: self.newton_iterations + other.newton_iterations,
-            factorisations: self.factorisations + other.factorisations,
-            retries: self.retries + other.retries,
-            folds: self.folds + other.folds,
-        }
-    }
-}
-
-/// A converged point.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Point {
-    /// Frequency, Hz.
-    pub frequency_hz: f64,
-    /// Real unknowns of the harmonic balance, see [`HarmonicSystem`]; for a linear limit those of
-    /// harmonic 1 alone.
-    pub solution: Vec<f64>,
-    /// Amplitude of every blade, m.
-    pub amplitudes_m: Vec<f64>,
-    /// Residual relative to the excitation; 0 for a linear limit.
-    pub residual: f64,
-    /// Shares of slipping and separated pairs.
-    pub shares: ContactShares,
-    /// Drift of the ring along its rigid motions, m per period: 0 unless it creeps.
-    pub ring_drift_m: [f64; 2],
-}
-
-impl Point {
-    /// Largest amplitude over the blades, m.
-    #[must_use]
-    pub fn largest_amplitude_m(&self) -> f64 {
-        self.amplitudes_m.iter().copied().fold(0.0, f64::max)
-    }
-
-    /// Blade of the largest amplitude, the first where several share it.
-    #[must_use]
-    pub fn largest_blade(&self) -> usize {
-        let amplitudes = &self.amplitudes_m;
-        (0..amplitudes.len()).fold(0, |best, blade| {
-            if amplitudes[blade] > amplitudes[best] {
-                blade
-            } else {
-                best
-            }
-        })
-    }
-}
 
 /// Solver of the points of one row; keeps the converged points as starts for others.
 pub struct PointSolver<'a> {
@@ -99,6 +32,8 @@ pub struct PointSolver<'a> {
     failures: Vec<(f64, Status)>,
     /// Relative precision of the amplitudes at which a point may end before its residual is met.
     precision: Option<f64>,
+    /// Whether the slopes of points are asked for.
+    sloped: bool,
     pub(super) work: Work,
 }
 
@@ -143,6 +78,7 @@ impl<'a> PointSolver<'a> {
             fundamental: fundamental.map(Box::new),
             failures: Vec::new(),
             precision: None,
+            sloped: false,
             work: Work::default(),
         }
     }
@@ -208,17 +144,49 @@ impl<'a> PointSolver<'a> {
         }
     }
 
+    /// The same with the slope of every point, where Newton's method has it at hand: for wheels with few contact rows.
+    #[must_use]
+    pub(super) fn with_slopes(mut self) -> Self {
+        let condenses = |(system, _): &(HarmonicSystem, _)| system.condenses();
+        self.sloped = self.nonlinear.as_ref().is_some_and(condenses)
+            && self.settings.ring == Ring::Locked
+            && self.fundamental.is_none();
+        self
+    }
+
+    /// Whether points have slopes.
+    pub(super) fn is_sloped(&self) -> bool {
+        self.sloped
+    }
+
     /// The same for points beside those of a solver with fewer harmonics.
     #[must_use]
     pub(super) fn refining(self, coarse: &PointSolver<'_>) -> Self {
-        let coarse = coarse.points.iter().map(|point| Point {
-            solution: self.embedded(coarse.excited, &point.solution),
-            ..point.clone()
-        });
+        let coarse_excited = coarse.excited;
+        let coarse = coarse.points.iter();
+        let coarse = coarse.map(|point| self.beside(coarse_excited, point.clone()));
         Self {
             coarse: coarse.collect(),
             fundamental: None,
             ..self
+        }
+    }
+
+    /// From now on `point`, solved with the fewer harmonics of `excited`, tells where to start.
+    pub(super) fn start_beside(&mut self, excited: &Excited, point: Point) {
+        let point = self.beside(excited, point);
+        self.coarse.push(point);
+    }
+
+    /// A point of `excited` in the unknowns of this solver.
+    fn beside(&self, excited: &Excited, point: Point) -> Point {
+        Point {
+            solution: self.embedded(excited, &point.solution),
+            slope: point.slope.map(|slope| Slope {
+                solution: self.embedded(excited, &slope.solution),
+                ..slope
+            }),
+            ..point
         }
     }
 
@@ -249,6 +217,7 @@ impl<'a> PointSolver<'a> {
     /// The status of the last attempt, if none converged.
     pub fn finish(&mut self, frequency_hz: f64) -> Result<&Point, Status> {
         self.precision = None;
+        self.sloped = false;
         let same = |point: &Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
         let tolerance = self.settings.bounds.residual_tolerance;
         let done = |point: &Point| same(point) && point.residual <= tolerance;
@@ -294,6 +263,7 @@ impl<'a> PointSolver<'a> {
             residual: 0.0,
             shares: ContactShares::default(),
             ring_drift_m: [0.0; 2],
+            slope: None,
         })
     }
 
@@ -365,10 +335,7 @@ impl<'a> PointSolver<'a> {
         self.work = self.work.plus(std::mem::take(&mut solver.work));
         let point = solved?;
         let excited = solver.excited;
-        self.coarse.push(Point {
-            solution: self.embedded(excited, &point.solution),
-            ..point
-        });
+        self.start_beside(excited, point);
         Ok(())
     }
 
@@ -445,13 +412,32 @@ impl<'a> PointSolver<'a> {
         if outcome.status != Status::Ok {
             return Err(outcome.status);
         }
+        let slope = match &mut self.nonlinear {
+            Some((system, workspace)) if self.sloped && other.is_none() => {
+                workspace.response_slope(system, omega, &x)
+            }
+            _ => None,
+        };
+        let (amplitudes_m, slope) = match slope {
+            Some(per_rad_per_s) => {
+                let solution: Vec<f64> = per_rad_per_s.iter().map(|rate| TAU * rate).collect();
+                let (amplitudes_m, amplitudes_m_per_hz) = self.amplitudes_with_rates(&x, &solution);
+                let slope = Slope {
+                    solution,
+                    amplitudes_m_per_hz,
+                };
+                (amplitudes_m, Some(slope))
+            }
+            None => (self.amplitudes_of(&x), None),
+        };
         Ok(Point {
             frequency_hz,
-            amplitudes_m: self.amplitudes_of(&x),
+            amplitudes_m,
             solution: x,
             residual: outcome.residual,
             shares: outcome.shares,
             ring_drift_m,
+            slope,
         })
     }
 
@@ -459,6 +445,12 @@ impl<'a> PointSolver<'a> {
     pub(super) fn amplitudes_of(&self, solution: &[f64]) -> Vec<f64> {
         let blocks = ObservedBlock::all(&self.excited.blocks);
         self.settings.amplitude.of(&blocks, solution)
+    }
+
+    /// [`Self::amplitudes_of`], and what they change by where the solution changes by `slope`.
+    fn amplitudes_with_rates(&self, solution: &[f64], slope: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let blocks = ObservedBlock::all(&self.excited.blocks);
+        self.settings.amplitude.with_rates(&blocks, solution, slope)
     }
 }
 

@@ -11,9 +11,10 @@ use super::excited::Excited;
 use super::options::ContactCondition;
 use super::peak::{EVALUATIONS, Peak, SEARCH_PRECISION, Window, peak, search_plan};
 use super::peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
+use super::point::{Point, Work};
 use super::point_settings::PointSettings;
-use super::point_solver::{Point, PointSolver, Work};
-use super::samples::{Sample, Samples};
+use super::point_solver::PointSolver;
+use super::samples::{Reading, Sample, Samples};
 use super::summit;
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::Status;
@@ -208,7 +209,7 @@ fn looked_into(
         let height = samples.0[best].largest;
         for (from, to) in gaps.into_iter().filter(|(from, to)| to - from > wide) {
             let middle = 0.5 * (from + to);
-            samples.insert(middle, evaluate(middle));
+            samples.insert(middle, evaluate(middle).map(Reading::from));
         }
         let kept = samples.0.len() == found.samples.len()
             || samples.promised() <= (1.0 + settings.tolerance) * height;

@@ -2,8 +2,40 @@
 
 use super::summit::{self, CurvePoint, Summit};
 
-/// Amplitude of every blade at one frequency; none where the solution failed.
-pub type Evaluation = Option<Vec<f64>>;
+/// Curves over frequency, one per blade, that a search reads.
+pub trait Curve {
+    /// What is read at a frequency, Hz; none where the solution failed.
+    fn read(&mut self, frequency_hz: f64) -> Option<Reading>;
+
+    /// A frequency, Hz, that a search has to look at for other reasons than its `samples`, of which `best` is the highest.
+    fn unseen(&self, _samples: &[Sample], _best: usize) -> Option<f64> {
+        None
+    }
+}
+
+impl<F: FnMut(f64) -> Option<R>, R: Into<Reading>> Curve for F {
+    fn read(&mut self, frequency_hz: f64) -> Option<Reading> {
+        self(frequency_hz).map(R::into)
+    }
+}
+
+/// Amplitude of every blade at one frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Amplitudes, m.
+    pub amplitudes: Vec<f64>,
+    /// Their derivatives by frequency, m/Hz; none where they are not known.
+    pub slopes: Option<Vec<f64>>,
+}
+
+impl From<Vec<f64>> for Reading {
+    fn from(amplitudes: Vec<f64>) -> Self {
+        Self {
+            amplitudes,
+            slopes: None,
+        }
+    }
+}
 
 /// One evaluated frequency.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,6 +44,8 @@ pub struct Sample {
     pub frequency_hz: f64,
     /// Amplitude of every blade; empty where the solution failed.
     pub amplitudes: Vec<f64>,
+    /// Their derivatives by frequency; none where they are not known.
+    pub slopes: Option<Vec<f64>>,
     /// Largest amplitude over the blades.
     pub largest: f64,
     /// Blade of the largest amplitude.
@@ -23,8 +57,11 @@ pub struct Sample {
 pub struct Samples(pub Vec<Sample>);
 
 impl Samples {
-    pub fn insert(&mut self, frequency_hz: f64, evaluation: Evaluation) {
-        let amplitudes = evaluation.unwrap_or_default();
+    pub fn insert(&mut self, frequency_hz: f64, reading: Option<Reading>) {
+        let (amplitudes, slopes) = match reading {
+            Some(reading) => (reading.amplitudes, reading.slopes),
+            None => (Vec::new(), None),
+        };
         let (blade, largest) = amplitudes.iter().copied().enumerate().fold(
             (0, f64::NEG_INFINITY),
             |best, (blade, amplitude)| {
@@ -43,6 +80,7 @@ impl Samples {
             Sample {
                 frequency_hz,
                 amplitudes,
+                slopes,
                 largest,
                 blade,
             },
@@ -69,11 +107,13 @@ impl Samples {
         Some((left, right))
     }
 
+    /// Whether lower amplitudes were seen on both sides, or are told by the slope at an end.
     pub fn bracketed(&self, best: usize) -> bool {
-        self.neighbours(best).is_some_and(|(left, right)| {
-            self.0[left].largest < self.0[best].largest
-                && self.0[right].largest < self.0[best].largest
-        })
+        let lower = |side: usize| self.0[side].largest < self.0[best].largest;
+        match self.neighbours(best) {
+            Some((left, right)) => lower(left) && lower(right),
+            None => self.rises_inward(best),
+        }
     }
 
     /// Whether there is a sample beyond the neighbours of one.

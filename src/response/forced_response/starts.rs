@@ -2,11 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use super::point_solver::{Point, PointSolver};
+use super::point::Point;
+use super::point_solver::PointSolver;
 use crate::response::harmonic_balance::Status;
 
 /// Share of the frequency within which a point at which most pairs slip tells more than the stuck solution.
-const NEAR: f64 = 0.002;
+pub(super) const NEAR: f64 = 0.002;
 
 impl PointSolver<'_> {
     /// The start with the smallest residual: what the converged points beside the frequency lead one to expect,
@@ -81,8 +82,16 @@ pub(super) fn between(points: &[Point], frequency_hz: f64) -> Vec<Vec<f64>> {
         .iter()
         .find(|point| (point.frequency_hz <= frequency_hz) != below);
     let Some(&second) = other else {
-        return vec![first.solution.clone()];
+        let ahead = first.slope.as_ref().map(|slope| {
+            let step = frequency_hz - first.frequency_hz;
+            let tangent = first.solution.iter().zip(&slope.solution);
+            tangent.map(|(x, slope)| x + step * slope).collect()
+        });
+        return ahead.into_iter().chain([first.solution.clone()]).collect();
     };
+    if let Some(start) = hermite(first, second, frequency_hz) {
+        return vec![start];
+    }
     let mut starts = vec![interpolated(&[first, second], frequency_hz)];
     let third = near[1..].iter().find(|point| {
         let differs = |other: &Point| point.frequency_hz.total_cmp(&other.frequency_hz).is_ne();
@@ -92,6 +101,21 @@ pub(super) fn between(points: &[Point], frequency_hz: f64) -> Vec<Vec<f64>> {
         starts.push(interpolated(&[first, second, third], frequency_hz));
     }
     starts
+}
+
+/// The cubic through two solutions with their slopes at `frequency_hz`; none where a slope is not known.
+fn hermite(first: &Point, second: &Point, frequency_hz: f64) -> Option<Vec<f64>> {
+    let (first_slope, second_slope) = (first.slope.as_ref()?, second.slope.as_ref()?);
+    let width = second.frequency_hz - first.frequency_hz;
+    let t = (frequency_hz - first.frequency_hz) / width;
+    let values = [(1.0 + 2.0 * t) * (1.0 - t).powi(2), t * t * (3.0 - 2.0 * t)];
+    let slopes = [width * t * (1.0 - t).powi(2), width * t * t * (t - 1.0)];
+    let ends = first.solution.iter().zip(&second.solution);
+    let rates = first_slope.solution.iter().zip(&second_slope.solution);
+    let sum = ends.zip(rates).map(|((x0, x1), (s0, s1))| {
+        values[0] * x0 + values[1] * x1 + slopes[0] * s0 + slopes[1] * s1
+    });
+    Some(sum.collect())
 }
 
 /// The polynomial through the solutions of `points`, of different frequencies, at `frequency_hz`.

@@ -13,12 +13,17 @@
 
 use super::condensed::CondensedJacobian;
 use super::kept_jacobian::KeptJacobian;
-use super::newton::{DEPTH, Equation, NewtonBuffers, NewtonOutcome, Settled, Steps, iterate};
+use super::newton::{
+    DEPTH, Equation, NewtonBuffers, NewtonOutcome, Settled, Steps, iterate, norm_of,
+};
 use super::newton_workspace::NewtonWorkspace;
 use super::{
     ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace, linear_response,
 };
 use crate::linalg::LuWorkspace;
+
+/// A step of the motions that is longer than this share of them leaves no amplitude as it is.
+const FAR_FROM_SETTLED: f64 = 0.02;
 
 /// A start with what its choice has found.
 pub(super) struct MotionStart {
@@ -131,10 +136,14 @@ impl Equation for ContactMotions<'_> {
     }
 
     /// Asked with x before the last step, and with the change that this step makes of it.
-    fn is_settled(&mut self, _motion: &[f64], _step: &[f64]) -> bool {
+    fn is_settled(&mut self, motion: &[f64], step: &[f64]) -> bool {
         let Some(settled) = self.settled else {
             return false;
         };
+        // x itself takes a substitution.
+        if norm_of(step) > FAR_FROM_SETTLED * norm_of(motion) {
+            return false;
+        }
         let system = self.system;
         let condensed = self.jacobian.condensed_at_hand();
         let [after, before] = &mut self.responses;

@@ -29,6 +29,7 @@ mod other_contact;
 mod pair_harmonics;
 mod pair_jacobian;
 mod pivoted_factors;
+mod response_slope;
 mod ring_drift;
 mod serves;
 mod simplified_3d_pairs;

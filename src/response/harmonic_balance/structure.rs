@@ -166,22 +166,28 @@ impl Structure {
         self.damping.loss_factor * self.eigenvalues[mode] + omega * viscous
     }
 
-    /// `v^T D(omega) v` for a real vector: the damping of a mode shape given in these modes.
+    /// `v^T D(omega) v` for every column of `shapes`, real mode shapes given in these modes, at its own omega.
     #[must_use]
-    pub fn damping_of(&self, shape: &[f64], omega: f64) -> f64 {
-        let diagonal = |of: &dyn Fn(usize) -> f64| -> f64 {
-            let shape = shape.iter().enumerate();
-            shape.map(|(mode, v)| v * v * of(mode)).sum()
+    pub fn damping_of(&self, shapes: &Matrix<f64>, omega: &[f64]) -> Vec<f64> {
+        let product = match &self.damping.viscous {
+            Viscous::Full(viscous) => Some(viscous.times(shapes)),
+            Viscous::None | Viscous::Diagonal(_) => None,
         };
-        match &self.damping.viscous {
-            Viscous::Full(viscous) => {
-                let product = viscous.times_vector(shape);
-                let eta = self.damping.loss_factor;
-                omega * shape.iter().zip(&product).map(|(a, b)| a * b).sum::<f64>()
-                    + diagonal(&|mode| eta * self.eigenvalues[mode])
-            }
-            _ => diagonal(&|mode| self.damping_diagonal(mode, omega)),
-        }
+        let of_shape = |(column, &omega): (usize, &f64)| {
+            let shape = shapes.column(column);
+            let diagonal = |of: &dyn Fn(usize) -> f64| -> f64 {
+                let shape = shape.iter().enumerate();
+                shape.map(|(mode, v)| v * v * of(mode)).sum()
+            };
+            let Some(product) = &product else {
+                return diagonal(&|mode| self.damping_diagonal(mode, omega));
+            };
+            let viscous = shape.iter().zip(product.column(column));
+            let eta = self.damping.loss_factor;
+            omega * viscous.map(|(v, force)| v * force).sum::<f64>()
+                + diagonal(&|mode| eta * self.eigenvalues[mode])
+        };
+        omega.iter().enumerate().map(of_shape).collect()
     }
 
     /// Adds the damping `D(omega)` at the full, column-major `n x n` block through `add(i, j, value)`.
@@ -197,42 +203,25 @@ impl Structure {
     /// Adds the damping force `i D(omega) x` to `sum`; both are real parts, then imaginary ones. `product` is room
     /// for as many numbers.
     pub fn add_damping_force(&self, omega: f64, x: &[f64], sum: &mut [f64], product: &mut [f64]) {
-        let n = self.size();
-        let (x_real, x_imaginary) = x.split_at(n);
-        let (real, imaginary) = sum.split_at_mut(n);
-        let mut add = |mode: usize, rate: f64| {
-            real[mode] -= rate * x_imaginary[mode];
-            imaginary[mode] += rate * x_real[mode];
+        let Viscous::Full(_) = self.damping.viscous else {
+            add_turned(x, sum, |mode| self.damping_diagonal(mode, omega));
+            return;
         };
-        if let Viscous::Full(viscous) = &self.damping.viscous {
-            let eta = self.damping.loss_factor;
-            (0..n).for_each(|mode| add(mode, eta * self.eigenvalues[mode]));
-            product.fill(0.0);
-            add_times(product, viscous.as_slice(), x, (n, 2, n));
-            let (product_real, product_imaginary) = product.split_at(n);
-            for mode in 0..n {
-                real[mode] -= omega * product_imaginary[mode];
-                imaginary[mode] += omega * product_real[mode];
-            }
-        } else {
-            (0..n).for_each(|mode| add(mode, self.damping_diagonal(mode, omega)));
-        }
+        let eta = self.damping.loss_factor;
+        add_turned(x, sum, |mode| eta * self.eigenvalues[mode]);
+        self.add_damping_rate(omega, x, sum, product);
     }
 
-    /// Adds `dD/domega`, 1/s, through `add(i, j, value)`; structural damping has none.
-    pub fn for_each_damping_rate(&self, mut add: impl FnMut(usize, usize, f64)) {
+    /// Adds `i factor dD/domega x` as [`Self::add_damping_force`]; structural damping does not change with frequency.
+    pub fn add_damping_rate(&self, factor: f64, x: &[f64], sum: &mut [f64], product: &mut [f64]) {
+        let n = self.size();
         match &self.damping.viscous {
             Viscous::None => {}
-            Viscous::Diagonal(viscous) => {
-                for (mode, &rate) in viscous.iter().enumerate() {
-                    add(mode, mode, rate);
-                }
-            }
+            Viscous::Diagonal(viscous) => add_turned(x, sum, |mode| factor * viscous[mode]),
             Viscous::Full(viscous) => {
-                for mode in 0..self.size() {
-                    add(mode, mode, viscous[(mode, mode)]);
-                }
-                each_off_diagonal(viscous, add);
+                product.fill(0.0);
+                add_times(product, viscous.as_slice(), x, (n, 2, n));
+                add_turned(product, sum, |_| factor);
             }
         }
     }
@@ -350,6 +339,17 @@ impl Viscous {
                 }
             }
         }
+    }
+}
+
+/// Adds `i rate x`, a rate per mode; both are real parts, then imaginary ones.
+fn add_turned(x: &[f64], sum: &mut [f64], rate: impl Fn(usize) -> f64) {
+    let (x_real, x_imaginary) = x.split_at(x.len() / 2);
+    let (real, imaginary) = sum.split_at_mut(x.len() / 2);
+    for mode in 0..real.len() {
+        let rate = rate(mode);
+        real[mode] -= rate * x_imaginary[mode];
+        imaginary[mode] += rate * x_real[mode];
     }
 }
 
