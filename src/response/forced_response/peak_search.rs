@@ -79,7 +79,7 @@ pub struct SearchResult {
 /// Finds the highest peak in `[start_hz, stop_hz]`, widened where the largest value lies at an end.
 ///
 /// `starts` are the first frequencies tried besides the ends of the band. Where all readings have slopes these tell where
-/// to look, see [`super::sloped`].
+/// to look, see `sloped.rs`.
 pub fn find_peak(
     band_hz: (f64, f64),
     starts: &[f64],
