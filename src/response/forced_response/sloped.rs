@@ -128,6 +128,7 @@ impl Search {
 
 #[cfg(test)]
 mod tests {
+    use super::super::peak_search::tests::evaluations_of_flat_tops;
     use super::super::peak_search::{Envelope, SearchSettings, find_peak};
     use super::super::samples::Reading;
     use crate::linalg::Complex64;
@@ -153,43 +154,9 @@ mod tests {
         }
     }
 
-    /// The wheels of the search without slopes ([`super::super::peak_search`]), at most 12 evaluations there.
     #[test]
     fn flat_and_skewed_tops_are_found_by_slopes_in_fewer_evaluations() {
-        let mut evaluations = 0;
-        for case in 0..400 {
-            let draw = |k: usize| ((case * 17 + k) as f64 * 0.618_033_988_75).fract();
-            let poles = [
-                (100.0, 0.6 + 2.0 * draw(1)),
-                (100.2 + 1.5 * draw(2), 0.5 + 2.0 * draw(3)),
-                (101.0 + 3.0 * draw(4), 0.5 + 2.0 * draw(5)),
-            ];
-            let first = [draw(6), -draw(7), draw(8)];
-            let second = [draw(9), draw(10), -draw(11)];
-            let curve = |f: f64| reading(&poles, &[&first, &second], f);
-            let envelope = Envelope {
-                strength: 6.0,
-                linear_half_bandwidth_hz: 0.5,
-            };
-            let settings = SearchSettings {
-                tolerance: 1e-3,
-                evaluations: 100,
-                extensions: 5,
-                rivals_from: 1.0,
-            };
-            let result = find_peak((95.0, 108.0), &[98.0, 104.0], envelope, settings, |f| {
-                evaluations += 1;
-                Some(curve(f))
-            });
-            let found = result.samples[result.best.expect("evaluated")].largest;
-            let highest = (0..13_000)
-                .flat_map(|i| curve(95.0 + 0.001 * f64::from(i)).amplitudes)
-                .fold(0.0, f64::max);
-            assert!(
-                found > (1.0 - 1e-3) * highest,
-                "case {case}: {found} {highest}"
-            );
-        }
+        let evaluations = evaluations_of_flat_tops(reading);
         assert!(evaluations < 400 * 9, "{evaluations}");
     }
 
