@@ -131,6 +131,8 @@ fn a_screened_search_finds_the_peaks_of_one_with_all_harmonics() {
             let [whole, screened] = &found;
             let error = relative(amplitude(screened), amplitude(whole));
             assert!(error < 1e-3, "{load} N: {error:e}");
+            // Else nothing was screened.
+            assert_ne!(screened.work, whole.work, "{load} N");
             let point = screened.point.as_ref().unwrap();
             assert!(point.residual <= 1e-8 && screened.bracketed);
             assert_eq!(

@@ -70,7 +70,7 @@ pub struct SearchResult {
     pub samples: Vec<Sample>,
     /// Index of the sample with the largest amplitude; none if every evaluation failed.
     pub best: Option<usize>,
-    /// Whether lower amplitudes were seen on both sides.
+    /// Whether lower amplitudes were seen on both sides, or are told by the slope at an end of the band.
     pub bracketed: bool,
     /// Why the search ended.
     pub end: SearchEnd,
