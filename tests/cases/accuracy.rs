@@ -169,6 +169,27 @@ fn humps_on_broad_tops_are_found_within_the_tolerance_of_the_peak() {
     assert!(found.iter().all(within), "{found:?}");
 }
 
+/// Tops that a search with harmonic 1 does not show, by 0.2 to 1.4 %: large equations whose search slopes lead are not
+/// searched in two stages, and what is asked for more exactly than slopes tell still starts from where they lead.
+#[test]
+fn tops_that_harmonic_1_does_not_show_are_found_to_any_tolerance() {
+    let mut whole = lumped(24, 506);
+    whole.solver.harmonics = Harmonics::Set(vec![1, 3, 5, 7]);
+    let own = [1e-3, 1e-4].map(|tolerance| {
+        let mut own = whole.clone();
+        own.solver.peak_tolerance = tolerance;
+        Case::new(own)
+    });
+    whole.solver.search_harmonics = SearchHarmonics::All;
+    let whole = Case::new(whole);
+    for own in own {
+        let found = errors(&own, &whole, &[178, 219, 266, 304]);
+        println!("{found:?}");
+        let within = |error: &Option<f64>| error.is_some_and(|error| error.abs() <= 1e-3);
+        assert!(found.iter().all(within), "{found:?}");
+    }
+}
+
 #[test]
 #[ignore = "minutes: cargo test --release --test cases claimed_errors_hold_on_500 -- --ignored --nocapture"]
 fn claimed_errors_hold_on_500_wheels_that_were_not_seen() {

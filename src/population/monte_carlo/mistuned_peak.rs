@@ -4,7 +4,7 @@ use super::{RowSolver, Scenario, TunedReference};
 use crate::response::forced_response::{
     ContactCondition, ErrorEstimate, Excited, FrequencyBand, Peak, PointSettings, Search,
     SearchHarmonics, Wheel, Window, Work, estimate_errors, mistuned_window, peak, refined,
-    tuned_span,
+    slopes_lead, tuned_span,
 };
 use crate::response::harmonic_balance::{LARGEST_WHOLE_JACOBIAN, Status};
 use crate::response::mistuning::{ContactFactors, Pattern, StructuralModes};
@@ -56,9 +56,16 @@ impl RowSolver {
     /// Settings of a search with fewer harmonics, where rows with `points` have one.
     #[must_use]
     pub fn search<'a>(&self, points: &'a PointSettings) -> Option<&'a PointSettings> {
-        let coordinates: usize = 2 * points.harmonics().len() * self.basis().size();
-        let pays = self.settings.solver.search_harmonics != SearchHarmonics::Auto
-            || coordinates > LARGEST_WHOLE_JACOBIAN;
+        let basis = self.basis();
+        let pays = match self.settings.solver.search_harmonics {
+            SearchHarmonics::Auto => {
+                let unknowns: usize = 2 * points.harmonics().len() * basis.size();
+                // A search that slopes lead takes fewer points by itself, and misses no top that harmonic 1 does not show.
+                unknowns > LARGEST_WHOLE_JACOBIAN
+                    && !slopes_lead(points, basis.size(), basis.contact().rows())
+            }
+            SearchHarmonics::All | SearchHarmonics::Set(_) => true,
+        };
         points.search().filter(|_| pays)
     }
 

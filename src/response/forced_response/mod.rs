@@ -33,7 +33,9 @@ pub use options::{
     AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, HigherHarmonics,
     RowsBeyondTolerance, SearchHarmonics, SolverOptions,
 };
-pub use peak::{Peak, SearchPlan, Window, mistuned_window, peak, search_plan, tuned_span};
+pub use peak::{
+    Peak, SearchPlan, Window, mistuned_window, peak, search_plan, slopes_lead, tuned_span,
+};
 pub use peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
 pub use point::{Point, Slope, Work};
 pub use point_settings::PointSettings;

@@ -4,13 +4,14 @@ use super::excited::Excited;
 use super::folded_peak::falls_off;
 use super::linear_peaks::LinearPeak;
 use super::options::{ContactCondition, FrequencyBand};
-use super::peak_search::{Envelope, SearchEnd, SearchSettings, find_peak};
+use super::peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::point_solver::PointSolver;
 use super::samples::Sample;
 use super::screened::Screened;
-use crate::response::harmonic_balance::Status;
+use crate::response::friction::Ring;
+use crate::response::harmonic_balance::{Status, condensing_pays};
 
 /// Tolerance of peaks of linear limits, which cost almost nothing.
 const LINEAR_PEAK_TOLERANCE: f64 = 4e-11;
@@ -19,8 +20,7 @@ pub(super) const EVALUATIONS: usize = 1500;
 /// Precision of the amplitudes that the search compares, over its tolerance: far below the share of it that a
 /// summit may be missed by.
 pub(super) const SEARCH_PRECISION: f64 = 0.01;
-/// Tolerance from which on slopes lead a search: they jump where contact begins to slip at one more sample of the period, and
-/// what is asked for more exactly is told by values alone.
+/// Tolerance to which slopes lead a search at best: they jump where contact begins to slip at one more sample of the period.
 const LEAST_FOR_SLOPES: f64 = 2e-4;
 /// Precision of the amplitudes that only tell where all harmonics need not be solved.
 const SCREENING_PRECISION: f64 = 1e-3;
@@ -175,6 +175,15 @@ pub fn search_plan(
     })
 }
 
+/// Whether slopes lead the search for the peak of a mistuned wheel of `modes` coordinates with `contact_rows`, all of whose
+/// harmonics are those of the mistuned wheel.
+#[must_use]
+pub fn slopes_lead(settings: &PointSettings, modes: usize, contact_rows: usize) -> bool {
+    let harmonics = settings.harmonics().iter().copied();
+    let pays = |(law, _)| condensing_pays(law, harmonics, modes, contact_rows);
+    settings.ring == Ring::Locked && settings.contact.is_some_and(pays)
+}
+
 /// Finds the peak of one row.
 #[must_use]
 pub fn peak(
@@ -208,43 +217,7 @@ pub fn peak(
         extensions: plan.extensions,
         rivals_from: 1.0,
     };
-    let precision = SEARCH_PRECISION * search.tolerance;
-    let solver_of = |excited, settings, precision| {
-        let solver = PointSolver::new(excited, condition, settings).with_precision(precision);
-        if search.tolerance >= LEAST_FOR_SLOPES {
-            solver.with_slopes()
-        } else {
-            solver
-        }
-    };
-    let solver = solver_of(excited, settings, precision);
-    let starts_hz = if solver.is_sloped() {
-        &plan.sparse_starts_hz
-    } else {
-        &plan.starts_hz
-    };
-    let few = settings.search().filter(|_| solver.is_sloped());
-    let few = few.map(|few| (excited.in_harmonics(few.harmonics()), few));
-    let few = few.as_ref();
-    let few = few.map(|(excited, settings)| {
-        let precision = precision.max(SCREENING_PRECISION);
-        (excited, solver_of(excited, settings, precision))
-    });
-    let stuck = if solver.is_sloped() {
-        &plan.stuck[..]
-    } else {
-        &[]
-    };
-    let mut screened = Screened::new(solver, few, stuck);
-    screened.begin(starts_hz);
-    let result = find_peak(
-        plan.band_hz,
-        starts_hz,
-        plan.envelope,
-        search,
-        &mut screened,
-    );
-    let (mut solver, screening) = screened.into_parts();
+    let (result, mut solver, screening) = searched(excited, condition, settings, &plan, search);
     let best = result.best.map(|best| &result.samples[best]);
     let (point, unfinished) = match best.map(|best| solver.finish(best.frequency_hz).cloned()) {
         Some(Ok(point)) => (Some(point), None),
@@ -285,6 +258,65 @@ pub fn peak(
         mean_friction_n,
         work: solver.work().plus(screening),
     }
+}
+
+/// The search by `plan`, the solver of its points with all harmonics, and the work of those with fewer.
+///
+/// Where points have slopes these lead, down to what they can tell; what is asked for more exactly is sought by the values alone
+/// from the points to which they led.
+fn searched<'a>(
+    excited: &'a Excited,
+    condition: ContactCondition,
+    settings: &'a PointSettings,
+    plan: &SearchPlan,
+    search: SearchSettings,
+) -> (SearchResult, PointSolver<'a>, Work) {
+    let precision = SEARCH_PRECISION * search.tolerance;
+    let solver = PointSolver::new(excited, condition, settings).with_precision(precision);
+    let mut solver = solver.with_slopes();
+    if !solver.is_sloped() {
+        let result = by_values(&mut solver, plan, &plan.starts_hz, search);
+        return (result, solver, Work::default());
+    }
+    let finer = search.tolerance < LEAST_FOR_SLOPES;
+    let few = settings.search().filter(|_| !finer);
+    let few = few.map(|few| (excited.in_harmonics(few.harmonics()), few));
+    let few = few.as_ref().map(|(excited, settings)| {
+        let few =
+            PointSolver::new(excited, condition, settings).with_precision(SCREENING_PRECISION);
+        (excited, few.with_slopes())
+    });
+    let mut screened = Screened::new(solver, few, &plan.stuck);
+    let starts_hz = &plan.sparse_starts_hz;
+    screened.begin(starts_hz);
+    let led = SearchSettings {
+        tolerance: search.tolerance.max(LEAST_FOR_SLOPES),
+        ..search
+    };
+    let result = find_peak(plan.band_hz, starts_hz, plan.envelope, led, &mut screened);
+    let (mut solver, screening) = screened.into_parts();
+    if !finer {
+        return (result, solver, screening);
+    }
+    let points = solver.points().iter().map(|point| point.frequency_hz);
+    let starts_hz: Vec<f64> = points.chain(plan.starts_hz.iter().copied()).collect();
+    let result = by_values(&mut solver, plan, &starts_hz, search);
+    (result, solver, screening)
+}
+
+fn by_values(
+    solver: &mut PointSolver<'_>,
+    plan: &SearchPlan,
+    starts_hz: &[f64],
+    search: SearchSettings,
+) -> SearchResult {
+    find_peak(
+        plan.band_hz,
+        starts_hz,
+        plan.envelope,
+        search,
+        |frequency_hz| solver.amplitudes_at(frequency_hz),
+    )
 }
 
 /// Status of the failed frequency nearest to the best point, among those with no lower amplitude

@@ -252,6 +252,16 @@ impl<'a> PointSolver<'a> {
         }
     }
 
+    /// Amplitude of every blade, m, at a frequency, Hz, that may have been solved before; none where it cannot be.
+    pub(super) fn amplitudes_at(&mut self, frequency_hz: f64) -> Option<Vec<f64>> {
+        let known = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
+        if let Some(point) = self.points.iter().find(known) {
+            return Some(point.amplitudes_m.clone());
+        }
+        let point = self.solve(frequency_hz).ok()?;
+        Some(point.amplitudes_m.clone())
+    }
+
     fn solve_linear(&mut self, frequency_hz: f64) -> Result<Point, Status> {
         let response = self.linear_at(frequency_hz)?;
         let solution = real_parts(&response);

@@ -100,7 +100,7 @@ pub fn refined(
             extensions: plan.extensions,
             rivals_from: 1.0 - MADE_UP,
         },
-        |hz| amplitudes(&mut coarse, hz),
+        |hz| coarse.amplitudes_at(hz),
     );
     let opens = coarse
         .points()
@@ -131,15 +131,6 @@ fn with_work(peak: Peak, work: Work) -> Peak {
         work: peak.work.plus(work),
         ..peak
     }
-}
-
-fn amplitudes(solver: &mut PointSolver<'_>, frequency_hz: f64) -> Option<Vec<f64>> {
-    let known = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
-    if let Some(point) = solver.points().iter().find(known) {
-        return Some(point.amplitudes_m.clone());
-    }
-    let point = solver.solve(frequency_hz).ok()?;
-    Some(point.amplitudes_m.clone())
 }
 
 /// The local maxima of a search, the highest first.
@@ -245,14 +236,16 @@ fn highest(
         if best.is_some_and(|(.., grown)| lower(top.amplitude_m * grown)) {
             continue;
         }
-        let there = amplitudes(&mut solver, top.frequency_hz).ok_or(solver.work())?;
+        let there = solver
+            .amplitudes_at(top.frequency_hz)
+            .ok_or(solver.work())?;
         if lower(there.into_iter().fold(0.0, f64::max)) {
             continue;
         }
         let reach = NEIGHBOURS * top.half_bandwidth_hz;
         let band = (top.frequency_hz - reach, top.frequency_hz + reach);
         let found = find_peak(band, &[top.frequency_hz], envelope, settings, |hz| {
-            amplitudes(&mut solver, hz)
+            solver.amplitudes_at(hz)
         });
         let Some(sample) = summit_of(&found) else {
             return Err(solver.work());
@@ -272,7 +265,7 @@ fn highest(
         if summit_of(&found).is_none_or(|own| own.largest < (1.0 - HUMP) * height) {
             continue;
         }
-        let looked = looked_into(found, envelope, settings, |hz| amplitudes(&mut solver, hz));
+        let looked = looked_into(found, envelope, settings, |hz| solver.amplitudes_at(hz));
         let sample = summit_of(&looked).ok_or(solver.work())?;
         if sample.largest > highest.0 {
             highest = (sample.largest, Some(sample.frequency_hz));

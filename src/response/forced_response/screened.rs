@@ -22,24 +22,24 @@ const JOINED: f64 = 2.0;
 /// Distance of a sample that has seen a resonance, in half-bandwidths.
 const SEEN: f64 = 0.5;
 
-/// Solver of a search.
-pub(super) struct Screened<'a> {
+/// Solver of a search, and what serves it only.
+pub(super) struct Screened<'a, 'search> {
     solver: PointSolver<'a>,
     /// With fewer harmonics; none where all points are solved with all.
-    few: Option<(&'a Excited, PointSolver<'a>)>,
+    few: Option<(&'search Excited, PointSolver<'search>)>,
     /// Highest amplitude with all harmonics so far, m.
     highest_m: f64,
     /// Resonances of the stuck limit.
-    stuck: &'a [LinearPeak],
+    stuck: &'search [LinearPeak],
 }
 
-impl<'a> Screened<'a> {
+impl<'a, 'search> Screened<'a, 'search> {
     /// Points of `solver`, screened by those of a structure in `few` harmonics where both have slopes; `stuck` are the
     /// resonances of the stuck limit.
     pub(super) fn new(
         solver: PointSolver<'a>,
-        few: Option<(&'a Excited, PointSolver<'a>)>,
-        stuck: &'a [LinearPeak],
+        few: Option<(&'search Excited, PointSolver<'search>)>,
+        stuck: &'search [LinearPeak],
     ) -> Self {
         let pays = |(_, few): &(_, PointSolver<'_>)| few.is_sloped() && solver.is_sloped();
         Self {
@@ -119,7 +119,7 @@ impl<'a> Screened<'a> {
     }
 }
 
-impl Curve for &mut Screened<'_> {
+impl Curve for &mut Screened<'_, '_> {
     fn read(&mut self, frequency_hz: f64) -> Option<Reading> {
         self.point(frequency_hz)
     }

@@ -16,33 +16,50 @@ use std::sync::Arc;
 
 use super::linear_factors::LinearFactors;
 use super::structure::{ContactStiffnessMatrix, Structure};
-use super::{HarmonicBlock, HarmonicSystem, LARGEST_WHOLE_JACOBIAN, SystemWorkspace};
+use super::{HarmonicSystem, LARGEST_WHOLE_JACOBIAN, SystemWorkspace};
 use crate::linalg::{LuWorkspace, add_times};
+use crate::response::friction::ContactLaw;
+
+/// Whether the step by contact forces is the cheaper one, by the operations that either takes: for harmonics of a wheel
+/// of `modes` coordinates whose `contact_rows` have no more coefficients than a matrix may have that costs next to
+/// nothing. Under a constant normal load only.
+#[must_use]
+pub fn condensing_pays(
+    law: ContactLaw,
+    harmonics: impl ExactSizeIterator<Item = u32>,
+    modes: usize,
+    contact_rows: usize,
+) -> bool {
+    let count = harmonics.len() as f64;
+    let coefficients: usize = harmonics.map(|k| if k == 0 { 1 } else { 2 }).sum();
+    let condensed = coefficients * contact_rows;
+    if contact_rows == 0 || condensed > LARGEST_WHOLE_JACOBIAN {
+        return false;
+    }
+    // Where contact may open a renewed step can lead to another branch than damped ones.
+    if law.has_variable_load() {
+        return false;
+    }
+    let factored = |n: f64| 2.0 / 3.0 * n.powi(3);
+    let (m, n) = (contact_rows as f64, modes as f64);
+    let unknowns = coefficients as f64 * n;
+    let whole = factored(unknowns) + 2.0 * unknowns.powi(2) * m;
+    let of_harmonic = 4.0 * factored(n) + 8.0 * n * n * m + 4.0 * n * m * m;
+    count * of_harmonic + factored(condensed as f64) < whole
+}
 
 impl HarmonicSystem {
-    /// Whether the step by contact forces is the cheaper one: for harmonics of a wheel, with no more coefficients of
-    /// contact rows than a matrix may have that costs next to nothing, by the operations that either takes. Under a
-    /// constant normal load only.
+    /// Whether the step by contact forces is the cheaper one, see [`condensing_pays`].
     #[must_use]
     pub fn condenses(&self) -> bool {
-        let rows = self.contact_row_count();
-        let condensed = self.transform.n_coefficients() * rows;
-        if !self.is_shared() || rows == 0 || condensed > LARGEST_WHOLE_JACOBIAN {
-            return false;
-        }
-        // Where contact may open a renewed step can lead to another branch than damped ones.
-        if self.interface.law.has_variable_load() {
-            return false;
-        }
-        let factored = |n: f64| 2.0 / 3.0 * n.powi(3);
-        let (m, unknowns) = (rows as f64, self.unknowns() as f64);
-        let whole = factored(unknowns) + 2.0 * unknowns.powi(2) * m;
-        let of_block = |block: &HarmonicBlock| {
-            let n = block.structure.size() as f64;
-            4.0 * factored(n) + 8.0 * n * n * m + 4.0 * n * m * m
-        };
-        let linear: f64 = self.blocks().iter().map(of_block).sum();
-        linear + factored(condensed as f64) < whole
+        let blocks = self.blocks();
+        self.is_shared()
+            && condensing_pays(
+                self.interface.law,
+                blocks.iter().map(|block| block.harmonic),
+                blocks[0].structure.size(),
+                self.contact_row_count(),
+            )
     }
 }
 
@@ -270,7 +287,7 @@ pub(super) mod tests {
     use super::*;
     use crate::linalg::{Complex64, Matrix};
     use crate::model::cyclic::ContactGeometry;
-    use crate::response::friction::{ContactLaw, PairParameters};
+    use crate::response::friction::PairParameters;
     use crate::response::harmonic_balance::{
         ContactInterface, ContactShares, Damping, HarmonicTransform,
     };

@@ -42,6 +42,7 @@ mod vector_sums;
 mod wave_blocks;
 mod wave_table;
 
+pub use condensed::condensing_pays;
 pub use contact_interface::ContactInterface;
 pub use contact_states::PairContact;
 pub use continuation::{Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint};
