@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{ResponseRow, RowSolver, Scenario};
 use crate::response::forced_response::{ContactCondition, Harmonics};
-use crate::response::harmonic_balance::LARGEST_WHOLE_JACOBIAN;
+use crate::response::friction::ContactLaw;
+use crate::response::harmonic_balance::{LARGEST_WHOLE_JACOBIAN, condensing_pays};
 
 /// Operations per unknown cubed of the eigenvalues and vectors of a symmetric matrix.
 const EIGEN: f64 = 9.0;
@@ -63,6 +64,8 @@ pub struct SystemSize {
     pub in_stages: bool,
     /// The tuned wheel that harmonics other than 1 are taken in, if they are.
     pub tuned: Option<TunedSize>,
+    /// Contact law, where friction is solved for.
+    pub law: Option<ContactLaw>,
 }
 
 /// Size of the tuned wheel as its contact feels it.
@@ -110,14 +113,38 @@ impl SystemSize {
         self.coordinates * self.coefficients
     }
 
-    /// Assembly of `C^T J C` and the LU factors of the Jacobian: `2 c n^2 + 2/3 n^3`, or its lower block triangle
-    /// with the factors of one block a harmonic. In two stages those of its harmonics by themselves, all of them, though
-    /// the first stage has fewer.
+    /// Whether Newton's method is for the motions at the contact rows, see [`condensing_pays`].
+    fn condenses(&self) -> bool {
+        let pays =
+            |law| condensing_pays(law, self.coefficients, self.coordinates, self.contact_rows);
+        self.tuned.is_none() && self.law.is_some_and(pays)
+    }
+
+    /// Real coefficients of all contact rows.
+    fn contact_coefficients(&self) -> f64 {
+        (self.contact_rows * self.coefficients) as f64
+    }
+
+    /// What every harmonic takes once a frequency where the motions at the contact rows are solved for: factors of its complex
+    /// symmetric linear part, receptance of the contact rows, and the response of all coordinates in the end.
+    fn linear_parts(&self) -> f64 {
+        let (n, m) = (self.coordinates as f64, self.contact_rows as f64);
+        let factors = 4.0 / 3.0 * n.powi(3) + 4.0 * m.powi(3);
+        self.coefficients.div_ceil(2) as f64 * (factors + 12.0 * n * n)
+    }
+
+    /// Assembly and LU factors of the Jacobian: `2 c n^2 + 2/3 n^3`; of the contact rows alone where their motions are solved for;
+    /// or of its lower block triangle, one block a harmonic. In two stages those of its harmonics by themselves, all of
+    /// them, though the first stage has fewer.
     #[must_use]
     pub fn per_factorisation(&self) -> f64 {
         if let Some(tuned) = self.tuned {
             let own = self.whole_jacobian(2 * self.coordinates);
             return own + self.beyond() * tuned.factors(self.contact_rows as f64);
+        }
+        if self.condenses() {
+            let size = self.contact_coefficients();
+            return 2.0 * size.powi(2) + 2.0 / 3.0 * size.powi(3);
         }
         if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
             return self.whole_jacobian(self.unknowns());
@@ -173,6 +200,13 @@ impl SystemSize {
             let waves = self.beyond() * tuned.products(self.contact_rows as f64);
             return own + waves + self.evaluation(self.coefficients as f64, self.samples as f64);
         }
+        if self.condenses() {
+            let rows = self.contact_rows as f64;
+            let (size, samples) = (self.contact_coefficients(), self.samples as f64);
+            // A step with the factors, and twice the receptance of every harmonic.
+            let products = 2.0 * size.powi(2) + 8.0 * self.coefficients as f64 * rows.powi(2);
+            return products + self.contact(self.coefficients as f64, samples);
+        }
         let n = self.unknowns() as f64;
         let entries = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
             n * n
@@ -193,8 +227,13 @@ impl SystemSize {
             coefficients
         };
         let modal = 4.0 * rows * self.coordinates as f64 * in_modes;
-        let transforms = 4.0 * rows * coefficients * samples;
-        modal + transforms + LAW * self.pairs as f64 * samples
+        modal + self.contact(coefficients, samples)
+    }
+
+    /// The alternating frequency/time method at all contact rows.
+    fn contact(&self, coefficients: f64, samples: f64) -> f64 {
+        let transforms = 4.0 * self.contact_rows as f64 * coefficients * samples;
+        transforms + LAW * self.pairs as f64 * samples
     }
 
     /// The check of samples and harmonics that every row has: the whole Jacobian, or in its place that of harmonic 1, and
@@ -211,7 +250,12 @@ impl SystemSize {
             return factors + CHECK_ITERATIONS * (evaluation + waves);
         }
         let factors = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
-            self.by_harmonic(CHECK_BLOCKS) + self.whole_jacobian(self.unknowns())
+            let own = if self.condenses() {
+                self.linear_parts() + self.per_factorisation()
+            } else {
+                self.whole_jacobian(self.unknowns())
+            };
+            self.by_harmonic(CHECK_BLOCKS) + own
         } else {
             self.by_harmonic(CHECK_BLOCKS)
         };
@@ -222,11 +266,13 @@ impl SystemSize {
     #[must_use]
     pub fn operations(&self, work: &RowWork) -> f64 {
         let eigen = EIGENPROBLEMS * EIGEN * (self.coordinates as f64).powi(3);
-        let receptances = self.tuned.map_or(0.0, |tuned| {
-            self.beyond() * tuned.receptance(self.contact_rows as f64)
-        });
+        let once_a_frequency = match self.tuned {
+            Some(tuned) => self.beyond() * tuned.receptance(self.contact_rows as f64),
+            None if self.condenses() => self.linear_parts(),
+            None => 0.0,
+        };
         work.factorisations * self.per_factorisation()
-            + work.nonlinear_solves * receptances
+            + work.nonlinear_solves * once_a_frequency
             + work.newton_iterations * self.per_iteration()
             + self.check()
             + eigen
@@ -252,6 +298,11 @@ impl RowSolver {
             pairs: model.contact.weights.len() * model.sectors,
             coefficients: SystemSize::coefficients_of(harmonics),
             tuned: solver.tuned_size(harmonics).filter(|_| !linear),
+            law: solver
+                .settings
+                .contact
+                .map(|(law, _)| law)
+                .filter(|_| !linear),
             in_stages: solver
                 .search(solver.points(scenario.engine_order, scenario.contact))
                 .is_some(),
@@ -266,7 +317,7 @@ impl RowSolver {
 
 #[cfg(test)]
 mod tests {
-    use super::{RowWork, SystemSize};
+    use super::{ContactLaw, RowWork, SystemSize};
 
     #[test]
     fn the_cube_of_the_unknowns_leads() {
@@ -278,6 +329,7 @@ mod tests {
             samples: 128,
             in_stages: false,
             tuned: None,
+            law: Some(ContactLaw::Simplified3d),
         };
         assert_eq!(size(168).unknowns(), 840);
         let work = RowWork {

@@ -179,8 +179,8 @@ pub fn search_plan(
 /// harmonics are those of the mistuned wheel.
 #[must_use]
 pub fn slopes_lead(settings: &PointSettings, modes: usize, contact_rows: usize) -> bool {
-    let harmonics = settings.harmonics().iter().copied();
-    let pays = |(law, _)| condensing_pays(law, harmonics, modes, contact_rows);
+    let coefficients = settings.transform.n_coefficients();
+    let pays = |(law, _)| condensing_pays(law, coefficients, modes, contact_rows);
     settings.ring == Ring::Locked && settings.contact.is_some_and(pays)
 }
 

@@ -20,18 +20,16 @@ use super::{HarmonicSystem, LARGEST_WHOLE_JACOBIAN, SystemWorkspace};
 use crate::linalg::{LuWorkspace, add_times};
 use crate::response::friction::ContactLaw;
 
-/// Whether the step by contact forces is the cheaper one, by the operations that either takes: for harmonics of a wheel
-/// of `modes` coordinates whose `contact_rows` have no more coefficients than a matrix may have that costs next to
-/// nothing. Under a constant normal load only.
+/// Whether the step by contact forces is the cheaper one, by the operations that either takes: for a wheel of `modes`
+/// coordinates with so many real `coefficients` each whose `contact_rows` have no more of them than a matrix may have that
+/// costs next to nothing. Under a constant normal load only.
 #[must_use]
 pub fn condensing_pays(
     law: ContactLaw,
-    harmonics: impl ExactSizeIterator<Item = u32>,
+    coefficients: usize,
     modes: usize,
     contact_rows: usize,
 ) -> bool {
-    let count = harmonics.len() as f64;
-    let coefficients: usize = harmonics.map(|k| if k == 0 { 1 } else { 2 }).sum();
     let condensed = coefficients * contact_rows;
     if contact_rows == 0 || condensed > LARGEST_WHOLE_JACOBIAN {
         return false;
@@ -45,19 +43,21 @@ pub fn condensing_pays(
     let unknowns = coefficients as f64 * n;
     let whole = factored(unknowns) + 2.0 * unknowns.powi(2) * m;
     let of_harmonic = 4.0 * factored(n) + 8.0 * n * n * m + 4.0 * n * m * m;
-    count * of_harmonic + factored(condensed as f64) < whole
+    let harmonics = coefficients.div_ceil(2) as f64;
+    harmonics * of_harmonic + factored(condensed as f64) < whole
 }
 
 impl HarmonicSystem {
     /// Whether the step by contact forces is the cheaper one, see [`condensing_pays`].
     #[must_use]
     pub fn condenses(&self) -> bool {
-        let blocks = self.blocks();
+        let modes = self.blocks()[0].structure.size();
+        let coefficients = self.transform.n_coefficients();
         self.is_shared()
             && condensing_pays(
                 self.interface.law,
-                blocks.iter().map(|block| block.harmonic),
-                blocks[0].structure.size(),
+                coefficients,
+                modes,
                 self.contact_row_count(),
             )
     }
@@ -289,7 +289,7 @@ pub(super) mod tests {
     use crate::model::cyclic::ContactGeometry;
     use crate::response::friction::PairParameters;
     use crate::response::harmonic_balance::{
-        ContactInterface, ContactShares, Damping, HarmonicTransform,
+        ContactInterface, ContactShares, Damping, HarmonicBlock, HarmonicTransform,
     };
     use crate::response::mistuning::{ModalRows, StructuralModes};
 
