@@ -19,6 +19,7 @@ mod harmonic_block;
 mod jacobian;
 mod kept_jacobian;
 mod lanes;
+mod largest_norm;
 mod linear;
 mod linear_factors;
 mod linear_part;

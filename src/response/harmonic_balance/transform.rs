@@ -23,14 +23,11 @@ use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 use thiserror::Error;
 
-use crate::linalg::{add_times, dot};
+use crate::linalg::dot;
 
 /// Number of coefficients from which on the FFT is the faster one for a batch of three channels:
 /// measured crossing at 6 for 128 samples and at 7 to 10 for 512.
 const FFT_COEFFICIENTS: usize = 8;
-
-/// Number of coefficients up to which plain sums over the instants that differ cost less than a matrix product over all.
-const FEW_COEFFICIENTS: usize = 4;
 
 /// A harmonic set that cannot be transformed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -371,82 +368,6 @@ impl HarmonicTransform {
         }
     }
 
-    /// Largest Euclidean norm over the samples of a displacement of up to three components,
-    /// harmonic 0 left out.
-    ///
-    /// `coefficients` (`n_components * n_coefficients`); use a transform of 1024 samples for
-    /// `time_maximum`. Not a number if a coefficient is not finite.
-    #[must_use]
-    pub fn largest_norm(&self, coefficients: &[f64]) -> f64 {
-        if !coefficients.iter().all(|value| value.is_finite()) {
-            return f64::NAN;
-        }
-        largest(&self.squares(coefficients)).sqrt()
-    }
-
-    /// [`Self::largest_norm`], and how it changes where the coefficients change by `rates`, the instant of the largest
-    /// being held: it is stationary in time there. Without motion it changes as fast as motion begins.
-    #[must_use]
-    pub fn largest_norm_and_rate(&self, coefficients: &[f64], rates: &[f64]) -> (f64, f64) {
-        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-        if !finite(coefficients) || !finite(rates) {
-            return (f64::NAN, f64::NAN);
-        }
-        let squares = self.squares(coefficients);
-        let square = largest(&squares);
-        let norm = square.sqrt();
-        let is_largest = |own: &f64| own.total_cmp(&square).is_eq();
-        let instant = squares.iter().position(is_largest).unwrap_or(0);
-        if norm == 0.0 {
-            return (norm, self.largest_norm(rates));
-        }
-        let first = usize::from(self.has_mean());
-        let count = self.n_coefficients();
-        let value = |own: &[f64]| -> f64 {
-            let place = |c: usize| self.basis[c * self.n_samples + instant];
-            (first..count).map(|c| place(c) * own[c]).sum()
-        };
-        let components = coefficients
-            .chunks_exact(count)
-            .zip(rates.chunks_exact(count));
-        let products = components.map(|(own, rates)| value(own) * value(rates));
-        (norm, products.sum::<f64>() / norm)
-    }
-
-    /// Square of the norm at every instant of a period, or of half of one where the other is the same.
-    fn squares(&self, coefficients: &[f64]) -> Vec<f64> {
-        let first = usize::from(self.has_mean());
-        let count = self.n_coefficients();
-        let components = coefficients.chunks_exact(count.max(1));
-        let moving = components.filter(|own| own[first..].iter().any(|&value| value != 0.0));
-        let instants = self.n_samples / if self.has_half_waves() { 2 } else { 1 };
-        let oscillation = &self.basis[first * self.n_samples..];
-        let mut squares = vec![0.0; instants];
-        let mut history = vec![0.0; self.n_samples];
-        for component in moving {
-            history.fill(0.0);
-            let own = &component[first..];
-            if own.len() <= FEW_COEFFICIENTS {
-                let rows = oscillation.chunks_exact(self.n_samples);
-                for (coefficient, row) in own.iter().zip(rows) {
-                    let instants = history[..instants].iter_mut().zip(row);
-                    instants.for_each(|(x, phi)| *x += coefficient * phi);
-                }
-            } else {
-                add_times(
-                    &mut history,
-                    oscillation,
-                    own,
-                    (self.n_samples, 1, own.len()),
-                );
-            }
-            for (square, x) in squares.iter_mut().zip(&history) {
-                *square += x * x;
-            }
-        }
-        squares
-    }
-
     /// Harmonics of one channel and their complex coefficients (real for harmonic 0).
     fn complex_coefficients<'a>(
         &'a self,
@@ -459,21 +380,4 @@ impl HarmonicTransform {
             .map(|pair| Complex64::new(pair[0], pair[1]));
         self.harmonics.iter().copied().zip(mean.chain(oscillation))
     }
-}
-
-/// The largest of values that are not negative; 0 of none.
-fn largest(values: &[f64]) -> f64 {
-    const LANES: usize = 8;
-    let (blocks, rest) = values.as_chunks::<LANES>();
-    let mut most = [0.0_f64; LANES];
-    for block in blocks {
-        for lane in 0..LANES {
-            most[lane] = if block[lane] > most[lane] {
-                block[lane]
-            } else {
-                most[lane]
-            };
-        }
-    }
-    most.iter().chain(rest).copied().fold(0.0, f64::max)
 }
