@@ -14,6 +14,7 @@
 
 use std::sync::Arc;
 
+use super::contact_couplings::ContactCouplings;
 use super::linear_factors::LinearFactors;
 use super::structure::{ContactStiffnessMatrix, Structure};
 use super::{HarmonicSystem, LARGEST_WHOLE_JACOBIAN, SystemWorkspace};
@@ -69,27 +70,14 @@ pub(super) struct CondensedJacobian {
     /// Matrices of the linear parts at hand.
     of: Option<(Arc<Structure>, Arc<ContactStiffnessMatrix>)>,
     pub(super) linear: Vec<LinearFactors>,
-    /// Contact rows that have a correction.
-    rows: Vec<usize>,
-    couplings: Vec<Coupling>,
-    /// `dG_c/dd_c'` of every coupling, a column per c'.
-    slopes: Vec<f64>,
-    /// Of `I + G' R`, row after row of contact, in each coefficient after coefficient.
+    couplings: ContactCouplings,
+    /// Of `I + G' R`, coefficient after coefficient, in each row after row of contact.
     factors: Option<LuWorkspace<f64>>,
     pub(super) motion: Vec<f64>,
     forces: Vec<f64>,
     room: Vec<f64>,
     /// Residual that a motion of every row amounts to at most, 1/m.
     pub(super) stiffness: Vec<f64>,
-}
-
-/// Dependence of the correction at a contact row on the motion at one.
-#[derive(Clone, Copy)]
-struct Coupling {
-    /// Place among the rows that have a correction.
-    to: usize,
-    /// Contact row.
-    from: usize,
 }
 
 impl CondensedJacobian {
@@ -103,9 +91,9 @@ impl CondensedJacobian {
         if !self.factor_linear(system, omega) {
             return false;
         }
-        self.gather(system, workspace);
+        self.couplings.gather(system, workspace);
         let count = system.transform.n_coefficients();
-        let size = count * self.rows.len();
+        let size = count * self.couplings.rows.len();
         if size == 0 {
             self.factors = None;
             return true;
@@ -113,43 +101,13 @@ impl CondensedJacobian {
         if self.factors.as_ref().is_none_or(|f| f.dimension() != size) {
             self.factors = Some(LuWorkspace::new(size));
         }
-        let m = system.contact_row_count();
         let Some(factors) = &mut self.factors else {
             return false;
         };
         let matrix = factors.matrix_mut();
         matrix.fill(0.0);
         (0..size).for_each(|i| matrix[i * size + i] = 1.0);
-        for (coupling, slopes) in self
-            .couplings
-            .iter()
-            .zip(self.slopes.chunks_exact(count * count))
-        {
-            for (j, &row) in self.rows.iter().enumerate() {
-                for part in &self.linear {
-                    let place = row * m + coupling.from;
-                    let [re, im] = [part.receptance[0][place], part.receptance[1][place]];
-                    let slopes = &slopes[part.coefficient * count..][..part.parts * count];
-                    let column = (j * count + part.coefficient) * size + coupling.to * count;
-                    let (by_re, by_im) = slopes.split_at(count);
-                    if part.parts == 1 {
-                        let target = &mut matrix[column..column + count];
-                        for (entry, slope) in target.iter_mut().zip(by_re) {
-                            *entry += slope * re;
-                        }
-                        continue;
-                    }
-                    let target = &mut matrix[column..column + count];
-                    for ((entry, by_re), by_im) in target.iter_mut().zip(by_re).zip(by_im) {
-                        *entry += by_re * re + by_im * im;
-                    }
-                    let target = &mut matrix[column + size..column + size + count];
-                    for ((entry, by_re), by_im) in target.iter_mut().zip(by_re).zip(by_im) {
-                        *entry += by_im * re - by_re * im;
-                    }
-                }
-            }
-        }
+        self.couplings.add_times(&self.linear, matrix);
         factors.factor()
     }
 
@@ -174,37 +132,6 @@ impl CondensedJacobian {
             let at_hand = part.at.is_some_and(|at| at.total_cmp(&omega).is_eq());
             (at_hand || part.factor(block, omega, system.force())) && regular
         })
-    }
-
-    /// The rows that have a correction, and the derivatives of the corrections.
-    fn gather(&mut self, system: &HarmonicSystem, workspace: &SystemWorkspace) {
-        let geometry = &system.interface.geometry;
-        let count = system.transform.n_coefficients();
-        self.rows.clear();
-        self.couplings.clear();
-        self.slopes.clear();
-        for (pair, jacobian) in workspace.jacobians.iter().enumerate() {
-            if !workspace.active[pair] {
-                continue;
-            }
-            let base = pair / geometry.rows.len() * geometry.row_count();
-            let places = &geometry.rows[pair % geometry.rows.len()];
-            let first = usize::from(!workspace.separated);
-            for (direction, place) in places.iter().enumerate().skip(first) {
-                let Some(row) = *place else { continue };
-                for (other, place) in places.iter().enumerate() {
-                    if let (Some(from), Some(block)) = (*place, jacobian.block(direction, other)) {
-                        self.couplings.push(Coupling {
-                            to: self.rows.len(),
-                            from: base + from,
-                        });
-                        let columns = (0..count).flat_map(|by| block[by..].iter().step_by(count));
-                        self.slopes.extend(columns);
-                    }
-                }
-                self.rows.push(base + row);
-            }
-        }
     }
 
     /// `J^-1 residual`, in place.
@@ -244,21 +171,14 @@ impl CondensedJacobian {
         };
         self.forces.clear();
         self.forces.resize(factors.dimension(), 0.0);
-        let slopes = self.slopes.chunks_exact(columns * columns);
-        for (coupling, slopes) in self.couplings.iter().zip(slopes) {
-            let target = &mut self.forces[coupling.to * columns..][..columns];
-            let motion = self.motion[coupling.from..].iter().step_by(m);
-            for (motion, slopes) in motion.zip(slopes.chunks_exact(columns)) {
-                for (force, slope) in target.iter_mut().zip(slopes) {
-                    *force += slope * motion;
-                }
-            }
-        }
+        self.couplings.add_to(&mut self.forces, &self.motion, m);
         factors.solve_small(&mut self.forces, &mut self.room);
         self.motion.fill(0.0);
-        for (&row, forces) in self.rows.iter().zip(self.forces.chunks_exact(columns)) {
-            for (c, force) in forces.iter().enumerate() {
-                self.motion[c * m + row] = *force;
+        let rows = &self.couplings.rows;
+        let coefficients = self.motion.chunks_exact_mut(m);
+        for (motion, forces) in coefficients.zip(self.forces.chunks_exact(rows.len())) {
+            for (&row, force) in rows.iter().zip(forces) {
+                motion[row] = *force;
             }
         }
     }

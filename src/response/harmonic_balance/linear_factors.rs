@@ -58,6 +58,11 @@ impl LinearFactors {
         }
     }
 
+    /// Contact rows.
+    pub(super) fn rows(&self) -> usize {
+        self.motion.len() / self.parts
+    }
+
     /// False if `S_k` is singular; `force` excites harmonic 1.
     pub(super) fn factor(
         &mut self,

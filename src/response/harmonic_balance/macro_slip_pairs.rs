@@ -12,12 +12,17 @@
 //! While it slips `r(j) = j`, while it sticks `r(j)` stays: sums over either are differences of two table entries.
 //! Under odd harmonics everything changes sign after half a period, so that half of it will do.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined is compiled for vectors"
+)]
+
 use std::sync::Arc;
 
 use super::clip_slopes::wanted;
 use super::lanes::{LANES, clip, lanes_at, larger, smaller};
 use super::{ContactShares, HarmonicSystem, HarmonicTransform, PairJacobian, SystemWorkspace};
-use crate::linalg::add_times;
+use crate::linalg::{Loops, add_times, vectorized};
 use crate::response::friction::{ContactLaw, PairParameters};
 
 /// Buffers for the pairs of one wheel. Matrices are column-major, a row per lane.
@@ -87,42 +92,16 @@ impl MacroSlipPairs {
         elastic.fill(0.0);
         let coefficients = &self.coefficients[..lanes * count];
         add_times(elastic, coefficients, &self.basis, (lanes, samples, count));
-        let offset = &mut self.offset[..lanes * samples];
-        for block in (0..lanes).step_by(LANES) {
-            let limit = lanes_at(&self.limit, block);
-            let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
-            let mut y = [0.0; LANES];
-            for _ in 0..self.transform.n_samples() / samples {
-                for elastic in elastic.chunks_exact(lanes) {
-                    let elastic = lanes_at(elastic, block);
-                    for lane in 0..LANES {
-                        least[lane] = smaller(elastic[lane], least[lane]);
-                        most[lane] = larger(elastic[lane], most[lane]);
-                        y[lane] = clip(y[lane], limit[lane], elastic[lane]);
-                    }
-                }
-                y = y.map(|y| self.then * y);
-            }
-            if self.then < 0.0 {
-                for lane in 0..LANES {
-                    let (low, high) = (least[lane], most[lane]);
-                    least[lane] = smaller(low, -high);
-                    most[lane] = larger(high, -low);
-                }
-            }
-            for (elastic, offset) in elastic
-                .chunks_exact(lanes)
-                .zip(offset.chunks_exact_mut(lanes))
-            {
-                let elastic = lanes_at(elastic, block);
-                for lane in 0..LANES {
-                    y[lane] = clip(y[lane], limit[lane], elastic[lane]);
-                }
-                offset[block..block + LANES].copy_from_slice(&y);
-            }
-            self.least[block..block + LANES].copy_from_slice(&least);
-            self.most[block..block + LANES].copy_from_slice(&most);
-        }
+        vectorized(March {
+            lanes,
+            periods: self.transform.n_samples() / samples,
+            then: self.then,
+            limit: &self.limit,
+            elastic,
+            offset: &mut self.offset[..lanes * samples],
+            least: &mut self.least,
+            most: &mut self.most,
+        });
         // A slider that sticks has a constant offset, whose harmonics are zero.
         for lane in 0..self.pairs.len() {
             if self.slips(lane) {
@@ -236,6 +215,85 @@ impl MacroSlipPairs {
                 row[other] += held * self.basis[clip * count + other];
             }
         }
+    }
+}
+
+/// The chains of clips of all lanes: a period, from which on they are periodic, and the samples looked at.
+struct March<'a> {
+    lanes: usize,
+    /// Times that the samples make up a period.
+    periods: usize,
+    then: f64,
+    limit: &'a [f64],
+    elastic: &'a [f64],
+    offset: &'a mut [f64],
+    least: &'a mut [f64],
+    most: &'a mut [f64],
+}
+
+impl Loops for March<'_> {
+    type Output = ();
+
+    /// Several blocks at a time: a clip waits for the one before it.
+    #[inline(always)]
+    fn call(mut self) {
+        let mut first = 0;
+        while first < self.lanes {
+            first += match (self.lanes - first) / LANES {
+                1 => self.blocks::<1>(first),
+                2 => self.blocks::<2>(first),
+                _ => self.blocks::<3>(first),
+            };
+        }
+    }
+}
+
+impl March<'_> {
+    /// The blocks from lane `first` on; returns their lanes.
+    #[inline(always)]
+    fn blocks<const BLOCKS: usize>(&mut self, first: usize) -> usize {
+        let place = |block: usize| first + block * LANES;
+        let limit: [_; BLOCKS] = std::array::from_fn(|block| lanes_at(self.limit, place(block)));
+        let mut least = [[f64::INFINITY; LANES]; BLOCKS];
+        let mut most = [[f64::NEG_INFINITY; LANES]; BLOCKS];
+        let mut y = [[0.0; LANES]; BLOCKS];
+        for period in 0..self.periods {
+            for elastic in self.elastic.chunks_exact(self.lanes) {
+                for block in 0..BLOCKS {
+                    let elastic = lanes_at(elastic, place(block));
+                    for lane in 0..LANES {
+                        if period == 0 {
+                            least[block][lane] = smaller(elastic[lane], least[block][lane]);
+                            most[block][lane] = larger(elastic[lane], most[block][lane]);
+                        }
+                        y[block][lane] = clip(y[block][lane], limit[block][lane], elastic[lane]);
+                    }
+                }
+            }
+            y = y.map(|y| y.map(|y| self.then * y));
+        }
+        for (elastic, offset) in self
+            .elastic
+            .chunks_exact(self.lanes)
+            .zip(self.offset.chunks_exact_mut(self.lanes))
+        {
+            for block in 0..BLOCKS {
+                let elastic = lanes_at(elastic, place(block));
+                for lane in 0..LANES {
+                    y[block][lane] = clip(y[block][lane], limit[block][lane], elastic[lane]);
+                }
+                offset[place(block)..place(block) + LANES].copy_from_slice(&y[block]);
+            }
+        }
+        for block in 0..BLOCKS {
+            for lane in 0..LANES {
+                let (low, high) = (least[block][lane], most[block][lane]);
+                let half = self.then < 0.0;
+                self.least[place(block) + lane] = if half { smaller(low, -high) } else { low };
+                self.most[place(block) + lane] = if half { larger(high, -low) } else { high };
+            }
+        }
+        BLOCKS * LANES
     }
 }
 

@@ -4,6 +4,7 @@ mod anderson;
 mod clip_slopes;
 mod condensed;
 mod contact_coordinates;
+mod contact_couplings;
 mod contact_interface;
 mod contact_motions;
 mod contact_states;
