@@ -17,11 +17,15 @@ fn pattern() -> Vec<f64> {
 }
 
 fn peak(wheel: &Wheel, contact: ContactCondition) -> f64 {
-    let solver = wheel.solver(&[1, 3], tight());
+    peak_with(tight(), wheel, contact)
+}
+
+fn peak_with(options: SolverOptions, wheel: &Wheel, contact: ContactCondition) -> f64 {
+    let solver = wheel.solver(&[1, 3], options);
     amplitude(&solved(&solver, ORDER, &pattern(), contact).1)
 }
 
-/// The residual tolerance of a study: forces of stiff springs round above a tighter one.
+/// The residual tolerance of a study: forces of stiff springs, or in a ring of almost no mass, round above a tighter one (1e-11).
 fn stiff() -> SolverOptions {
     SolverOptions {
         residual_tolerance: SolverOptions::default().residual_tolerance,
@@ -131,8 +135,8 @@ fn a_light_ring_is_the_limit_of_lighter_ones() {
         ..chain()
     };
     for load in CHAIN_LOADS {
-        let [lighter, light, heavy] =
-            [1e-5, 1e-4, 10.0].map(|factor| peak(&one_dimensional(&ring(factor)), full(load)));
+        let [lighter, light, heavy] = [1e-5, 1e-4, 10.0]
+            .map(|factor| peak_with(stiff(), &one_dimensional(&ring(factor)), full(load)));
         // The ring's inertia is below 1e-5 of the disk's: 3e-6 kg of 1 kg.
         assert!(relative(light, lighter) < 1e-4, "{load} N");
         assert!(heavy > 0.0 && relative(heavy, light) > 1e-4, "{load} N");
