@@ -112,7 +112,13 @@ impl NewtonWorkspace {
 
     /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
     pub fn factor_at(&mut self, system: &HarmonicSystem, omega: f64, x: &[f64]) -> bool {
-        system.residual(omega, x, &mut self.buffers.residual, true, &mut self.system);
+        if system.condenses() {
+            // Of the contact alone are derivatives wanted.
+            system.contact_displacement(x, &mut self.system.displacement);
+            system.contact_correction(true, &mut self.system);
+        } else {
+            system.residual(omega, x, &mut self.buffers.residual, true, &mut self.system);
+        }
         self.jacobian
             .factor_cheaply(system, omega, &mut self.system)
     }
