@@ -340,4 +340,29 @@ mod tests {
         let ratio = size(16_000).operations(&work) / size(8_000).operations(&work);
         assert!((7.0..8.0).contains(&ratio), "{ratio}");
     }
+
+    #[test]
+    fn where_contact_motions_are_solved_for_coordinates_enter_once_a_frequency() {
+        let size = |coordinates, law| SystemSize {
+            coordinates,
+            contact_rows: 24,
+            pairs: 24,
+            coefficients: SystemSize::coefficients_of(&[1, 3]),
+            samples: 128,
+            in_stages: false,
+            tuned: None,
+            law: Some(law),
+        };
+        let of = |count: fn(&SystemSize) -> f64, law| {
+            let [few, many] = [72, 96].map(|coordinates| count(&size(coordinates, law)));
+            many / few
+        };
+        let once = |law| of(SystemSize::per_factorisation, law);
+        assert!((once(ContactLaw::MacroSlip1d) - 1.0).abs() < 1e-15);
+        assert!(once(ContactLaw::Simplified3d) > 2.0);
+        let per_iteration = of(SystemSize::per_iteration, ContactLaw::MacroSlip1d);
+        assert!((per_iteration - 1.0).abs() < 1e-15);
+        let frequency = of(SystemSize::linear_parts, ContactLaw::MacroSlip1d);
+        assert!((1.8..2.5).contains(&frequency), "{frequency}");
+    }
 }

@@ -155,7 +155,9 @@ impl Loops for Assembly<'_> {
                 add_products(target, by_re, &re);
                 add_products(target, by_im, &im);
                 let target = &mut matrix[column + rows.len() * size..][..size];
-                im.iter_mut().for_each(|im| *im = -*im);
+                for im in &mut im {
+                    *im = -*im;
+                }
                 add_products(target, by_im, &re);
                 add_products(target, by_re, &im);
             }
