@@ -14,7 +14,8 @@ ROOT = HERE.parents[1]
 ONE_THREAD = {
     name: "1" for name in ("RAYON_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 }
-# What pyHarm takes for a peak is either that of a curve fine enough, as it has no search, or that of one written round it.
+# Two readings of what pyHarm takes for a peak are held against the same bar: a curve that is fine enough, since it has no
+# search, and a search written round it.
 CURVE_BAR, PEAK_BAR = 200, 2000
 CURVE_BAR_MS = 60
 

@@ -159,6 +159,8 @@ fn humps_on_broad_tops_are_found_within_the_tolerance_of_the_peak() {
     let mut study = lumped(24, 506);
     study.solver.harmonics = Harmonics::Set(vec![1, 3, 5]);
     study.solver.peak_tolerance = 3e-3;
+    // In two stages: what looks into the gaps of a top is the second.
+    study.solver.search_harmonics = SearchHarmonics::Set(vec![1]);
     let mut whole = study.clone();
     whole.solver.search_harmonics = SearchHarmonics::All;
     whole.solver.peak_tolerance = 1e-4;
@@ -169,24 +171,34 @@ fn humps_on_broad_tops_are_found_within_the_tolerance_of_the_peak() {
     assert!(found.iter().all(within), "{found:?}");
 }
 
-/// Tops that a search with harmonic 1 does not show, by 0.2 to 1.4 %: large equations whose search slopes lead are not
-/// searched in two stages, and what is asked for more exactly than slopes tell still starts from where they lead.
+/// Tops that a search with harmonic 1 hardly shows, missed in two stages by 0.2 to 1.4 %: large equations whose search slopes
+/// lead are not searched in two stages, and what is asked for more exactly than slopes tell starts from where they lead.
 #[test]
-fn tops_that_harmonic_1_does_not_show_are_found_to_any_tolerance() {
-    let mut whole = lumped(24, 506);
-    whole.solver.harmonics = Harmonics::Set(vec![1, 3, 5, 7]);
-    let own = [1e-3, 1e-4].map(|tolerance| {
-        let mut own = whole.clone();
-        own.solver.peak_tolerance = tolerance;
-        Case::new(own)
-    });
-    whole.solver.search_harmonics = SearchHarmonics::All;
-    let whole = Case::new(whole);
-    for own in own {
-        let found = errors(&own, &whole, &[178, 219, 266, 304]);
-        println!("{found:?}");
-        let within = |error: &Option<f64>| error.is_some_and(|error| error.abs() <= 1e-3);
-        assert!(found.iter().all(within), "{found:?}");
+fn tops_that_harmonic_1_hardly_shows_are_found_to_any_tolerance() {
+    // Pattern, load in N, amplitude in m: of searches to 1e-4 that dense sweeps of the frequency (`verify --dense-sweep`) beat
+    // by no more than 0.1 %.
+    let known = [
+        (178, 100.0, 5.4370e-04),
+        (219, 50.0, 5.6865e-04),
+        (266, 30.0, 9.8228e-04),
+        (304, 100.0, 5.6775e-04),
+    ];
+    for tolerance in [1e-3, 1e-4] {
+        let mut study = lumped(24, 506);
+        study.solver.harmonics = Harmonics::Set(vec![1, 3, 5, 7]);
+        study.solver.peak_tolerance = tolerance;
+        let case = Case::new(study);
+        for (id, normal_load_n, expected) in known {
+            let condition = ContactCondition::Full { normal_load_n };
+            let row = case.row(
+                &case.pattern(id, Some(0.03)),
+                condition,
+                &case.tuned(condition),
+            );
+            let error = row.peak_amplitude_m.unwrap() / expected - 1.0;
+            println!("pattern {id}, {normal_load_n} N, to {tolerance}: {error:.1e}");
+            assert!(error.abs() <= 1e-3, "pattern {id}: {error:e}");
+        }
     }
 }
 

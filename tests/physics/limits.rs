@@ -101,8 +101,7 @@ fn turning_the_pattern_turns_the_response() {
 #[test]
 fn a_wheel_without_deviations_is_the_tuned_sector() {
     for (wheel, harmonics, loads) in cases() {
-        // With few samples a curve has tops that are those of its samples, 5e-4 apart in height: two searches may end at
-        // different ones.
+        // With few samples the amplitude is rough over frequency, by 5e-4, and two searches may end at different tops of it.
         let options = SolverOptions {
             samples_per_period: 4096,
             ..tight()

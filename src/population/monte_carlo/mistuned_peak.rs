@@ -60,7 +60,7 @@ impl RowSolver {
         let pays = match self.settings.solver.search_harmonics {
             SearchHarmonics::Auto => {
                 let unknowns: usize = 2 * points.harmonics().len() * basis.size();
-                // A search that slopes lead takes fewer points by itself, and misses no top that harmonic 1 does not show.
+                // A search that slopes lead takes fewer points by itself, and finds tops that harmonic 1 hardly shows.
                 unknowns > LARGEST_WHOLE_JACOBIAN
                     && !slopes_lead(points, basis.size(), basis.contact().rows())
             }

@@ -15,10 +15,12 @@ const EIGENPROBLEMS: f64 = 3.0;
 const LAW: f64 = 40.0;
 /// Evaluations that the check of the harmonics takes.
 const CHECK_ITERATIONS: f64 = 14.0;
-/// Harmonics that the check has besides those of the set, each with a complex block.
+/// Harmonics that the check has besides 1, each with a complex block: those up to 15.
 const CHECK_BLOCKS: f64 = 14.0;
-/// Real coefficients of the check: harmonics up to 15.
+/// Real coefficients of the check.
 const CHECK_COEFFICIENTS: f64 = 31.0;
+/// The same under a constant normal load: odd ones.
+const CHECK_COEFFICIENTS_ODD: usize = 16;
 /// Samples of the check over those of the solution.
 const CHECK_SAMPLES: f64 = 4.0;
 /// Samples per period of the highest harmonic that an automatic set has at least.
@@ -144,7 +146,7 @@ impl SystemSize {
         }
         if self.condenses() {
             let size = self.contact_coefficients();
-            return 2.0 * size.powi(2) + 2.0 / 3.0 * size.powi(3);
+            return 4.0 * size.powi(2) + 2.0 / 3.0 * size.powi(3);
         }
         if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
             return self.whole_jacobian(self.unknowns());
@@ -249,20 +251,34 @@ impl SystemSize {
             let waves = CHECK_BLOCKS * tuned.products(rows);
             return factors + CHECK_ITERATIONS * (evaluation + waves);
         }
+        if self.condenses() {
+            return self.check_by_contact(samples);
+        }
         let factors = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
-            let own = if self.condenses() {
-                self.linear_parts() + self.per_factorisation()
-            } else {
-                self.whole_jacobian(self.unknowns())
-            };
-            self.by_harmonic(CHECK_BLOCKS) + own
+            self.by_harmonic(CHECK_BLOCKS) + self.whole_jacobian(self.unknowns())
         } else {
             self.by_harmonic(CHECK_BLOCKS)
         };
         factors + CHECK_ITERATIONS * evaluation
     }
 
-    /// Operations of a row.
+    /// The same where contact motions are solved for: both Jacobians are those of the contact rows, unless unknowns are many.
+    fn check_by_contact(&self, samples: f64) -> f64 {
+        let enlarged = Self {
+            coefficients: CHECK_COEFFICIENTS_ODD,
+            ..*self
+        };
+        let factors = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
+            let systems = [self, &enlarged];
+            let factors = systems.map(|system| system.linear_parts() + system.per_factorisation());
+            factors.iter().sum()
+        } else {
+            self.by_harmonic(enlarged.beyond())
+        };
+        factors + CHECK_ITERATIONS * self.evaluation(enlarged.coefficients as f64, samples)
+    }
+
+    /// Operations of a row; points that are solved with fewer harmonics are counted as if they had all.
     #[must_use]
     pub fn operations(&self, work: &RowWork) -> f64 {
         let eigen = EIGENPROBLEMS * EIGEN * (self.coordinates as f64).powi(3);

@@ -176,7 +176,7 @@ pub fn search_plan(
 }
 
 /// Whether slopes lead the search for the peak of a mistuned wheel of `modes` coordinates with `contact_rows`, all of whose
-/// harmonics are those of the mistuned wheel.
+/// harmonics are those of the mistuned wheel: the wheels for which [`PointSolver`] finds slopes.
 #[must_use]
 pub fn slopes_lead(settings: &PointSettings, modes: usize, contact_rows: usize) -> bool {
     let coefficients = settings.transform.n_coefficients();
@@ -262,8 +262,8 @@ pub fn peak(
 
 /// The search by `plan`, the solver of its points with all harmonics, and the work of those with fewer.
 ///
-/// Where points have slopes these lead, down to what they can tell; what is asked for more exactly is sought by the values alone
-/// from the points to which they led.
+/// Where points have slopes these lead, down to what they can tell; what is asked for more exactly is then sought by values
+/// alone, from the points to which they led and the ordinary first ones.
 fn searched<'a>(
     excited: &'a Excited,
     condition: ContactCondition,
@@ -275,7 +275,8 @@ fn searched<'a>(
     let solver = PointSolver::new(excited, condition, settings).with_precision(precision);
     let mut solver = solver.with_slopes();
     if !solver.is_sloped() {
-        let result = by_values(&mut solver, plan, &plan.starts_hz, search);
+        let (band_hz, starts_hz) = (plan.band_hz, &plan.starts_hz);
+        let result = by_values(&mut solver, band_hz, starts_hz, plan.envelope, search);
         return (result, solver, Work::default());
     }
     let finer = search.tolerance < LEAST_FOR_SLOPES;
@@ -298,25 +299,40 @@ fn searched<'a>(
     if !finer {
         return (result, solver, screening);
     }
-    let points = solver.points().iter().map(|point| point.frequency_hz);
-    let starts_hz: Vec<f64> = points.chain(plan.starts_hz.iter().copied()).collect();
-    let result = by_values(&mut solver, plan, &starts_hz, search);
+    let (band_hz, starts_hz) = beginning_with(solver.points(), plan);
+    let result = by_values(&mut solver, band_hz, &starts_hz, plan.envelope, search);
     (result, solver, screening)
+}
+
+/// The band of a plan with all these points, and first frequencies: the highest of the points, and what is not nearer to another
+/// one than a search tells apart.
+fn beginning_with(points: &[Point], plan: &SearchPlan) -> ((f64, f64), Vec<f64>) {
+    let mut points: Vec<&Point> = points.iter().collect();
+    points.sort_by(|a, b| b.largest_amplitude_m().total_cmp(&a.largest_amplitude_m()));
+    let known = points.iter().map(|point| point.frequency_hz);
+    let (low, high) = known
+        .clone()
+        .fold(plan.band_hz, |(low, high), f| (low.min(f), high.max(f)));
+    let mut starts_hz: Vec<f64> = Vec::new();
+    for start in known.chain(plan.starts_hz.iter().copied()) {
+        let apart = |own: &f64| (own - start).abs() > plan.envelope.resolution_hz();
+        if starts_hz.iter().all(apart) {
+            starts_hz.push(start);
+        }
+    }
+    ((low, high), starts_hz)
 }
 
 fn by_values(
     solver: &mut PointSolver<'_>,
-    plan: &SearchPlan,
+    band_hz: (f64, f64),
     starts_hz: &[f64],
+    envelope: Envelope,
     search: SearchSettings,
 ) -> SearchResult {
-    find_peak(
-        plan.band_hz,
-        starts_hz,
-        plan.envelope,
-        search,
-        |frequency_hz| solver.amplitudes_at(frequency_hz),
-    )
+    find_peak(band_hz, starts_hz, envelope, search, |frequency_hz| {
+        solver.amplitudes_at(frequency_hz)
+    })
 }
 
 /// Status of the failed frequency nearest to the best point, among those with no lower amplitude

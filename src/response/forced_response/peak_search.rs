@@ -30,6 +30,11 @@ impl Envelope {
     /// friction holds the best peak far below the linear ones, a competitor need not be as broad.
     const BROADEST: f64 = 5.0;
 
+    /// Distance, Hz, of first points that are told apart.
+    pub(super) fn resolution_hz(&self) -> f64 {
+        0.05 * self.linear_half_bandwidth_hz
+    }
+
     /// Half-bandwidth, Hz, assumed of a hidden peak of height `amplitude`.
     fn half_bandwidth(&self, amplitude: f64) -> f64 {
         let linear = self.linear_half_bandwidth_hz;
@@ -100,7 +105,7 @@ pub fn find_peak(
         .chain([band_hz.0, band_hz.1])
         .collect();
     first.sort_by(f64::total_cmp);
-    let resolution = 0.05 * envelope.linear_half_bandwidth_hz;
+    let resolution = envelope.resolution_hz();
     first.dedup_by(|later, earlier| *later - *earlier < resolution);
     for frequency in first {
         search.evaluate(frequency, &mut curve);

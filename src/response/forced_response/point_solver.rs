@@ -424,6 +424,7 @@ impl<'a> PointSolver<'a> {
         }
         let slope = match &mut self.nonlinear {
             Some((system, workspace)) if self.sloped && other.is_none() => {
+                self.work.factorisations += 1;
                 workspace.response_slope(system, omega, &x)
             }
             _ => None,

@@ -109,10 +109,17 @@ impl Samples {
 
     /// Whether lower amplitudes were seen on both sides, or are told by the slope at an end.
     pub fn bracketed(&self, best: usize) -> bool {
-        let lower = |side: usize| self.0[side].largest < self.0[best].largest;
-        match self.neighbours(best) {
-            Some((left, right)) => lower(left) && lower(right),
-            None => self.rises_inward(best),
+        let own = &self.0[best];
+        // Where the curve jumps a search can ask for the same frequency twice.
+        let elsewhere = |other: &&Sample| {
+            let same = other.frequency_hz.total_cmp(&own.frequency_hz).is_eq();
+            !other.amplitudes.is_empty() && !same
+        };
+        let left = self.0[..best].iter().rev().find(elsewhere);
+        let right = self.0[best + 1..].iter().find(elsewhere);
+        match (left, right) {
+            (Some(left), Some(right)) => left.largest < own.largest && right.largest < own.largest,
+            _ => self.rises_inward(best),
         }
     }
 

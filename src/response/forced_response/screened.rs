@@ -22,7 +22,7 @@ const JOINED: f64 = 2.0;
 /// Distance of a sample that has seen a resonance, in half-bandwidths.
 const SEEN: f64 = 0.5;
 
-/// Solver of a search, and what serves it only.
+/// Solver of a search; `'search` is the lifetime of what only the search needs.
 pub(super) struct Screened<'a, 'search> {
     solver: PointSolver<'a>,
     /// With fewer harmonics; none where all points are solved with all.

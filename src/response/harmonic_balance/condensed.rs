@@ -21,9 +21,9 @@ use super::{HarmonicSystem, LARGEST_WHOLE_JACOBIAN, SystemWorkspace};
 use crate::linalg::{LuWorkspace, add_times};
 use crate::response::friction::ContactLaw;
 
-/// Whether the step by contact forces is the cheaper one, by the operations that either takes: for a wheel of `modes`
-/// coordinates with so many real `coefficients` each whose `contact_rows` have no more of them than a matrix may have that
-/// costs next to nothing. Under a constant normal load only.
+/// Whether the step by contact forces is the cheaper one, by the operations that either takes, for a wheel of `modes`
+/// coordinates and `contact_rows` with so many real `coefficients` each. Under a constant normal load only, and only where the
+/// matrix of all contact rows is so small that it costs next to nothing.
 #[must_use]
 pub fn condensing_pays(
     law: ContactLaw,

@@ -22,11 +22,22 @@ pub(super) struct ContactCouplings {
 }
 
 /// Dependence of the correction at every row that has one on the motion at one contact row.
+#[derive(Default)]
 struct Couplings {
     /// Contact row of the motion.
     from: Vec<usize>,
     /// `dG_c/dd_c'`, for every c' and c one per row; zero where there are fewer couplings.
     slopes: Vec<f64>,
+}
+
+impl Couplings {
+    /// None, of `rows` rows with `count` coefficients.
+    fn clear(&mut self, rows: usize, count: usize) {
+        self.from.clear();
+        self.from.resize(rows, 0);
+        self.slopes.clear();
+        self.slopes.resize(count * count * rows, 0.0);
+    }
 }
 
 impl ContactCouplings {
@@ -36,46 +47,50 @@ impl ContactCouplings {
         let count = system.transform.n_coefficients();
         self.count = count;
         self.rows.clear();
-        // Place of the correction, contact row of the motion, and derivatives, those of one correction together.
-        let mut found: Vec<(usize, usize, &[f64])> = Vec::new();
-        for (pair, jacobian) in workspace.jacobians.iter().enumerate() {
-            if !workspace.active[pair] {
-                continue;
-            }
-            let base = pair / geometry.rows.len() * geometry.row_count();
-            let places = &geometry.rows[pair % geometry.rows.len()];
-            let first = usize::from(!workspace.separated);
-            for (direction, place) in places.iter().enumerate().skip(first) {
-                let Some(row) = *place else { continue };
-                for (other, place) in places.iter().enumerate() {
-                    if let (Some(from), Some(block)) = (*place, jacobian.block(direction, other)) {
-                        found.push((self.rows.len(), base + from, block));
+        let first = usize::from(!workspace.separated);
+        let active = || (0..workspace.active.len()).filter(|&pair| workspace.active[pair]);
+        let places = |pair: usize| &geometry.rows[pair % geometry.rows.len()];
+        let base = |pair: usize| pair / geometry.rows.len() * geometry.row_count();
+        for pair in active() {
+            let own = places(pair)[first..].iter().flatten();
+            self.rows.extend(own.map(|row| base(pair) + row));
+        }
+        for couplings in &mut self.couplings {
+            couplings.clear(self.rows.len(), count);
+        }
+        let mut to = 0;
+        for pair in active() {
+            for (direction, place) in places(pair).iter().enumerate().skip(first) {
+                if place.is_none() {
+                    continue;
+                }
+                let mut number = 0;
+                for (other, place) in places(pair).iter().enumerate() {
+                    let block = workspace.jacobians[pair].block(direction, other);
+                    if let (Some(from), Some(block)) = (*place, block) {
+                        self.couple(number, to, base(pair) + from, block);
+                        number += 1;
                     }
                 }
-                self.rows.push(base + row);
+                to += 1;
             }
         }
-        let rows = self.rows.len();
-        self.couplings.clear();
-        let mut number = 0;
-        for (place, &(to, from, block)) in found.iter().enumerate() {
-            let again = place > 0 && found[place - 1].0 == to;
-            number = if again { number + 1 } else { 0 };
-            if self.couplings.len() == number {
-                self.couplings.push(Couplings {
-                    from: vec![0; rows],
-                    slopes: vec![0.0; count * count * rows],
-                });
-            }
-            let Couplings {
-                from: motions,
-                slopes,
-            } = &mut self.couplings[number];
-            motions[to] = from;
-            for (c, row) in block.chunks_exact(count).enumerate() {
-                for (by, slope) in row.iter().enumerate() {
-                    slopes[(by * count + c) * rows + to] = *slope;
-                }
+    }
+
+    /// Coupling `number` of the correction at place `to` with the motion at the contact row `from`; `block` is `dG_c/dd_c'`, a
+    /// row per c.
+    fn couple(&mut self, number: usize, to: usize, from: usize, block: &[f64]) {
+        let (rows, count) = (self.rows.len(), self.count);
+        if self.couplings.len() == number {
+            let mut more = Couplings::default();
+            more.clear(rows, count);
+            self.couplings.push(more);
+        }
+        let couplings = &mut self.couplings[number];
+        couplings.from[to] = from;
+        for (c, row) in block.chunks_exact(count).enumerate() {
+            for (by, slope) in row.iter().enumerate() {
+                couplings.slopes[(by * count + c) * rows + to] = *slope;
             }
         }
     }

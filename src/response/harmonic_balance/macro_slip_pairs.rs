@@ -394,6 +394,49 @@ mod tests {
     use crate::response::harmonic_balance::PairHarmonics;
     use crate::response::harmonic_balance::condensed::tests::{OMEGA, state, system};
 
+    /// Blocks by themselves, in twos, in threes, and what is left of them.
+    #[test]
+    fn any_number_of_lanes_is_marched_like_one_slider_after_another() {
+        const SAMPLES: usize = 30;
+        for (lanes, then) in (0..6).flat_map(|blocks| [(8 * blocks, 1.0), (8 * blocks, -1.0)]) {
+            let number = |i: usize| (0.9 * i as f64 + (i * i) as f64 * 0.37).sin();
+            let elastic: Vec<f64> = (0..lanes * SAMPLES).map(number).collect();
+            let limit: Vec<f64> = (0..lanes).map(|i| 0.1 + number(i).abs()).collect();
+            let mut offset = vec![0.0; lanes * SAMPLES];
+            let [mut least, mut most] = [vec![0.0; lanes], vec![0.0; lanes]];
+            vectorized(March {
+                lanes,
+                periods: if then < 0.0 { 2 } else { 1 },
+                then,
+                limit: &limit,
+                elastic: &elastic,
+                offset: &mut offset,
+                least: &mut least,
+                most: &mut most,
+            });
+            for lane in 0..lanes {
+                let own: Vec<f64> = (0..SAMPLES).map(|j| elastic[j * lanes + lane]).collect();
+                let before = own.iter().map(|x| then * x);
+                let period: Vec<f64> = own.iter().copied().chain(before).collect();
+                let whole = if then < 0.0 { &period[..] } else { &own[..] };
+                let mut y = 0.0_f64;
+                for x in whole {
+                    y = y.max(-limit[lane] - x).min(limit[lane] - x);
+                }
+                let expected = own.iter().map(|x| {
+                    y = y.max(-limit[lane] - x).min(limit[lane] - x);
+                    y
+                });
+                let found = (0..SAMPLES).map(|j| offset[j * lanes + lane]);
+                assert!(expected.eq(found), "{lanes} lanes, {lane}");
+                let largest = whole.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                let smallest = whole.iter().copied().fold(f64::INFINITY, f64::min);
+                assert!(largest.total_cmp(&most[lane]).is_eq());
+                assert!(smallest.total_cmp(&least[lane]).is_eq());
+            }
+        }
+    }
+
     /// Half waves and not, with an odd number of samples, with derivatives between harmonics and without.
     #[test]
     fn pairs_side_by_side_are_the_pairs_one_by_one() {

@@ -113,7 +113,7 @@ impl NewtonWorkspace {
     /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
     pub fn factor_at(&mut self, system: &HarmonicSystem, omega: f64, x: &[f64]) -> bool {
         if system.condenses() {
-            // Of the contact alone are derivatives wanted.
+            // Factors need the derivatives of the contact alone, not the residual.
             system.contact_displacement(x, &mut self.system.displacement);
             system.contact_correction(true, &mut self.system);
         } else {

@@ -385,7 +385,7 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "solver.search_harmonics",
         Either(&[Name(&["auto", "all"]), Ascending(&Whole(0, 100), None)]),
         "`\"auto\"`",
-        "tops are sought with these, then solved with `harmonics` ([formulation.md](formulation.md)); `auto`: 1 where the equation is large, or at points far below the peak where contact rows are few; `all`: sought with `harmonics`",
+        "tops are sought with these, then solved with `harmonics` ([formulation.md](formulation.md)); `auto`: where contact rows are few, 1 at points far below the peak; else 1 where the equation is large; `all`: sought with `harmonics`",
     ),
     entry(
         "solver.higher_harmonics",
