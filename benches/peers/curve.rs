@@ -5,9 +5,8 @@
 
 #![allow(clippy::print_stdout)] // The figures are the result of this program.
 
-#[allow(dead_code)] // The other bench needs more of it.
-#[path = "../response/case.rs"]
-mod case;
+#[path = "../common/mod.rs"]
+mod common;
 
 use std::path::Path;
 use std::time::Instant;
@@ -15,7 +14,7 @@ use std::time::Instant;
 use blisk::population::monte_carlo::Scenario;
 use blisk::response::forced_response::ContactCondition;
 
-use case::Case;
+use common::case::Case;
 
 const REPETITIONS: usize = 8;
 const LEAST_REPETITION_MS: f64 = 300.0;

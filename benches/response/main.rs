@@ -5,19 +5,21 @@
 
 #![allow(clippy::print_stdout)] // The tables are the result of this program.
 
-mod case;
+#[path = "../common/mod.rs"]
+mod common;
 
 use std::f64::consts::TAU;
 use std::num::NonZero;
 use std::time::{Duration, Instant};
 
-use blisk::linalg::{LuWorkspace, Matrix};
+use blisk::linalg::LuWorkspace;
 use blisk::population::monte_carlo::Scenario;
 use blisk::response::forced_response::{ContactCondition, Harmonics, Work};
 use blisk::study::{Progress, ReducedEngineSource, RunRequest, Study, run};
 use criterion::{Criterion, criterion_group, criterion_main};
 
-use case::{Case, study};
+use common::case::{Case, study};
+use common::machine::{Floor, diagonally_dominant, smallest};
 
 struct Silent;
 
@@ -79,32 +81,16 @@ fn newton_steps(criterion: &mut Criterion) {
     }
 }
 
-/// A whole Newton step beside what dense algebra of its size takes: LU factors of `n x n`, and the product of its
-/// contact rows with the derivatives of the forces on them, `2 c n^2` operations at the rate of a square product.
+/// A whole Newton step beside what dense algebra of its size takes.
 fn over_floor(step: Duration, n: usize, contact_rows: usize) {
-    let matrix = diagonally_dominant(n);
-    let mut lu = LuWorkspace::<f64>::new(n);
-    let (factor, _) = smallest(20, || {
-        lu.matrix_mut().copy_from_slice(matrix.as_slice());
-        lu.factor()
-    });
-    let (square, _) = smallest(20, || matrix.times(&matrix));
-    let product = square.as_secs_f64() * contact_rows as f64 / n as f64;
-    let floor = factor.as_secs_f64() + product;
+    let floor = Floor::measured(n, contact_rows, 20);
     println!(
         "{n} unknowns, {contact_rows} contact rows: a Newton step {:.2} ms; floor: LU {:.2} ms + product {:.2} ms; step / floor {:.2}",
         1e3 * step.as_secs_f64(),
-        1e3 * factor.as_secs_f64(),
-        1e3 * product,
-        step.as_secs_f64() / floor
+        1e3 * floor.factor.as_secs_f64(),
+        1e3 * floor.product.as_secs_f64(),
+        step.as_secs_f64() / floor.step().as_secs_f64()
     );
-}
-
-fn diagonally_dominant(n: usize) -> Matrix<f64> {
-    let noise = |i: usize, j: usize| ((7 * i + 13 * j + i * j) % 101) as f64 / 101.0;
-    Matrix::from_fn(n, n, |i, j| {
-        noise(i, j) + if i == j { n as f64 } else { 0.0 }
-    })
 }
 
 /// What the machine does with dense matrices of the same size.
@@ -128,18 +114,6 @@ fn machine(criterion: &mut Criterion, n: usize) {
         bencher.iter(|| matrix.times(&matrix));
     });
     group.finish();
-}
-
-/// The smallest time of a few repetitions, and the last result.
-fn smallest<T>(repetitions: usize, mut work: impl FnMut() -> T) -> (Duration, T) {
-    let mut time = Duration::MAX;
-    let mut result = None;
-    for _ in 0..repetitions {
-        let start = Instant::now();
-        result = Some(work());
-        time = time.min(start.elapsed());
-    }
-    (time, result.expect("at least one repetition"))
 }
 
 fn peaks(_: &mut Criterion) {
@@ -209,26 +183,26 @@ fn peaks_of(case: &Case) {
 
 /// One pattern as a run solves it, error columns included: its linear limits alone, and with each load by itself.
 fn rows_of_a_pattern(case: &Case) {
-    let scenarios: Vec<Scenario> = case.study.scenarios();
-    let tuned: Vec<_> = scenarios.iter().map(|s| case.solver.tuned(s)).collect();
-    let time = |wanted: &dyn Fn(&Scenario) -> bool| {
-        let pairs: Vec<_> = scenarios
-            .iter()
-            .zip(&tuned)
-            .filter(|(s, _)| wanted(s))
-            .collect();
+    let time = |contact: ContactCondition| {
+        let scenario = Scenario {
+            contact,
+            ..case.study.scenarios()[0]
+        };
+        let tuned = case.solver.tuned(&scenario);
         let patterns = &case.patterns;
         let (time, ()) = smallest(2, || {
             for pattern in patterns {
-                std::hint::black_box(case.solver.rows(pattern, &pairs));
+                std::hint::black_box(case.solver.rows(pattern, &[(&scenario, &tuned)]));
             }
         });
         1e3 * time.as_secs_f64() / patterns.len() as f64
     };
-    let linear = time(&|s| s.contact == ContactCondition::Stuck);
+    let linear = time(ContactCondition::Stuck);
     println!("{}: a linear pattern (stuck) {linear:.2} ms", case.name);
     for load in case.loads() {
-        let full = time(&|s| s.contact.normal_load_n() == Some(load));
+        let full = time(ContactCondition::Full {
+            normal_load_n: load,
+        });
         println!(
             "{}: a pattern at {load} N {full:.1} ms, {:.1} linear ones",
             case.name,
@@ -256,7 +230,10 @@ fn threads(_: &mut Criterion) {
         time.as_secs_f64()
     });
     println!(
-        "\nquickstart, 96 patterns, model cached: {alone:.1} s on 1 thread, {together:.1} s on {all}: {:.2} times",
+        "\nquickstart, 96 patterns, model cached: {alone:.1} s on 1 thread, {together:.1} s on {all}: {:.2} and {:.2} patterns a \
+         second under 6 loads and 2 limits, {:.2} times",
+        96.0 / alone,
+        96.0 / together,
         alone / together
     );
 }

@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use blisk::model::ReducedModel;
 use blisk::model::reduction::{Basis, BasisChoice, ContactStiffness, Reduction, ReductionOptions};
+use blisk::model::sector::SectorModel;
 use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{
     ContactCondition, Excited, FrequencyBand, Harmonics, HigherHarmonics, LimitsWanted, Peak,
@@ -35,24 +37,18 @@ pub fn study(name: &str) -> Study {
     Study::read(&root.join("studies").join(format!("{name}.toml"))).expect("a valid study")
 }
 
-impl Case {
-    /// The case `name` with its first `patterns` patterns; `basis` is the one that the study fixes.
-    pub fn new(name: &'static str, patterns: u32) -> Self {
-        Self::of(name, study(name), patterns)
-    }
+/// The sector of a study and what it is reduced to.
+pub struct Model {
+    sector: SectorModel,
+    reduced: Arc<ReducedModel>,
+    /// For the harmonics that are taken in the tuned wheel.
+    tuned: Option<Arc<ReducedModel>>,
+}
 
-    /// The same with harmonics 1 and 3, both of the mistuned wheel: small enough for its whole Jacobian.
-    #[allow(dead_code)] // The other bench has no use for it.
-    pub fn with_whole_jacobian(name: &'static str, patterns: u32) -> Self {
-        let mut study = study(name);
-        study.solver.harmonics = Harmonics::Set(vec![1, 3]);
-        study.solver.higher_harmonics = HigherHarmonics::Mistuned;
-        Self::of(name, study, patterns)
-    }
-
-    /// A study as it is given; its basis is a fixed one.
-    pub fn of(name: &'static str, study: Study, patterns: u32) -> Self {
-        let model = load_sector_model(&study).expect("a valid model");
+impl Model {
+    /// Built or read, and reduced, with the basis that the study fixes.
+    pub fn new(study: &Study) -> Self {
+        let sector = load_sector_model(study).expect("a valid model");
         let contact = study.contact.as_ref().expect("a study with contact");
         let tangential = contact.tangential_stiffness_n_per_m;
         let second = match contact.law {
@@ -78,12 +74,47 @@ impl Case {
         };
         let modes = study.reduction.craig_bampton_modes;
         let modes = modes.unwrap_or(ReductionOptions::FIRST_CRAIG_BAMPTON_MODES);
-        let reduction = Reduction::new(&model, stiffness, modes, 0).expect("reduced");
+        let reduction = Reduction::new(&sector, stiffness, modes, 0).expect("reduced");
         let reduced = Arc::new(reduction.reduce(choice, None).expect("reduced"));
         let tuned = (study.solver.higher_harmonics == HigherHarmonics::Tuned).then(|| {
             let model = reduction.tuned(BasisChoice::CraigBampton);
             Arc::new(model.expect("reduced"))
         });
+        Self {
+            sector,
+            reduced,
+            tuned,
+        }
+    }
+}
+
+impl Case {
+    /// The case `name` with its first `patterns` patterns; `basis` is the one that the study fixes.
+    pub fn new(name: &'static str, patterns: u32) -> Self {
+        Self::of(name, study(name), patterns)
+    }
+
+    /// The same with harmonics 1 and 3, both of the mistuned wheel: small enough for its whole Jacobian.
+    pub fn with_whole_jacobian(name: &'static str, patterns: u32) -> Self {
+        let mut study = study(name);
+        study.solver.harmonics = Harmonics::Set(vec![1, 3]);
+        study.solver.higher_harmonics = HigherHarmonics::Mistuned;
+        Self::of(name, study, patterns)
+    }
+
+    /// A study as it is given; its basis is a fixed one.
+    pub fn of(name: &'static str, study: Study, patterns: u32) -> Self {
+        Self::with_model(name, &Model::new(&study), study, patterns)
+    }
+
+    /// A study whose model is reduced already.
+    pub fn with_model(name: &'static str, model: &Model, study: Study, patterns: u32) -> Self {
+        let contact = study.contact.as_ref().expect("a study with contact");
+        let Model {
+            sector,
+            reduced,
+            tuned,
+        } = model;
         let waves = tuned.as_ref().map(|model| {
             let waves = TunedWaves::new(model, study.damping);
             Arc::new(waves.expect("a contact that is held at rest"))
@@ -102,7 +133,7 @@ impl Case {
             projection: study.mistuning.projection,
             solver: study.solver.clone(),
         };
-        let source = pattern_source(&study, &model).expect("patterns");
+        let source = pattern_source(&study, sector).expect("patterns");
         let deviation = study.standard_deviations[0];
         let patterns = source
             .ids()
@@ -112,8 +143,8 @@ impl Case {
             .collect();
         let geometry = reduced.contact.clone();
         let point_settings = PointSettings::new(&study.solver, &harmonics, Some(contact), geometry);
-        let tuned_waves = Excited::tuned(
-            &reduced,
+        let tuned_wheel = Excited::tuned(
+            reduced,
             &ContactFactors::default(),
             study.engine_orders[0],
             study.amplitude_n,
@@ -128,10 +159,10 @@ impl Case {
         Self {
             name,
             settings: point_settings.expect("enough samples"),
-            tuned: tuned_waves,
-            solver: RowSolver::new(reduced, settings)
+            tuned: tuned_wheel,
+            solver: RowSolver::new(reduced.clone(), settings)
                 .expect("enough samples")
-                .with_tuned_harmonics(tuned),
+                .with_tuned_harmonics(tuned.clone()),
             patterns,
             harmonics,
             waves,
