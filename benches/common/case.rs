@@ -50,14 +50,12 @@ impl Model {
     pub fn new(study: &Study) -> Self {
         let sector = load_sector_model(study).expect("a valid model");
         let contact = study.contact.as_ref().expect("a study with contact");
+        let normal = contact.normal_stiffness_n_per_m.unwrap_or(0.0);
         let tangential = contact.tangential_stiffness_n_per_m;
-        let second = match contact.law {
-            ContactLaw::MacroSlip1d => 0.0,
-            ContactLaw::Simplified3d | ContactLaw::Coulomb3d => tangential,
-        };
+        let [normal, first, second] = contact.law.springs(normal, tangential);
         let stiffness = ContactStiffness {
-            normal_n_per_m: contact.normal_stiffness_n_per_m.unwrap_or(0.0),
-            tangential_1_n_per_m: tangential,
+            normal_n_per_m: normal,
+            tangential_1_n_per_m: first,
             tangential_2_n_per_m: second,
         };
         let (stick, slide) = (study.reduction.stick_modes, study.reduction.slide_modes);
@@ -128,6 +126,7 @@ impl Case {
             harmonics: harmonics.clone(),
             contact: Some(contact),
             ring: study.contact.as_ref().expect("a study with contact").ring,
+            in_place_of: None,
             damping: study.damping,
             amplitude_n: study.amplitude_n,
             projection: study.mistuning.projection,

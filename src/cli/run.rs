@@ -97,6 +97,6 @@ fn accuracy(text: &str) -> Result<AccuracyOptions, String> {
     };
     number
         .filter(|&error| AccuracyOptions::accepts(error))
-        .map(|amplitude_error| AccuracyOptions { amplitude_error })
+        .map(AccuracyOptions::within)
         .ok_or_else(|| "accepted: a relative error from 0.1% to 20%, like 1% or 0.01".to_owned())
 }

@@ -10,9 +10,25 @@ use serde::{Deserialize, Serialize};
 pub struct AccuracyOptions {
     /// Accepted relative error of the peak amplitude of 95 % of the rows.
     pub amplitude_error: f64,
+    /// Whether a simpler contact law may take the place of that of the study, where the error allows it. Default true.
+    #[serde(default = "allowed")]
+    pub simpler_contact_law: bool,
+}
+
+fn allowed() -> bool {
+    true
 }
 
 impl AccuracyOptions {
+    /// An accepted error with everything else as it is if nothing is said.
+    #[must_use]
+    pub fn within(amplitude_error: f64) -> Self {
+        Self {
+            amplitude_error,
+            simpler_contact_law: allowed(),
+        }
+    }
+
     /// Errors that can be asked for, in words.
     pub const ACCEPTED: &str = "a number from 0.001 to 0.2, relative error of the peak amplitude";
 

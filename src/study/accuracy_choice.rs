@@ -159,7 +159,7 @@ impl AccuracyChoice {
         let space = bench.space(ends.best.basis);
         let sample = bench.sample().clone();
         let mut search = LadderSearch::new(&mut bench, patterns, &reference, PROBED);
-        search.measure_levels(levels(&space, &ends.base, accepted, tolerance))?;
+        search.measure_levels(levels(&space, &ends.base, accuracy, tolerance))?;
         let mut trials = Trials {
             accepted,
             tried: Vec::new(),
@@ -254,9 +254,10 @@ fn sampled_patterns(study: &Study) -> usize {
 fn levels(
     space: &LadderSpace,
     base: &LadderSetting,
-    accepted: f64,
+    accuracy: AccuracyOptions,
     finest: f64,
 ) -> Vec<(Knob, LadderSetting)> {
+    let accepted = accuracy.amplitude_error;
     let mut levels = space.one_at_a_time(base, finest);
     levels.retain(|(knob, setting)| match knob {
         Knob::Basis => true,
@@ -265,8 +266,11 @@ fn levels(
             HarmonicLevel::Set(_) => true,
             HarmonicLevel::Automatic(tolerance) => *tolerance <= accepted,
         },
-        // Its springs are others, and its error is beyond anything that is asked for.
-        Knob::ContactLaw => setting.law != ContactLaw::MacroSlip1d || setting.law == base.law,
+        // The springs of `macro_slip_1d` are others, and its error is beyond anything that is asked for.
+        Knob::ContactLaw => {
+            let simpler = accuracy.simpler_contact_law && setting.law != ContactLaw::MacroSlip1d;
+            simpler || setting.law == base.law
+        }
         Knob::SamplesPerPeriod
         | Knob::ResidualTolerance
         | Knob::PeakTolerance

@@ -297,6 +297,7 @@ mod tests {
             harmonics: HARMONICS.to_vec(),
             contact: Some((ContactLaw::Simplified3d, sector)),
             ring: Ring::Locked,
+            in_place_of: None,
             damping: Damping::StructuralLossFactor(0.002),
             amplitude_n: 1.0,
             projection: Projection::Exact,

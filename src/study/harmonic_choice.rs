@@ -39,6 +39,11 @@ pub fn choose_harmonics(
     first: &[u32],
     tolerance: Option<f64>,
 ) -> Result<Vec<HarmonicChoice>, PipelineError> {
+    // By the law that is solved with: no set brings in what it leaves out.
+    let settings = &RowSettings {
+        in_place_of: None,
+        ..settings.clone()
+    };
     let mut choices = Vec::new();
     for &engine_order in engine_orders {
         for &contact in conditions {

@@ -137,6 +137,16 @@ impl LadderSetting {
         }
     }
 
+    /// Whether it has harmonics that its law does not excite: the same without them is the same, and cheaper.
+    #[must_use]
+    pub fn is_redundant(&self) -> bool {
+        let even = |set: &[u32]| set.iter().any(|k| k % 2 == 0);
+        match &self.harmonics {
+            HarmonicLevel::Set(set) => !self.law.has_variable_load() && even(set),
+            HarmonicLevel::Automatic(_) => false,
+        }
+    }
+
     /// `study` solved at this setting. What the setting does not say stays.
     #[must_use]
     pub fn applied_to(&self, study: &Study) -> Study {
@@ -179,6 +189,7 @@ impl LadderSetting {
         solver.residual_tolerance = self.residual_tolerance;
         solver.peak_tolerance = self.peak_tolerance;
         if let Some(contact) = &mut own.contact {
+            contact.in_place_of = (contact.law != self.law).then_some(contact.law);
             contact.law = self.law;
         }
         own.mistuning.projection = self.projection;
@@ -195,6 +206,7 @@ impl LadderSetting {
 pub fn law_name(law: ContactLaw) -> &'static str {
     match law {
         ContactLaw::MacroSlip1d => "macro_slip_1d",
+        ContactLaw::MacroSlip2d => "macro_slip_2d",
         ContactLaw::Simplified3d => "simplified_3d",
         ContactLaw::Coulomb3d => "coulomb_3d",
     }
@@ -321,6 +333,7 @@ impl LadderSpace {
     pub fn laws(&self) -> Vec<ContactLaw> {
         let all = [
             ContactLaw::MacroSlip1d,
+            ContactLaw::MacroSlip2d,
             ContactLaw::Simplified3d,
             ContactLaw::Coulomb3d,
         ];

@@ -188,6 +188,9 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
         for (knob, &level) in Knob::ALL.into_iter().zip(levels) {
             setting = setting.with(knob, &self.levels[level].setting);
         }
+        if setting.is_redundant() {
+            return None;
+        }
         let predicted: Vec<LadderValues> = (0..base.rows.len())
             .map(|row| {
                 let own = base.rows[row].values;
@@ -215,6 +218,8 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
             coordinates: size_of(Knob::Basis).coordinates,
             coefficients: size_of(Knob::Harmonics).coefficients,
             samples: size_of(Knob::SamplesPerPeriod).samples,
+            law: size_of(Knob::ContactLaw).law,
+            check_law: size_of(Knob::ContactLaw).check_law,
             ..base.sizes[scenario]
         };
         let product = |count: fn(&RowWork) -> f64| {

@@ -226,6 +226,7 @@ pub(super) struct RawSolver {
 #[serde(deny_unknown_fields)]
 pub(super) struct RawAccuracy {
     pub amplitude_error: Option<f64>,
+    pub simpler_contact_law: Option<bool>,
 }
 
 #[derive(Debug, Deserialize)]

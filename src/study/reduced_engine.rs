@@ -18,7 +18,7 @@ use crate::population::monte_carlo::{
 use crate::population::table::CurvePoint;
 use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
 use crate::response::forced_response::{Harmonics, ResponseTrace, SearchPlan};
-use crate::response::friction::{ContactLaw, ContactOptions, PairParameters, Ring};
+use crate::response::friction::{ContactOptions, PairParameters, Ring};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
 use crate::response::time_integration::{PointComparison, TimeOptions};
@@ -328,6 +328,10 @@ pub(super) fn row_settings(study: &Study) -> RowSettings {
             .contact
             .as_ref()
             .map_or(Ring::Locked, |contact| contact.ring),
+        in_place_of: study
+            .contact
+            .as_ref()
+            .and_then(|contact| contact.in_place_of),
         damping: study.damping,
         amplitude_n: study.amplitude_n,
         projection: study.mistuning.projection,
@@ -335,7 +339,7 @@ pub(super) fn row_settings(study: &Study) -> RowSettings {
     }
 }
 
-/// Linear contact springs of the law: `macro_slip_1d` has none along the second tangent.
+/// Linear contact springs of the law.
 pub(super) fn contact_stiffness(contact: Option<&ContactOptions>) -> ContactStiffness {
     let Some(contact) = contact else {
         return ContactStiffness {
@@ -344,13 +348,12 @@ pub(super) fn contact_stiffness(contact: Option<&ContactOptions>) -> ContactStif
             tangential_2_n_per_m: 0.0,
         };
     };
+    let normal = contact.normal_stiffness_n_per_m.unwrap_or(0.0);
     let tangential = contact.tangential_stiffness_n_per_m;
+    let [normal, first, second] = contact.law.springs(normal, tangential);
     ContactStiffness {
-        normal_n_per_m: contact.normal_stiffness_n_per_m.unwrap_or(0.0),
-        tangential_1_n_per_m: tangential,
-        tangential_2_n_per_m: match contact.law {
-            ContactLaw::MacroSlip1d => 0.0,
-            ContactLaw::Simplified3d | ContactLaw::Coulomb3d => tangential,
-        },
+        normal_n_per_m: normal,
+        tangential_1_n_per_m: first,
+        tangential_2_n_per_m: second,
     }
 }

@@ -401,6 +401,7 @@ fn contact_options(check: &mut Check, raw: &RawContact) -> ContactOptions {
         ),
         normal_stiffness_n_per_m: raw.normal_stiffness_n_per_m,
         ring: raw.ring.unwrap_or_default(),
+        in_place_of: None,
     }
 }
 

@@ -39,7 +39,13 @@ pub(super) fn accuracy(check: &mut Check, raw: &RawAccuracy) -> Option<AccuracyO
         AccuracyOptions::accepts,
         AccuracyOptions::ACCEPTED,
     )?;
-    Some(AccuracyOptions { amplitude_error })
+    let default = AccuracyOptions::within(amplitude_error);
+    Some(AccuracyOptions {
+        simpler_contact_law: raw
+            .simpler_contact_law
+            .unwrap_or(default.simpler_contact_law),
+        ..default
+    })
 }
 
 impl Study {
@@ -80,7 +86,10 @@ impl Study {
     /// The study with the accepted error in the place of its own tolerances.
     pub(super) fn with_accuracy(mut self, accuracy: Option<AccuracyOptions>) -> Self {
         self.accuracy = accuracy;
-        if let Some(AccuracyOptions { amplitude_error }) = accuracy {
+        if let Some(AccuracyOptions {
+            amplitude_error, ..
+        }) = accuracy
+        {
             self.reduction.error = amplitude_error;
             self.solver.harmonic_tolerance = amplitude_error;
         }

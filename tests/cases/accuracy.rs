@@ -55,7 +55,13 @@ fn best(study: &Study, choice: &AccuracyChoice, tolerance: f64) -> Study {
 
 fn choice(study: &Study, amplitude_error: f64) -> AccuracyChoice {
     let sector = load_sector_model(study).unwrap();
-    AccuracyChoice::of(study, AccuracyOptions { amplitude_error }, &sector, None).unwrap()
+    AccuracyChoice::of(
+        study,
+        AccuracyOptions::within(amplitude_error),
+        &sector,
+        None,
+    )
+    .unwrap()
 }
 
 /// Signed amplitude errors of `own` against `reference` over patterns and loads.

@@ -14,8 +14,9 @@ use rustfft::FftPlanner;
 use super::contact::random::Random;
 use super::wheels::{Wheel, full, springs};
 
-const LAWS: [ContactLaw; 3] = [
+const LAWS: [ContactLaw; 4] = [
     ContactLaw::MacroSlip1d,
+    ContactLaw::MacroSlip2d,
     ContactLaw::Simplified3d,
     ContactLaw::Coulomb3d,
 ];
@@ -290,7 +291,7 @@ mod derivative {
     /// Share of the pairs in the state that is the hardest the law knows.
     fn share_at_work(law: ContactLaw, state: &Linearised) -> f64 {
         match law {
-            ContactLaw::MacroSlip1d => state.slipping,
+            ContactLaw::MacroSlip1d | ContactLaw::MacroSlip2d => state.slipping,
             ContactLaw::Simplified3d | ContactLaw::Coulomb3d => state.separated,
         }
     }

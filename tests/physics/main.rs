@@ -25,6 +25,7 @@ mod refined_peak;
 mod rotation;
 mod sector_sources;
 mod separation;
+mod simpler_laws;
 mod surrogate;
 mod time_integration;
 mod tuned_harmonics;

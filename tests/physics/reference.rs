@@ -49,6 +49,7 @@ impl Case {
                 harmonics: harmonics.to_vec(),
                 contact: Some((law, wheel8_contact())),
                 ring: Ring::Locked,
+                in_place_of: None,
                 damping,
                 amplitude_n: 1.0,
                 projection,
@@ -209,6 +210,19 @@ fn two_codes_agree_on_pairs_that_differ() {
 fn two_codes_agree_on_the_friction_circle() {
     let case = Case::wheel8_under(
         ContactLaw::Coulomb3d,
+        Damping::StructuralLossFactor(0.002),
+        &[1, 3],
+        Projection::Exact,
+    );
+    let frequencies = [611.0, 614.0, 617.0];
+    let (slipping, _) = case.assert_same(full(300.0), &pattern(&deviations(8)), &frequencies);
+    assert!(slipping > 0.2, "{slipping}");
+}
+
+#[test]
+fn two_codes_agree_under_a_constant_normal_load() {
+    let case = Case::wheel8_under(
+        ContactLaw::MacroSlip2d,
         Damping::StructuralLossFactor(0.002),
         &[1, 3],
         Projection::Exact,

@@ -42,7 +42,7 @@ pub fn springs(law: ContactLaw, sector: PairParameters) -> ContactStiffness {
         tangential_1_n_per_m: kt,
         tangential_2_n_per_m: match law {
             ContactLaw::MacroSlip1d => 0.0,
-            ContactLaw::Simplified3d | ContactLaw::Coulomb3d => kt,
+            ContactLaw::MacroSlip2d | ContactLaw::Simplified3d | ContactLaw::Coulomb3d => kt,
         },
     }
 }
@@ -136,6 +136,7 @@ impl Wheel {
             harmonics: harmonics.to_vec(),
             contact: Some((self.law, self.sector)),
             ring: self.ring,
+            in_place_of: None,
             damping: self.damping,
             amplitude_n: self.amplitude_n,
             projection: Projection::Exact,

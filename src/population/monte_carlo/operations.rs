@@ -68,6 +68,8 @@ pub struct SystemSize {
     pub tuned: Option<TunedSize>,
     /// Contact law, where friction is solved for.
     pub law: Option<ContactLaw>,
+    /// Law of the check: the same, or the one in whose place it is taken.
+    pub check_law: Option<ContactLaw>,
 }
 
 /// Size of the tuned wheel as its contact feels it.
@@ -232,9 +234,15 @@ impl SystemSize {
         modal + self.contact(coefficients, samples)
     }
 
-    /// The alternating frequency/time method at all contact rows.
+    /// The alternating frequency/time method at all contact rows; under a constant normal load at those along the tangents,
+    /// over half a period, since all harmonics are odd.
     fn contact(&self, coefficients: f64, samples: f64) -> f64 {
-        let transforms = 4.0 * self.contact_rows as f64 * coefficients * samples;
+        let constant = self.law.filter(|law| !law.has_variable_load());
+        let (rows, samples) = match constant {
+            Some(law) => (law.tangents() * self.pairs, 0.5 * samples),
+            None => (self.contact_rows, samples),
+        };
+        let transforms = 4.0 * rows.min(self.contact_rows) as f64 * coefficients * samples;
         transforms + LAW * self.pairs as f64 * samples
     }
 
@@ -242,6 +250,14 @@ impl SystemSize {
     /// a complex block of each harmonic besides, then evaluations with all harmonics up to 15.
     #[must_use]
     pub fn check(&self) -> f64 {
+        let under = Self {
+            law: self.check_law,
+            ..*self
+        };
+        under.check_by_law()
+    }
+
+    fn check_by_law(&self) -> f64 {
         let samples = CHECK_SAMPLES * self.samples as f64;
         let evaluation = self.evaluation(CHECK_COEFFICIENTS, samples);
         if let Some(tuned) = self.tuned {
@@ -308,17 +324,16 @@ impl RowSolver {
         let options = &solver.settings.solver;
         let highest = harmonics.last().map_or(1, |&k| k as usize);
         let samples = options.samples_per_period;
+        let law = solver.settings.contact.map(|(law, _)| law);
+        let law = law.filter(|_| !linear);
         SystemSize {
             coordinates: solver.basis().size(),
             contact_rows: solver.basis().contact().rows(),
             pairs: model.contact.weights.len() * model.sectors,
             coefficients: SystemSize::coefficients_of(harmonics),
             tuned: solver.tuned_size(harmonics).filter(|_| !linear),
-            law: solver
-                .settings
-                .contact
-                .map(|(law, _)| law)
-                .filter(|_| !linear),
+            law,
+            check_law: solver.settings.in_place_of.filter(|_| !linear).or(law),
             in_stages: solver
                 .search(solver.points(scenario.engine_order, scenario.contact))
                 .is_some(),
@@ -346,6 +361,7 @@ mod tests {
             in_stages: false,
             tuned: None,
             law: Some(ContactLaw::Simplified3d),
+            check_law: Some(ContactLaw::Simplified3d),
         };
         assert_eq!(size(168).unknowns(), 840);
         let work = RowWork {
@@ -368,6 +384,7 @@ mod tests {
             in_stages: false,
             tuned: None,
             law: Some(law),
+            check_law: Some(law),
         };
         let of = |count: fn(&SystemSize) -> f64, law| {
             let [few, many] = [72, 96].map(|coordinates| count(&size(coordinates, law)));

@@ -34,6 +34,8 @@ pub struct RowSettings {
     pub contact: Option<(ContactLaw, PairParameters)>,
     /// What a free ring does under mean friction.
     pub ring: Ring,
+    /// Law in whose place the simpler one of `contact` is taken, with the same springs; what that changes is in the errors.
+    pub in_place_of: Option<ContactLaw>,
     /// Damping of the structure.
     pub damping: Damping,
     /// Factor on the model's force vector.
@@ -42,6 +44,31 @@ pub struct RowSettings {
     pub projection: Projection,
     /// Settings of the solution.
     pub solver: SolverOptions,
+}
+
+impl RowSettings {
+    /// What points with `harmonics` need.
+    fn points(
+        &self,
+        harmonics: &[u32],
+        model: &ReducedModel,
+    ) -> Result<PointSettings, TransformError> {
+        let geometry = model.contact.clone();
+        PointSettings::new(&self.solver, harmonics, self.contact, geometry)?
+            .with_ring(self.ring)
+            .in_place_of(self.in_place_of, &self.solver)
+    }
+
+    /// In the column `shortcut`: what the law leaves out of the one in whose place it is taken.
+    fn simpler_law(&self) -> Option<&'static str> {
+        let (own, _) = self.contact?;
+        let varies = self.in_place_of?.has_variable_load();
+        if varies && !own.has_variable_load() {
+            Some("constant_normal_load")
+        } else {
+            Some("uncoupled_tangents")
+        }
+    }
 }
 
 /// Solves rows on one reduced model; shared between threads.
@@ -66,18 +93,9 @@ impl RowSolver {
     /// # Errors
     /// If the samples per period cannot tell the harmonics apart.
     pub fn new(model: Arc<ReducedModel>, settings: RowSettings) -> Result<Self, TransformError> {
-        let points = |harmonics: &[u32]| {
-            PointSettings::new(
-                &settings.solver,
-                harmonics,
-                settings.contact,
-                model.contact.clone(),
-            )
-            .map(|points| points.with_ring(settings.ring))
-        };
         Ok(Self {
-            full: points(&settings.harmonics)?,
-            linear: points(&[1])?,
+            full: settings.points(&settings.harmonics, &model)?,
+            linear: settings.points(&[1], &model)?,
             basis: WheelBasis::new(model),
             settings,
             chosen: Vec::new(),
@@ -101,13 +119,8 @@ impl RowSolver {
         self.chosen = choices
             .into_iter()
             .map(|choice| {
-                let points = PointSettings::new(
-                    &settings.solver,
-                    &choice.harmonics,
-                    settings.contact,
-                    self.basis.model().contact.clone(),
-                )?;
-                Ok((choice, points.with_ring(settings.ring)))
+                let points = settings.points(&choice.harmonics, self.basis.model())?;
+                Ok((choice, points))
             })
             .collect::<Result<_, TransformError>>()?;
         self.basis_error = basis_error;
@@ -410,8 +423,8 @@ impl RowSolver {
                 scenario.contact,
                 good.map(|(_, point)| point),
                 tuned_harmonics,
-            )
-            .to_owned(),
+                self.settings.simpler_law(),
+            ),
         }
     }
 }
@@ -434,13 +447,14 @@ pub fn harmonics_name(harmonics: &[u32]) -> String {
 }
 
 /// `linear` for a linear limit; `stuck` where every pair sticks at the peak, so that the linear
-/// solution is the exact one; [`TUNED_HARMONICS`].
+/// solution is the exact one; [`TUNED_HARMONICS`]; where a simpler law is taken this first.
 fn shortcut(
     contact: ContactCondition,
     point: Option<&Point>,
     tuned_harmonics: bool,
-) -> &'static str {
-    match (contact, point) {
+    simpler_law: Option<&str>,
+) -> String {
+    let own = match (contact, point) {
         (ContactCondition::Full { .. }, Some(point))
             if point.shares.slipping == 0.0 && point.shares.separated == 0.0 =>
         {
@@ -448,6 +462,11 @@ fn shortcut(
         }
         (ContactCondition::Full { .. }, Some(_)) if tuned_harmonics => TUNED_HARMONICS,
         (ContactCondition::Full { .. }, _) => "none",
-        _ => "linear",
+        _ => return "linear".to_owned(),
+    };
+    match simpler_law {
+        Some(law) if own == "none" => law.to_owned(),
+        Some(law) => format!("{law}, {own}"),
+        None => own.to_owned(),
     }
 }

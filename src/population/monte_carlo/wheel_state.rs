@@ -35,7 +35,7 @@ impl RowSolver {
         let points = solver.points_of(pattern, engine_order, contact);
         let excited = solver.wheel_excited(&modes, &wheel, engine_order, points.harmonics());
         let excited = match solver.waves(pattern, &points) {
-            Some(waves) if row.shortcut == TUNED_HARMONICS => excited.with_waves(waves),
+            Some(waves) if row.shortcut.ends_with(TUNED_HARMONICS) => excited.with_waves(waves),
             _ => excited,
         };
         let mut solver = PointSolver::new(&excited, contact, &points);

@@ -12,7 +12,7 @@ use super::point_settings::{PointSettings, samples_per_period};
 use super::point_solver::PointSolver;
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{
-    ContactShares, Effects, EnlargedSet, HarmonicBlock, TransformError, enlarge,
+    ContactShares, Effects, EnlargedSet, HarmonicBlock, NewtonWorkspace, TransformError, enlarge,
 };
 
 /// Samples per period of the check, over those of the solution.
@@ -25,12 +25,15 @@ const FINEST: usize = 256;
 pub struct ErrorSettings {
     set: EnlargedSet,
     amplitude: ObservedAmplitude,
+    /// Law of the equations beside which solutions are held, where it is not the one that they were solved with.
+    law: Option<ContactLaw>,
 }
 
 /// Relative changes of the largest amplitude; positive where it would grow.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorEstimate {
-    /// By one Newton correction of the same equations with 4 times the samples per period.
+    /// By one Newton correction of the same equations with 4 times the samples per period, or of those of the law in whose
+    /// place another one was taken.
     pub sampling: f64,
     /// By the harmonics up to 15 that are not in the set.
     pub harmonics: f64,
@@ -63,7 +66,16 @@ impl ErrorSettings {
         Ok(Self {
             amplitude: ObservedAmplitude::new(options.amplitude, set.harmonics(), instants)?,
             set,
+            law: None,
         })
+    }
+
+    /// The same of solutions under another law that was taken in the place of `law`.
+    pub(super) fn in_place_of(self, law: ContactLaw) -> Self {
+        Self {
+            law: Some(law),
+            ..self
+        }
     }
 
     /// Harmonics of the enlarged set, ascending.
@@ -124,7 +136,12 @@ fn assess(
     wanted: Effects,
 ) -> Option<Screening> {
     let mut solver = PointSolver::new(excited, condition, settings);
-    let linear = point.shares == ContactShares::default();
+    let ErrorSettings {
+        set,
+        amplitude,
+        law,
+    } = settings.errors();
+    let linear = law.is_none() && point.shares == ContactShares::default();
     let nonlinear = solver.nonlinear_at(point).filter(|_| !linear);
     let Some((system, workspace)) = nonlinear else {
         return Some(Screening {
@@ -132,7 +149,15 @@ fn assess(
             effects: Vec::new(),
         });
     };
-    let ErrorSettings { set, amplitude } = settings.errors();
+    let mut other = law.map(|law| {
+        let system = system.under(law);
+        let workspace = NewtonWorkspace::new(&system);
+        (system, workspace)
+    });
+    let (system, workspace) = match &mut other {
+        Some((system, workspace)) => (&*system, workspace),
+        None => (system, workspace),
+    };
     let omega = TAU * point.frequency_hz;
     let enlarged = enlarge(
         system,

@@ -94,6 +94,26 @@ impl PointSettings {
         }
     }
 
+    /// The same where the law of `contact` is taken in the place of another with the same springs: what that changes is
+    /// in the errors. Nothing for none.
+    ///
+    /// # Errors
+    /// If the harmonics that the other law excites cannot be told apart with the samples of the errors.
+    pub fn in_place_of(
+        self,
+        law: Option<ContactLaw>,
+        options: &SolverOptions,
+    ) -> Result<Self, TransformError> {
+        let Some(law) = law else {
+            return Ok(self);
+        };
+        let errors = ErrorSettings::new(options, &self.harmonics, Some(law))?.in_place_of(law);
+        Ok(Self {
+            errors: Arc::new(errors),
+            ..self
+        })
+    }
+
     /// Harmonic set of the nonlinear solution.
     #[must_use]
     pub fn harmonics(&self) -> &[u32] {

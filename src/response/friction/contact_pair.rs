@@ -2,7 +2,7 @@
 //! makes of it.
 
 use super::{
-    ContactLaw, ContactOptions, CoupledSlider, PeriodicSlider, coulomb_3d, macro_slip_1d,
+    ContactLaw, ContactOptions, CoupledSlider, PeriodicSlider, coulomb_3d, macro_slip,
     simplified_3d,
 };
 use crate::model::cyclic::ContactGeometry;
@@ -13,9 +13,28 @@ impl ContactLaw {
     #[must_use]
     pub fn has_variable_load(self) -> bool {
         match self {
-            Self::MacroSlip1d => false,
+            Self::MacroSlip1d | Self::MacroSlip2d => false,
             Self::Simplified3d | Self::Coulomb3d => true,
         }
+    }
+
+    /// Tangents along which there is friction, and a spring of the linear limits: t1, or both.
+    #[must_use]
+    pub fn tangents(self) -> usize {
+        match self {
+            Self::MacroSlip1d => 1,
+            Self::MacroSlip2d | Self::Simplified3d | Self::Coulomb3d => 2,
+        }
+    }
+
+    /// Springs along n, t1, t2 of a pair with these stiffnesses, N/m.
+    #[must_use]
+    pub fn springs(self, normal_n_per_m: f64, tangential_n_per_m: f64) -> [f64; 3] {
+        let second = match self.tangents() {
+            1 => 0.0,
+            _ => tangential_n_per_m,
+        };
+        [normal_n_per_m, tangential_n_per_m, second]
     }
 }
 
@@ -109,7 +128,7 @@ impl PairParameters {
         };
         let (lowest_load, tangential) = match law {
             ContactLaw::MacroSlip1d => (load, first),
-            ContactLaw::Simplified3d => (load, first.max(second)),
+            ContactLaw::MacroSlip2d | ContactLaw::Simplified3d => (load, first.max(second)),
             ContactLaw::Coulomb3d => (load, first.hypot(second)),
         };
         lowest_load > 0.0
@@ -160,7 +179,7 @@ pub struct ContactHistory {
     /// Growth of the tangential displacement per period, m.
     pub(super) drift_m: [f64; 2],
     /// Law of the response last computed.
-    law: ContactLaw,
+    pub(super) law: ContactLaw,
     pub(super) state: PairState,
 }
 
@@ -215,7 +234,9 @@ impl ContactHistory {
         );
         self.law = law;
         match law {
-            ContactLaw::MacroSlip1d => macro_slip_1d::respond(self, parameters, displacement),
+            ContactLaw::MacroSlip1d | ContactLaw::MacroSlip2d => {
+                macro_slip::respond(self, parameters, displacement);
+            }
             ContactLaw::Simplified3d => simplified_3d::respond(self, parameters, displacement),
             ContactLaw::Coulomb3d => coulomb_3d::respond(self, parameters, displacement),
         }
@@ -286,7 +307,7 @@ impl ContactHistory {
     #[must_use]
     pub fn tangential_correction_n(&self) -> [&[f64]; 2] {
         match self.law {
-            ContactLaw::MacroSlip1d | ContactLaw::Simplified3d => {
+            ContactLaw::MacroSlip1d | ContactLaw::MacroSlip2d | ContactLaw::Simplified3d => {
                 self.sliders.each_ref().map(PeriodicSlider::offset_n)
             }
             ContactLaw::Coulomb3d => self.coupled.offset_n(),

@@ -3,7 +3,7 @@
 mod contact_pair;
 mod coulomb_3d;
 mod coupled_slider;
-mod macro_slip_1d;
+mod macro_slip;
 mod options;
 mod periodic_slider;
 mod simplified_3d;

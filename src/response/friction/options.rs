@@ -9,6 +9,9 @@ pub enum ContactLaw {
     /// Friction along the first tangent only, limit `mu N0`; normal spring bilateral where given.
     #[serde(rename = "macro_slip_1d")]
     MacroSlip1d,
+    /// Friction along both tangents, each by itself, limit `mu N0`; normal spring bilateral where given.
+    #[serde(rename = "macro_slip_2d")]
+    MacroSlip2d,
     /// Variable normal load `max(0, N0 + kn g)` and two independent tangential Jenkins elements.
     #[serde(rename = "simplified_3d")]
     Simplified3d,
@@ -39,11 +42,14 @@ pub struct ContactOptions {
     pub friction_coefficient: f64,
     /// Tangential contact stiffness per sector, N/m.
     pub tangential_stiffness_n_per_m: f64,
-    /// Normal contact stiffness per sector, N/m; optional for `macro_slip_1d` only.
+    /// Normal contact stiffness per sector, N/m; optional under a constant normal load only.
     pub normal_stiffness_n_per_m: Option<f64>,
     /// What a free ring does under mean friction. Default `locked`.
     #[serde(default)]
     pub ring: Ring,
+    /// Law of the study in whose place `law` is taken to keep an accepted error; never in a file.
+    #[serde(skip)]
+    pub in_place_of: Option<ContactLaw>,
 }
 
 fn default_law() -> ContactLaw {

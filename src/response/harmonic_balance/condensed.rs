@@ -299,8 +299,9 @@ pub(super) mod tests {
         (condensed, whole, shares)
     }
 
-    const LAWS: [ContactLaw; 3] = [
+    const LAWS: [ContactLaw; 4] = [
         ContactLaw::MacroSlip1d,
+        ContactLaw::MacroSlip2d,
         ContactLaw::Simplified3d,
         ContactLaw::Coulomb3d,
     ];

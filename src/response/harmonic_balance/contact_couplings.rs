@@ -48,6 +48,7 @@ impl ContactCouplings {
         self.count = count;
         self.rows.clear();
         let first = usize::from(!workspace.separated);
+        let variable_load = system.interface.law.has_variable_load();
         let active = || (0..workspace.active.len()).filter(|&pair| workspace.active[pair]);
         let places = |pair: usize| &geometry.rows[pair % geometry.rows.len()];
         let base = |pair: usize| pair / geometry.rows.len() * geometry.row_count();
@@ -66,6 +67,10 @@ impl ContactCouplings {
                 }
                 let mut number = 0;
                 for (other, place) in places(pair).iter().enumerate() {
+                    // Under a constant load friction does not depend on the motion along n.
+                    if other == 0 && direction > 0 && !variable_load {
+                        continue;
+                    }
                     let block = workspace.jacobians[pair].block(direction, other);
                     if let (Some(from), Some(block)) = (*place, block) {
                         self.couple(number, to, base(pair) + from, block);

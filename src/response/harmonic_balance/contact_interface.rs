@@ -37,11 +37,7 @@ impl ContactInterface {
             let rows = &self.geometry.rows[index % per_sector];
             let first = index / per_sector * sector_rows;
             let tangential = factor * pair.tangential_stiffness_n_per_m;
-            let second = match self.law {
-                ContactLaw::MacroSlip1d => 0.0,
-                ContactLaw::Simplified3d | ContactLaw::Coulomb3d => tangential,
-            };
-            let own = [pair.normal_stiffness_n_per_m, tangential, second];
+            let own = self.law.springs(pair.normal_stiffness_n_per_m, tangential);
             for (row, spring) in rows.iter().zip(own) {
                 if let Some(row) = *row {
                     springs[first + row] = spring;

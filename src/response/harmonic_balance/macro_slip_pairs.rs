@@ -1,6 +1,6 @@
-//! The pairs of a wheel under `macro_slip_1d` side by side, a vector lane each.
+//! The pairs of a wheel under a constant normal load side by side, a vector lane for every element.
 //!
-//! One element per pair and a constant limit: the displacements of all pairs are one matrix product, and the chains
+//! Elements by themselves and a constant limit: the displacements of all are one matrix product, and the chains
 //! of clips (see [`crate::response::friction::PeriodicSlider`]) are marched together. From wherever it starts, a
 //! slider that slips is in its periodic state after one period. With `r(j)` the sample at which the offset of sample j
 //! was last clipped,
@@ -12,18 +12,24 @@
 //! While it slips `r(j) = j`, while it sticks `r(j)` stays: sums over either are differences of two table entries.
 //! Under odd harmonics everything changes sign after half a period, so that half of it will do.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined is compiled for vectors"
-)]
-
 use std::sync::Arc;
 
 use super::clip_slopes::wanted;
-use super::lanes::{LANES, clip, lanes_at, larger, smaller};
-use super::{ContactShares, HarmonicSystem, HarmonicTransform, PairJacobian, SystemWorkspace};
-use crate::linalg::{Loops, add_times, vectorized};
+use super::lanes::LANES;
+use super::slider_march::SliderMarch;
+use super::{ContactShares, HarmonicSystem, HarmonicTransform, SystemWorkspace};
+use crate::linalg::{add_times, vectorized};
 use crate::response::friction::{ContactLaw, PairParameters};
+
+/// An element of a pair.
+#[derive(Debug, Clone, Copy)]
+struct Slider {
+    pair: usize,
+    /// 0 along t1, 1 along t2.
+    tangent: usize,
+    /// Contact row of the wheel.
+    row: usize,
+}
 
 /// Buffers for the pairs of one wheel. Matrices are column-major, a row per lane.
 #[derive(Debug)]
@@ -36,8 +42,8 @@ pub(super) struct MacroSlipPairs {
     /// `phi_c(tau_j)` of the samples, a column per sample, and a column per coefficient.
     basis: Vec<f64>,
     basis_rows: Vec<f64>,
-    /// Pairs that may slip, each in its lane; lanes beyond are idle.
-    pairs: Vec<usize>,
+    /// Elements that may slip, pair after pair, each in its lane; lanes beyond are idle.
+    sliders: Vec<Slider>,
     /// `mu N0` of each lane, N.
     limit: Vec<f64>,
     /// Coefficients of `kt x`, N, then of the correction.
@@ -51,9 +57,9 @@ pub(super) struct MacroSlipPairs {
 }
 
 impl MacroSlipPairs {
-    /// Buffers for `pairs` pairs.
-    pub(super) fn new(pairs: usize, transform: &Arc<HarmonicTransform>) -> Self {
-        let lanes = pairs.next_multiple_of(LANES);
+    /// Buffers for as many `sliders`.
+    pub(super) fn new(sliders: usize, transform: &Arc<HarmonicTransform>) -> Self {
+        let lanes = sliders.next_multiple_of(LANES);
         let (coefficients, period) = (transform.n_coefficients(), transform.n_samples());
         let half = transform.has_half_waves();
         let samples = if half { period / 2 } else { period };
@@ -68,7 +74,7 @@ impl MacroSlipPairs {
             then: if half { -1.0 } else { 1.0 },
             basis,
             basis_rows,
-            pairs: Vec::with_capacity(pairs),
+            sliders: Vec::with_capacity(sliders),
             limit: vec![0.0; lanes],
             coefficients: vec![0.0; lanes * coefficients],
             elastic: vec![0.0; lanes * samples],
@@ -81,7 +87,7 @@ impl MacroSlipPairs {
 
     /// Lanes in use, whole blocks.
     fn lanes(&self) -> usize {
-        self.pairs.len().next_multiple_of(LANES)
+        self.sliders.len().next_multiple_of(LANES)
     }
 
     /// Histories of `kt x` and of the offsets from the coefficients of `kt x`.
@@ -92,7 +98,7 @@ impl MacroSlipPairs {
         elastic.fill(0.0);
         let coefficients = &self.coefficients[..lanes * count];
         add_times(elastic, coefficients, &self.basis, (lanes, samples, count));
-        vectorized(March {
+        vectorized(SliderMarch {
             lanes,
             periods: self.transform.n_samples() / samples,
             then: self.then,
@@ -103,7 +109,7 @@ impl MacroSlipPairs {
             most: &mut self.most,
         });
         // A slider that sticks has a constant offset, whose harmonics are zero.
-        for lane in 0..self.pairs.len() {
+        for lane in 0..self.sliders.len() {
             if self.slips(lane) {
                 continue;
             }
@@ -218,90 +224,11 @@ impl MacroSlipPairs {
     }
 }
 
-/// The chains of clips of all lanes: a period, from which on they are periodic, and the samples looked at.
-struct March<'a> {
-    lanes: usize,
-    /// Times that the samples make up a period.
-    periods: usize,
-    then: f64,
-    limit: &'a [f64],
-    elastic: &'a [f64],
-    offset: &'a mut [f64],
-    least: &'a mut [f64],
-    most: &'a mut [f64],
-}
-
-impl Loops for March<'_> {
-    type Output = ();
-
-    /// Several blocks at a time: a clip waits for the one before it.
-    #[inline(always)]
-    fn call(mut self) {
-        let mut first = 0;
-        while first < self.lanes {
-            first += match (self.lanes - first) / LANES {
-                1 => self.blocks::<1>(first),
-                2 => self.blocks::<2>(first),
-                _ => self.blocks::<3>(first),
-            };
-        }
-    }
-}
-
-impl March<'_> {
-    /// The blocks from lane `first` on; returns their lanes.
-    #[inline(always)]
-    fn blocks<const BLOCKS: usize>(&mut self, first: usize) -> usize {
-        let place = |block: usize| first + block * LANES;
-        let limit: [_; BLOCKS] = std::array::from_fn(|block| lanes_at(self.limit, place(block)));
-        let mut least = [[f64::INFINITY; LANES]; BLOCKS];
-        let mut most = [[f64::NEG_INFINITY; LANES]; BLOCKS];
-        let mut y = [[0.0; LANES]; BLOCKS];
-        for period in 0..self.periods {
-            for elastic in self.elastic.chunks_exact(self.lanes) {
-                for block in 0..BLOCKS {
-                    let elastic = lanes_at(elastic, place(block));
-                    for lane in 0..LANES {
-                        if period == 0 {
-                            least[block][lane] = smaller(elastic[lane], least[block][lane]);
-                            most[block][lane] = larger(elastic[lane], most[block][lane]);
-                        }
-                        y[block][lane] = clip(y[block][lane], limit[block][lane], elastic[lane]);
-                    }
-                }
-            }
-            y = y.map(|y| y.map(|y| self.then * y));
-        }
-        for (elastic, offset) in self
-            .elastic
-            .chunks_exact(self.lanes)
-            .zip(self.offset.chunks_exact_mut(self.lanes))
-        {
-            for block in 0..BLOCKS {
-                let elastic = lanes_at(elastic, place(block));
-                for lane in 0..LANES {
-                    y[block][lane] = clip(y[block][lane], limit[block][lane], elastic[lane]);
-                }
-                offset[place(block)..place(block) + LANES].copy_from_slice(&y[block]);
-            }
-        }
-        for block in 0..BLOCKS {
-            for lane in 0..LANES {
-                let (low, high) = (least[block][lane], most[block][lane]);
-                let half = self.then < 0.0;
-                self.least[place(block) + lane] = if half { smaller(low, -high) } else { low };
-                self.most[place(block) + lane] = if half { larger(high, -low) } else { high };
-            }
-        }
-        BLOCKS * LANES
-    }
-}
-
 impl HarmonicSystem {
-    /// Whether the pairs can be evaluated side by side.
+    /// Whether the elements can be evaluated side by side.
     pub(super) fn marches_together(&self) -> bool {
         let drifts = self.ring_drift_m().iter().any(|drift| drift.abs() > 0.0);
-        self.interface.law == ContactLaw::MacroSlip1d && !drifts
+        !self.interface.law.has_variable_load() && !drifts
     }
 
     /// [`Self::contact_correction`] of all pairs at once.
@@ -311,23 +238,31 @@ impl HarmonicSystem {
         workspace: &mut SystemWorkspace,
     ) -> ContactShares {
         let pairs = workspace.active.len();
+        let (tangents, count) = (
+            self.interface.law.tangents(),
+            self.transform.n_coefficients(),
+        );
         let together = workspace
             .together
-            .get_or_insert_with(|| MacroSlipPairs::new(pairs, &self.transform));
-        let row_of = |pair: usize| self.row_along_t1(pair);
-        let rows = workspace.displacement.len() / self.transform.n_coefficients().max(1);
-        together.pairs.clear();
+            .get_or_insert_with(|| MacroSlipPairs::new(tangents * pairs, &self.transform));
+        let rows = workspace.displacement.len() / count.max(1);
+        together.sliders.clear();
         let mut separated = 0_usize;
         for pair in 0..pairs {
             let parameters = self.interface.pair(pair);
             let open = parameters.normal_load_n <= 0.0;
             separated += usize::from(open);
             workspace.active[pair] = open;
-            let motion = workspace.displacement.chunks_exact(rows.max(1));
-            let motion = row_of(pair).map(|row| motion.map(move |column| column[row]));
-            let excursion = motion.map_or(0.0, |motion| self.transform.excursion(motion));
-            if !parameters.surely_sticks(ContactLaw::MacroSlip1d, [0.0, excursion, 0.0]) {
-                together.pairs.push(pair);
+            for tangent in 0..tangents {
+                let Some(row) = self.tangential_row(pair, tangent) else {
+                    continue;
+                };
+                let motion = workspace.displacement.chunks_exact(rows.max(1));
+                let excursion = self.transform.excursion(motion.map(|column| column[row]));
+                // By itself, whatever the law.
+                if !parameters.surely_sticks(ContactLaw::MacroSlip1d, [0.0, excursion, 0.0]) {
+                    together.sliders.push(Slider { pair, tangent, row });
+                }
             }
             if derivative {
                 workspace.jacobians[pair].clear();
@@ -336,13 +271,12 @@ impl HarmonicSystem {
         let lanes = together.lanes();
         let stiffness = |parameters: &PairParameters| parameters.tangential_stiffness_n_per_m;
         together.limit[..lanes].fill(0.0);
-        together.coefficients[..lanes * self.transform.n_coefficients()].fill(0.0);
-        for (lane, &pair) in together.pairs.iter().enumerate() {
+        together.coefficients[..lanes * count].fill(0.0);
+        for (lane, &Slider { pair, row, .. }) in together.sliders.iter().enumerate() {
             let parameters = self.interface.pair(pair);
             together.limit[lane] = parameters.friction_coefficient * parameters.normal_load_n;
-            let Some(row) = row_of(pair) else { continue };
             let kt = stiffness(parameters);
-            for c in usize::from(self.transform.has_mean())..self.transform.n_coefficients() {
+            for c in usize::from(self.transform.has_mean())..count {
                 together.coefficients[c * lanes + lane] =
                     kt * workspace.displacement[c * rows + row];
             }
@@ -351,22 +285,19 @@ impl HarmonicSystem {
             together.respond();
             together.project();
         }
-        let mut slipping = 0_usize;
-        for (lane, &pair) in together.pairs.iter().enumerate() {
+        let (mut slipping, mut last) = (0_usize, None);
+        for (lane, &Slider { pair, tangent, row }) in together.sliders.iter().enumerate() {
             if !together.slips(lane) {
                 continue;
             }
-            slipping += 1;
+            slipping += usize::from(last != Some(pair));
+            last = Some(pair);
             workspace.active[pair] = true;
-            let Some(row) = row_of(pair) else { continue };
-            for c in 0..self.transform.n_coefficients() {
+            for c in 0..count {
                 workspace.correction[c * rows + row] = together.coefficients[c * lanes + lane];
             }
             if derivative {
-                let PairJacobian {
-                    tangential_tangential: [block, _],
-                    ..
-                } = &mut workspace.jacobians[pair];
+                let block = &mut workspace.jacobians[pair].tangential_tangential[tangent];
                 let kt = stiffness(self.interface.pair(pair));
                 together.differentiate(lane, kt, workspace.pairs.coupled_first(), block);
             }
@@ -380,62 +311,19 @@ impl HarmonicSystem {
         }
     }
 
-    /// Contact row along t1 of a pair of the wheel.
-    fn row_along_t1(&self, pair: usize) -> Option<usize> {
+    /// Contact row along t1 or t2 of a pair of the wheel.
+    fn tangential_row(&self, pair: usize, tangent: usize) -> Option<usize> {
         let geometry = &self.interface.geometry;
         let (sector, own) = (pair / geometry.rows.len(), pair % geometry.rows.len());
-        geometry.rows[own][1].map(|row| sector * geometry.row_count() + row)
+        geometry.rows[own][1 + tangent].map(|row| sector * geometry.row_count() + row)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::response::harmonic_balance::PairHarmonics;
     use crate::response::harmonic_balance::condensed::tests::{OMEGA, state, system};
-
-    /// Blocks by themselves, in twos, in threes, and what is left of them.
-    #[test]
-    fn any_number_of_lanes_is_marched_like_one_slider_after_another() {
-        const SAMPLES: usize = 30;
-        for (lanes, then) in (0..6).flat_map(|blocks| [(8 * blocks, 1.0), (8 * blocks, -1.0)]) {
-            let number = |i: usize| (0.9 * i as f64 + (i * i) as f64 * 0.37).sin();
-            let elastic: Vec<f64> = (0..lanes * SAMPLES).map(number).collect();
-            let limit: Vec<f64> = (0..lanes).map(|i| 0.1 + number(i).abs()).collect();
-            let mut offset = vec![0.0; lanes * SAMPLES];
-            let [mut least, mut most] = [vec![0.0; lanes], vec![0.0; lanes]];
-            vectorized(March {
-                lanes,
-                periods: if then < 0.0 { 2 } else { 1 },
-                then,
-                limit: &limit,
-                elastic: &elastic,
-                offset: &mut offset,
-                least: &mut least,
-                most: &mut most,
-            });
-            for lane in 0..lanes {
-                let own: Vec<f64> = (0..SAMPLES).map(|j| elastic[j * lanes + lane]).collect();
-                let before = own.iter().map(|x| then * x);
-                let period: Vec<f64> = own.iter().copied().chain(before).collect();
-                let whole = if then < 0.0 { &period[..] } else { &own[..] };
-                let mut y = 0.0_f64;
-                for x in whole {
-                    y = y.max(-limit[lane] - x).min(limit[lane] - x);
-                }
-                let expected = own.iter().map(|x| {
-                    y = y.max(-limit[lane] - x).min(limit[lane] - x);
-                    y
-                });
-                let found = (0..SAMPLES).map(|j| offset[j * lanes + lane]);
-                assert!(expected.eq(found), "{lanes} lanes, {lane}");
-                let largest = whole.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                let smallest = whole.iter().copied().fold(f64::INFINITY, f64::min);
-                assert!(largest.total_cmp(&most[lane]).is_eq());
-                assert!(smallest.total_cmp(&least[lane]).is_eq());
-            }
-        }
-    }
+    use crate::response::harmonic_balance::{PairHarmonics, PairJacobian};
 
     /// Half waves and not, with an odd number of samples, with derivatives between harmonics and without.
     #[test]
@@ -447,15 +335,18 @@ mod tests {
             (&[1, 2], 64),
             (&[0, 1, 3], 60),
         ];
-        for ((harmonics, samples), coupled) in sets.into_iter().zip([0, 99, 2, 99, 0]) {
-            let system = system(ContactLaw::MacroSlip1d, harmonics, samples);
+        let settings = sets.into_iter().zip([0, 99, 2, 99, 0]);
+        let laws = [ContactLaw::MacroSlip1d, ContactLaw::MacroSlip2d];
+        for (((harmonics, samples), coupled), law) in
+            settings.flat_map(|setting| laws.map(|law| (setting, law)))
+        {
+            let system = system(law, harmonics, samples);
             let mut workspace = system.workspace();
             workspace.pairs.couple_first(coupled);
             let x = state(&system);
             let mut residual = vec![0.0; x.len()];
             let (_, shares) = system.residual(OMEGA, &x, &mut residual, true, &mut workspace);
-            let mut one =
-                PairHarmonics::new(ContactLaw::MacroSlip1d, Arc::clone(&system.transform));
+            let mut one = PairHarmonics::new(law, Arc::clone(&system.transform));
             one.couple_first(coupled);
             let count = system.transform.n_coefficients();
             let mut slipping = 0;
@@ -471,16 +362,19 @@ mod tests {
                 );
                 slipping += usize::from(state.slipping);
                 assert_eq!(workspace.active[pair], state.slipping || state.separated);
-                let row = system.row_along_t1(pair).expect("a row");
                 let rows = workspace.correction.len() / count;
-                for (c, expected) in correction[count..2 * count].iter().enumerate() {
-                    let found = workspace.correction[c * rows + row];
-                    assert!((found - expected).abs() < 1e-14, "{harmonics:?} {pair} {c}");
-                }
-                let found = &workspace.jacobians[pair].tangential_tangential[0];
-                let expected = &jacobian.tangential_tangential[0];
-                for (found, expected) in found.iter().zip(expected) {
-                    assert!((found - expected).abs() < 1e-13, "{harmonics:?} {pair}");
+                for tangent in 0..2 {
+                    let row = system.tangential_row(pair, tangent).expect("a row");
+                    let expected = correction[(1 + tangent) * count..].iter().take(count);
+                    for (c, expected) in expected.enumerate() {
+                        let found = workspace.correction[c * rows + row];
+                        assert!((found - expected).abs() < 1e-14, "{harmonics:?} {pair} {c}");
+                    }
+                    let found = &workspace.jacobians[pair].tangential_tangential[tangent];
+                    let expected = &jacobian.tangential_tangential[tangent];
+                    for (found, expected) in found.iter().zip(expected) {
+                        assert!((found - expected).abs() < 1e-13, "{harmonics:?} {pair}");
+                    }
                 }
             }
             assert!((2..4).contains(&slipping), "{harmonics:?}: {slipping}");

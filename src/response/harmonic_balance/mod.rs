@@ -35,6 +35,7 @@ mod response_slope;
 mod ring_drift;
 mod serves;
 mod simplified_3d_pairs;
+mod slider_march;
 mod status;
 mod structure;
 mod system;

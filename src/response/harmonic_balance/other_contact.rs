@@ -1,12 +1,20 @@
-//! The harmonic balance equation of the same wheel under other contact, on the way of a homotopy.
+//! The harmonic balance equation of the same wheel under other contact: on the way of a homotopy, or under another law.
 
 use std::sync::Arc;
 
 use super::HarmonicSystem;
 use super::structure::{ContactStiffnessMatrix, Structure};
-use crate::response::friction::PairParameters;
+use crate::response::friction::{ContactLaw, PairParameters};
 
 impl HarmonicSystem {
+    /// The same system under another law with the same springs.
+    #[must_use]
+    pub fn under(&self, law: ContactLaw) -> Self {
+        let mut system = self.clone();
+        system.interface.law = law;
+        system
+    }
+
     /// The same system under another normal load per pair.
     #[must_use]
     pub fn with_pairs(&self, pairs: Vec<PairParameters>) -> Self {

@@ -50,8 +50,7 @@ impl PairMemory {
     #[must_use]
     pub fn force_n(&self, law: ContactLaw, parameters: &PairParameters) -> [f64; 3] {
         let spring = parameters.normal_stiffness_n_per_m * self.displacement_m[0];
-        let unilateral = !matches!(law, ContactLaw::MacroSlip1d);
-        let normal = if unilateral && self.separated() {
+        let normal = if law.has_variable_load() && self.separated() {
             -parameters.normal_load_n
         } else {
             spring
@@ -69,27 +68,34 @@ pub fn march(
     displacement_m: [f64; 3],
 ) -> PairMemory {
     match law {
-        ContactLaw::MacroSlip1d => macro_slip_1d(parameters, before, displacement_m),
+        ContactLaw::MacroSlip1d => macro_slip(parameters, before, displacement_m, 1),
+        ContactLaw::MacroSlip2d => macro_slip(parameters, before, displacement_m, 2),
         ContactLaw::Simplified3d => simplified_3d(parameters, before, displacement_m),
         ContactLaw::Coulomb3d => coulomb_3d(parameters, before, displacement_m),
     }
 }
 
-/// Friction along t1 only, with the limit `mu N0`.
-fn macro_slip_1d(
+/// Friction along the first `tangents`, each by itself, with the limit `mu N0`.
+fn macro_slip(
     parameters: &PairParameters,
     before: &PairMemory,
     displacement_m: [f64; 3],
+    tangents: usize,
 ) -> PairMemory {
-    let path = displacement_m[1] - before.displacement_m[1];
     let limit = parameters.friction_coefficient * parameters.normal_load_n;
-    let trial = before.friction_n[0] + parameters.tangential_stiffness_n_per_m * path;
-    PairMemory {
+    let mut after = PairMemory {
         displacement_m,
         signed_load_n: parameters.normal_load_n,
-        friction_n: [trial.clamp(-limit, limit), 0.0],
-        slipping: trial.abs() > limit,
+        ..PairMemory::default()
+    };
+    for tangent in 0..tangents {
+        let path = displacement_m[1 + tangent] - before.displacement_m[1 + tangent];
+        let spring = parameters.tangential_stiffness_n_per_m * path;
+        let trial = before.friction_n[tangent] + spring;
+        after.friction_n[tangent] = trial.clamp(-limit, limit);
+        after.slipping |= trial.abs() > limit;
     }
+    after
 }
 
 /// Two independent directions with the limit `mu N(t)`.

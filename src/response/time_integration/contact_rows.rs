@@ -29,11 +29,8 @@ impl ContactRows {
                 let parameters = interface.pair(sector * interface.per_sector() + place);
                 let rows = places.map(|place| place.map(|row| first + row));
                 let kt = parameters.tangential_stiffness_n_per_m;
-                let second = match interface.law {
-                    ContactLaw::MacroSlip1d => 0.0,
-                    ContactLaw::Simplified3d | ContactLaw::Coulomb3d => kt,
-                };
-                let stiffness = [parameters.normal_stiffness_n_per_m, kt, second];
+                let kn = parameters.normal_stiffness_n_per_m;
+                let stiffness = interface.law.springs(kn, kt);
                 for (row, stiffness) in rows.iter().zip(stiffness) {
                     if let Some(row) = *row {
                         springs[row] = stiffness;

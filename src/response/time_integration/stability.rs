@@ -27,7 +27,6 @@ use super::periods::{Period, blade_norms};
 use super::state::WheelState;
 use super::stepper::{MarchedWheel, TimeStepper};
 use crate::linalg::{Complex64, Matrix, eigenvalues, hermitian_eigen};
-use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{ContactShares, Status};
 
 /// Components of the state at most: a march each, several times.
@@ -165,9 +164,10 @@ impl<'a> PeriodMap<'a> {
             .zip(physical[2 * size..].chunks(2));
         let pairs = pairs.enumerate().map(|(index, (pair, friction))| {
             let displacement_m = self.contact.gather(index, &displacement);
-            let closing = match self.wheel.interface.law {
-                ContactLaw::MacroSlip1d => 0.0,
-                ContactLaw::Simplified3d | ContactLaw::Coulomb3d => displacement_m[0],
+            let closing = if self.wheel.interface.law.has_variable_load() {
+                displacement_m[0]
+            } else {
+                0.0
             };
             PairMemory {
                 displacement_m,

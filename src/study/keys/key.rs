@@ -3,8 +3,9 @@
 use strsim::damerau_levenshtein;
 
 use super::Value;
+use super::contact_keys::CONTACT_KEYS;
 use super::model_keys::MODEL_KEYS;
-use super::study_keys::{LEADING_KEYS, STUDY_KEYS};
+use super::study_keys::{LEADING_KEYS, REDUCTION_KEYS, STUDY_KEYS};
 
 /// Parameters that `[contact.variation]` can let vary.
 const CONTACT_PARAMETERS: [&str; 4] = [
@@ -66,7 +67,14 @@ pub fn keys() -> Vec<KeySpec> {
         required: entry.default == REQUIRED,
         meaning: entry.meaning,
     };
-    let entries = [LEADING_KEYS, MODEL_KEYS, STUDY_KEYS].concat();
+    let entries = [
+        LEADING_KEYS,
+        MODEL_KEYS,
+        REDUCTION_KEYS,
+        CONTACT_KEYS,
+        STUDY_KEYS,
+    ]
+    .concat();
     let stretches = entries.chunk_by(|a, b| a.key.contains('*') == b.key.contains('*'));
     let mut keys = Vec::new();
     for stretch in stretches {

@@ -1,5 +1,6 @@
 //! Every key of a study file: what `blisk explain`, the JSON Schema and docs/study-file.md say of it.
 
+mod contact_keys;
 mod key;
 mod model_keys;
 mod schema;

@@ -1,4 +1,4 @@
-//! The keys of a study file except those of its model.
+//! The keys of a study file except those of its model and its contact.
 
 use super::Value::{
     Ascending, Either, Flag, List, Name, Number, Numbers, Pairs, Table, Tables, Text, Whole,
@@ -6,12 +6,11 @@ use super::Value::{
 use super::key::{Entry, REQUIRED, entry};
 use super::{Range, Value};
 
-const ABOVE_ZERO: Value = Number(Range::above(0.0));
+pub(super) const ABOVE_ZERO: Value = Number(Range::above(0.0));
 const SHARE: Value = Number(Range::above(0.0).below(1.0));
 const MODES: Value = Whole(1, 1000);
-const TRUNCATION: Value = Number(Range::from_to(0.1, 10.0));
+pub(super) const TRUNCATION: Value = Number(Range::from_to(0.1, 10.0));
 const DEVIATION: Value = Number(Range::from_to(0.0, 0.5));
-const SPEED: Value = Number(Range::above(0.0).up_to(1e6));
 
 /// What stands before the model.
 pub(super) const LEADING_KEYS: &[Entry] = &[
@@ -37,8 +36,8 @@ pub(super) const LEADING_KEYS: &[Entry] = &[
     ),
 ];
 
-/// What stands after the model.
-pub(super) const STUDY_KEYS: &[Entry] = &[
+/// What stands between the model and the contact.
+pub(super) const REDUCTION_KEYS: &[Entry] = &[
     entry("reduction", Table, "", "the reduced model"),
     entry(
         "reduction.basis",
@@ -87,115 +86,10 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "2 where a standard deviation (or the root mean square of the file) reaches 0.05, else 0",
         "per nodal diameter",
     ),
-    entry("contact", Table, "", "the contact between blisk and ring"),
-    entry(
-        "contact.law",
-        Name(&["simplified_3d", "coulomb_3d", "macro_slip_1d"]),
-        "`\"simplified_3d\"`",
-        "`coulomb_3d` has the friction circle ([formulation.md](formulation.md))",
-    ),
-    entry(
-        "contact.friction_coefficient",
-        Number(Range::from_to(0.0, 10.0)),
-        REQUIRED,
-        "",
-    ),
-    entry(
-        "contact.tangential_stiffness_n_per_m",
-        ABOVE_ZERO,
-        REQUIRED,
-        "N/m per sector, shared out over the pairs by weight",
-    ),
-    entry(
-        "contact.normal_stiffness_n_per_m",
-        ABOVE_ZERO,
-        "required for `simplified_3d` and `coulomb_3d`; none for `macro_slip_1d`",
-        "N/m per sector, shared out likewise",
-    ),
-    entry(
-        "contact.ring",
-        Name(&["locked", "creeping"]),
-        "`\"locked\"`",
-        "`creeping`: a ring that is free drifts so that friction has no mean along its rigid motions; not with `coulomb_3d` ([formulation.md](formulation.md))",
-    ),
-    entry(
-        "contact.normal_load",
-        Table,
-        "",
-        "normal loads by rotation, besides those of the sweep",
-    ),
-    entry(
-        "contact.normal_load.from",
-        Name(&["rotation"]),
-        REQUIRED,
-        "the ring's centrifugal load",
-    ),
-    entry(
-        "contact.normal_load.speed_rpm",
-        Either(&[SPEED, List(&SPEED)]),
-        REQUIRED,
-        "revolutions per minute; each is a load of the sweep, after those of `sweep.normal_load_n`",
-    ),
-    entry(
-        "contact.normal_load.hoop",
-        Name(&["closed", "split"]),
-        "`\"closed\"`",
-        "`closed`: hoop force takes a part of the load; `split`: a ring with a free gap, all of the load on the contact",
-    ),
-    entry(
-        "contact.normal_load.share",
-        Name(&["weight", "equilibrium"]),
-        "`\"weight\"`",
-        "how the load of a sector is shared out: by the weights of the pairs, or as the static equilibrium has it",
-    ),
-    entry(
-        "contact.normal_load.ring_mass_factor",
-        Number(Range::from_to(1e-3, 1e3)),
-        "1.0",
-        "on the ring's mass, in its load and in its vibration",
-    ),
-    entry(
-        "contact.normal_load.ring_radius_m",
-        ABOVE_ZERO,
-        "required for a ring without radial dofs",
-        "radius r of a ring of masses: `N0 = m r Omega^2`, without `hoop` and `share`; m",
-    ),
-    entry(
-        "contact.variation",
-        Table,
-        "",
-        "what of the contact is random besides the blades",
-    ),
-    entry(
-        "contact.variation.*",
-        Table,
-        "",
-        "a factor on the nominal value",
-    ),
-    entry(
-        "contact.variation.*.kind",
-        Name(&["normal", "uniform", "truncated_normal", "lognormal"]),
-        REQUIRED,
-        "factor `1 + s z` with z of unit standard deviation; `lognormal`: factor `exp(s z)`, median 1",
-    ),
-    entry(
-        "contact.variation.*.standard_deviation",
-        Number(Range::above(0.0).up_to(2.0)),
-        REQUIRED,
-        "s: up to 0.5; `lognormal` up to 2",
-    ),
-    entry(
-        "contact.variation.*.truncation",
-        TRUNCATION,
-        "required for `truncated_normal` only",
-        "standard deviations of the normal law",
-    ),
-    entry(
-        "contact.variation.*.per",
-        Name(&["wheel", "sector", "pair"]),
-        "`\"wheel\"`",
-        "what has a value of its own",
-    ),
+];
+
+/// What stands after the contact.
+pub(super) const STUDY_KEYS: &[Entry] = &[
     entry(
         "damping",
         Table,
@@ -452,6 +346,12 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         Number(Range::from_to(0.001, 0.2)),
         REQUIRED,
         "relative error of the peak amplitude that 95 % of the rows are to keep",
+    ),
+    entry(
+        "accuracy.simpler_contact_law",
+        Flag,
+        "true",
+        "whether `macro_slip_2d` or `simplified_3d` may take the place of the law of the study, where the error allows it",
     ),
     entry(
         "stop",

@@ -33,10 +33,10 @@ fn jacobian_is_the_difference_quotient_away_from_kinks() {
     let mut states = [[0; 2]; 2];
     for case in 0..400 {
         let harmonics = sets[case % sets.len()];
-        let law = if case % 5 == 4 {
-            ContactLaw::MacroSlip1d
-        } else {
-            ContactLaw::Simplified3d
+        let law = match case % 10 {
+            4 => ContactLaw::MacroSlip1d,
+            9 => ContactLaw::MacroSlip2d,
+            _ => ContactLaw::Simplified3d,
         };
         let transform =
             Arc::new(HarmonicTransform::new(harmonics, [64, 90, 128][case % 3]).unwrap());

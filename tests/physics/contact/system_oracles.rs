@@ -20,8 +20,9 @@ use blisk::response::mistuning::{ModalRows, StructuralModes};
 use super::super::wheels::{Wheel, full, relative, solve_row};
 use super::random::Random;
 
-const LAWS: [ContactLaw; 3] = [
+const LAWS: [ContactLaw; 4] = [
     ContactLaw::MacroSlip1d,
+    ContactLaw::MacroSlip2d,
     ContactLaw::Simplified3d,
     ContactLaw::Coulomb3d,
 ];

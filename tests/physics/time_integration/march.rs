@@ -21,6 +21,7 @@ fn a_jenkins_loop_point_by_point() {
     let expected = [3.0, 0.0, -3.0, -3.0, 0.0, 3.0, 3.0];
     for law in [
         ContactLaw::MacroSlip1d,
+        ContactLaw::MacroSlip2d,
         ContactLaw::Simplified3d,
         ContactLaw::Coulomb3d,
     ] {
@@ -32,6 +33,32 @@ fn a_jenkins_loop_point_by_point() {
                 "{law:?} {u}"
             );
         }
+    }
+}
+
+/// The normal motion is large and has no effect on it, nor does a force pull the pair open.
+#[test]
+fn both_tangents_of_a_constant_load_are_jenkins_elements_by_themselves() {
+    let parameters = pair(3.0, 1.5, 2.0, 1.0);
+    let law = ContactLaw::MacroSlip2d;
+    let path = [5.0, 3.5, 2.0, -5.0, -3.5, -2.0, 0.0];
+    let expected = [3.0, 0.0, -3.0, -3.0, 0.0, 3.0, 3.0];
+    let mut memory = PairMemory::at_rest(&parameters);
+    for ((step, u), force) in path.into_iter().enumerate().zip(expected) {
+        let normal = 4.0 - step as f64;
+        // Along t2 a step later, from rest.
+        let before = step.checked_sub(1);
+        let second = before.map_or(0.0, |before| path[before]);
+        memory = march(law, &parameters, &memory, [normal, u, second]);
+        let found = memory.force_n(law, &parameters);
+        let second = before.map_or(0.0, |before| expected[before]);
+        for (found, expected) in found.into_iter().zip([1.5 * normal, force, second]) {
+            assert!(
+                (found - expected).abs() < 1e-15,
+                "{step}: {found} {expected}"
+            );
+        }
+        assert!(!memory.separated());
     }
 }
 
