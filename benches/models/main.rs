@@ -63,11 +63,13 @@ struct Measured {
 
 /// What a Newton step with the whole Jacobian is made of.
 struct Parts {
-    /// Contact rows to samples and back.
+    /// A residual where every pair surely sticks, so that none is evaluated.
+    structure: Duration,
+    /// What the contact adds to it: transforms and law.
+    contact: Duration,
+    /// All contact rows to samples and back, by themselves: the largest share of that which transforms can have.
     transforms: Duration,
-    /// The rest of a residual: contact law and structure.
-    law: Duration,
-    /// What the derivatives of all pairs add to it.
+    /// What the derivatives of all pairs add.
     derivatives: Duration,
     assembly: Duration,
     factors: Duration,
@@ -82,14 +84,22 @@ impl Parts {
         let (omega, n) = (TAU * point.frequency_hz, system.unknowns());
         let mut workspace = system.workspace();
         let mut residual = vec![0.0; n];
-        let mut of_residual = |derivative| {
+        let rest = vec![0.0; n];
+        let mut of_residual = |x: &[f64], derivative| {
             let once = || {
-                let x = black_box(&point.solution);
-                system.residual(omega, x, &mut residual, derivative, &mut workspace)
+                system.residual(
+                    omega,
+                    black_box(x),
+                    &mut residual,
+                    derivative,
+                    &mut workspace,
+                )
             };
             smallest(REPETITIONS[0], once).0
         };
-        let (plain, with_derivatives) = (of_residual(false), of_residual(true));
+        let structure = of_residual(&rest, false);
+        let plain = of_residual(&point.solution, false);
+        let with_derivatives = of_residual(&point.solution, true);
         let mut lu = LuWorkspace::<f64>::new(n);
         let mut jacobian = vec![0.0; n * n];
         let (assembly, ()) = smallest(REPETITIONS[0], || {
@@ -100,10 +110,10 @@ impl Parts {
             lu.factor()
         });
         let (solve, ()) = smallest(REPETITIONS[0], || lu.solve(&mut residual));
-        let transforms = transforms(case);
         Self {
-            transforms,
-            law: plain.saturating_sub(transforms),
+            structure,
+            contact: plain.saturating_sub(structure),
+            transforms: transforms(case),
             derivatives: with_derivatives.saturating_sub(plain),
             assembly,
             factors,
@@ -112,7 +122,7 @@ impl Parts {
     }
 
     fn residual(&self) -> Duration {
-        self.transforms + self.law
+        self.structure + self.contact
     }
 
     fn jacobian(&self) -> Duration {
@@ -124,7 +134,7 @@ impl Parts {
     }
 }
 
-/// All contact rows to samples and their forces back, as often as a residual needs it.
+/// All contact rows to samples and their forces back.
 fn transforms(case: &Case) -> Duration {
     let set: Vec<usize> = case.harmonics().iter().map(|&k| k as usize).collect();
     let samples = case.study.solver.samples_per_period;
@@ -192,8 +202,9 @@ impl Measured {
     fn print_step(&self) {
         let (parts, floor) = (&self.parts, &self.floor);
         let times = [
+            parts.structure,
+            parts.contact,
             parts.transforms,
-            parts.law,
             parts.derivatives,
             parts.assembly,
             parts.factors,
@@ -252,9 +263,9 @@ fn main() {
         all.extend(HARMONICS.map(|set| measured(name, &model, study.clone(), set)));
     }
     println!(
-        "\nms:\n\n| model | harmonics | unknowns | contact rows | transforms | law, structure | derivatives | assembly | LU | solve \
+        "\nms:\n\n| model | harmonics | unknowns | contact rows | structure | contact | its transforms at most | derivatives | assembly | LU | solve \
          | step | floor | step / floor | LU, product, GFLOP/s |\n| --- | --- |{}",
-        " ---: |".repeat(12)
+        " ---: |".repeat(13)
     );
     all.iter().for_each(Measured::print_step);
     println!(

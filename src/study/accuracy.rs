@@ -10,13 +10,9 @@ use serde::{Deserialize, Serialize};
 pub struct AccuracyOptions {
     /// Accepted relative error of the peak amplitude of 95 % of the rows.
     pub amplitude_error: f64,
-    /// Whether a simpler contact law may take the place of that of the study, where the error allows it. Default true.
-    #[serde(default = "allowed")]
+    /// Whether a simpler contact law may take the place of that of the study, where the error allows it. Default false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simpler_contact_law: bool,
-}
-
-fn allowed() -> bool {
-    true
 }
 
 impl AccuracyOptions {
@@ -25,7 +21,7 @@ impl AccuracyOptions {
     pub fn within(amplitude_error: f64) -> Self {
         Self {
             amplitude_error,
-            simpler_contact_law: allowed(),
+            simpler_contact_law: false,
         }
     }
 
@@ -45,8 +41,8 @@ impl AccuracyOptions {
         // Writing to a string cannot fail.
         let _ = write!(
             text,
-            "\n[accuracy]\namplitude_error = {:e}\n",
-            self.amplitude_error
+            "\n[accuracy]\namplitude_error = {:e}\nsimpler_contact_law = {}\n",
+            self.amplitude_error, self.simpler_contact_law
         );
         text
     }

@@ -23,7 +23,7 @@ use crate::model::sector::SectorModel;
 use crate::model::{read_cached, reduction_digest, write_cached};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{ErrorBound, LoadCaseErrors};
-use crate::response::friction::ContactLaw;
+use crate::response::friction::{ContactLaw, Ring};
 use crate::response::mistuning::PatternSource;
 
 /// Rows that the sample has at least, and fewest patterns of it.
@@ -35,7 +35,7 @@ const PROBED: usize = 2;
 const FINER_REFERENCE: f64 = 5.0;
 /// Least tolerance of these harmonics.
 const FINEST_REFERENCE: f64 = 1e-3;
-/// Combinations measured at most.
+/// Combinations measured at most, under one contact law.
 const MOST_MEASURED: usize = 8;
 /// Share of the predicted error of a combination that failed, above which others are not measured.
 const BETTER: f64 = 0.9;
@@ -159,6 +159,15 @@ impl AccuracyChoice {
         let space = bench.space(ends.best.basis);
         let sample = bench.sample().clone();
         let mut search = LadderSearch::new(&mut bench, patterns, &reference, PROBED);
+        // The drift of a creeping ring under one law is not that under another.
+        let locked = study
+            .contact
+            .as_ref()
+            .is_some_and(|contact| contact.ring == Ring::Locked);
+        let accuracy = AccuracyOptions {
+            simpler_contact_law: accuracy.simpler_contact_law && locked,
+            ..accuracy
+        };
         search.measure_levels(levels(&space, &ends.base, accuracy, tolerance))?;
         let mut trials = Trials {
             accepted,
@@ -300,6 +309,15 @@ fn levels(
     levels
 }
 
+/// What was tried under one contact law: how wrong predictions are under one says nothing of another, which has other
+/// harmonics.
+struct TriedUnder {
+    law: ContactLaw,
+    measured: usize,
+    /// Predicted error above which combinations are not measured.
+    beyond: f64,
+}
+
 /// Combinations under trial.
 struct Trials {
     accepted: f64,
@@ -318,21 +336,31 @@ impl Trials {
     ) -> Result<(), PipelineError> {
         let mut proposals = search.proposals();
         proposals.retain(|own| own.operations <= most_operations);
-        let mut beyond = self.accepted;
+        let mut of_laws: Vec<TriedUnder> = Vec::new();
         for proposal in &proposals {
             let cheapest = self.taken.as_ref().map(|(taken, _)| taken.operations());
-            if self.tried.len() >= MOST_MEASURED
-                || cheapest.is_some_and(|cheapest| proposal.operations >= cheapest)
-            {
+            if cheapest.is_some_and(|cheapest| proposal.operations >= cheapest) {
                 break;
             }
-            if proposal.predicted.worst > beyond {
+            let law = proposal.setting.law;
+            let place = of_laws.iter().position(|own| own.law == law);
+            let place = place.unwrap_or_else(|| {
+                of_laws.push(TriedUnder {
+                    law,
+                    measured: 0,
+                    beyond: self.accepted,
+                });
+                of_laws.len() - 1
+            });
+            let own = &mut of_laws[place];
+            if own.measured >= MOST_MEASURED || proposal.predicted.worst > own.beyond {
                 continue;
             }
+            own.measured += 1;
             if let Some(reached) = self.reached(search, proposal)? {
                 // As much better as this one was too bad, and a little more.
                 let ratio = BETTER.min(BETTER * self.accepted / reached);
-                beyond = ratio * proposal.predicted.worst;
+                own.beyond = ratio * proposal.predicted.worst;
             }
         }
         if self.taken.is_some() {
@@ -392,5 +420,49 @@ impl Trials {
             operations: measured.operations(),
         });
         errors
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::reduction::BasisChoice;
+    use crate::response::forced_response::HigherHarmonics;
+    use crate::response::mistuning::Projection;
+
+    #[test]
+    fn the_law_of_the_study_stays_unless_another_is_allowed() {
+        let law = ContactLaw::Coulomb3d;
+        let space = LadderSpace {
+            whole_space: false,
+            contact_rows: 12,
+            most_vectors: 8,
+            law,
+            projection: Projection::Exact,
+        };
+        let base = LadderSetting {
+            basis: BasisChoice::StickAttachment { stick: 4 },
+            harmonics: HarmonicLevel::Set(vec![1, 3]),
+            higher_harmonics: HigherHarmonics::Mistuned,
+            samples_per_period: 128,
+            residual_tolerance: 1e-8,
+            peak_tolerance: 1e-3,
+            law,
+            projection: Projection::Exact,
+        };
+        let laws = |simpler_contact_law| {
+            let accuracy = AccuracyOptions {
+                simpler_contact_law,
+                ..AccuracyOptions::within(0.01)
+            };
+            let levels = levels(&space, &base, accuracy, 0.002);
+            let own = levels.iter().filter(|(knob, _)| *knob == Knob::ContactLaw);
+            own.map(|(_, level)| level.law).collect::<Vec<_>>()
+        };
+        assert_eq!(laws(false), [law]);
+        assert_eq!(
+            laws(true),
+            [ContactLaw::MacroSlip2d, ContactLaw::Simplified3d, law]
+        );
     }
 }

@@ -189,7 +189,9 @@ impl LadderSetting {
         solver.residual_tolerance = self.residual_tolerance;
         solver.peak_tolerance = self.peak_tolerance;
         if let Some(contact) = &mut own.contact {
-            contact.in_place_of = (contact.law != self.law).then_some(contact.law);
+            // Errors beside a law with other springs would be those of another equation.
+            let same_springs = contact.law.tangents() == self.law.tangents();
+            contact.in_place_of = (contact.law != self.law && same_springs).then_some(contact.law);
             contact.law = self.law;
         }
         own.mistuning.projection = self.projection;
@@ -390,5 +392,59 @@ impl LadderSpace {
             });
         }
         settings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn setting(law: ContactLaw, harmonics: HarmonicLevel) -> LadderSetting {
+        LadderSetting {
+            basis: BasisChoice::StickAttachment { stick: 4 },
+            harmonics,
+            higher_harmonics: HigherHarmonics::Mistuned,
+            samples_per_period: 64,
+            residual_tolerance: 1e-8,
+            peak_tolerance: 1e-3,
+            law,
+            projection: Projection::Exact,
+        }
+    }
+
+    #[test]
+    fn the_laws_of_a_ladder_are_those_that_are_simpler() {
+        let of = |law| {
+            let space = LadderSpace {
+                whole_space: false,
+                contact_rows: 12,
+                most_vectors: 8,
+                law,
+                projection: Projection::Exact,
+            };
+            space.laws().into_iter().map(law_name).collect::<Vec<_>>()
+        };
+        assert_eq!(of(ContactLaw::MacroSlip1d), ["macro_slip_1d"]);
+        assert_eq!(
+            of(ContactLaw::Coulomb3d),
+            [
+                "macro_slip_1d",
+                "macro_slip_2d",
+                "simplified_3d",
+                "coulomb_3d"
+            ]
+        );
+    }
+
+    #[test]
+    fn even_harmonics_under_a_constant_load_are_redundant() {
+        use ContactLaw::{MacroSlip2d, Simplified3d};
+        let redundant = |law, set: &[u32]| {
+            let set = HarmonicLevel::Set(set.to_vec());
+            setting(law, set).is_redundant()
+        };
+        assert!(redundant(MacroSlip2d, &[0, 1, 3]) && redundant(MacroSlip2d, &[1, 2, 3]));
+        assert!(!redundant(MacroSlip2d, &[1, 3]) && !redundant(Simplified3d, &[1, 2, 3]));
+        assert!(!setting(MacroSlip2d, HarmonicLevel::Automatic(0.01)).is_redundant());
     }
 }

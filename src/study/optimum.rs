@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 use super::compare::{best_loads, same_patterns};
 use super::result_columns::sorted_values;
 use super::{
-    AccuracyChoice, EngineSource, PipelineError, Progress, ResultColumns, RunRequest, Study,
-    load_sector_model, run,
+    AccuracyChoice, AccuracyOptions, EngineSource, PipelineError, Progress, ResultColumns,
+    RunRequest, Study, load_sector_model, run,
 };
 use crate::population::statistics::CONFIDENCE;
 use crate::population::statistics::{Quantity, percentile, smallest_sample};
@@ -98,6 +98,8 @@ fn settled(request: &OptimumRequest<'_>) -> Result<Study, PipelineError> {
     let Some(accuracy) = study.accuracy else {
         return Ok(study);
     };
+    // The folders of single loads hold the study at the settings chosen, in which a law in the place of another cannot be told.
+    let accuracy = AccuracyOptions::within(accuracy.amplitude_error);
     let [low, high] = request.between_n;
     study.contacts = [low, (low * high).sqrt(), high]
         .map(|normal_load_n| ContactCondition::Full { normal_load_n })

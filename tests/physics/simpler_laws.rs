@@ -62,6 +62,12 @@ fn the_errors_of_a_row_say_what_its_simpler_law_leaves_out() {
             println!("{simple:?} for {exact:?}, {load} N: {actual:+.2e}, in the errors {law:+.2e}");
             assert!((law - actual).abs() <= 0.1 * actual.abs() + 1e-4);
             assert!(actual.abs() <= found.stated_error.unwrap());
+            if simple == MacroSlip2d && load <= 200.0 {
+                // Half of the harmonics that the law of the study excites are not excited by the other.
+                assert!(
+                    (found.harmonic_error.unwrap() - alone.harmonic_error.unwrap()).abs() > 1e-3
+                );
+            }
             largest = largest.max(actual.abs());
         }
     }

@@ -21,6 +21,7 @@ const CHECK_BLOCKS: f64 = 14.0;
 const CHECK_COEFFICIENTS: f64 = 31.0;
 /// The same under a constant normal load: odd ones.
 const CHECK_COEFFICIENTS_ODD: usize = 16;
+const CHECK_BLOCKS_ODD: f64 = 7.0;
 /// Samples of the check over those of the solution.
 const CHECK_SAMPLES: f64 = 4.0;
 /// Samples per period of the highest harmonic that an automatic set has at least.
@@ -259,21 +260,27 @@ impl SystemSize {
 
     fn check_by_law(&self) -> f64 {
         let samples = CHECK_SAMPLES * self.samples as f64;
-        let evaluation = self.evaluation(CHECK_COEFFICIENTS, samples);
+        let constant = self.law.is_some_and(|law| !law.has_variable_load());
+        let (coefficients, blocks) = if constant {
+            (CHECK_COEFFICIENTS_ODD as f64, CHECK_BLOCKS_ODD)
+        } else {
+            (CHECK_COEFFICIENTS, CHECK_BLOCKS)
+        };
+        let evaluation = self.evaluation(coefficients, samples);
         if let Some(tuned) = self.tuned {
             let rows = self.contact_rows as f64;
             let factors = self.whole_jacobian(2 * self.coordinates)
-                + CHECK_BLOCKS * (tuned.receptance(rows) + tuned.factors(rows));
-            let waves = CHECK_BLOCKS * tuned.products(rows);
+                + blocks * (tuned.receptance(rows) + tuned.factors(rows));
+            let waves = blocks * tuned.products(rows);
             return factors + CHECK_ITERATIONS * (evaluation + waves);
         }
         if self.condenses() {
             return self.check_by_contact(samples);
         }
         let factors = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
-            self.by_harmonic(CHECK_BLOCKS) + self.whole_jacobian(self.unknowns())
+            self.by_harmonic(blocks) + self.whole_jacobian(self.unknowns())
         } else {
-            self.by_harmonic(CHECK_BLOCKS)
+            self.by_harmonic(blocks)
         };
         factors + CHECK_ITERATIONS * evaluation
     }

@@ -81,7 +81,7 @@ pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
         "shortcut",
         Text,
         "",
-        "Shortcut used instead of the full search, or none",
+        "What was left out: linear, stuck, tuned_harmonics, or none; after the simplification of the contact law, if there is one",
     ),
     ColumnSpec::new(
         "retries",
@@ -111,7 +111,7 @@ pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
         "sampling_error",
         Float64,
         "1",
-        "Relative change of the peak amplitude by one Newton correction at 4 times the samples per period",
+        "Relative change of the peak amplitude by one Newton correction at 4 times the samples per period and under the law of the study",
     ),
     ColumnSpec::new(
         "harmonic_error",

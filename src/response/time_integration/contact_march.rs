@@ -1,7 +1,7 @@
 //! The contact laws marched from one instant to the next by trial and return.
 //!
 //! With `d` the relative displacement along n, t1, t2 and the *signed* load
-//! `L = N0 + kn d_n`, `N = max(0, L)` (for `macro_slip_1d`: `N = N0`),
+//! `L = N0 + kn d_n`, `N = max(0, L)` (for `macro_slip_1d` and `macro_slip_2d`: `N = N0`),
 //!
 //! ```text
 //! trial    T* = T + kt (d_t' - d_t)

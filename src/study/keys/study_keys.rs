@@ -350,7 +350,7 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
     entry(
         "accuracy.simpler_contact_law",
         Flag,
-        "true",
+        "false",
         "whether `macro_slip_2d` or `simplified_3d` may take the place of the law of the study, where the error allows it",
     ),
     entry(

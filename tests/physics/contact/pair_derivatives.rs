@@ -33,7 +33,7 @@ fn jacobian_is_the_difference_quotient_away_from_kinks() {
     let mut states = [[0; 2]; 2];
     for case in 0..400 {
         let harmonics = sets[case % sets.len()];
-        let law = match case % 10 {
+        let law = match (case / sets.len()) % 10 {
             4 => ContactLaw::MacroSlip1d,
             9 => ContactLaw::MacroSlip2d,
             _ => ContactLaw::Simplified3d,
