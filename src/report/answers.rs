@@ -375,8 +375,11 @@ fn measured(error: NumericalError) -> String {
             share_words(worst)
         )
     });
+    let law = error
+        .law_words()
+        .map_or(String::new(), |words| format!(" They have {words}."));
     format!(
-        "The settings were chosen on a sample of rows for an error of {accepted} (accuracy.amplitude_error): {kept}{worst}."
+        "The settings were chosen on a sample of rows for an error of {accepted} (accuracy.amplitude_error): {kept}{worst}.{law}"
     )
 }
 

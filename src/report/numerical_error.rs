@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::Warning;
 use crate::population::statistics::Percentile;
+use crate::response::friction::ContactLaw;
 
 /// Share of an interval beyond which numerical error is no longer small beside it.
 const LARGE_SHARE: f64 = 0.1;
@@ -23,6 +24,9 @@ pub struct NumericalError {
     pub worst_upper: Option<f64>,
     /// Whether that is accepted.
     pub met: bool,
+    /// The contact law that was taken, and that of the study, where they differ.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simpler_law: Option<[ContactLaw; 2]>,
 }
 
 /// What there is to say of a numerical error.
@@ -57,6 +61,13 @@ pub enum NumericalFinding {
 }
 
 impl NumericalError {
+    /// Which contact law took the place of which, in words.
+    #[must_use]
+    pub fn law_words(&self) -> Option<String> {
+        let [taken, own] = self.simpler_law?.map(ContactLaw::name);
+        Some(format!("contact law {taken} in the place of {own}"))
+    }
+
     /// What there is to say of it beside the intervals of the wanted percentile of the amplitude, one of
     /// each scenario.
     #[must_use]
@@ -149,6 +160,7 @@ mod tests {
                 p95_upper: Some(share * width),
                 worst_upper: None,
                 met,
+                simpler_law: None,
             };
             error.warnings(&[found])
         };

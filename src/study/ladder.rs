@@ -132,7 +132,7 @@ impl LadderSetting {
             Knob::SamplesPerPeriod => self.samples_per_period.to_string(),
             Knob::ResidualTolerance => format!("{:e}", self.residual_tolerance),
             Knob::PeakTolerance => format!("{:e}", self.peak_tolerance),
-            Knob::ContactLaw => law_name(self.law).to_owned(),
+            Knob::ContactLaw => self.law.name().to_owned(),
             Knob::Projection => projection_name(self.projection).to_owned(),
         }
     }
@@ -200,17 +200,6 @@ impl LadderSetting {
             *modes = modes.or(Some(CANTILEVER_MODES));
         }
         own
-    }
-}
-
-/// Name of a law in a study.
-#[must_use]
-pub fn law_name(law: ContactLaw) -> &'static str {
-    match law {
-        ContactLaw::MacroSlip1d => "macro_slip_1d",
-        ContactLaw::MacroSlip2d => "macro_slip_2d",
-        ContactLaw::Simplified3d => "simplified_3d",
-        ContactLaw::Coulomb3d => "coulomb_3d",
     }
 }
 
@@ -422,7 +411,11 @@ mod tests {
                 law,
                 projection: Projection::Exact,
             };
-            space.laws().into_iter().map(law_name).collect::<Vec<_>>()
+            space
+                .laws()
+                .into_iter()
+                .map(ContactLaw::name)
+                .collect::<Vec<_>>()
         };
         assert_eq!(of(ContactLaw::MacroSlip1d), ["macro_slip_1d"]);
         assert_eq!(

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use serde::Deserialize;
+
 use super::PipelineError;
 use super::results_folder::{finished_rows, verify_tables};
 use crate::population::monte_carlo::{Scenario, TunedReference};
@@ -12,6 +14,7 @@ use crate::population::table::{
 };
 use crate::report::{BasisSummary, NumericalError, StudySummary, SummaryContext};
 use crate::response::forced_response::Harmonics;
+use crate::response::friction::ContactLaw;
 
 /// The summary of what is stored of a study that is not finished.
 #[derive(Debug, Clone, PartialEq)]
@@ -182,5 +185,14 @@ fn numerical_error_of(manifest: &Manifest) -> Option<NumericalError> {
         p95_upper: choice["evidence"]["amplitude"]["p95_upper"].as_f64(),
         worst_upper: choice["evidence"]["amplitude_worst_upper"].as_f64(),
         met: choice["met"].as_bool()?,
+        simpler_law: simpler_law_of(manifest),
     })
+}
+
+/// The contact law that was taken, and that of the study, where they differ.
+fn simpler_law_of(manifest: &Manifest) -> Option<[ContactLaw; 2]> {
+    let taken = &manifest.chosen["accuracy"]["setting"]["contact_law"];
+    let laws = [taken, &manifest.study["contact"]["law"]];
+    let [taken, own] = laws.map(|law| ContactLaw::deserialize(law).ok());
+    Some([taken?, own?]).filter(|[taken, own]| taken != own)
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::ladder::{Knob, LadderSetting, law_name, projection_name};
+use super::ladder::{Knob, LadderSetting, projection_name};
 use super::ladder_bench::{LadderBench, LadderValues};
 use super::ladder_measure::{Compared, Measured, error_bound, errors_of_load_cases};
 use super::ladder_reference::{LadderEnds, LadderReference};
@@ -230,7 +230,7 @@ impl Trade {
             samples_per_period: setting.samples_per_period as u32,
             residual_tolerance: setting.residual_tolerance,
             peak_tolerance: setting.peak_tolerance,
-            contact_law: law_name(setting.law),
+            contact_law: setting.law.name(),
             projection: projection_name(setting.projection),
             amplitude,
             amplitude_worst_upper: amplitude.map(|own| own.worst_upper(setting.peak_tolerance)),

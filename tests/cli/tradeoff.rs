@@ -259,3 +259,32 @@ fn an_accepted_error_and_a_setting_exclude_each_other() {
     ]);
     assert_eq!(response.code, 2, "{}", response.stderr);
 }
+
+/// Without dofs along the normal the load is constant, so that the simpler law is exact.
+#[test]
+fn the_contact_law_of_the_study_is_replaced_where_it_may_be_and_said_to_be() {
+    let law = "law = \"simplified_3d\"\nnormal_stiffness_n_per_m = 1.0e8";
+    let study = accurate().replace("law = \"macro_slip_1d\"", law);
+    let place = Place::with(&study);
+    place.write("allowed.toml", &(study + "simpler_contact_law = true\n"));
+    let said = "contact law macro_slip_2d in the place of simplified_3d";
+    for (file, results, allowed) in [
+        ("study.toml", "own", false),
+        ("allowed.toml", "allowed", true),
+    ] {
+        let run = place.run(&["run", file, "--out", results]);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        assert_eq!(run.stdout.contains(said), allowed, "{}", run.stdout);
+        let expected = if allowed {
+            "macro_slip_2d"
+        } else {
+            "simplified_3d"
+        };
+        let chosen = &manifest(&place, results)["chosen"]["accuracy"];
+        assert_eq!(chosen["setting"]["contact_law"], expected);
+        assert_eq!(chosen["met"], true);
+        let replay = place.run(&["replay", results, "--scenario", "0", "--pattern", "1"]);
+        assert_eq!(replay.code, 0, "{}", replay.stderr);
+        assert!(replay.stdout.contains("bit-identical"), "{}", replay.stdout);
+    }
+}

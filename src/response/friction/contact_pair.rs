@@ -18,6 +18,17 @@ impl ContactLaw {
         }
     }
 
+    /// Name in a study.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::MacroSlip1d => "macro_slip_1d",
+            Self::MacroSlip2d => "macro_slip_2d",
+            Self::Simplified3d => "simplified_3d",
+            Self::Coulomb3d => "coulomb_3d",
+        }
+    }
+
     /// Tangents along which there is friction, and a spring of the linear limits: t1, or both.
     #[must_use]
     pub fn tangents(self) -> usize {
