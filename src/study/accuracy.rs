@@ -16,6 +16,9 @@ pub struct AccuracyOptions {
 }
 
 impl AccuracyOptions {
+    /// Errors that can be asked for, in words.
+    pub const ACCEPTED: &str = "a number from 0.001 to 0.2, relative error of the peak amplitude";
+
     /// An accepted error with everything else as it is if nothing is said.
     #[must_use]
     pub fn within(amplitude_error: f64) -> Self {
@@ -24,9 +27,6 @@ impl AccuracyOptions {
             simpler_contact_law: false,
         }
     }
-
-    /// Errors that can be asked for, in words.
-    pub const ACCEPTED: &str = "a number from 0.001 to 0.2, relative error of the peak amplitude";
 
     /// Whether an error can be asked for.
     #[must_use]

@@ -425,31 +425,14 @@ impl Trials {
 
 #[cfg(test)]
 mod tests {
+    use super::super::ladder::tests::{setting, space};
     use super::*;
-    use crate::model::reduction::BasisChoice;
-    use crate::response::forced_response::HigherHarmonics;
-    use crate::response::mistuning::Projection;
 
     #[test]
     fn the_law_of_the_study_stays_unless_another_is_allowed() {
         let law = ContactLaw::Coulomb3d;
-        let space = LadderSpace {
-            whole_space: false,
-            contact_rows: 12,
-            most_vectors: 8,
-            law,
-            projection: Projection::Exact,
-        };
-        let base = LadderSetting {
-            basis: BasisChoice::StickAttachment { stick: 4 },
-            harmonics: HarmonicLevel::Set(vec![1, 3]),
-            higher_harmonics: HigherHarmonics::Mistuned,
-            samples_per_period: 128,
-            residual_tolerance: 1e-8,
-            peak_tolerance: 1e-3,
-            law,
-            projection: Projection::Exact,
-        };
+        let space = space(law);
+        let base = setting(law, HarmonicLevel::Set(vec![1, 3]));
         let laws = |simpler_contact_law| {
             let accuracy = AccuracyOptions {
                 simpler_contact_law,

@@ -385,10 +385,10 @@ impl LadderSpace {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn setting(law: ContactLaw, harmonics: HarmonicLevel) -> LadderSetting {
+    pub(in crate::study) fn setting(law: ContactLaw, harmonics: HarmonicLevel) -> LadderSetting {
         LadderSetting {
             basis: BasisChoice::StickAttachment { stick: 4 },
             harmonics,
@@ -401,17 +401,20 @@ mod tests {
         }
     }
 
+    pub(in crate::study) fn space(law: ContactLaw) -> LadderSpace {
+        LadderSpace {
+            whole_space: false,
+            contact_rows: 12,
+            most_vectors: 8,
+            law,
+            projection: Projection::Exact,
+        }
+    }
+
     #[test]
     fn the_laws_of_a_ladder_are_those_that_are_simpler() {
         let of = |law| {
-            let space = LadderSpace {
-                whole_space: false,
-                contact_rows: 12,
-                most_vectors: 8,
-                law,
-                projection: Projection::Exact,
-            };
-            space
+            space(law)
                 .laws()
                 .into_iter()
                 .map(ContactLaw::name)

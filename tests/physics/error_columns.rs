@@ -1,7 +1,5 @@
 //! Estimated errors of peaks against solutions with more samples and with the harmonics 0 to 15.
 
-use std::path::Path;
-
 use blisk::model::reduction::BasisChoice;
 use blisk::model::sector::bundle;
 use blisk::population::monte_carlo::{ScenarioError, stated_error};
@@ -9,7 +7,8 @@ use blisk::response::forced_response::{ErrorEstimate, SolverOptions};
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::Damping;
 
-use super::wheels::{Wheel, full, pattern, relative, scenario, solve_row};
+use super::sector_sources::data;
+use super::wheels::{Wheel, deviations_in, full, pattern, relative, scenario, solve_row};
 
 const PEAK_TOLERANCE: f64 = 1e-5;
 
@@ -19,12 +18,6 @@ fn options(samples_per_period: usize) -> SolverOptions {
         peak_tolerance: PEAK_TOLERANCE,
         ..SolverOptions::default()
     }
-}
-
-fn data(path: &str) -> std::path::PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data")
-        .join(path)
 }
 
 fn wheel24() -> Wheel {
@@ -40,16 +33,6 @@ fn wheel24() -> Wheel {
         Damping::StructuralLossFactor(0.002),
         BasisChoice::StickSlide { stick: 4, slide: 4 },
     )
-}
-
-/// Deviations of one pattern of a reference table `pattern,blade,deviation`.
-fn deviations(table: &str, pattern: &str) -> Vec<f64> {
-    let text = std::fs::read_to_string(data(table)).unwrap();
-    text.lines()
-        .map(|line| line.split(',').collect::<Vec<_>>())
-        .filter(|cells| cells[0] == pattern)
-        .map(|cells| cells[2].parse().unwrap())
-        .collect()
 }
 
 /// One estimate beside the truth.
@@ -211,7 +194,7 @@ fn stated_errors_of_tuned_peaks_hold_against_sixteen_harmonics() {
 
 #[test]
 fn stated_errors_of_a_mistuned_lumped_wheel_hold() {
-    let deviations = deviations("lumped24/mistuning.csv", "0");
+    let deviations = deviations_in("lumped24/mistuning.csv", 0);
     let compared = mistuned(
         &Wheel::lumped24(),
         "lumped24",
@@ -227,7 +210,7 @@ fn stated_errors_of_a_mistuned_lumped_wheel_hold() {
 #[test]
 #[ignore = "minutes: a mistuned wheel with sixteen harmonics"]
 fn stated_errors_of_a_mistuned_finite_element_wheel_hold() {
-    let deviations = deviations("wheel8/reference/patterns.csv", "1");
+    let deviations = deviations_in("wheel8/reference/patterns.csv", 1);
     let compared = mistuned(
         &Wheel::wheel8(),
         "wheel8",

@@ -1,26 +1,13 @@
 //! A simpler contact law in the place of that of the study: what it leaves out is in the errors of a row.
 
-use std::path::Path;
-
 use blisk::population::monte_carlo::{ResponseRow, RowSettings, RowSolver};
 use blisk::response::forced_response::{ContactCondition, SolverOptions};
 use blisk::response::friction::ContactLaw;
 use blisk::response::harmonic_balance::Status;
 
-use super::wheels::{Wheel, full, pattern, solve_row};
+use super::wheels::{Wheel, deviations_in, full, pattern, solve_row};
 
 const HARMONICS: [u32; 2] = [1, 3];
-
-fn deviations() -> Vec<f64> {
-    let path =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/wheel8/reference/patterns.csv");
-    let text = std::fs::read_to_string(path).unwrap();
-    text.lines()
-        .map(|line| line.split(',').collect::<Vec<_>>())
-        .filter(|cells| cells[0] == "1")
-        .map(|cells| cells[2].parse().unwrap())
-        .collect()
-}
 
 /// A row under `law`, in the place of another one.
 fn row(law: ContactLaw, in_place_of: Option<ContactLaw>, contact: ContactCondition) -> ResponseRow {
@@ -35,7 +22,11 @@ fn row(law: ContactLaw, in_place_of: Option<ContactLaw>, contact: ContactConditi
         ..wheel.settings(&HARMONICS, options)
     };
     let solver = RowSolver::new(wheel.model, settings).unwrap();
-    let (_, row) = solve_row(&solver, &pattern(&deviations()), contact);
+    let (_, row) = solve_row(
+        &solver,
+        &pattern(&deviations_in("wheel8/reference/patterns.csv", 1)),
+        contact,
+    );
     assert_eq!(row.status, Status::Ok);
     row
 }

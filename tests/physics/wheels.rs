@@ -1,6 +1,5 @@
 //! Small wheels that many tests solve: reduced model, contact law, damping, excitation.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use blisk::model::ReducedModel;
@@ -19,6 +18,7 @@ use blisk::response::mistuning::{
 };
 
 use super::contact::random::Random;
+use super::sector_sources::data;
 use super::sector_sources::lumped::lumped24;
 
 pub const ENGINE_ORDER: u32 = 3;
@@ -58,8 +58,7 @@ fn parameters(kn: f64, kt: f64) -> PairParameters {
 
 /// The sector of the reference wheel of eight blades.
 pub fn wheel8_sector() -> SectorModel {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/wheel8");
-    bundle::read(&folder).unwrap()
+    bundle::read(&data("wheel8")).unwrap()
 }
 
 /// Contact parameters of that wheel.
@@ -181,6 +180,19 @@ impl Wheel {
     pub fn deviations(&self, random: &mut Random, standard_deviation: f64) -> Vec<f64> {
         random.vector(self.model.sectors, 3.0_f64.sqrt() * standard_deviation)
     }
+}
+
+/// Deviations of the blades of a pattern in a table `pattern,blade,deviation` of `tests/data`.
+pub fn deviations_in(table: &str, pattern: u32) -> Vec<f64> {
+    let text = std::fs::read_to_string(data(table)).unwrap();
+    let deviations: Vec<f64> = text
+        .lines()
+        .map(|line| line.split(',').collect::<Vec<_>>())
+        .filter(|cells| cells[0] == pattern.to_string())
+        .map(|cells| cells[2].parse().unwrap())
+        .collect();
+    assert!(!deviations.is_empty(), "{table} has no pattern {pattern}");
+    deviations
 }
 
 pub fn full(normal_load_n: f64) -> ContactCondition {

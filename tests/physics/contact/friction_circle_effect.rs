@@ -1,6 +1,5 @@
 //! What the friction circle changes: peaks and cost of `coulomb_3d` beside `simplified_3d`.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -12,18 +11,9 @@ use blisk::response::harmonic_balance::{
     Damping, HarmonicTransform, PairHarmonics, PairJacobian, Status,
 };
 
-use super::super::wheels::{Wheel, full, pattern, solve_row};
+use super::super::sector_sources::data;
+use super::super::wheels::{Wheel, deviations_in, full, pattern, solve_row};
 use super::random::Random;
-
-/// Deviations of pattern 1 of a reference wheel.
-fn pattern_1(folder: &Path) -> Vec<f64> {
-    let text = std::fs::read_to_string(folder.join("reference/patterns.csv")).unwrap();
-    let rows = text.lines().skip(1).map(|line| {
-        let cells: Vec<&str> = line.split(',').collect();
-        (cells[0].to_owned(), cells[2].parse::<f64>().unwrap())
-    });
-    rows.filter(|(id, _)| id == "1").map(|row| row.1).collect()
-}
 
 /// Prints the time of one evaluation of a slipping pair, law beside law:
 /// `cargo test --release --test physics what_an_evaluation_costs -- --ignored --nocapture`.
@@ -77,9 +67,8 @@ fn what_an_evaluation_costs_under_either_law() {
 #[test]
 #[ignore = "minutes; prints the table of docs/formulation.md"]
 fn what_the_friction_circle_changes_on_wheel24() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/wheel24");
-    let sector = bundle::read(&folder).unwrap();
-    let deviations = pattern(&pattern_1(&folder));
+    let sector = bundle::read(&data("wheel24")).unwrap();
+    let deviations = pattern(&deviations_in("wheel24/reference/patterns.csv", 1));
     let contact = PairParameters {
         normal_load_n: 0.0,
         normal_stiffness_n_per_m: 2e8,

@@ -8,8 +8,8 @@ mod refused_models;
 
 use std::path::{Path, PathBuf};
 
-/// A directory of reference data.
-fn data(name: &str) -> PathBuf {
+/// A file or folder of reference data.
+pub fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/data")
         .join(name)

@@ -11,8 +11,7 @@ use blisk::response::time_integration::{
     MarchedWheel, PointCase, PointComparison, TimeOptions, WheelState, compare_point, settle,
 };
 
-use super::super::wheels::{ENGINE_ORDER, Wheel};
-use super::deviations;
+use super::super::wheels::{ENGINE_ORDER, Wheel, deviations_in};
 
 /// Those of the reference tables `time_check_*.csv`.
 const FREQUENCIES_HZ: [f64; 3] = [347.5, 350.5, 354.5];
@@ -21,8 +20,8 @@ const ODD: [u32; 8] = [1, 3, 5, 7, 9, 11, 13, 15];
 fn compare(mistuned: bool, frequency_hz: f64, options: &TimeOptions) -> PointComparison {
     let wheel = Wheel::lumped24();
     let basis = WheelBasis::new(Arc::clone(&wheel.model));
-    let change: Option<Matrix<f64>> = mistuned
-        .then(|| basis.blade_stiffness_change(&deviations("lumped24", "mistuning.csv", 0, 24)));
+    let change: Option<Matrix<f64>> =
+        mistuned.then(|| basis.blade_stiffness_change(&deviations_in("lumped24/mistuning.csv", 0)));
     let solver = SolverOptions {
         samples_per_period: 1024,
         amplitude: AmplitudeMeasure::TimeMaximum,
@@ -109,7 +108,7 @@ fn from_rest_the_mistuned_wheel_ends_in_the_harmonic_balance_solution() {
     let near = compare(true, frequency_hz, &TimeOptions::default());
     let wheel = Wheel::lumped24();
     let basis = WheelBasis::new(Arc::clone(&wheel.model));
-    let change = basis.blade_stiffness_change(&deviations("lumped24", "mistuning.csv", 0, 24));
+    let change = basis.blade_stiffness_change(&deviations_in("lumped24/mistuning.csv", 0));
     let modes = StructuralModes::of_wheel(&basis, &change).unwrap();
     let force = wheel_force(&basis, &modes, ENGINE_ORDER, 10.0);
     let structure = Structure::new(modes, wheel.damping);

@@ -14,8 +14,7 @@ use blisk::response::time_integration::{
     PeriodicMotion, PointCase, PointComparison, TimeOptions, compare_point, periodic_point,
 };
 
-use super::super::wheels::{ENGINE_ORDER, Wheel, wheel8_contact, wheel8_sector};
-use super::deviations;
+use super::super::wheels::{ENGINE_ORDER, Wheel, deviations_in, wheel8_contact, wheel8_sector};
 
 fn wheel(loss_factor: f64) -> Wheel {
     Wheel::of(
@@ -46,7 +45,7 @@ impl Point {
         let wheel = wheel(self.loss_factor);
         let basis = WheelBasis::new(Arc::clone(&wheel.model));
         let change: Option<Matrix<f64>> = self.mistuned.then(|| {
-            let pattern = deviations("wheel8/reference", "patterns.csv", 1, 8);
+            let pattern = deviations_in("wheel8/reference/patterns.csv", 1);
             basis.blade_stiffness_change(&pattern)
         });
         let solver = SolverOptions {
