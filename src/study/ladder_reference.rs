@@ -66,6 +66,9 @@ pub struct LadderReference {
     pub kind: ReferenceKind,
     /// Values, ordered as the rows of the sample.
     pub values: Vec<LadderValues>,
+    /// The same by ratios, whatever the kind: what predictions by ratios are held against, so that one of the best levels
+    /// alone has no error.
+    pub by_ratios: Vec<LadderValues>,
     /// The base setting.
     pub base: Measured,
     /// The base with one knob at its best each; the last is the joint reference, if it was solved.
@@ -230,7 +233,7 @@ impl LadderReference {
                 product.changed(&part.rows[row].values, &own)
             })
         };
-        let product: Vec<LadderValues> = (0..base.rows.len()).map(of_parts).collect();
+        let by_ratios: Vec<LadderValues> = (0..base.rows.len()).map(of_parts).collect();
         let coordinates = |part: &Measured| part.sizes.iter().map(|size| size.coordinates).max();
         let coefficients = |part: &Measured| part.sizes.iter().map(|size| size.coefficients).max();
         let largest = |of: &dyn Fn(&Measured) -> Option<usize>| {
@@ -242,7 +245,8 @@ impl LadderReference {
         if unknowns > JOINT_UNKNOWNS && !tuned {
             return Ok(Self {
                 kind: ReferenceKind::ByKnobs,
-                values: product,
+                values: by_ratios.clone(),
+                by_ratios,
                 base,
                 parts,
                 product_error: None,
@@ -250,14 +254,18 @@ impl LadderReference {
         }
         let joint = measure(ends.best.clone(), None)?;
         let values = joint.values();
-        let differences = product.iter().zip(&values).filter_map(|(product, joint)| {
-            Some((product.amplitude_m? / joint.amplitude_m? - 1.0).abs())
-        });
+        let differences = by_ratios
+            .iter()
+            .zip(&values)
+            .filter_map(|(product, joint)| {
+                Some((product.amplitude_m? / joint.amplitude_m? - 1.0).abs())
+            });
         let product_error = differences.reduce(f64::max);
         parts.push(joint);
         Ok(Self {
             kind: ReferenceKind::Joint,
             values,
+            by_ratios,
             base,
             parts,
             product_error,

@@ -1,7 +1,8 @@
 //! From levels of single knobs to combinations: which are worth measuring, the cheapest first.
 //!
 //! What a level changes of a row, as a ratio to the base, is taken to be the same in a combination. That
-//! proposes combinations; their errors are measured as they are.
+//! proposes combinations, by their difference from the best levels together, found in the same way; their errors are
+//! measured as they are.
 
 use super::PipelineError;
 use super::ladder::{Knob, LadderSetting};
@@ -158,7 +159,7 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
     #[must_use]
     pub fn proposals(&self) -> Vec<Proposal> {
         let rows = self.levels[0].rows.len();
-        let reference: Vec<LadderValues> = self.reference.values[..rows].to_vec();
+        let reference = &self.reference.by_ratios[..rows];
         let mut combinations: Vec<Vec<usize>> = vec![Vec::new()];
         for levels in &self.of_knob {
             let of_knob = if levels.is_empty() { &[0][..] } else { levels };
@@ -175,7 +176,7 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
         }
         let mut proposals: Vec<Proposal> = combinations
             .iter()
-            .filter_map(|levels| self.proposal(levels, &reference))
+            .filter_map(|levels| self.proposal(levels, reference))
             .collect();
         proposals.sort_by(|a, b| a.operations.total_cmp(&b.operations));
         proposals
