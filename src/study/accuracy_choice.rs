@@ -103,7 +103,7 @@ pub struct TriedSetting {
 }
 
 /// Nobody watches: the choice is a part of the reduction.
-struct Unwatched;
+pub(super) struct Unwatched;
 
 impl Progress for Unwatched {}
 

@@ -251,3 +251,52 @@ fn chunks(ids: &[u32]) -> Vec<&[u32]> {
         .filter(|chunk| !chunk.is_empty())
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::accuracy_choice::Unwatched;
+    use super::super::ladder_reference::{LadderEnds, ReferenceKind};
+    use super::super::{Study, load_sector_model, pattern_source};
+    use super::*;
+
+    #[test]
+    fn what_knobs_do_together_is_no_error_of_their_best_levels() {
+        let file = "studies/lumped24.toml";
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+        let study = Study::read(&path).unwrap();
+        let sector = load_sector_model(&study).unwrap();
+        let patterns = pattern_source(&study, &sector).unwrap();
+        let mut bench = LadderBench::new(&study, &sector, vec![0], &Unwatched).unwrap();
+        let ends = LadderEnds::choose(&mut bench, 0.002, 0.01).unwrap();
+        let engine = bench.engine(&ends.base).unwrap();
+        let rows = engine.rows(&patterns, &[0]);
+        let base = Measured::new(ends.base.clone(), None, &engine, rows);
+        let times = |factor: f64| {
+            let mut own = base.clone();
+            for row in &mut own.rows {
+                row.values.amplitude_m = row.values.amplitude_m.map(|own| factor * own);
+            }
+            own
+        };
+        let part = |knob, factor| Measured {
+            knob: Some(knob),
+            ..times(factor)
+        };
+        let reference = LadderReference {
+            kind: ReferenceKind::Joint,
+            // Together they do not do what they do one by one.
+            values: times(1.05).values(),
+            by_ratios: times(0.98 * 1.03).values(),
+            parts: vec![part(Knob::Basis, 0.98), part(Knob::Harmonics, 1.03)],
+            base: base.clone(),
+            product_error: None,
+        };
+        let search = LadderSearch::new(&mut bench, &patterns, &reference, 1);
+        let [best] = &search.proposals()[..] else {
+            panic!("one level of each knob")
+        };
+        assert!(best.predicted.worst < 1e-12, "{:e}", best.predicted.worst);
+        let own = search.error_of(&base).unwrap();
+        assert!((own.worst - 0.05 / 1.05).abs() < 1e-12, "{:e}", own.worst);
+    }
+}
