@@ -314,8 +314,8 @@ fn levels(
 struct TriedUnder {
     law: ContactLaw,
     measured: usize,
-    /// Predicted error above which combinations are not measured.
-    beyond: f64,
+    /// Either predicted error above which combinations are not measured.
+    beyond: [f64; 2],
 }
 
 /// Combinations under trial.
@@ -348,28 +348,33 @@ impl Trials {
                 of_laws.push(TriedUnder {
                     law,
                     measured: 0,
-                    beyond: self.accepted,
+                    beyond: [self.accepted; 2],
                 });
                 of_laws.len() - 1
             });
             let own = &mut of_laws[place];
-            if own.measured >= MOST_MEASURED || proposal.predicted.worst > own.beyond {
+            let predicted = proposal.predicted.map(|bound| bound.worst);
+            let promised = [0, 1].map(|kind| predicted[kind] <= own.beyond[kind]);
+            if own.measured >= MOST_MEASURED || promised == [false; 2] {
                 continue;
             }
             own.measured += 1;
             if let Some(reached) = self.reached(search, proposal)? {
                 // As much better as this one was too bad, and a little more.
                 let ratio = BETTER.min(BETTER * self.accepted / reached);
-                own.beyond = ratio * proposal.predicted.worst;
+                for kind in (0..2).filter(|&kind| promised[kind]) {
+                    own.beyond[kind] = ratio * predicted[kind];
+                }
             }
         }
         if self.taken.is_some() {
             return Ok(());
         }
-        // None is accepted: the most accurate one.
-        let best = proposals
-            .iter()
-            .min_by(|a, b| a.predicted.worst.total_cmp(&b.predicted.worst));
+        // None is accepted: the one that is nearest to the best levels together.
+        let best = proposals.iter().min_by(|a, b| {
+            let [a, b] = [a, b].map(|own| own.predicted[1].worst);
+            a.total_cmp(&b)
+        });
         if let Some(best) = best {
             let measured = search.measure(&best.setting)?;
             self.taken = self

@@ -66,8 +66,7 @@ pub struct LadderReference {
     pub kind: ReferenceKind,
     /// Values, ordered as the rows of the sample.
     pub values: Vec<LadderValues>,
-    /// The same by ratios, whatever the kind: what predictions by ratios are held against, so that one of the best levels
-    /// alone has no error.
+    /// The same by ratios, whatever the kind.
     pub by_ratios: Vec<LadderValues>,
     /// The base setting.
     pub base: Measured,

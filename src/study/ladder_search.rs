@@ -1,8 +1,7 @@
 //! From levels of single knobs to combinations: which are worth measuring, the cheapest first.
 //!
 //! What a level changes of a row, as a ratio to the base, is taken to be the same in a combination. That
-//! proposes combinations, by their difference from the best levels together, found in the same way; their errors are
-//! measured as they are.
+//! proposes combinations; their errors are measured as they are.
 
 use super::PipelineError;
 use super::ladder::{Knob, LadderSetting};
@@ -30,8 +29,10 @@ pub struct LadderSearch<'a, 'b> {
 pub struct Proposal {
     /// The setting.
     pub setting: LadderSetting,
-    /// Its amplitude errors if ratios multiply.
-    pub predicted: ErrorBound,
+    /// Its amplitude errors if ratios multiply: beside the reference, and beside the best levels together found in the same
+    /// way. They are the same unless the reference is a joint one; then what knobs do together is an error of every
+    /// combination in the first, of none in the second, and either may be nearer.
+    pub predicted: [ErrorBound; 2],
     /// Mean floating-point operations of a row if work counts multiply.
     pub operations: f64,
 }
@@ -159,7 +160,8 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
     #[must_use]
     pub fn proposals(&self) -> Vec<Proposal> {
         let rows = self.levels[0].rows.len();
-        let reference = &self.reference.by_ratios[..rows];
+        let references =
+            [&self.reference.values, &self.reference.by_ratios].map(|all| &all[..rows]);
         let mut combinations: Vec<Vec<usize>> = vec![Vec::new()];
         for levels in &self.of_knob {
             let of_knob = if levels.is_empty() { &[0][..] } else { levels };
@@ -176,14 +178,14 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
         }
         let mut proposals: Vec<Proposal> = combinations
             .iter()
-            .filter_map(|levels| self.proposal(levels, reference))
+            .filter_map(|levels| self.proposal(levels, references))
             .collect();
         proposals.sort_by(|a, b| a.operations.total_cmp(&b.operations));
         proposals
     }
 
     /// The combination of `levels`, one of each knob.
-    fn proposal(&self, levels: &[usize], reference: &[LadderValues]) -> Option<Proposal> {
+    fn proposal(&self, levels: &[usize], references: [&[LadderValues]; 2]) -> Option<Proposal> {
         let base = &self.levels[0];
         let mut setting = base.setting.clone();
         for (knob, &level) in Knob::ALL.into_iter().zip(levels) {
@@ -200,12 +202,13 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
                 })
             })
             .collect();
+        let bound = |reference| error_bound(&predicted, reference, Compared::Amplitude);
         let operations: f64 = (0..base.rows.len())
             .map(|row| self.operations(levels, row))
             .sum();
         Some(Proposal {
             setting,
-            predicted: error_bound(&predicted, reference, Compared::Amplitude)?,
+            predicted: [bound(references[0])?, bound(references[1])?],
             operations: operations / base.rows.len().max(1) as f64,
         })
     }
@@ -295,7 +298,13 @@ mod tests {
         let [best] = &search.proposals()[..] else {
             panic!("one level of each knob")
         };
-        assert!(best.predicted.worst < 1e-12, "{:e}", best.predicted.worst);
+        let [beside_reference, beside_ratios] = best.predicted.map(|own| own.worst);
+        let together = 1.0 - 0.98 * 1.03 / 1.05;
+        assert!(
+            (beside_reference - together).abs() < 1e-12,
+            "{beside_reference:e}"
+        );
+        assert!(beside_ratios < 1e-12, "{beside_ratios:e}");
         let own = search.error_of(&base).unwrap();
         assert!((own.worst - 0.05 / 1.05).abs() < 1e-12, "{:e}", own.worst);
     }

@@ -440,7 +440,7 @@ fn combinations(
         let mut promised = target;
         for _ in 0..ATTEMPTS {
             let within = |proposal: &&super::ladder_search::Proposal| {
-                proposal.predicted.p95_upper <= promised
+                proposal.predicted[0].p95_upper <= promised
             };
             let Some(proposal) = proposals.iter().find(within) else {
                 break;
