@@ -266,12 +266,12 @@ mod tests {
     fn what_knobs_do_together_is_no_error_of_their_best_levels() {
         let file = "studies/lumped24.toml";
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
-        let study = Study::read(&path).unwrap();
-        let sector = load_sector_model(&study).unwrap();
-        let patterns = pattern_source(&study, &sector).unwrap();
-        let mut bench = LadderBench::new(&study, &sector, vec![0], &Unwatched).unwrap();
-        let ends = LadderEnds::choose(&mut bench, 0.002, 0.01).unwrap();
-        let engine = bench.engine(&ends.base).unwrap();
+        let study = Study::read(&path).expect("a study");
+        let sector = load_sector_model(&study).expect("a sector");
+        let patterns = pattern_source(&study, &sector).expect("patterns");
+        let mut bench = LadderBench::new(&study, &sector, vec![0], &Unwatched).expect("a bench");
+        let ends = LadderEnds::choose(&mut bench, 0.002, 0.01).expect("two ends");
+        let engine = bench.engine(&ends.base).expect("an engine");
         let rows = engine.rows(&patterns, &[0]);
         let base = Measured::new(ends.base.clone(), None, &engine, rows);
         let times = |factor: f64| {
@@ -305,7 +305,7 @@ mod tests {
             "{beside_reference:e}"
         );
         assert!(beside_ratios < 1e-12, "{beside_ratios:e}");
-        let own = search.error_of(&base).unwrap();
+        let own = search.error_of(&base).expect("an error");
         assert!((own.worst - 0.05 / 1.05).abs() < 1e-12, "{:e}", own.worst);
     }
 }
