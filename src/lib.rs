@@ -5,6 +5,7 @@
 //!
 //! | wing | rooms, in order | holds |
 //! | --- | --- | --- |
+//! | [`platform`] | | what the operating system says of machine and processes |
 //! | [`linalg`] | | a thin layer over faer |
 //! | [`model`] | `sector`, `cyclic`, `reduced_model`, `reduction`, `cache` | from a sector to the reduced model |
 //! | [`response`] | `mistuning`, `friction`, `harmonic_balance`, `forced_response` | one wheel to its peak |
@@ -16,6 +17,7 @@
 pub mod cli;
 pub mod linalg;
 pub mod model;
+pub mod platform;
 pub mod population;
 pub mod report;
 pub mod response;

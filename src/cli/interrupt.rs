@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::{ExitStatus, output};
+use crate::platform;
 
 /// Time between looks for a signal.
 const LOOK: Duration = Duration::from_millis(50);
@@ -36,9 +37,8 @@ pub(super) fn watch() -> io::Result<&'static Signals> {
     }
     let came = Arc::new(AtomicUsize::new(0));
     let second = Arc::new(AtomicBool::new(false));
-    let ignored = ignored_signals();
     for signal in asking() {
-        if ignored & (1 << (signal - 1)) != 0 {
+        if platform::ignores_signal(signal) {
             continue;
         }
         let code = status_of(signal) as i32;
@@ -60,14 +60,6 @@ fn asking() -> Vec<i32> {
 #[cfg(not(unix))]
 fn asking() -> Vec<i32> {
     vec![SIGINT, SIGTERM]
-}
-
-/// Bits of the signals that are ignored (proc(5), `SigIgn`): by `nohup`, or in a background of a script.
-fn ignored_signals() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
-        .unwrap_or(0)
 }
 
 fn status_of(signal: i32) -> ExitStatus {

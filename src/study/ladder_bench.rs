@@ -16,12 +16,12 @@ use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::ladder::{HarmonicLevel, LadderSetting, LadderSpace};
 use super::ladder_sample::{LadderSample, Remainders, distinct, of_sample, sampled_scenarios};
 use super::load_cases::{Excitation, solver_under};
-use super::plan::thread_cpu_s;
 use super::reduced_engine::{contact_stiffness, row_settings};
 use super::{PipelineError, Progress, Study};
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, ContactStiffness, Reduction};
 use crate::model::sector::SectorModel;
+use crate::platform::thread_processor_time_s;
 use crate::population::monte_carlo::{
     ResponseRow, RowSolver, RowWork, Scenario, SystemSize, TunedReference,
 };
@@ -365,10 +365,12 @@ impl<'a> LadderEngine<'a> {
             .iter()
             .map(|&place| (&self.scenarios[place], &self.tuned[place]))
             .collect();
-        let before = thread_cpu_s();
+        let before = thread_processor_time_s();
         let solve = AssertUnwindSafe(|| self.solver.rows(pattern, &wanted));
         let solved = catch_unwind(solve);
-        let cpu_s = before.zip(thread_cpu_s()).map_or(0.0, |(a, b)| b - a);
+        let cpu_s = before
+            .zip(thread_processor_time_s())
+            .map_or(0.0, |(a, b)| b - a);
         let share = cpu_s / places.len() as f64;
         let row = |(at, &place): (usize, &usize)| match &solved {
             Ok(rows) => self.row(place, &rows[at], share),

@@ -13,6 +13,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use serde::{Deserialize, Serialize};
 
 use super::PipelineError;
+use crate::platform::{boot_identity, host_name, process_start};
 use crate::population::table::TableError;
 
 /// Name of the lock in its folder.
@@ -31,7 +32,7 @@ pub struct LockHolder {
     pub host: String,
     /// Boot of that machine; empty where it is not known.
     pub boot: String,
-    /// Start of the process in clock ticks after the boot; 0 where it is not known.
+    /// Start of the process in the unit of its system; 0 where it is not known.
     pub process_start: u64,
     /// When it took the lock, seconds since 1970-01-01 UTC.
     pub since_unix_s: u64,
@@ -51,7 +52,7 @@ impl LockHolder {
         Self {
             process,
             host: host_name(),
-            boot: boot(),
+            boot: boot_identity(),
             process_start: process_start(process).unwrap_or(0),
             since_unix_s: unix_seconds(),
             rows: None,
@@ -178,30 +179,6 @@ fn read(path: &Path) -> Option<LockHolder> {
     serde_json::from_str(&text).ok()
 }
 
-/// Name of this machine; empty if it has none.
-pub(super) fn host_name() -> String {
-    std::fs::read_to_string("/proc/sys/kernel/hostname")
-        .ok()
-        .or_else(|| std::env::var("HOSTNAME").ok())
-        .or_else(|| std::env::var("COMPUTERNAME").ok())
-        .unwrap_or_default()
-        .trim()
-        .to_owned()
-}
-
-fn boot() -> String {
-    let text = std::fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default();
-    text.trim().to_owned()
-}
-
-/// Start of a living process of this machine in clock ticks after the boot (proc(5), field 22).
-fn process_start(process: u32) -> Option<u64> {
-    let text = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
-    // The name of the process, in parentheses, may hold anything.
-    let (_, fields) = text.rsplit_once(')')?;
-    fields.split_whitespace().nth(19)?.parse().ok()
-}
-
 pub(super) fn unix_seconds() -> u64 {
     SystemTime::now()
         .duration_since(UNIX_EPOCH)
@@ -210,7 +187,8 @@ pub(super) fn unix_seconds() -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{FolderLock, LockHolder, holder, process_start};
+    use super::{FolderLock, LockHolder, holder};
+    use crate::platform::process_start;
     use crate::study::PipelineError;
 
     #[test]

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use rayon::ThreadPool;
 
-use super::lock::{host_name, unix_seconds};
+use super::lock::unix_seconds;
 use super::pipeline_goal::{Goal, can_be_cut};
 use super::pipeline_rows::RowWork;
 use super::pipeline_tables::{Facts, TableWork};
@@ -15,6 +15,7 @@ use super::summary::summary_of_rows;
 use super::{
     Engine, EngineSource, PipelineError, Study, StudyDigest, load_sector_model, pattern_source,
 };
+use crate::platform;
 use crate::population::monte_carlo::{Interruption, block_size, plan_blocks, solve_blocks};
 use crate::population::table::{Manifest, PartSink, RowStore, RunRecord, Shard};
 use crate::report::StudySummary;
@@ -394,7 +395,7 @@ impl Clock {
         RunRecord {
             started_unix_s: self.started_unix_s,
             wall_time_s: self.began.elapsed().as_secs_f64(),
-            host: host_name(),
+            host: platform::host_name(),
             threads,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             rows_solved: rows.solved,

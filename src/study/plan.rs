@@ -15,6 +15,7 @@ use super::{
     EngineSource, PipelineError, Progress, Stage, Study, StudyDigest, load_sector_model,
     pattern_source,
 };
+use crate::platform::{peak_memory_bytes, thread_processor_time_s};
 use crate::population::monte_carlo::{ResponseRow, block_size};
 use crate::population::statistics::{
     Accounting, CONFIDENCE, PERCENTILES, Quantity, StopOptions, expected_relative_width,
@@ -88,11 +89,11 @@ pub fn plan(
     };
     let wanted: Vec<usize> = (0..scenarios.len()).collect();
     let solve = |&id: &u32| {
-        let (began, cpu) = (Instant::now(), thread_cpu_s());
+        let (began, cpu) = (Instant::now(), thread_processor_time_s());
         let rows = work.of_pattern(id, &wanted);
         let wall = began.elapsed().as_secs_f64();
         let cpu = cpu
-            .zip(thread_cpu_s())
+            .zip(thread_processor_time_s())
             .map(|(before, after)| after - before);
         (rows, (wall, cpu.unwrap_or(wall)))
     };
@@ -324,19 +325,4 @@ impl Drop for Scratch {
         // Two small files among the temporary ones, at worst.
         let _ = std::fs::remove_dir_all(&self.0);
     }
-}
-
-/// Time that this thread has had on a processor; none where the system does not say.
-pub(super) fn thread_cpu_s() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: u64 = text.split_whitespace().next()?.parse().ok()?;
-    Some(1e-9 * nanoseconds as f64)
-}
-
-/// Largest memory of this process so far; none where the system does not say.
-fn peak_memory_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
-    let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(1024 * kibibytes)
 }

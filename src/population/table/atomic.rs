@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use super::TableError;
+use crate::platform;
 
 /// Bytes that are gathered before they are written.
 const BUFFER: usize = 1 << 16;
@@ -171,8 +172,7 @@ pub fn remove_leftovers(folder: &Path) -> Result<(), TableError> {
             .as_deref()
             .and_then(|name| name.strip_prefix('.')?.strip_suffix(".tmp"))
             .and_then(|name| name.rsplit_once('.')?.1.parse::<u32>().ok());
-        let ended = |process: u32| !Path::new("/proc").join(process.to_string()).exists();
-        if writer.is_some_and(ended) {
+        if writer.is_some_and(|process| platform::process_start(process).is_none()) {
             std::fs::remove_file(&path).map_err(TableError::io("remove", &path))?;
         }
     }
