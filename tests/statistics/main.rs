@@ -8,5 +8,6 @@ mod main_effects;
 mod multi_fidelity;
 mod order_statistics;
 mod patterns;
+mod percentile_windows;
 mod summary;
 mod tail_fits;

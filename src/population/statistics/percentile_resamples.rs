@@ -10,8 +10,8 @@
 use rand::RngExt;
 use rayon::prelude::*;
 use serde::Serialize;
-use statrs::function::beta::beta_reg;
 
+use super::beta_law::beta_below;
 use super::point_rank;
 use super::resampling::resampling_stream;
 
@@ -163,7 +163,7 @@ impl Window {
         let size = n as f64;
         let from = ((p - reach) * size).floor().max(0.0) as usize;
         let to = ((p + reach) * size).ceil().min(size) as usize;
-        let mass = |rank: usize| beta_reg(a, b, (rank as f64 / size).clamp(0.0, 1.0));
+        let mass = |rank: usize| beta_below(a, b, rank as f64 / size);
         let mut weights: Vec<f64> = (from..to).map(|rank| mass(rank + 1) - mass(rank)).collect();
         let total: f64 = weights.iter().sum();
         for weight in &mut weights {
