@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::keys::EXCITATION_N;
 use super::raw::{RawExcitation, RawLoadCase, RawNumbers};
 use super::validate::Check;
 use super::{ForceSource, LoadCase, Study};
@@ -180,18 +181,18 @@ fn amplitudes(
     orders: usize,
 ) -> Amplitudes {
     let key = format!("{table}.amplitude_n");
-    let possible = |amplitude: &f64| amplitude.is_finite() && *amplitude > 0.0;
+    let possible = |amplitude: &f64| EXCITATION_N.holds(*amplitude);
     match raw {
         None => (1.0, Vec::new()),
         Some(RawNumbers::One(amplitude)) => {
-            let accepted = "a finite number above 0, in N, or a list of one per engine order";
+            let accepted = "a number from 1e-30 to 1e30, in N, or a list of one per engine order";
             let amplitude = check.within(&key, *amplitude, possible(amplitude), accepted);
             (amplitude, Vec::new())
         }
         Some(RawNumbers::List(amplitudes)) => {
             if amplitudes.len() != orders || !amplitudes.iter().all(possible) {
                 let accepted = format!(
-                    "a finite number above 0, in N, or a list of {orders}, one per engine order"
+                    "a number from 1e-30 to 1e30, in N, or a list of {orders}, one per engine order"
                 );
                 check.refuse(&key, &accepted);
             }

@@ -1,6 +1,7 @@
 //! The checks of the normal loads: newtons and limits of `[sweep]`, rotation of `[contact.normal_load]`.
 
 use super::RotationOptions;
+use super::keys::NORMAL_LOAD_N;
 use super::raw::{RawLoad, RawNormalLoad, RawNumbers, RawSweep};
 use super::validate::Check;
 use crate::response::forced_response::ContactCondition;
@@ -12,7 +13,7 @@ pub(super) fn contacts(
     besides: bool,
 ) -> Vec<ContactCondition> {
     let key = "sweep.normal_load_n";
-    let accepted = "a list of different normal loads per sector: numbers of at least 0 in N, \
+    let accepted = "a list of different normal loads per sector: numbers from 0 to 1e30 in N, \
                     \"stuck\", \"slide\" or \"free\"; at least one";
     let Some(loads) = &sweep.normal_load_n else {
         if !besides {
@@ -26,7 +27,7 @@ pub(super) fn contacts(
     let mut contacts: Vec<ContactCondition> = Vec::new();
     for (place, load) in loads.iter().enumerate() {
         let contact = match load {
-            RawLoad::Number(value) if value.is_finite() && *value >= 0.0 => {
+            RawLoad::Number(value) if NORMAL_LOAD_N.holds(*value) => {
                 // The sum turns -0.0 into 0.0.
                 Some(ContactCondition::Full {
                     normal_load_n: value + 0.0,

@@ -248,6 +248,36 @@ pub const CASES: &[Case] = &[
         "amplitude_n = 0",
         &["excitation.amplitude_n = 0", "in N"],
     ),
+    // Powers of the response would vanish or overflow.
+    (
+        "amplitude_n = 10.0",
+        "amplitude_n = 9.9e-31",
+        &[
+            "excitation.amplitude_n = 9.9e-31",
+            "from 1e-30 to 1e30, in N",
+        ],
+    ),
+    (
+        "amplitude_n = 10.0",
+        "amplitude_n = 1.1e30",
+        &[
+            "excitation.amplitude_n = 1.1e30",
+            "from 1e-30 to 1e30, in N",
+        ],
+    ),
+    (
+        "amplitude_n = 10.0",
+        "amplitude_n = [1e-80]",
+        &[
+            "excitation.amplitude_n = [1e-80]",
+            "from 1e-30 to 1e30, in N",
+        ],
+    ),
+    (
+        "\"stuck\"",
+        "1.1e30",
+        &["sweep.normal_load_n[", "= 1.1e30", "from 0 to 1e30 in N"],
+    ),
     (
         "\"stuck\"",
         "\"stock\"",
@@ -260,7 +290,7 @@ pub const CASES: &[Case] = &[
     (
         ", 50,",
         ", -50,",
-        &["sweep.normal_load_n[1] = -50", "at least 0 in N"],
+        &["sweep.normal_load_n[1] = -50", "from 0 to 1e30 in N"],
     ),
     (
         ", 50,",

@@ -271,6 +271,7 @@ fn forces_that_the_model_refuses_are_told_with_key_and_line() {
     place.write("far.csv", "dof,re,im\n9,1.0,0.0\n");
     place.write("words.csv", "dof,re,im\n0,one,0.0\n");
     place.write("zero.csv", "dof,re,im\n0,0.0,0.0\n");
+    place.write("faint.csv", "dof,re,im\n0,1e-80,0.0\n");
     for (force, key, words) in [
         (
             "force = \"far.csv\"",
@@ -286,6 +287,16 @@ fn forces_that_the_model_refuses_are_told_with_key_and_line() {
             "force = \"zero.csv\"",
             "excitation.load_case[0].force",
             "no force",
+        ),
+        (
+            "force = \"faint.csv\"",
+            "excitation.load_case[0].force",
+            "accepted: 1e-30 to 1e30 N",
+        ),
+        (
+            "amplitude_n = 1e-31",
+            "excitation.load_case[0].amplitude_n = 1e-31",
+            "from 1e-30 to 1e30, in N",
         ),
         ("force = \"none.csv\"", "none.csv", "none.csv"),
         (

@@ -447,6 +447,14 @@ pub enum ModelError {
         "the model has no force (or only zeros); accepted: at least one dof with a force other than 0"
     )]
     NoForce,
+    /// The force is so small or large that powers of the response would vanish or overflow.
+    #[error(
+        "force: the largest entry is {largest_n:e} N; accepted: 1e-30 to 1e30 N, times excitation.amplitude_n"
+    )]
+    ForceOutOfRange {
+        /// Largest entry, N.
+        largest_n: f64,
+    },
     /// No node is observed.
     #[error("no node is observed; accepted: at least one (the first carries the peak metric)")]
     NoObservedNode,

@@ -360,6 +360,10 @@ pub fn validate_force(model: &SectorModel, force: &[(usize, Complex64)]) -> Resu
     check_force(model, &layout, force)
 }
 
+/// Smallest and largest size of a force vector, N. With the factor of a study, which has the same range, forces are
+/// 1e-60 to 1e60 N: powers of the displacements that they cause neither vanish nor overflow.
+const FORCE_N: [f64; 2] = [1e-30, 1e30];
+
 /// Range, faces and values of the force.
 fn check_force(
     model: &SectorModel,
@@ -389,6 +393,11 @@ fn check_force(
     }
     if force.iter().all(|(_, force)| force.norm() == 0.0) {
         return Err(ModelError::NoForce);
+    }
+    let largest = force.iter().map(|(_, force)| force.norm());
+    let largest_n = largest.fold(0.0, f64::max);
+    if !(FORCE_N[0]..=FORCE_N[1]).contains(&largest_n) {
+        return Err(ModelError::ForceOutOfRange { largest_n });
     }
     Ok(())
 }

@@ -9,4 +9,5 @@ mod value;
 
 pub use key::{KeySpec, keys, keys_below, nearest_keys};
 pub use schema::study_schema;
+pub(super) use study_keys::{EXCITATION_N, NORMAL_LOAD_N};
 pub use value::{Range, Value};

@@ -56,6 +56,14 @@ impl Range {
         }
     }
 
+    /// Whether it holds a number.
+    #[must_use]
+    pub fn holds(&self, number: f64) -> bool {
+        let above = |(low, included): (f64, bool)| number > low || included && number >= low;
+        let below = |(high, included): (f64, bool)| number < high || included && number <= high;
+        number.is_finite() && self.low.is_none_or(above) && self.high.is_none_or(below)
+    }
+
     /// Below `high`.
     #[must_use]
     pub const fn below(self, high: f64) -> Self {
@@ -115,7 +123,7 @@ impl fmt::Display for Range {
 
 /// Small numbers as powers of ten.
 fn said(number: f64) -> String {
-    if number != 0.0 && number.abs() < 1e-3 {
+    if number != 0.0 && !(1e-3..1e15).contains(&number.abs()) {
         format!("{number:e}")
     } else {
         number.to_string()

@@ -56,6 +56,77 @@ fn twelve_orders_of_force_and_load_together_scale_the_response_long() {
     scales(&decades(-6, 6, 4));
 }
 
+/// Forces of 1e-60 to 1e60 N: a study accepts 1e-30 to 1e30 for its factor, and a force vector has the same range. Linear
+/// limits and rows under friction are those of 1 N, scaled. (At 1e-77 and 1e103 N linear peaks were 2 to 3.4 % off.)
+#[test]
+fn forces_at_both_ends_of_the_accepted_range_scale_the_response() {
+    for wheel in [one_dimensional(&chain()), spatial()] {
+        let contacts = |force: f64| {
+            let friction = [20.0, 60.0, 200.0].map(|load| full(load / wheel.amplitude_n * force));
+            [
+                ContactCondition::Free,
+                ContactCondition::Slide,
+                ContactCondition::Stuck,
+            ]
+            .into_iter()
+            .chain(friction)
+        };
+        let per_newton = |force: f64| -> Vec<f64> {
+            let wheel = Wheel {
+                amplitude_n: force,
+                ..wheel.clone()
+            };
+            let solver = wheel.solver(&[1, 3], tight());
+            contacts(force)
+                .map(|contact| amplitude(&solved(&solver, ORDER, &pattern(), contact).1) / force)
+                .collect()
+        };
+        let expected = per_newton(1.0);
+        for force in [1e-60, 1e-30, 1e30, 1e60] {
+            for (place, (found, expected)) in per_newton(force).iter().zip(&expected).enumerate() {
+                let error = relative(*found, *expected);
+                assert!(
+                    error < 1e-9,
+                    "{}, {force:e} N, contact {place}: {error:e}",
+                    wheel.model.name
+                );
+            }
+        }
+    }
+}
+
+/// The ends of the load over the force: a study accepts loads up to 1e30 N and forces down to 1e-60 N.
+#[test]
+fn loads_at_both_ends_of_the_accepted_range_are_the_free_and_the_stuck_wheel() {
+    for wheel in [one_dimensional(&chain()), spatial()] {
+        for force in [1e-60, 1.0, 1e60] {
+            let wheel = Wheel {
+                amplitude_n: force,
+                ..wheel.clone()
+            };
+            let stuck = peak(&wheel, &[1], ContactCondition::Stuck);
+            let heavy = peak(&wheel, &[1], full(f64::max(1e30, 1e30 * force)));
+            assert!(
+                relative(heavy, stuck) < 1e-9,
+                "{}, {force:e} N",
+                wheel.model.name
+            );
+        }
+    }
+    let wheel = one_dimensional(&chain());
+    for force in [1.0, 1e60] {
+        let wheel = Wheel {
+            amplitude_n: force,
+            ..wheel.clone()
+        };
+        let free = peak(&wheel, &[1], ContactCondition::Free);
+        for load in [0.0, 1e-300, 1e-30] {
+            let light = peak(&wheel, &[1], full(load));
+            assert!(relative(light, free) < 1e-9, "{force:e} N, {load:e} N");
+        }
+    }
+}
+
 /// Twelve orders of N0 over F: from the free wheel, approached linearly in N0, to the stuck one.
 fn from_free_to_stuck(loads: &[f64]) {
     let wheel = one_dimensional(&chain());
@@ -169,7 +240,8 @@ fn claps(loads: &[f64], harmonics: &[u32]) -> usize {
 }
 
 /// With the fundamental alone every row is solved. With the constant harmonic, whose contact force a
-/// light ring hardly carries, only those that hardly separate: the lighter ones fail, with a status.
+/// light ring hardly carries, only those that hardly separate: 3 of 8, where 4 were wanted at first. The lighter ones fail
+/// with a status. That is known and open (`results/validation/open_bars.toml`); it may not become worse.
 #[test]
 fn clapping_ends_in_a_number_or_a_status() {
     let loads = [0.0, 1e-6, 1e-3, 1.0, 10.0, 100.0, 1e4, 1e6];

@@ -251,7 +251,7 @@ const CONTACT_CASES: [Case; 10] = [
     },
 ];
 
-const LOAD_CASES: [Case; 8] = [
+const LOAD_CASES: [Case; 10] = [
     Case {
         name: "force dof out of range",
         spoil: |m| m.force[1].0 = 1068,
@@ -281,6 +281,18 @@ const LOAD_CASES: [Case; 8] = [
         spoil: |m| m.force = vec![(616, Complex64::new(0.0, 0.0))],
         kind: |e| matches!(e, ModelError::NoForce),
         message: "no force",
+    },
+    Case {
+        name: "force so small that powers of the response vanish",
+        spoil: |m| m.force = vec![(616, Complex64::new(0.0, 9e-31))],
+        kind: |e| matches!(e, ModelError::ForceOutOfRange { .. }),
+        message: "the largest entry is 9e-31 N; accepted: 1e-30 to 1e30 N",
+    },
+    Case {
+        name: "force so large that powers of the response overflow",
+        spoil: |m| m.force = vec![(616, Complex64::new(2e30, 0.0))],
+        kind: |e| matches!(e, ModelError::ForceOutOfRange { .. }),
+        message: "the largest entry is 2e30 N; accepted: 1e-30 to 1e30 N",
     },
     Case {
         name: "nothing observed",
