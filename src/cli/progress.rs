@@ -118,6 +118,15 @@ impl Progress for RunProgress {
         }
     }
 
+    fn surrogate_times(&self, surrogate_s: f64, row_s: f64) {
+        output::message(&format!(
+            "measured: a row takes {:.1} ms of processor time, a surrogate {:.1} ms, {:.2} of a row",
+            1e3 * row_s,
+            1e3 * surrogate_s,
+            surrogate_s / row_s
+        ));
+    }
+
     fn taken_over(&self, holder: &str) {
         output::message(&format!("taken over from {holder}, which was broken off"));
     }

@@ -11,7 +11,7 @@ use super::text_table::TextTable;
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{
     Accounting, Allocation, EstimateTarget, MeanEstimate, PointStatus, Quantity, SamplingMethod,
-    TwoPhasePercentile,
+    SurrogateWorth, TwoPhasePercentile,
 };
 
 /// Mean and percentiles of a study from a sample of its patterns.
@@ -25,7 +25,7 @@ pub struct EstimateReport {
     pub study_digest: String,
     /// Its seed.
     pub seed: u64,
-    /// Patterns of the population, each with a surrogate.
+    /// Patterns of the population.
     pub patterns: u64,
     /// Patterns that are solved in each scenario at most.
     pub solves: u64,
@@ -69,6 +69,8 @@ pub struct ScenarioEstimate {
     pub pilot: u64,
     /// How many of each stratum were solved, and why.
     pub allocation: Allocation,
+    /// What surrogates of all patterns were predicted to be worth; none: the pilot could not tell, and they were not found.
+    pub surrogates: Option<SurrogateWorth>,
     /// Patterns of each stratum.
     pub strata: Vec<u64>,
     /// The solved rows by status.
@@ -111,7 +113,7 @@ impl fmt::Display for EstimateReport {
         };
         writeln!(
             f,
-            "study {}: {} patterns with a surrogate, at most {} solved for {target}, seed {}",
+            "study {}: {} patterns, at most {} solved for {target}, seed {}",
             self.name, self.patterns, self.solves, self.seed
         )?;
         for found in &self.scenarios {
@@ -149,6 +151,24 @@ impl fmt::Display for ScenarioEstimate {
                 100.0 * self.largest_weight
             )?,
             SamplingMethod::Crude => writeln!(f, "simple random sample{gain}")?,
+        }
+        match self.surrogates {
+            None => writeln!(
+                f,
+                "no surrogates: the pilot does not tell what they are worth"
+            )?,
+            Some(worth) => writeln!(
+                f,
+                "{}: by the pilot a solve would be worth {:.1} with them, {:.1} in time (a surrogate takes {:.2} of a row, counted)",
+                if worth.pays() {
+                    "a surrogate of every pattern"
+                } else {
+                    "no surrogates"
+                },
+                worth.gain,
+                worth.gain_in_time,
+                worth.cost
+            )?,
         }
         let mut table = TextTable::new(&["", "value", "95 % bounds", "patterns"]);
         for quantity in &self.quantities {

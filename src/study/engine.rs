@@ -6,7 +6,9 @@ use serde_json::Value;
 
 use super::{PipelineError, Study};
 use crate::model::sector::SectorModel;
-use crate::population::monte_carlo::{ResponseRow, RowSolver, Scenario, TunedReference};
+use crate::population::monte_carlo::{
+    ResponseRow, RowSolver, Scenario, SurrogatePeak, TunedReference,
+};
 use crate::population::table::CurvePoint;
 use crate::report::ModelReport;
 use crate::response::forced_response::{ResponseTrace, SearchPlan};
@@ -14,8 +16,8 @@ use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
 use crate::response::time_integration::{PointComparison, TimeOptions};
 
-/// Approximate peak amplitude of a pattern, m.
-pub type SurrogateOf<'a> = Box<dyn Fn(&Pattern) -> Option<f64> + Send + Sync + 'a>;
+/// Approximate peak of a pattern.
+pub type SurrogateOf<'a> = Box<dyn Fn(&Pattern) -> Option<SurrogatePeak> + Send + Sync + 'a>;
 
 /// A reduced model with the settings of a study, ready to be solved; shared between threads.
 pub trait Engine: Send + Sync {

@@ -1,4 +1,4 @@
-//! Mean and percentiles of a study from few solves: a surrogate of every pattern, a sample of rows.
+//! Mean and percentiles of a study from few solves: a surrogate of every pattern where it pays, a sample of rows.
 //!
 //! Rows are stored as those of a run are, so that an estimate that was interrupted, or that is to have
 //! more solves, continues. The sample of each scenario depends on the seed, the ids and the pilot
@@ -7,38 +7,38 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
+use super::estimate_sample::Sample;
 use super::pipeline::{Clock, RowCounts, Stop, pool_of};
 use super::pipeline_rows::RowWork;
 use super::pipeline_tables::Facts;
 use super::results_folder::ResultsFolder;
 use super::{
     Engine, EngineSource, MistuningSource, PipelineError, Progress, Stage, Study, StudyDigest,
-    load_sector_model, pattern_source,
+    SurrogateOf, load_sector_model, pattern_source,
 };
+use crate::platform::thread_processor_time_s;
 use crate::population::monte_carlo::{
-    ResponseRow, Scenario, TunedReference, block_size, plan_blocks, solve_blocks,
+    ResponseRow, Scenario, SurrogatePeak, TunedReference, block_size, plan_blocks, solve_blocks,
 };
 use crate::population::statistics::{
-    Accounting, Allocation, EstimateTarget, Population, Quantity, SamplingMethod, StratumSample,
-    TwoPhasePercentile, TwoPhaseSample, percentile,
+    Accounting, EstimateTarget, Population, Quantity, SurrogateWorth, TwoPhaseSample, pilot_places,
 };
 use crate::population::table::{
     EstimateRow, MANIFEST, PartSink, RowSchema, RowStore, TableError, TableHeader, digest_file,
     write_atomically, write_estimate_rows,
 };
-use crate::report::{EstimateReport, QuantityEstimate, ScenarioEstimate};
+use crate::report::{EstimateReport, ScenarioEstimate};
 use crate::response::mistuning::PatternSource;
 
 /// Fewest solves that an estimate is made of.
 const FEWEST_SOLVES: u32 = 60;
 /// Patterns whose surrogates are found between looks at whether to stop.
 const CHUNK: usize = 1024;
-/// Percentiles that are reported besides the target.
-const PERCENTS: [f64; 2] = [95.0, 99.0];
 
 /// What to estimate.
 #[derive(Debug, Clone, Copy)]
@@ -93,6 +93,8 @@ pub fn estimate(
             load_cases: TableHeader::load_cases_of(&study.scenarios()),
         },
         progress,
+        row_times: MeasuredTimes::default(),
+        surrogate_times: MeasuredTimes::default(),
     };
     let mut rows = Vec::new();
     let mut scenarios: Vec<ScenarioEstimate> = Vec::new();
@@ -172,6 +174,38 @@ struct Work<'a> {
     pool: &'a ThreadPool,
     header: TableHeader,
     progress: &'a dyn Progress,
+    /// Processor time that rows took.
+    row_times: MeasuredTimes,
+    /// Processor time that surrogates took.
+    surrogate_times: MeasuredTimes,
+}
+
+/// Processor times of tasks of one kind, as they are measured: told, never part of a choice.
+#[derive(Default)]
+struct MeasuredTimes {
+    nanoseconds: AtomicU64,
+    tasks: AtomicU64,
+}
+
+impl MeasuredTimes {
+    /// Runs a task and adds its time, where the system tells it.
+    fn of<T>(&self, task: impl FnOnce() -> T) -> T {
+        let began = thread_processor_time_s();
+        let result = task();
+        if let Some((began, ended)) = began.zip(thread_processor_time_s()) {
+            let nanoseconds = (1e9 * (ended - began)) as u64;
+            self.nanoseconds.fetch_add(nanoseconds, Ordering::Relaxed);
+            self.tasks.fetch_add(1, Ordering::Relaxed);
+        }
+        result
+    }
+
+    /// Mean time of a task, s.
+    fn mean_s(&self) -> Option<f64> {
+        let tasks = self.tasks.load(Ordering::Relaxed);
+        let nanoseconds = self.nanoseconds.load(Ordering::Relaxed);
+        (tasks > 0).then(|| 1e-9 * nanoseconds as f64 / tasks as f64)
+    }
 }
 
 /// Solved rows by pattern.
@@ -186,13 +220,6 @@ impl Work<'_> {
         row_digest: &str,
         folder: &mut ResultsFolder,
     ) -> Result<(ScenarioEstimate, Vec<EstimateRow>), PipelineError> {
-        let surrogates = self.surrogates(scenario, tuned)?;
-        let population = Population::new(
-            self.request.study.seed,
-            &self.ids,
-            &surrogates,
-            self.request.target,
-        );
         // The rows are stored as those of a study with this scenario alone.
         let only = Rows {
             work: self,
@@ -212,13 +239,26 @@ impl Work<'_> {
                 ..tuned.clone()
             },
         };
-        let pilot = population.pilot(self.request.solves as usize);
-        let of_pilot = only.solve(pilot, folder)?;
+        let solves = self.request.solves as usize;
+        let pilot = pilot_places(self.request.study.seed, &self.ids, solves);
+        let of_pilot = only.solve(&pilot, folder)?;
+        let worth = self.worth(scenario, tuned, &pilot, &of_pilot);
+        let surrogates = if worth.is_some_and(|worth| worth.pays()) {
+            self.surrogates(scenario, tuned)?
+        } else {
+            vec![None; self.ids.len()]
+        };
+        let population = Population::new(
+            self.request.study.seed,
+            &self.ids,
+            &surrogates,
+            self.request.target,
+        );
         let amplitudes: Vec<Option<f64>> = pilot
             .iter()
             .map(|&place| Quantity::PeakAmplitudeM.of(of_pilot.get(&self.ids[place])?))
             .collect();
-        let allocation = population.allocate(self.request.solves as usize, &amplitudes);
+        let allocation = population.allocate(solves, &amplitudes);
         let places = population.sample(&allocation);
         let solved = only.solve(&places, folder)?;
         let sample = Sample {
@@ -267,8 +307,70 @@ impl Work<'_> {
                 .map(|quantity| sample.estimate(quantity, self.request.target))
                 .collect(),
             allocation: allocation.clone(),
+            surrogates: worth,
         };
         Ok((found, rows))
+    }
+
+    /// What surrogates of all patterns are worth, by those of the pilot and its rows; none where that cannot be told.
+    ///
+    /// Times are counted from the work of surrogates and rows, not measured: the same sample is drawn on every machine
+    /// and with any number of threads.
+    fn worth(
+        &self,
+        scenario: &Scenario,
+        tuned: &TunedReference,
+        pilot: &[usize],
+        solved: &Solved,
+    ) -> Option<SurrogateWorth> {
+        self.progress.stage(Stage::Surrogates);
+        let surrogate = self.engine.surrogate(scenario, tuned)?;
+        let found: Vec<Option<SurrogatePeak>> = self.pool.install(|| {
+            let ids = pilot.par_iter().map(|&place| self.ids[place]);
+            ids.map(|id| self.surrogate_of(&surrogate, scenario, id))
+                .collect()
+        });
+        let times = self.surrogate_times.mean_s().zip(self.row_times.mean_s());
+        if let Some((surrogate_s, row_s)) = times {
+            self.progress.surrogate_times(surrogate_s, row_s);
+        }
+        let rows: Vec<&ResponseRow> = pilot
+            .iter()
+            .filter_map(|&place| solved.get(&self.ids[place]))
+            .collect();
+        let pairs: Vec<(Option<f64>, Option<f64>)> = pilot
+            .iter()
+            .zip(&found)
+            .map(|(&place, surrogate)| {
+                let row = solved.get(&self.ids[place]);
+                let value = row.and_then(|row| Quantity::PeakAmplitudeM.of(row));
+                (surrogate.map(|peak| peak.amplitude_m), value)
+            })
+            .collect();
+        let cost = self.engine.row_solver().map_or(0.0, |solver| {
+            let of_rows = rows.iter().map(|row| solver.counted_time(scenario, row));
+            let of_surrogates = found.iter().flatten().map(|peak| peak.counted_time);
+            mean(of_surrogates) / mean(of_rows)
+        });
+        SurrogateWorth::of_pilot(
+            self.ids.len(),
+            self.request.solves as usize,
+            &pairs,
+            self.request.target,
+            cost,
+        )
+    }
+
+    /// Surrogate of a pattern; none where it has none.
+    fn surrogate_of(
+        &self,
+        surrogate: &SurrogateOf<'_>,
+        scenario: &Scenario,
+        id: u32,
+    ) -> Option<SurrogatePeak> {
+        let pattern = self.patterns.pattern(id, scenario.standard_deviation)?;
+        let found = || catch_unwind(AssertUnwindSafe(|| surrogate(&pattern)));
+        self.surrogate_times.of(found).unwrap_or(None)
     }
 
     /// Surrogate amplitude of every pattern, m.
@@ -282,8 +384,8 @@ impl Work<'_> {
             return Ok(vec![None; self.ids.len()]);
         };
         let of_pattern = |id: u32| {
-            let pattern = self.patterns.pattern(id, scenario.standard_deviation)?;
-            catch_unwind(AssertUnwindSafe(|| surrogate(&pattern))).unwrap_or(None)
+            let found = self.surrogate_of(&surrogate, scenario, id)?;
+            Some(found.amplitude_m)
         };
         let mut values = Vec::with_capacity(self.ids.len());
         for ids in self.ids.chunks(CHUNK) {
@@ -305,6 +407,13 @@ impl Work<'_> {
             planned,
         }
     }
+}
+
+fn mean(numbers: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = numbers.fold((0.0, 0_u32), |(sum, count), number| {
+        (sum + number, count + 1)
+    });
+    sum / f64::from(count)
 }
 
 /// Rows of one scenario.
@@ -339,7 +448,10 @@ impl Rows<'_> {
         let solved = solve_blocks(
             self.work.pool,
             &plan_blocks(&ids, &stored, 1, block_size(ids.len())),
-            |block, id| rows.of_pattern(id, &block.scenarios),
+            |block, id| {
+                let times = &self.work.row_times;
+                times.of(|| rows.of_pattern(id, &block.scenarios))
+            },
             &mut sink,
             &Stop(progress),
         )?;
@@ -359,93 +471,5 @@ impl Rows<'_> {
     fn store(&self) -> Result<RowStore, PipelineError> {
         let results = self.work.request.results;
         Ok(RowStore::open(results, self.schema.clone(), Vec::new())?)
-    }
-}
-
-/// The solved rows of a scenario as a sample of its population.
-struct Sample<'a> {
-    population: &'a Population<'a>,
-    allocation: &'a Allocation,
-    rows: Vec<(usize, &'a ResponseRow)>,
-    surrogates: &'a [Option<f64>],
-}
-
-impl Sample<'_> {
-    /// Patterns of each stratum; all in one under crude sampling.
-    fn sizes(&self) -> Vec<u64> {
-        match self.allocation.method {
-            SamplingMethod::Crude => vec![self.population.len() as u64],
-            SamplingMethod::TwoPhase => (0..self.population.strata())
-                .map(|stratum| self.population.size(stratum) as u64)
-                .collect(),
-        }
-    }
-
-    fn stratum(&self, place: usize) -> usize {
-        match self.allocation.method {
-            SamplingMethod::Crude => 0,
-            SamplingMethod::TwoPhase => self.population.stratum(place),
-        }
-    }
-
-    fn inclusion_probability(&self, place: usize) -> f64 {
-        let stratum = self.stratum(place);
-        self.allocation.rows[stratum] as f64 / self.sizes()[stratum] as f64
-    }
-
-    /// The strata with the values of a quantity.
-    fn strata(&self, quantity: Quantity) -> Vec<StratumSample> {
-        let mut strata: Vec<StratumSample> = self
-            .sizes()
-            .into_iter()
-            .map(|size| StratumSample {
-                size,
-                rows: Vec::new(),
-            })
-            .collect();
-        for &(place, row) in &self.rows {
-            let pair = (self.surrogates[place], quantity.of(row));
-            strata[self.stratum(place)].rows.push(pair);
-        }
-        strata
-    }
-
-    fn estimate(&self, quantity: Quantity, target: EstimateTarget) -> QuantityEstimate {
-        let strata = self.strata(quantity);
-        let mut good: Vec<f64> = self
-            .rows
-            .iter()
-            .filter_map(|(_, row)| quantity.of(row))
-            .collect();
-        good.sort_unstable_by(f64::total_cmp);
-        let failed = (self.rows.len() - good.len()) as u64;
-        let two_phase = TwoPhaseSample::new(strata, self.population.surrogate_mean());
-        let mut percents = PERCENTS.to_vec();
-        if let EstimateTarget::Percentile(percent) = target {
-            percents.push(percent);
-        }
-        percents.sort_by(f64::total_cmp);
-        percents.dedup_by(|a, b| a.total_cmp(b).is_eq());
-        let percentiles = percents
-            .into_iter()
-            .map(|percent| match self.allocation.method {
-                SamplingMethod::TwoPhase => two_phase.percentile(percent),
-                SamplingMethod::Crude => {
-                    let found = percentile(&good, failed, percent);
-                    TwoPhasePercentile {
-                        percent,
-                        value: found.value,
-                        lower: found.lower,
-                        upper: found.upper,
-                        status: found.status,
-                        equivalent_patterns: found.value.map(|_| self.rows.len() as f64),
-                    }
-                }
-            });
-        QuantityEstimate {
-            quantity,
-            percentiles: percentiles.collect(),
-            mean: two_phase.mean(),
-        }
     }
 }

@@ -11,6 +11,7 @@ mod digest;
 mod engine;
 mod error;
 mod estimate;
+mod estimate_sample;
 mod examples;
 mod fixed_interface;
 mod folder_status;

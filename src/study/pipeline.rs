@@ -47,6 +47,8 @@ pub trait Progress: Sync {
     fn begin_rows(&self, _planned: u64, _done: u64) {}
     /// A row has been solved.
     fn row(&self, _status: Status) {}
+    /// Mean processor time of a surrogate and of a row of an estimate, as measured so far, s.
+    fn surrogate_times(&self, _surrogate_s: f64, _row_s: f64) {}
     /// The folder is taken over from a process that ended without letting go of it.
     fn taken_over(&self, _holder: &str) {}
     /// Whether the run is to store what it has and stop.

@@ -241,7 +241,7 @@ impl Engine for ReducedEngine {
         tuned: &TunedReference,
     ) -> Option<SurrogateOf<'a>> {
         let surrogate = self.solver.surrogate(scenario, tuned)?;
-        Some(Box::new(move |pattern| surrogate.peak_amplitude_m(pattern)))
+        Some(Box::new(move |pattern| surrogate.peak(pattern)))
     }
 
     fn row_solver(&self) -> Option<&RowSolver> {

@@ -10,5 +10,6 @@ mod one_dof;
 mod reduction_error;
 mod stated_errors;
 mod support;
+mod surrogate_times;
 mod validation;
 mod wheels;

@@ -475,6 +475,13 @@ fn an_estimate_solves_few_rows_is_the_same_for_any_threads_and_continues() {
     assert_eq!(report["patterns"], 400);
     for scenario in report["scenarios"].as_array().expect("a list") {
         assert!(scenario["rows"]["planned"].as_u64().expect("a count") <= 100);
+        // What surrogates cost beside rows is weighed: four of them for each solve.
+        let of_surrogates = |key: &str| scenario["surrogates"][key].as_f64().expect("a number");
+        let in_time = of_surrogates("gain") / (1.0 + 4.0 * of_surrogates("cost"));
+        assert!((of_surrogates("gain_in_time") / in_time - 1.0).abs() < 1e-9);
+        assert!(of_surrogates("cost") > 0.05, "{scenario}");
+        let found = 400 - scenario["without_surrogate"].as_u64().expect("a count");
+        assert_eq!(found > 0, in_time >= 1.2, "{scenario}");
         for quantity in scenario["quantities"].as_array().expect("a list") {
             assert!(quantity["mean"]["value"].as_f64() > Some(0.0));
             for percentile in quantity["percentiles"].as_array().expect("a list") {

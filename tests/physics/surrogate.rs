@@ -109,7 +109,7 @@ fn under_sticking_contact_the_surrogate_is_the_linear_peak() {
     let mut random = Random(5);
     for _ in 0..3 {
         let deviations = wheel.deviations(&mut random, 0.03);
-        let found = surrogate.peak_amplitude_m(&pattern(&deviations)).unwrap();
+        let found = surrogate.peak(&pattern(&deviations)).unwrap().amplitude_m;
         let excited = wheel.mistuned(&deviations, &[1]);
         let springs: Vec<Complex64> = wheel
             .model
@@ -142,7 +142,7 @@ fn under_friction_the_surrogate_ranks_as_the_rows_do() {
         .map(|_| {
             let deviations = pattern(&wheel.deviations(&mut random, 0.03));
             let (_, row) = solve_row(&solver, &deviations, full(7.5));
-            let stand_in = surrogate.peak_amplitude_m(&deviations).unwrap();
+            let stand_in = surrogate.peak(&deviations).unwrap().amplitude_m;
             (stand_in, row.peak_amplitude_m.unwrap())
         })
         .collect();

@@ -28,5 +28,5 @@ pub use row::{ResponseRow, TunedReference};
 pub use row_solver::{RowSettings, RowSolver, amplification_factor, harmonics_name};
 pub use scenario::{LoadCaseName, Scenario};
 pub use sink::{MemorySink, RowSink};
-pub use surrogate::Surrogate;
+pub use surrogate::{Surrogate, SurrogatePeak};
 pub use wheel_state::WheelState;

@@ -9,6 +9,8 @@ use crate::response::harmonic_balance::{LARGEST_WHOLE_JACOBIAN, condensing_pays}
 
 /// Operations per unknown cubed of the eigenvalues and vectors of a symmetric matrix.
 const EIGEN: f64 = 9.0;
+/// Time of one of these operations over that of one of a product or of LU factors (`cargo bench --bench response`).
+const SLOWER_EIGEN: f64 = 5.0;
 /// Eigenproblems of a pattern: the structure and its two linear limits.
 const EIGENPROBLEMS: f64 = 3.0;
 /// Operations of the contact law for one pair at one sample.
@@ -304,7 +306,12 @@ impl SystemSize {
     /// Operations of a row; points that are solved with fewer harmonics are counted as if they had all.
     #[must_use]
     pub fn operations(&self, work: &RowWork) -> f64 {
-        let eigen = EIGENPROBLEMS * EIGEN * (self.coordinates as f64).powi(3);
+        self.search(work) + self.check() + EIGENPROBLEMS * eigenproblem(self.coordinates)
+    }
+
+    /// Operations of the search for the peak alone.
+    #[must_use]
+    pub fn search(&self, work: &RowWork) -> f64 {
         let once_a_frequency = match self.tuned {
             Some(tuned) => self.beyond() * tuned.receptance(self.contact_rows as f64),
             None if self.condenses() => self.linear_parts(),
@@ -313,12 +320,34 @@ impl SystemSize {
         work.factorisations * self.per_factorisation()
             + work.nonlinear_solves * once_a_frequency
             + work.newton_iterations * self.per_iteration()
-            + self.check()
-            + eigen
     }
 }
 
+/// Operations of the eigenvalues and vectors of a symmetric matrix.
+fn eigenproblem(size: usize) -> f64 {
+    EIGEN * (size as f64).powi(3)
+}
+
+/// What it takes in time, counted in operations of a matrix product.
+#[must_use]
+pub fn time_of_eigenproblem(size: usize) -> f64 {
+    SLOWER_EIGEN * eigenproblem(size)
+}
+
 impl RowSolver {
+    /// Time that a row takes, counted from its work in operations of a matrix product: the same on every machine.
+    #[must_use]
+    pub fn counted_time(&self, scenario: &Scenario, row: &ResponseRow) -> f64 {
+        let size = self.system_size(scenario);
+        let linear = size.law.is_none();
+        let solved = if linear {
+            0.0
+        } else {
+            size.search(&RowWork::of(row)) + size.check()
+        };
+        solved + EIGENPROBLEMS * time_of_eigenproblem(size.coordinates)
+    }
+
     /// Size of the equation of the rows of a scenario.
     #[must_use]
     pub fn system_size(&self, scenario: &Scenario) -> SystemSize {

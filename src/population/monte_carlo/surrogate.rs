@@ -10,6 +10,7 @@
 
 use std::f64::consts::TAU;
 
+use super::operations::{RowWork, SystemSize, time_of_eigenproblem};
 use super::{RowSolver, Scenario, TunedReference};
 use crate::linalg::{Matrix, hermitian_eigen, orthonormal_basis};
 use crate::response::forced_response::{
@@ -99,10 +100,19 @@ impl RowSolver {
     }
 }
 
+/// The stand-in of one pattern.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurrogatePeak {
+    /// Approximate peak amplitude, m.
+    pub amplitude_m: f64,
+    /// What it took, in the unit of [`RowSolver::counted_time`].
+    pub counted_time: f64,
+}
+
 impl Surrogate<'_> {
-    /// Approximate peak amplitude of a pattern, m; none where it has none.
+    /// Approximate peak of a pattern; none where it has none.
     #[must_use]
-    pub fn peak_amplitude_m(&self, pattern: &Pattern) -> Option<f64> {
+    pub fn peak(&self, pattern: &Pattern) -> Option<SurrogatePeak> {
         let solver = self.solver;
         let change = solver.stiffness_change(pattern)?;
         let shapes = self.shapes(&change, pattern.largest_deviation())?;
@@ -124,9 +134,37 @@ impl Surrogate<'_> {
             .ok()?;
         let points = self.points.with_factors(&pattern.contact);
         let excited = solver.wheel_excited(&modes, &wheel, engine_order, &[1]);
-        peak(&excited, contact, &points, window, PEAK_TOLERANCE)
-            .amplitude_m()
-            .filter(|amplitude| amplitude.is_finite())
+        let found = peak(&excited, contact, &points, window, PEAK_TOLERANCE);
+        let amplitude_m = found.amplitude_m().filter(|metres| metres.is_finite())?;
+        let work = RowWork {
+            nonlinear_solves: found.work.nonlinear_solves as f64,
+            newton_iterations: found.work.newton_iterations as f64,
+            factorisations: found.work.factorisations as f64,
+        };
+        Some(SurrogatePeak {
+            amplitude_m,
+            counted_time: self.counted_time(shapes.columns(), &work),
+        })
+    }
+
+    /// The modes with every kind of linear springs, the space they span, and the search in it.
+    fn counted_time(&self, vectors: usize, work: &RowWork) -> f64 {
+        let full = self.solver.basis().size();
+        let springs = self.contact_stiffness.len() as f64;
+        let (n, m) = (full as f64, vectors as f64);
+        let own = SystemSize {
+            coordinates: vectors,
+            coefficients: 2,
+            samples: SAMPLES,
+            in_stages: false,
+            tuned: None,
+            ..self.solver.system_size(&self.scenario)
+        };
+        let projection = 2.0 * n * m * (n + 2.0 * m);
+        springs * time_of_eigenproblem(full)
+            + time_of_eigenproblem(vectors)
+            + projection
+            + own.search(work)
     }
 
     /// Orthonormal basis of the modes near the tuned peak, of all linear springs together.

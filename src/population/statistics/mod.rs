@@ -19,6 +19,7 @@ mod resampling;
 mod sample;
 mod scenario;
 mod stopping;
+mod surrogate_worth;
 mod tail_fit;
 mod two_phase_design;
 mod two_phase_estimate;
@@ -48,8 +49,9 @@ pub use scenario::{ScenarioAccumulator, ScenarioStatistics};
 pub use stopping::{
     Look, MOST_LOOKS, ScenarioLook, StopOptions, StopOutcome, StoppingRule, StudyLook,
 };
+pub use surrogate_worth::SurrogateWorth;
 pub use tail_fit::{
     Estimate, TAIL_PERCENTILES, TailFit, TailLaw, TailParameters, TailPercentile, fit_tails,
 };
-pub use two_phase_design::{Allocation, EstimateTarget, Population, SamplingMethod};
+pub use two_phase_design::{Allocation, EstimateTarget, Population, SamplingMethod, pilot_places};
 pub use two_phase_estimate::{MeanEstimate, StratumSample, TwoPhasePercentile, TwoPhaseSample};

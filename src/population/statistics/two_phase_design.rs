@@ -13,6 +13,7 @@ use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::resampling_stream;
+use super::surrogate_worth::JointLaw;
 
 /// Topic of the stream of the permanent random numbers.
 const SELECTION: u32 = 0x2b1d;
@@ -25,13 +26,13 @@ const TOP_SHARE: f64 = 0.75;
 /// Share of the solves that the pilot has.
 const PILOT_SHARE: f64 = 0.3;
 /// Rows of a pilot, and of the whole sample, at least.
-const FEWEST_PILOT: usize = 30;
+pub(super) const FEWEST_PILOT: usize = 30;
 /// Rows of a stratum at least, as far as it has as many patterns.
-const FEWEST_OF_STRATUM: usize = 2;
+pub(super) const FEWEST_OF_STRATUM: usize = 2;
 /// Factor on the spread about the surrogate that the pilot shows: it may be larger in the tail.
-const SPREAD_SAFETY: f64 = 1.25;
+pub(super) const SPREAD_SAFETY: f64 = 1.25;
 /// Predicted gain over crude sampling from which on two-phase sampling is taken.
-const LEAST_GAIN: f64 = 1.2;
+pub(super) const LEAST_GAIN: f64 = 1.2;
 
 /// What the solves are to tell best.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -64,6 +65,31 @@ impl SamplingMethod {
     }
 }
 
+/// Places of patterns by their permanent random numbers, those to be solved first in front.
+fn order_of(seed: u64, ids: &[u32]) -> Vec<usize> {
+    let numbers: Vec<u64> = ids
+        .iter()
+        .map(|&id| resampling_stream(seed, SELECTION, id).random())
+        .collect();
+    let mut order: Vec<usize> = (0..ids.len()).collect();
+    order.sort_by_key(|&place| (numbers[place], place));
+    order
+}
+
+/// Places of the pilot of `solves` patterns among those with the ids `ids` (ascending), in the order in which they are
+/// drawn: a simple random sample that surrogates do not change.
+#[must_use]
+pub fn pilot_places(seed: u64, ids: &[u32], solves: usize) -> Vec<usize> {
+    let mut order = order_of(seed, ids);
+    order.truncate(pilot_size(solves, ids.len()));
+    order
+}
+
+fn pilot_size(solves: usize, patterns: usize) -> usize {
+    let share = (PILOT_SHARE * solves as f64).round() as usize;
+    share.max(FEWEST_PILOT).min(solves).min(patterns)
+}
+
 /// A population with a surrogate value for each pattern, none where there is none.
 #[derive(Debug, Clone)]
 pub struct Population<'a> {
@@ -71,7 +97,7 @@ pub struct Population<'a> {
     /// Stratum of each pattern: the highest surrogate values first, those without at the end.
     strata: Vec<usize>,
     /// Patterns of each stratum, those to be solved first in front.
-    members: Vec<Vec<usize>>,
+    pub(super) members: Vec<Vec<usize>>,
     /// All patterns in the same order.
     order: Vec<usize>,
     percent: Option<f64>,
@@ -98,12 +124,7 @@ impl<'a> Population<'a> {
         surrogates: &'a [Option<f64>],
         target: EstimateTarget,
     ) -> Self {
-        let numbers: Vec<u64> = ids
-            .iter()
-            .map(|&id| resampling_stream(seed, SELECTION, id).random())
-            .collect();
-        let mut order: Vec<usize> = (0..ids.len()).collect();
-        order.sort_by_key(|&place| (numbers[place], place));
+        let order = order_of(seed, ids);
         let percent = match target {
             EstimateTarget::Mean => None,
             EstimateTarget::Percentile(percent) => Some(percent),
@@ -164,9 +185,7 @@ impl<'a> Population<'a> {
     /// Places of the pilot of a sample of `solves` patterns, in the order in which they are drawn.
     #[must_use]
     pub fn pilot(&self, solves: usize) -> &[usize] {
-        let share = (PILOT_SHARE * solves as f64).round() as usize;
-        let rows = share.max(FEWEST_PILOT).min(solves).min(self.len());
-        &self.order[..rows]
+        &self.order[..pilot_size(solves, self.len())]
     }
 
     /// Allocates `solves` patterns in all by the values of the pilot, in its order; none where a row
@@ -194,18 +213,7 @@ impl<'a> Population<'a> {
             *rows = FEWEST_OF_STRATUM.max(*rows).min(members.len());
         }
         let rows = self.neyman(solves, &least, &spread);
-        let n = self.len() as f64;
-        let within: f64 = rows
-            .iter()
-            .zip(&self.members)
-            .zip(&spread)
-            .map(|((&rows, members), spread)| {
-                let (rows, size) = (rows as f64, members.len() as f64);
-                (size / n * spread).powi(2) * (1.0 / rows - 1.0 / size)
-            })
-            .sum();
-        let variance = exceeding * (1.0 - exceeding);
-        let gain = variance / solves as f64 / (variance / n + within);
+        let gain = self.gain(solves, &rows, &spread, exceeding);
         if gain < LEAST_GAIN || rows.iter().sum::<usize>() > solves {
             return crude(Some(gain));
         }
@@ -214,6 +222,28 @@ impl<'a> Population<'a> {
             predicted_gain: Some(gain),
             rows,
         }
+    }
+
+    /// Crude patterns that one of `solves` is worth, allocated to the strata by `rows`.
+    pub(super) fn gain(
+        &self,
+        solves: usize,
+        rows: &[usize],
+        spread: &[f64],
+        exceeding: f64,
+    ) -> f64 {
+        let n = self.len() as f64;
+        let within: f64 = rows
+            .iter()
+            .zip(&self.members)
+            .zip(spread)
+            .map(|((&rows, members), spread)| {
+                let (rows, size) = (rows as f64, members.len() as f64);
+                (size / n * spread).powi(2) * (1.0 / rows - 1.0 / size)
+            })
+            .sum();
+        let variance = exceeding * (1.0 - exceeding);
+        variance / solves as f64 / (variance / n + within)
     }
 
     /// Places of the patterns that an allocation solves, ascending.
@@ -237,34 +267,21 @@ impl<'a> Population<'a> {
     /// the normal e by regression on the pilot, t such that the share of the population is right.
     /// None where the pilot has too few values, or the surrogate does not vary.
     fn spread_by_stratum(&self, pilot: &[Option<f64>], exceeding: f64) -> Option<Vec<f64>> {
-        let pairs: Vec<(f64, f64)> = self
+        let pairs = self
             .order
             .iter()
             .zip(pilot)
-            .filter_map(|(&place, value)| Some((self.surrogates[place]?, (*value)?)))
-            .collect();
-        if pairs.len() < FEWEST_PILOT / 2 {
-            return None;
-        }
-        let count = pairs.len() as f64;
-        let mean = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
-        let (x, y) = (mean(|pair| pair.0), mean(|pair| pair.1));
-        let xx: f64 = pairs.iter().map(|pair| (pair.0 - x).powi(2)).sum();
-        let xy: f64 = pairs.iter().map(|pair| (pair.0 - x) * (pair.1 - y)).sum();
-        let slope = xy / xx;
-        let rest: f64 = pairs
-            .iter()
-            .map(|pair| (pair.1 - y - slope * (pair.0 - x)).powi(2))
-            .sum();
-        let spread = SPREAD_SAFETY * (rest / (count - 2.0)).sqrt();
-        if !(slope > 0.0 && slope.is_finite() && spread > 0.0) {
-            return None;
-        }
+            .filter_map(|(&place, value)| Some((self.surrogates[place]?, (*value)?)));
+        Some(self.spreads(&JointLaw::of(pairs)?, exceeding))
+    }
+
+    /// The same under a law of surrogate and value.
+    pub(super) fn spreads(&self, law: &JointLaw, exceeding: f64) -> Vec<f64> {
         let normal = Normal::standard();
-        let beyond = |t: f64, s: f64| normal.sf((t - y - slope * (s - x)) / spread);
+        let beyond = |t: f64, s: f64| normal.sf((t - law.y - law.slope * (s - law.x)) / law.rest);
         let known: Vec<f64> = self.surrogates.iter().flatten().copied().collect();
         let share = |t: f64| known.iter().map(|&s| beyond(t, s)).sum::<f64>() / known.len() as f64;
-        let reach = |s: f64, sign: f64| y + slope * (s - x) + sign * 8.0 * spread;
+        let reach = |s: f64, sign: f64| law.y + law.slope * (s - law.x) + sign * 8.0 * law.rest;
         let mut low = known
             .iter()
             .map(|&s| reach(s, -1.0))
@@ -295,11 +312,11 @@ impl<'a> Population<'a> {
             };
             (p * (1.0 - p)).sqrt()
         });
-        Some(spreads.collect())
+        spreads.collect()
     }
 
     /// Rows proportional to size times spread, at least `least` and at most all, `solves` in all.
-    fn neyman(&self, solves: usize, least: &[usize], spread: &[f64]) -> Vec<usize> {
+    pub(super) fn neyman(&self, solves: usize, least: &[usize], spread: &[f64]) -> Vec<usize> {
         let mut rows = least.to_vec();
         let ratio = |stratum: usize, rows: usize| {
             self.members[stratum].len() as f64 * spread[stratum] / (rows as f64 + 0.5)
