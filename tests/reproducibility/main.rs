@@ -1,4 +1,4 @@
-//! Reproducibility: threads, interruption, extension and identity of a study, on a made-up engine.
+//! Reproducibility: threads, interruption, extension and identity of a study, on a made-up engine and a real one.
 
 mod continuation;
 mod damage;
@@ -6,5 +6,6 @@ mod extension;
 mod folder;
 mod mock_engine;
 mod shards;
+mod solid_wheel;
 mod stopping;
 mod tables;

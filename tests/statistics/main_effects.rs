@@ -35,12 +35,11 @@ fn effects_are_found_with_the_coverage_of_their_bounds() {
     for k in 0..5 {
         // Classes of 10 rows do not resolve the end of a cubic tail.
         assert!((means[k] - expected[k]).abs() < 0.03, "{k}: {}", means[k]);
-        assert!(
-            f64::from(inside[k]) > 0.85 * f64::from(REPLICAS),
-            "{k}: {}",
-            inside[k]
-        );
     }
+    // 95 %, less two standard errors of so many replicas (92.8 %); found are 93.75 % for x0 and more for the others.
+    let least = 0.95 - 2.0 * (0.95 * 0.05 / f64::from(REPLICAS)).sqrt();
+    let held = inside.map(|count| f64::from(count) / f64::from(REPLICAS));
+    assert!(held.iter().all(|share| *share >= least), "{held:?}");
 }
 
 #[test]

@@ -140,52 +140,61 @@ fn the_stuck_peak_is_that_of_the_assembled_wheel() {
     }
 }
 
-/// Rows of a standard deviation from 0 to 30 % all end well on this small wheel.
-fn ends_well(rows: usize) {
-    for wheel in [one_dimensional(&chain()), spatial()] {
+/// Rows of a standard deviation from 0 to 30 %: those of the chain all end well, of the wheel with three directions at most
+/// `most_failed` do not. No peak exceeds the highest of the linear limits of its own pattern. Amplification factors are
+/// between 0.2 and 5 up to 20 %; at 30 % up to `highest`, where friction holds the tuned peak far below those limits.
+fn ends_well(rows: usize, most_failed: usize, highest: f64) {
+    for (wheel, most_failed) in [(one_dimensional(&chain()), 0), (spatial(), most_failed)] {
+        let name = &wheel.model.name;
         let solver = wheel.solver(&[1, 3], SolverOptions::default());
         let mut random = Random(72);
+        let mut failed = 0;
         for deviation in [0.0, 0.001, 0.01, 0.03, 0.1, 0.2, 0.3] {
-            let mut failed = 0;
+            let mut range = [f64::INFINITY, 0.0];
+            let mut over_limits = 0.0;
             for _ in 0..rows {
                 let deviations = random.vector(SECTORS, 3.0_f64.sqrt() * deviation);
+                let limits =
+                    LIMITS.map(|limit| amplitude(&solved(&solver, ORDER, &deviations, limit).1));
+                let limit = limits.into_iter().fold(0.0, f64::max);
                 for load in CHAIN_LOADS.into_iter().chain([500.0]) {
                     let row = solved(&solver, ORDER, &deviations, full(load)).1;
                     if row.status == Status::Ok {
                         let factor = row.amplification_factor.unwrap();
-                        assert!((0.01..100.0).contains(&factor), "{row:?} {deviations:?}");
+                        range = [f64::min(range[0], factor), f64::max(range[1], factor)];
+                        over_limits = f64::max(over_limits, amplitude(&row) / limit);
                     } else {
                         failed += 1;
                         println!(
-                            "{}, {deviation}, {load} N: {} {deviations:?}",
-                            wheel.model.name,
+                            "{name}, {deviation}, {load} N: {} {deviations:?}",
                             row.status.name()
                         );
                     }
                 }
             }
             println!(
-                "{} at {deviation}: {failed} of {} failed",
-                wheel.model.name,
-                4 * rows
+                "{name} at {deviation}: {failed} failed so far, factors {range:?}, {over_limits} of the limits"
             );
+            assert!(over_limits < 1.001, "{name}, {deviation}: {over_limits}");
+            let most = if deviation > 0.2 { highest } else { 5.0 };
             assert!(
-                failed == 0 || wheel.model.name == "spatial",
-                "{deviation}: {failed}"
+                range[0] > 0.2 && range[1] < most,
+                "{name}, {deviation}: {range:?}"
             );
         }
+        assert!(failed <= most_failed, "{name}: {failed}");
     }
 }
 
 #[test]
 fn thirty_percent_of_mistuning_is_solved() {
-    ends_well(2);
+    ends_well(2, 0, 7.5);
 }
 
 #[test]
-#[ignore = "long form: `cargo test --release --test physics extremes -- --ignored`"]
+#[ignore = "about 5 minutes: `cargo test --release --test physics extremes -- --ignored`"]
 fn thirty_percent_of_mistuning_is_solved_long() {
-    ends_well(100);
+    ends_well(100, 100, 100.0);
 }
 
 #[test]

@@ -77,12 +77,12 @@ fn a_stiff_contact_ties_the_ring_to_the_disk() {
 }
 
 /// Under friction the peak settles as the slider becomes rigid: the elastic travel mu N0 / kt vanishes.
-/// Sampled in time, a slider with so little travel is a jump, at which Newton's method may fail: beyond
-/// 2e9 N/m, where it is 1e-5 of the motion, a row has the same peak or a status. The jump lies at a
-/// sample, not between two: where that counts (60 N, 160 samples: up to 1.1 %) the rows state it as their
-/// sampling error (0.2 to 2 %), and agree within it.
-fn settles(stiffnesses: &[f64]) {
-    const A_JUMP: f64 = 2e9;
+/// Sampled in time, a slider with so little travel is a jump, at which Newton's method may fail. Wanted is every row;
+/// beyond `jump` N/m, where the travel is 1e-6 of the motion, at most `most_failed` have a status in the place of a peak: known and
+/// open (`results/validation/open_bars.toml`). The jump lies at a sample, not between two: where that counts (60 N, 160
+/// samples: up to 1.1 %) the rows state it as their sampling error (0.2 to 2 %), and agree within it.
+fn settles(stiffnesses: &[f64], jump: f64, most_failed: usize) {
+    let mut failed = 0;
     for load in CHAIN_LOADS {
         let mut peaks: Vec<(f64, f64, f64)> = Vec::new();
         for &kt in stiffnesses {
@@ -98,9 +98,10 @@ fn settles(stiffnesses: &[f64]) {
                 row.newton_iterations
             );
             assert!(
-                row.status == Status::Ok || kt > A_JUMP,
+                row.status == Status::Ok || kt > jump,
                 "{load} N, {kt:e}: {row:?}"
             );
+            failed += usize::from(row.status != Status::Ok);
             // The band holds the peak: a row without one has failed points, and says how they failed.
             assert_ne!(row.status, Status::NotBracketed, "{load} N, {kt:e}");
             let stated = row.sampling_error.map_or(0.0, f64::abs);
@@ -111,19 +112,24 @@ fn settles(stiffnesses: &[f64]) {
             let error = relative(found, rigid);
             let bound = 1e7 / kt + 1e-3 + stated + of_rigid;
             assert!(error < bound, "{load} N, {kt:e} N/m: {error:e}, {bound:e}");
+            // Where the jump between two samples counts little, the tighter bar that was wanted of all.
+            if kt >= 1e9 && load < 60.0 {
+                assert!(error < 1e6 / kt + 1e-4, "{load} N, {kt:e} N/m: {error:e}");
+            }
         }
     }
+    assert!(failed <= most_failed, "{failed} rows failed");
 }
 
 #[test]
 fn a_stiff_slider_settles_to_a_rigid_one() {
-    settles(&decades(5, 13, 1));
+    settles(&decades(5, 13, 1), 2e10, 7);
 }
 
 #[test]
 #[ignore = "long form: `cargo test --release --test physics extremes -- --ignored`"]
 fn a_stiff_slider_settles_to_a_rigid_one_long() {
-    settles(&decades(5, 13, 4));
+    settles(&decades(5, 13, 4), 2e9, 40);
 }
 
 /// Ring mass from a ten-thousandth to ten times: the linear stuck peak of each against one solved in
