@@ -1,5 +1,7 @@
 //! Indicators of the reduction error, found on one tuned sector, against the true error of mistuned wheels.
 
+use std::collections::BTreeMap;
+
 use blisk::population::monte_carlo::ResponseRow;
 use blisk::response::forced_response::ContactCondition;
 use blisk::study::Study;
@@ -205,13 +207,39 @@ fn measure(wheel: &Wheel, reduction: &str, reference: &[ResponseRow]) -> Measure
     }
 }
 
+/// A table of docs/reduction-error.md: the cells after the first two of each row, by those two.
+fn documented(header: &str) -> BTreeMap<[String; 2], Vec<f64>> {
+    let page = std::fs::read_to_string(package("docs/reduction-error.md")).unwrap();
+    let rows = page.lines().skip_while(|line| *line != header).skip(2);
+    let rows = rows.take_while(|line| line.starts_with('|'));
+    rows.map(|line| {
+        let mut cells = line.trim_matches('|').split('|').map(str::trim);
+        let mut name = || cells.next().unwrap().to_owned();
+        let names = [name(), name()];
+        (names, cells.map(|cell| cell.parse().unwrap()).collect())
+    })
+    .collect()
+}
+
+/// The numbers of a row are those of the page to its last digit, or to 2 % where that is more.
+fn assert_documented(row: &[String; 2], found: &[f64], digits: &[i32], page: &[f64]) {
+    assert_eq!(found.len(), page.len(), "{row:?}");
+    for ((found, written), digits) in found.iter().zip(page).zip(digits) {
+        let accepted = f64::max(0.02 * written, 1.001 * 10.0_f64.powi(-digits));
+        assert!(
+            (found - written).abs() <= accepted,
+            "{row:?}: {found}, docs/reduction-error.md has {written}"
+        );
+    }
+}
+
 #[test]
-#[ignore = "four minutes; the table of docs/reduction-error.md"]
-fn table_of_reduction_errors() {
-    println!(
-        "| wheel | basis | tuned peak | contact, tuned | contact, any ND | mistuned peak | its frequency |"
+#[ignore = "about 4 minutes: the table of docs/reduction-error.md"]
+fn the_table_of_reduction_errors_is_that_of_the_page() {
+    let page = documented(
+        "| wheel | basis | tuned peak | contact, tuned | contact, any ND | mistuned peak | its frequency |",
     );
-    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    let mut rows = 0;
     for wheel in &WHEELS {
         let reference = reference(wheel);
         let fixed = [2, 4, 6, 8, 10].map(stick_slide);
@@ -224,25 +252,29 @@ fn table_of_reduction_errors() {
             } else {
                 ""
             };
-            println!(
-                "| {} | {chosen}{} | {:.3} | {:.2} | {:.2} | {:.3} | {:.4} |",
-                wheel.name,
-                found.basis,
-                100.0 * found.tuned_peak,
-                100.0 * found.contact_tuned,
-                100.0 * found.contact_any,
-                100.0 * found.amplitude,
-                100.0 * found.frequency,
-            );
+            let row = [wheel.name.to_owned(), format!("{chosen}{}", found.basis)];
+            let numbers = [
+                found.tuned_peak,
+                found.contact_tuned,
+                found.contact_any,
+                found.amplitude,
+                found.frequency,
+            ]
+            .map(|share| 100.0 * share);
+            println!("{row:?} {numbers:.4?}");
+            let written = page.get(&row).unwrap_or_else(|| panic!("no row {row:?}"));
+            assert_documented(&row, &numbers, &[3, 2, 2, 3, 4], written);
+            rows += 1;
         }
     }
+    assert_eq!(rows, page.len());
 }
 
 #[test]
-#[ignore = "a minute; the table of fixed-interface modes of docs/reduction-error.md"]
-fn table_of_fixed_interface_modes() {
-    println!("| wheel | modes | reach | tuned peak |");
-    println!("| --- | --- | --- | --- |");
+#[ignore = "about 1 minute: the table of fixed-interface modes of docs/reduction-error.md"]
+fn the_table_of_fixed_interface_modes_is_that_of_the_page() {
+    let page = documented("| wheel | modes | reach | tuned peak, % |");
+    let mut rows = 0;
     for wheel in &WHEELS {
         let case = |modes: usize| {
             let whole = stick_attachment(1000);
@@ -265,13 +297,15 @@ fn table_of_fixed_interface_modes() {
                 .map(|(own, reference)| (own / reference - 1.0).abs())
                 .fold(0.0, f64::max);
             let reach = case.reduction()["craig_bampton_reach"].as_f64().unwrap();
-            println!(
-                "| {} | {modes} | {reach:.1} | {:.4} |",
-                wheel.name,
-                100.0 * error
-            );
+            let row = [wheel.name.to_owned(), modes.to_string()];
+            let numbers = [reach, 100.0 * error];
+            println!("{row:?} {numbers:.4?}");
+            let written = page.get(&row).unwrap_or_else(|| panic!("no row {row:?}"));
+            assert_documented(&row, &numbers, &[1, 3], written);
+            rows += 1;
         }
     }
+    assert_eq!(rows, page.len());
 }
 
 #[test]
