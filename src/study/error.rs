@@ -145,9 +145,12 @@ impl fmt::Display for Finding {
     }
 }
 
-/// Every finding with its place, and the part of the line that it is about underlined.
+/// Findings that are listed.
+const LISTED: usize = 100;
+
+/// The findings with their places, and the parts of the lines that they are about underlined.
 fn listed(path: &std::path::Path, findings: &[Finding]) -> String {
-    let told = findings.iter().map(|finding| {
+    let told = findings.iter().take(LISTED).map(|finding| {
         let line = finding.line;
         let underlined = finding
             .excerpt
@@ -161,5 +164,10 @@ fn listed(path: &std::path::Path, findings: &[Finding]) -> String {
             });
         format!("{}:{line}: {finding}{underlined}", path.display())
     });
-    told.collect::<Vec<_>>().join("\n")
+    let mut told: Vec<String> = told.collect();
+    if findings.len() > LISTED {
+        let more = findings.len() - LISTED;
+        told.push(format!("{}: and {more} more", path.display()));
+    }
+    told.join("\n")
 }

@@ -1,6 +1,6 @@
 //! The results folder of a study: who may write to it, and whether it is the same study.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
@@ -164,7 +164,12 @@ pub(super) fn differences(
 fn is_gone(theirs: &str, ours: &str) -> bool {
     let list = |text: &str| -> Option<Vec<Value>> { serde_json::from_str(text).ok() };
     match (list(theirs), list(ours)) {
-        (Some(theirs), Some(ours)) => theirs.iter().any(|value| !ours.contains(value)),
+        (Some(theirs), Some(ours)) => {
+            let ours: BTreeSet<String> = ours.iter().map(Value::to_string).collect();
+            theirs
+                .iter()
+                .any(|value| !ours.contains(&value.to_string()))
+        }
         _ => true,
     }
 }

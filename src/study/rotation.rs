@@ -1,5 +1,6 @@
 //! Normal loads by rotation: from speeds to newtons, and what of the ring is pressed how hard.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
@@ -144,11 +145,13 @@ impl Study {
         }
         let mut study = self;
         let mut normal_loads_n = Vec::new();
+        let loads = study.contacts.iter().filter_map(|own| own.normal_load_n());
+        let mut seen: BTreeSet<u64> = loads.map(f64::to_bits).collect();
         for speed_rpm in &options.speeds_rpm {
             let omega = TAU * speed_rpm / 60.0;
             let normal_load_n = rounded(whole * omega * omega);
             let condition = ContactCondition::Full { normal_load_n };
-            if study.contacts.contains(&condition) {
+            if !seen.insert(normal_load_n.to_bits()) {
                 let reason = format!(
                     "{speed_rpm} rpm is the load {normal_load_n} N, which the sweep has already; accepted: once"
                 );

@@ -9,10 +9,16 @@ use toml::de::{DeTable, DeValue};
 
 use super::{Excerpt, Finding, Problem};
 
+/// Bytes of a line that are shown before and from the beginning of the part that a message is about.
+const BEFORE: usize = 150;
+const AFTER: usize = 250;
+
 /// Spans of the keys and values of a TOML text, by full key.
 #[derive(Debug, Clone, Default)]
 pub(super) struct SourceMap {
     text: String,
+    /// Where each line begins.
+    lines: Vec<usize>,
     places: BTreeMap<String, Place>,
 }
 
@@ -27,6 +33,9 @@ impl SourceMap {
     pub(super) fn new(text: &str) -> Result<Self, Box<Finding>> {
         let mut map = Self {
             text: text.to_owned(),
+            lines: std::iter::once(0)
+                .chain(text.match_indices('\n').map(|(end, _)| end + 1))
+                .collect(),
             places: BTreeMap::new(),
         };
         match DeTable::parse(text) {
@@ -104,16 +113,16 @@ impl SourceMap {
         }
     }
 
-    /// The part `range` of its line, up to the end of that; none where it is empty.
+    /// The part `range` of its line, up to the end of that; none where it is empty. Of a long line what is near.
     fn excerpt(&self, range: &Range<usize>) -> Option<Excerpt> {
-        let start = self
-            .text
-            .get(..range.start)?
-            .rfind('\n')
-            .map_or(0, |end| end + 1);
-        let end = self.text[range.start..]
-            .find('\n')
-            .map_or(self.text.len(), |end| range.start + end);
+        let line = self.line_at(range.start);
+        let start = *self.lines.get(line - 1)?;
+        let end = self
+            .lines
+            .get(line)
+            .map_or(self.text.len(), |next| next - 1);
+        let start = self.boundary(start.max(range.start.saturating_sub(BEFORE)));
+        let end = self.boundary(end.min(range.start + AFTER));
         let part = self.text.get(range.start..range.end.min(end))?;
         let (text, before) = (
             self.text.get(start..end)?,
@@ -128,6 +137,13 @@ impl SourceMap {
         })
     }
 
+    /// The first end of a character from `offset` on.
+    fn boundary(&self, offset: usize) -> usize {
+        let mut ends = offset..=self.text.len();
+        ends.find(|&end| self.text.is_char_boundary(end))
+            .unwrap_or(self.text.len())
+    }
+
     /// The value of `key` as written.
     pub(super) fn value(&self, key: &str) -> String {
         self.places
@@ -138,8 +154,7 @@ impl SourceMap {
     }
 
     fn line_at(&self, offset: usize) -> usize {
-        let before = self.text.get(..offset).unwrap_or(&self.text);
-        1 + before.matches('\n').count()
+        self.lines.partition_point(|&start| start <= offset).max(1)
     }
 
     /// The innermost key whose name or value covers `offset`.

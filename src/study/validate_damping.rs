@@ -1,5 +1,7 @@
 //! The checks of the table `[damping]`.
 
+use std::collections::BTreeSet;
+
 use super::NodalDiameterTable;
 use super::raw::{RawDamping, RawNodalDiameterDamping};
 use super::validate::Check;
@@ -77,8 +79,9 @@ pub(super) fn nodal_diameter_damping(
     if ratios.is_empty() {
         check.refuse(key, accepted);
     }
+    let mut seen = BTreeSet::new();
     for (place, &(h, ratio)) in ratios.iter().enumerate() {
-        let twice = ratios[..place].iter().any(|&(other, _)| other == h);
+        let twice = !seen.insert(h);
         if twice || h > MOST_NODAL_DIAMETERS || !(0.0..1.0).contains(&ratio) {
             check.refuse(&format!("{key}[{place}]"), accepted);
         }

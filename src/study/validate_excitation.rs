@@ -1,5 +1,6 @@
 //! The checks of `[excitation]`: engine orders, amplitudes, load cases.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::keys::EXCITATION_N;
@@ -56,9 +57,10 @@ pub(super) fn excitation(check: &mut Check, study_file: &Path, raw: RawExcitatio
         }
     }
     let mut load_cases: Vec<LoadCase> = Vec::new();
+    let mut names = BTreeSet::new();
     for (place, case) in cases.into_iter().enumerate() {
         let table = format!("excitation.load_case[{place}]");
-        let name = name(check, &table, case.name.as_deref(), &load_cases);
+        let name = name(check, &table, case.name.as_deref(), &mut names);
         let force = force(check, study_file, &table, &case);
         let (own, orders) = match case.engine_orders {
             None if raw.engine_orders.is_some() => ("excitation", &raw.engine_orders),
@@ -81,14 +83,13 @@ pub(super) fn excitation(check: &mut Check, study_file: &Path, raw: RawExcitatio
             });
         }
     }
-    let mut all: Vec<u32> = Vec::new();
-    for order in load_cases.iter().flat_map(|case| &case.engine_orders) {
-        if !all.contains(order) {
-            all.push(*order);
-        }
-    }
+    let mut seen = BTreeSet::new();
+    let orders = load_cases.iter().flat_map(|case| &case.engine_orders);
     Excited {
-        engine_orders: all,
+        engine_orders: orders
+            .copied()
+            .filter(|&order| seen.insert(order))
+            .collect(),
         amplitudes: (1.0, Vec::new()),
         load_cases,
     }
@@ -98,7 +99,7 @@ fn name(
     check: &mut Check,
     table: &str,
     written: Option<&str>,
-    before: &[LoadCase],
+    before: &mut BTreeSet<String>,
 ) -> Option<LoadCaseName> {
     let key = format!("{table}.name");
     let accepted =
@@ -107,8 +108,7 @@ fn name(
         check.missing(&key, accepted);
         return None;
     };
-    let name =
-        LoadCaseName::new(written).filter(|name| before.iter().all(|other| other.name != *name));
+    let name = LoadCaseName::new(written).filter(|_| before.insert(written.to_owned()));
     if name.is_none() {
         check.refuse(&key, accepted);
     }

@@ -1,5 +1,7 @@
 //! The checks of the normal loads: newtons and limits of `[sweep]`, rotation of `[contact.normal_load]`.
 
+use std::collections::BTreeSet;
+
 use super::RotationOptions;
 use super::keys::NORMAL_LOAD_N;
 use super::raw::{RawLoad, RawNormalLoad, RawNumbers, RawSweep};
@@ -25,6 +27,7 @@ pub(super) fn contacts(
         check.refuse(key, accepted);
     }
     let mut contacts: Vec<ContactCondition> = Vec::new();
+    let mut seen = BTreeSet::new();
     for (place, load) in loads.iter().enumerate() {
         let contact = match load {
             RawLoad::Number(value) if NORMAL_LOAD_N.holds(*value) => {
@@ -39,11 +42,16 @@ pub(super) fn contacts(
             _ => None,
         };
         match contact {
-            Some(contact) if !contacts.contains(&contact) => contacts.push(contact),
+            Some(contact) if seen.insert(order_of(contact)) => contacts.push(contact),
             _ => check.refuse(&format!("{key}[{place}]"), accepted),
         }
     }
     contacts
+}
+
+/// Two conditions are the same if they have the same name and the same load, which is no negative zero.
+fn order_of(contact: ContactCondition) -> (&'static str, Option<u64>) {
+    (contact.name(), contact.normal_load_n().map(f64::to_bits))
 }
 
 /// Normal loads by rotation; none where they cannot be told.
@@ -96,10 +104,18 @@ fn speeds(check: &mut Check, raw: Option<&RawNumbers>) -> Option<Vec<f64>> {
         Some(RawNumbers::List(speeds)) => speeds.clone(),
     };
     let possible = |speed: &f64| *speed > 0.0 && *speed <= 1e6;
-    let twice = |place: usize| speeds[..place].contains(&speeds[place]);
-    if speeds.is_empty() || !speeds.iter().all(possible) || (0..speeds.len()).any(twice) {
+    if speeds.is_empty() || !speeds.iter().all(possible) || holds_twice(&speeds) {
         check.refuse(key, accepted);
         return None;
     }
     Some(speeds)
+}
+
+/// Whether a number stands in the list twice.
+fn holds_twice(numbers: &[f64]) -> bool {
+    let mut sorted = numbers.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted
+        .windows(2)
+        .any(|pair| pair[0].total_cmp(&pair[1]).is_eq())
 }

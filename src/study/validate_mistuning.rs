@@ -1,5 +1,6 @@
 //! The checks that tie mistuning, patterns and standard deviation together.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::raw::{RawDistribution, RawDistributionKind, RawMistuning, RawSweep};
@@ -225,8 +226,10 @@ fn standard_deviations(
             if values.is_empty() {
                 check.refuse(in_sweep, accepted);
             }
+            let mut seen = BTreeSet::new();
             for (place, &value) in values.iter().enumerate() {
-                if !fits(value) || values[..place].contains(&value) {
+                // The sum turns -0.0 into 0.0.
+                if !fits(value) || !seen.insert((value + 0.0).to_bits()) {
                     check.refuse(&format!("{in_sweep}[{place}]"), accepted);
                 }
             }

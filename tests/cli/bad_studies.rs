@@ -152,3 +152,35 @@ fn a_bad_file_of_patterns_is_refused_with_its_line() {
         ended.stderr
     );
 }
+
+/// Checks of lists whose time grows with the square of their length take minutes here, and a message of 100,000
+/// findings, each with its line, more memory than there is.
+#[test]
+fn lists_of_a_hundred_thousand_are_checked_at_once() {
+    let list = |value: &dyn Fn(u32) -> String| {
+        let values: Vec<String> = (0..100_000).map(value).collect();
+        values.join(", ")
+    };
+    let different = list(&|place| (place + 1).to_string());
+    let small = list(&|place| format!("{:e}", 1e-6 * f64::from(place + 1)));
+    let same = list(&|_| "50".to_owned());
+    let loads = "\"slide\", 50, \"stuck\"";
+    let deviations = "standard_deviation = [0.03]";
+    let in_time = |study: String| {
+        let place = Place::with(&study);
+        let began = std::time::Instant::now();
+        let check = place.run(&["check", "study.toml"]);
+        // Under a second on an idle machine; the square took minutes.
+        assert!(began.elapsed().as_secs() < 10, "{:?}", began.elapsed());
+        check
+    };
+    let good = in_time(GOOD.replace(loads, &different));
+    assert_eq!(good.code, 0, "{}", good.stderr);
+    assert!(good.stdout.contains("100000 scenarios"), "{}", good.stdout);
+    let good = in_time(GOOD.replace(deviations, &format!("standard_deviation = [{small}]")));
+    assert_eq!(good.code, 0, "{}", good.stderr);
+    let bad = in_time(GOOD.replace(loads, &same));
+    assert_eq!(bad.code, 3);
+    assert!(bad.stderr.contains("and 99899 more"), "{}", bad.stderr);
+    assert!(bad.stderr.len() < 200_000, "{}", bad.stderr.len());
+}
