@@ -133,8 +133,17 @@ impl StoredStudy {
     /// # Errors
     /// The table cannot be read.
     pub fn rows_at(&self, places: &[usize]) -> Result<Vec<ResponseRow>, TableError> {
-        let mut wanted = places.iter().copied().peekable();
-        self.filter(|place, _| wanted.next_if_eq(&place).is_some())
+        let reader = self.reader()?;
+        let mut rows = Vec::with_capacity(places.len());
+        let mut group: (usize, Vec<ResponseRow>) = (0, Vec::new());
+        for &place in places.iter().filter(|&&place| place < reader.rows()) {
+            let (first, of_group) = &group;
+            if !(*first..first + of_group.len()).contains(&place) {
+                group = reader.group_of(place)?;
+            }
+            rows.push(group.1[place - group.0].clone());
+        }
+        Ok(rows)
     }
 
     /// The delivered row of a scenario and pattern; none if there is no such row.
@@ -142,7 +151,7 @@ impl StoredStudy {
     /// # Errors
     /// The table cannot be read.
     pub fn row(&self, scenario: usize, pattern: u32) -> Result<Option<ResponseRow>, TableError> {
-        let rows = self.filter(|_, row| row.scenario == scenario && row.pattern == pattern)?;
+        let rows = self.filter(|row| row.scenario == scenario && row.pattern == pattern)?;
         Ok(rows.into_iter().next())
     }
 
@@ -160,21 +169,16 @@ impl StoredStudy {
 
     fn filter(
         &self,
-        mut wanted: impl FnMut(usize, &ResponseRow) -> bool,
+        wanted: impl Fn(&ResponseRow) -> bool,
     ) -> Result<Vec<ResponseRow>, TableError> {
         let mut reader = self.reader()?;
-        let (mut place, mut rows) = (0, Vec::new());
+        let mut rows = Vec::new();
         loop {
             let batch = reader.next_batch()?;
             if batch.is_empty() {
                 return Ok(rows);
             }
-            for row in batch {
-                if wanted(place, &row) {
-                    rows.push(row);
-                }
-                place += 1;
-            }
+            rows.extend(batch.into_iter().filter(|row| wanted(row)));
         }
     }
 }

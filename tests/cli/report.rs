@@ -433,3 +433,55 @@ fn several_engine_orders_are_sections_of_their_own_and_failures_are_accounted_fo
     ];
     assert_eq!(place.run(&chosen).code, 0);
 }
+
+/// `manifest.json` with `edit` made to it, and the checksum that it then has.
+fn forge(place: &Place, results: &str, edit: impl Fn(&mut Value)) {
+    let path = format!("{results}/manifest.json");
+    let mut manifest: Value = serde_json::from_str(&read(place, &path)).expect("JSON");
+    edit(&mut manifest);
+    manifest
+        .as_object_mut()
+        .expect("a table")
+        .remove("checksum");
+    let text = serde_json::to_string_pretty(&manifest).expect("JSON");
+    let body = text.strip_suffix("\n}").expect("an object");
+    let checksum = blake3::hash(body.as_bytes()).to_hex();
+    place.write(
+        &path,
+        &format!("{body},\n  \"checksum\": \"{checksum}\"\n}}\n"),
+    );
+}
+
+/// A tick for each unit of such an axis takes for ever.
+#[test]
+fn an_amplitude_at_the_end_of_the_range_of_numbers_is_drawn_or_refused_at_once() {
+    let place = finished(&study());
+    for amplitude in [1e308, 1e-308] {
+        forge(&place, "results/small", |manifest| {
+            for scenario in manifest["scenarios"].as_array_mut().expect("a list") {
+                scenario["tuned_amplitude_m"] = amplitude.into();
+            }
+        });
+        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_blisk"))
+            .args(["report", "results/small", "--no-curves"])
+            .current_dir(place.path("."))
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .expect("the binary starts");
+        let began = std::time::Instant::now();
+        let ended = loop {
+            if let Some(ended) = child.try_wait().expect("a child") {
+                break ended;
+            }
+            if began.elapsed().as_secs() > 60 {
+                child.kill().expect("killed");
+                panic!("{amplitude:e} m: no end");
+            }
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        };
+        assert!(
+            matches!(ended.code(), Some(0 | 8)),
+            "{amplitude:e} m: {ended}"
+        );
+    }
+}

@@ -5,6 +5,7 @@ mod damage;
 mod extension;
 mod folder;
 mod mock_engine;
+mod scale;
 mod shards;
 mod solid_wheel;
 mod stopping;

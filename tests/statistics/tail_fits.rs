@@ -302,6 +302,74 @@ fn goodness_of_fit_is_uniform_where_the_law_is_right() {
     assert!(chi < CHI_SQUARE_9, "chi-square {chi}");
 }
 
+/// Work that grows with the sample is done on it once, not in every resample.
+#[test]
+fn resamples_of_a_large_sample_are_no_larger_than_those_of_a_small_one() {
+    let truth = law(1.7, 0.2, -0.2);
+    for (n, values) in [(60, 60), (1000, 1000), (1001, 1000), (50_000, 1000)] {
+        for fit in fit_tails(&sample(&truth, n, 3), 0, 20, 5, 0) {
+            assert_eq!(fit.status, FitStatus::Converged, "{n}");
+            assert_eq!(fit.values_of_resample, values, "{n}");
+        }
+    }
+}
+
+/// The statistics of resamples of 1000 values, brought to the size of the sample, are those of resamples as large
+/// as the sample.
+#[test]
+fn smaller_resamples_give_the_spread_and_the_goodness_of_fit_of_whole_ones() {
+    let n = 4000;
+    let values = sample(&law(1.7, 0.2, -0.2), n, 8);
+    let fitted = fit_extreme_value(&values).expect("a fit");
+    let found = &fit_tails(&values, 0, 2000, 3, 0)[1];
+    let whole: Vec<(f64, f64)> = (0..200)
+        .map(|resample| {
+            let drawn = sample(&fitted, n, 1000 + resample);
+            let own = fit_extreme_value(&drawn).expect("a fit");
+            (own.quantile(0.99), anderson_darling(&drawn, &own))
+        })
+        .collect();
+    let size = whole.len() as f64;
+    let mean = whole.iter().map(|own| own.0).sum::<f64>() / size;
+    let variance = whole.iter().map(|own| (own.0 - mean).powi(2)).sum::<f64>() / (size - 1.0);
+    let p99 = found.percentiles[1].model.expect("a model");
+    let (lower, upper) = p99.lower.zip(p99.upper).expect("bounds");
+    // The standard deviation of 200 values is known to 5 %.
+    let ratio = (upper - lower) / (2.0 * 1.96 * variance.sqrt());
+    assert!((ratio - 1.0).abs() < 0.15, "{ratio}");
+    let distance = found.anderson_darling.expect("a fit");
+    let larger = whole.iter().filter(|own| own.1 >= distance).count() as f64 / size;
+    let p = found.p_value.expect("a fit");
+    assert!((p - larger).abs() < 0.12, "{p}, {larger}");
+    // And the probability is uniform where the law is right.
+    let chi = uniformity(&law(1.7, 0.2, -0.2), 1500, 60, 99);
+    assert!(chi < CHI_SQUARE_9, "chi-square {chi}");
+}
+
+#[test]
+fn the_fit_of_many_values_is_the_maximum_that_the_fit_of_few_is() {
+    let truth = law(1.7, 0.2, -0.2);
+    let values = sample(&truth, 40_000, 5);
+    let found = fit_extreme_value(&values).expect("a fit");
+    let likelihood = |law: &ExtremeValueLaw| -> f64 {
+        let densities = values.iter().map(|&x| law.negative_log_density(x));
+        densities
+            .map(|own| own.map_or(f64::INFINITY, |own| own.0))
+            .sum()
+    };
+    let best = likelihood(&found);
+    for (location, scale, shape) in [(1e-4, 1.0, 0.0), (0.0, 1.0005, 0.0), (0.0, 1.0, 1e-3)] {
+        for sign in [-1.0, 1.0] {
+            let beside = law(
+                found.location + sign * location,
+                found.scale * f64::powf(scale, sign),
+                found.shape + sign * shape,
+            );
+            assert!(likelihood(&beside) > best, "{beside:?}");
+        }
+    }
+}
+
 /// `cargo test --release --test statistics -- --ignored goodness_of_fit`
 #[test]
 #[ignore = "10,000 samples of several sizes and shapes: some minutes"]

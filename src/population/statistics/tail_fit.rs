@@ -5,6 +5,10 @@
 //! Anderson-Darling distance do not apply: its law under the fit is simulated (parametric bootstrap,
 //! Stute, Gonzalez Manteiga & Presedo Quindimil 1993), every resample fitted anew. The same resamples
 //! give the intervals of the parameters and percentiles.
+//!
+//! Of a large sample the resamples are smaller than it is ([`MOST_RESAMPLED`]), so that the work does not grow with
+//! it: the law of the distance no longer changes with the number of values, and the deviations of the
+//! parameters shrink with its root, by which they are brought to the size of the sample.
 
 use rand::RngExt;
 use rayon::prelude::*;
@@ -23,6 +27,9 @@ const FEW_VALUES: usize = 50;
 
 /// A goodness of fit below this is marked.
 const REJECTED_BELOW: f64 = 0.05;
+
+/// Values of a resample at most.
+pub const MOST_RESAMPLED: usize = 1000;
 
 /// Shapes above this are Gumbel's to all purposes, the end of the family of laws bounded above.
 const BOUNDED_ABOVE: f64 = -1e-3;
@@ -105,6 +112,8 @@ pub struct TailFit {
     pub p_value: Option<f64>,
     /// Resamples behind it.
     pub resamples: u32,
+    /// Values of each of them: those of the sample, or [`MOST_RESAMPLED`] where it has more.
+    pub values_of_resample: u32,
     /// Resamples that could not be fitted; above 1 % there are no intervals and no `p_value`.
     pub failed_resamples: u32,
     /// Percentiles in the order of [`TAIL_PERCENTILES`].
@@ -137,23 +146,56 @@ pub fn fit_tails(
     };
     let simulated: Vec<Option<[Fitted; 2]>> = match law {
         Err(_) => Vec::new(),
-        Ok(law) => (0..resamples)
-            .into_par_iter()
-            .map(|resample| {
-                let mut stream = resampling_stream(seed, topic, resample);
-                let mut drawn: Vec<f64> = (0..sorted.len())
-                    .map(|_| law.quantile(open_unit(&mut stream)))
-                    .collect();
-                drawn.sort_unstable_by(f64::total_cmp);
-                refit(&drawn, &law, bounded.is_ok())
-            })
-            .collect(),
+        Ok(law) => simulate(
+            &law,
+            bounded.is_ok(),
+            sorted.len(),
+            |resample| resampling_stream(seed, topic, resample),
+            resamples,
+        ),
     };
     let sample = Sample { sorted, failed };
     [
         sample.report(TailLaw::WeibullBoundedAbove, bounded, &of(&simulated, 0)),
         sample.report(TailLaw::GeneralisedExtremeValue, law, &of(&simulated, 1)),
     ]
+}
+
+/// Fits of resamples of `law` as samples of `n` values have them.
+fn simulate<R: rand::Rng>(
+    law: &ExtremeValueLaw,
+    bounded: bool,
+    n: usize,
+    stream: impl Fn(u32) -> R + Sync,
+    resamples: u32,
+) -> Vec<Option<[Fitted; 2]>> {
+    let size = n.min(MOST_RESAMPLED);
+    let shrunk = (size < n).then(|| (size as f64 / n as f64).sqrt());
+    (0..resamples)
+        .into_par_iter()
+        .map(|resample| {
+            let mut stream = stream(resample);
+            let mut drawn: Vec<f64> = (0..size)
+                .map(|_| law.quantile(open_unit(&mut stream)))
+                .collect();
+            drawn.sort_unstable_by(f64::total_cmp);
+            let fitted = refit(&drawn, law, bounded)?;
+            Some(match shrunk {
+                None => fitted,
+                Some(share) => fitted.map(|(own, distance)| (between(law, &own, share), distance)),
+            })
+        })
+        .collect()
+}
+
+/// The law whose parameters deviate from those of `law` by `share` of what those of `other` do; the scale by its
+/// logarithm.
+fn between(law: &ExtremeValueLaw, other: &ExtremeValueLaw, share: f64) -> ExtremeValueLaw {
+    ExtremeValueLaw {
+        location: law.location + share * (other.location - law.location),
+        scale: law.scale * (other.scale / law.scale).powf(share),
+        shape: law.shape + share * (other.shape - law.shape),
+    }
 }
 
 /// The simulated fits of one of the two laws.
@@ -236,6 +278,7 @@ impl Sample<'_> {
             anderson_darling: distance,
             p_value,
             resamples: simulated.len() as u32,
+            values_of_resample: self.sorted.len().min(MOST_RESAMPLED) as u32,
             failed_resamples: lost as u32,
             percentiles,
             few_values: self.sorted.len() < FEW_VALUES,

@@ -372,6 +372,16 @@ impl ResponseReader {
         Ok(rows)
     }
 
+    /// The row group of row `place`: where it begins, and its rows; without rows beyond the end.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn group_of(&self, place: usize) -> Result<(usize, Vec<ResponseRow>), TableError> {
+        let first = place - place % ROW_GROUP;
+        let count = ROW_GROUP.min(self.rows().saturating_sub(first));
+        Ok((first, self.read(first, count)?))
+    }
+
     fn read(&self, first: usize, count: usize) -> Result<Vec<ResponseRow>, TableError> {
         let slice = self.table.read(first, count)?;
         let gap = |row: usize, column: &str| {

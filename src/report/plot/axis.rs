@@ -45,6 +45,9 @@ const PROBABILITIES: [(f64, &str); 10] = [
     (0.9999, "99.99"),
 ];
 
+/// Ticks of a linear axis at most; a range that is no range of numbers has none.
+const MOST_TICKS: f64 = 1000.0;
+
 impl Axis {
     /// Place of `value`, not beyond the ends.
     pub(in crate::report) fn at(&self, value: f64) -> f64 {
@@ -68,9 +71,16 @@ impl Axis {
     pub(in crate::report) fn ticks(&self, count: u32) -> Vec<(f64, String)> {
         match self.scale {
             Scale::Linear => {
-                let step = nice_step((self.high - self.low) / f64::from(count.max(1)));
-                let first = (self.low / step - 1e-9).ceil() as i64;
-                let last = (self.high / step + 1e-9).floor() as i64;
+                // Halves do not leave the range of numbers where the difference does.
+                let half = 0.5 * self.high - 0.5 * self.low;
+                let step = nice_step(half / (0.5 * f64::from(count.max(1))));
+                let first = (self.low / step - 1e-9).ceil();
+                let last = (self.high / step + 1e-9).floor();
+                let is_range = last - first <= MOST_TICKS;
+                if !is_range {
+                    return Vec::new();
+                }
+                let (first, last) = (first as i64, last as i64);
                 let decimals = (-step.log10().floor()).max(0.0) as usize;
                 (first..=last)
                     .map(|place| {
@@ -90,6 +100,9 @@ impl Axis {
 
     /// Powers of ten, and 2 and 5 times them where there is room.
     fn decades(&self, count: u32) -> Vec<(f64, String)> {
+        if !(self.low > 0.0 && self.high.is_finite()) {
+            return Vec::new();
+        }
         let named = |factors: &[f64]| -> Vec<(f64, String)> {
             let (first, last) = (self.low.log10().floor(), self.high.log10().ceil());
             (first as i32..=last as i32)
