@@ -134,6 +134,6 @@ pub(super) fn command(arguments: &CampbellArguments) -> Result<ExitStatus, Failu
         modes: usize::from(arguments.modes),
         range_rpm: arguments.speed_rpm.map(|Speeds(range)| range),
     })?;
-    output::result(arguments.json, &report);
+    output::result(arguments.json, &report)?;
     Ok(ExitStatus::Done)
 }

@@ -22,7 +22,7 @@ pub(super) fn command(study: &Path, json: bool) -> Result<ExitStatus, Failure> {
             "scenarios": scenarios,
             "rotation": study.rotation.as_ref().map(RotationLoad::facts),
             "rows": scenarios as u64 * u64::from(study.patterns),
-        }));
+        }))?;
     } else {
         output::text(&format!(
             "{} is valid: model {} ({} sectors of {} dofs, {} contact pairs each), \
@@ -34,9 +34,9 @@ pub(super) fn command(study: &Path, json: bool) -> Result<ExitStatus, Failure> {
             model.contact_pairs.len(),
             study.patterns,
             scenarios as u64 * u64::from(study.patterns),
-        ));
+        ))?;
         if let Some(rotation) = &study.rotation {
-            output::text(&rotation.facts());
+            output::text(&rotation.facts())?;
         }
     }
     Ok(ExitStatus::Done)

@@ -31,7 +31,7 @@ pub(super) fn command(arguments: &CompareArguments) -> Result<ExitStatus, Failur
         baseline: arguments.baseline,
         percent: arguments.percentile,
     })?;
-    output::result(arguments.json, &report);
+    output::result(arguments.json, &report)?;
     Ok(if report.failures_cost_a_comparison() {
         ExitStatus::FailureGate
     } else {

@@ -78,7 +78,7 @@ pub(super) fn command(arguments: &EstimateArguments) -> Result<ExitStatus, Failu
     progress.finish();
     let report = report?;
     output::message(&format!("results in {}", results.display()));
-    output::result(arguments.json, &report);
+    output::result(arguments.json, &report)?;
     Ok(if report.failures_cost_a_value() {
         ExitStatus::FailureGate
     } else {

@@ -91,21 +91,21 @@ pub(super) fn explain(arguments: &ExplainArguments) -> Result<ExitStatus, Failur
         )));
     }
     if arguments.json {
-        output::json_only(&found);
+        output::json_only(&found)?;
         return Ok(ExitStatus::Done);
     }
     let table = keys_below(name).iter().any(|key| key.value == Value::Table);
     let text: Vec<String> = found.iter().map(ToString::to_string).collect();
-    output::text(&text.join(if table { "\n" } else { "" }));
+    output::text(&text.join(if table { "\n" } else { "" }))?;
     Ok(ExitStatus::Done)
 }
 
-pub(super) fn schema() -> ExitStatus {
-    output::json_only(&study_schema());
-    ExitStatus::Done
+pub(super) fn schema() -> Result<ExitStatus, Failure> {
+    output::json_only(&study_schema())?;
+    Ok(ExitStatus::Done)
 }
 
-pub(super) fn completions(arguments: &CompletionsArguments) -> ExitStatus {
+pub(super) fn completions(arguments: &CompletionsArguments) -> Result<ExitStatus, Failure> {
     let mut script = Vec::new();
     clap_complete::generate(
         arguments.shell,
@@ -113,6 +113,6 @@ pub(super) fn completions(arguments: &CompletionsArguments) -> ExitStatus {
         "blisk",
         &mut script,
     );
-    output::text(&String::from_utf8_lossy(&script));
-    ExitStatus::Done
+    output::text(&String::from_utf8_lossy(&script))?;
+    Ok(ExitStatus::Done)
 }

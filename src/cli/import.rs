@@ -75,7 +75,7 @@ pub(super) fn command(arguments: &ImportArguments) -> Result<ExitStatus, Failure
             BodyArgument::Ring => Body::Ring,
         };
         let equations = calculix_equations(&arguments.file, body).map_err(PipelineError::from)?;
-        output::text(&equations);
+        output::text(&equations)?;
         return Ok(ExitStatus::Done);
     }
     let Some(out) = &arguments.out else {
@@ -96,7 +96,7 @@ pub(super) fn command(arguments: &ImportArguments) -> Result<ExitStatus, Failure
         report: imported.report,
         frequencies_hz,
     };
-    output::result(arguments.json, &outcome);
+    output::result(arguments.json, &outcome)?;
     Ok(ExitStatus::Done)
 }
 

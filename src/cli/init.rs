@@ -45,7 +45,7 @@ pub(super) fn command(arguments: &InitArguments) -> Result<ExitStatus, Failure> 
     output::text(&format!(
         "wrote {}; next: blisk check {0}, blisk run {0}",
         out.display()
-    ));
+    ))?;
     if let Some(missing) = missing_input(out) {
         output::message(&format!(
             "{missing}: this example reads files of the repository; put some there, or change their paths"

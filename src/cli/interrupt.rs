@@ -1,4 +1,7 @@
-//! Signals: the first one has a run store what it has and end, the second ends it at once.
+//! Signals: the first one has a command store what it has and end, the second ends it at once.
+//!
+//! Every command is watched. One that stores rows while it solves them gets time to do so; every other is
+//! ended where it stands, which costs nothing: files appear whole and at its end.
 
 use std::io;
 use std::sync::Arc;
@@ -8,34 +11,100 @@ use std::time::{Duration, Instant};
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-use super::{ExitStatus, output};
+use super::{Command, ExitStatus, output};
 use crate::platform;
+use crate::population::table::abandon_unfinished;
 
 /// Time between looks for a signal.
 const LOOK: Duration = Duration::from_millis(50);
-/// Time that a run has to store what it has.
-const PATIENCE: Duration = Duration::from_millis(4500);
+/// Time that a command has to store what it has.
+const PATIENCE: Duration = Duration::from_secs(4);
 
-/// The signals that ask a run to end.
+/// What a command that is ended by a signal leaves, and what to do then.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kept {
+    /// The rows solved, and what these words say.
+    Rows(&'static str),
+    /// What these words say.
+    Else(&'static str),
+}
+
+impl Kept {
+    fn by(command: &Command) -> Self {
+        match command {
+            Command::Run(_) | Command::Estimate(_) | Command::Optimum(_) => {
+                Self::Rows("what was solved is stored; the same command continues")
+            }
+            Command::Verify { repair: true, .. } => {
+                Self::Rows("what was solved is stored; `blisk run` continues")
+            }
+            Command::Merge(_) => {
+                Self::Else("the shards are as they were; the same command merges them")
+            }
+            Command::Import(_)
+            | Command::Model {
+                export: Some(_), ..
+            } => Self::Else("the sector bundle is not complete; the same command writes it"),
+            Command::Tradeoff(_) => Self::Else(
+                "no table was written, and what was measured so far is not kept; the same command begins again",
+            ),
+            Command::Init(_)
+            | Command::Check { .. }
+            | Command::Model { .. }
+            | Command::Campbell(_)
+            | Command::Plan(_)
+            | Command::Slurm(_)
+            | Command::Status(_)
+            | Command::Response { .. }
+            | Command::Replay(_)
+            | Command::Verify { .. }
+            | Command::Compare(_)
+            | Command::Stats(_)
+            | Command::Report(_)
+            | Command::Plot(_)
+            | Command::Explain(_)
+            | Command::Schema
+            | Command::Completions(_)
+            | Command::Man(_) => {
+                Self::Else("nothing of this command is kept; the same command begins again")
+            }
+        }
+    }
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Rows(words) | Self::Else(words) => words,
+        }
+    }
+}
+
+/// The signals that ask a command to end.
 #[derive(Debug)]
 pub(super) struct Signals {
     /// The signal that came; 0 if none did.
     came: Arc<AtomicUsize>,
+    kept: Kept,
+    /// Whether rows are in work that the command stores before it ends.
+    storing: AtomicBool,
 }
 
 /// Set up once in a process.
 static SIGNALS: OnceLock<Signals> = OnceLock::new();
 
-/// Watches for signals from now on; those that whoever started the process has it ignore stay
-/// ignored.
+/// Watches for signals while `command` is carried out; those that whoever started the process has it
+/// ignore stay ignored.
 ///
-/// A run that does not end in time after a signal, because it is not yet or no longer at its rows, is
-/// ended: what is stored is complete at any instant.
-pub(super) fn watch() -> io::Result<&'static Signals> {
-    if let Some(signals) = SIGNALS.get() {
-        return Ok(signals);
-    }
+/// A command that does not end in time after a signal is ended: what is stored is complete at any instant.
+pub(super) fn watch(command: &Command) -> io::Result<()> {
     let came = Arc::new(AtomicUsize::new(0));
+    let signals = Signals {
+        came: Arc::clone(&came),
+        kept: Kept::by(command),
+        storing: AtomicBool::new(false),
+    };
+    if SIGNALS.set(signals).is_err() {
+        return Ok(());
+    }
     let second = Arc::new(AtomicBool::new(false));
     for signal in asking() {
         if platform::ignores_signal(signal) {
@@ -46,9 +115,25 @@ pub(super) fn watch() -> io::Result<&'static Signals> {
         signal_hook::flag::register(signal, Arc::clone(&second))?;
         signal_hook::flag::register_usize(signal, Arc::clone(&came), signal as usize)?;
     }
-    let signals = SIGNALS.get_or_init(|| Signals { came });
-    std::thread::spawn(|| end_in_time(signals));
-    Ok(signals)
+    if let Some(signals) = signals_of_process() {
+        std::thread::spawn(|| end_in_time(signals));
+    }
+    Ok(())
+}
+
+/// The signals of this process, if they are watched.
+pub(super) fn signals_of_process() -> Option<&'static Signals> {
+    SIGNALS.get()
+}
+
+/// How a command ends that would end with `status`: one that was interrupted, by the signal that came.
+pub(super) fn ended(status: ExitStatus) -> ExitStatus {
+    match status {
+        ExitStatus::Interrupted => signals_of_process()
+            .and_then(Signals::came)
+            .unwrap_or(status),
+        status => status,
+    }
 }
 
 #[cfg(unix)]
@@ -77,19 +162,14 @@ fn end_in_time(signals: &Signals) {
         }
         std::thread::sleep(LOOK);
     };
-    output::message(&"stopping: what is solved is being stored (once more: stop at once)");
-    let since = Instant::now();
-    while since.elapsed() < PATIENCE {
-        std::thread::sleep(LOOK);
+    if signals.storing.load(Ordering::Relaxed) {
+        output::message(&"stopping: what is solved is being stored (once more: stop at once)");
+        let since = Instant::now();
+        while since.elapsed() < PATIENCE {
+            std::thread::sleep(LOOK);
+        }
     }
-    leave(status);
-}
-
-/// Ends the process.
-#[expect(clippy::exit, reason = "rows in work are given up")]
-fn leave(status: ExitStatus) -> ! {
-    output::message(&"interrupted; the same command continues");
-    std::process::exit(status as i32)
+    signals.leave(status);
 }
 
 impl Signals {
@@ -101,10 +181,23 @@ impl Signals {
         }
     }
 
+    /// Whether the command stores rows from now on, so that a signal gives it time to do so.
+    pub(super) fn set_storing(&self, storing: bool) {
+        let storing = storing && matches!(self.kept, Kept::Rows(_));
+        self.storing.store(storing, Ordering::Relaxed);
+    }
+
     /// Ends the process if a signal has come.
     pub(super) fn leave_if_asked(&self) {
         if let Some(status) = self.came() {
-            leave(status);
+            self.leave(status);
         }
+    }
+
+    /// Ends the process.
+    fn leave(&self, status: ExitStatus) -> ! {
+        abandon_unfinished();
+        output::message(&format!("interrupted: {}", self.kept.words()));
+        std::process::exit(status as i32)
     }
 }

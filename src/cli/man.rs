@@ -35,6 +35,6 @@ pub(super) fn command(arguments: &ManArguments) -> Result<ExitStatus, Failure> {
         pages.len(),
         out.display(),
         out.join("blisk.1").display()
-    ));
+    ))?;
     Ok(ExitStatus::Done)
 }

@@ -38,6 +38,6 @@ pub(super) fn command(arguments: &MergeArguments) -> Result<ExitStatus, Failure>
         outcome.rows_reused,
         out.display()
     ));
-    output::result(*json, &outcome.summary);
+    output::result(*json, &outcome.summary)?;
     Ok(super::stats::status_of(&outcome.summary))
 }

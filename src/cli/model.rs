@@ -38,6 +38,6 @@ pub(super) fn command(
     let engine = ReducedEngineSource.build(&study, &model, None)?;
     let mut report = engine.model_report();
     report.rotation = study.rotation.as_ref().map(RotationLoad::facts);
-    output::result(json, &report);
+    output::result(json, &report)?;
     Ok(ExitStatus::Done)
 }

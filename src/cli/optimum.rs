@@ -75,7 +75,7 @@ pub(super) fn command(arguments: &OptimumArguments) -> Result<ExitStatus, Failur
     progress.finish();
     let report = report?;
     output::message(&format!("results in {}", results.display()));
-    output::result(arguments.json, &report);
+    output::result(arguments.json, &report)?;
     Ok(if report.failures_cost_a_load() {
         ExitStatus::FailureGate
     } else {

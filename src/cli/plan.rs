@@ -36,6 +36,6 @@ pub(super) fn command(arguments: &PlanArguments) -> Result<ExitStatus, Failure> 
     };
     let plan = plan(request, &ReducedEngineSource, &progress);
     progress.finish();
-    output::result(arguments.json, &plan?);
+    output::result(arguments.json, &plan?)?;
     Ok(ExitStatus::Done)
 }

@@ -1,13 +1,12 @@
 //! Progress of a run on stderr: a bar on a terminal, a plain line now and then elsewhere.
 
-use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::interrupt::Signals;
+use super::interrupt::{Signals, signals_of_process};
 use super::output;
 use crate::response::harmonic_balance::Status;
 use crate::study::{Progress, Stage};
@@ -36,7 +35,7 @@ impl RunProgress {
     pub(super) fn new() -> Self {
         let now = Instant::now();
         Self {
-            bar: std::io::stderr().is_terminal().then(ProgressBar::no_length),
+            bar: output::shows_bars().then(ProgressBar::no_length),
             failed: AtomicU64::new(0),
             plain: Mutex::new(Plain {
                 began: now,
@@ -45,15 +44,7 @@ impl RunProgress {
                 reused: 0,
                 solved: 0,
             }),
-            signals: None,
-        }
-    }
-
-    /// The same for a run that stops when one of `signals` comes.
-    pub(super) fn stopped_by(self, signals: &'static Signals) -> Self {
-        Self {
-            signals: Some(signals),
-            ..self
+            signals: signals_of_process(),
         }
     }
 
@@ -86,6 +77,9 @@ impl RunProgress {
 
 impl Progress for RunProgress {
     fn stage(&self, stage: Stage) {
+        if let Some(signals) = self.signals {
+            signals.set_storing(matches!(stage, Stage::Rows | Stage::Tables));
+        }
         let words = match stage {
             Stage::LoadModel => "loading the model",
             Stage::Reduce => "reducing the model",

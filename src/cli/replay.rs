@@ -51,9 +51,9 @@ pub(super) fn command(arguments: &ReplayArguments) -> Result<ExitStatus, Failure
     };
     let replay = replay(&stored, &ReducedEngineSource, &request)?;
     if arguments.json {
-        output::json_only(&as_json(&replay));
+        output::json_only(&as_json(&replay))?;
     } else {
-        output::text(&as_text(&replay));
+        output::text(&as_text(&replay))?;
     }
     Ok(if replay.identical {
         ExitStatus::Done

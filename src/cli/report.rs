@@ -84,9 +84,9 @@ pub(super) fn command(arguments: &ReportArguments) -> Result<ExitStatus, Failure
         write_atomically(out, html_report(&found).as_bytes())?;
     }
     if arguments.json {
-        output::json_only(&found);
+        output::json_only(&found)?;
     } else if let Some(out) = &out {
-        output::text(&format!("{}wrote {}", in_words(&found), out.display()));
+        output::text(&format!("{}wrote {}", in_words(&found), out.display()))?;
     }
     Ok(ExitStatus::Done)
 }
@@ -133,7 +133,7 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<ExitStatus, Failure> {
         out.display(),
         drawn.title,
         drawn.setting
-    ));
+    ))?;
     Ok(ExitStatus::Done)
 }
 

@@ -186,7 +186,7 @@ pub(super) fn command(arguments: &ResponseArguments) -> Result<ExitStatus, Failu
             "rows": points.len(),
             "failed": failed,
             "largest": largest.map(|(_, point)| point),
-        }));
+        }))?;
     } else {
         let largest = largest.map_or_else(String::new, |(amplitude, point)| {
             format!(
@@ -198,7 +198,7 @@ pub(super) fn command(arguments: &ResponseArguments) -> Result<ExitStatus, Failu
             "wrote {} rows to {}, {failed} without value{largest}",
             points.len(),
             out.display()
-        ));
+        ))?;
     }
     Ok(if failed == 0 {
         ExitStatus::Done
@@ -247,14 +247,14 @@ fn followed(
             "rows": curve.points.len(),
             "complete": { "up": complete[0], "down": complete[1] },
             "curve": curve,
-        }));
+        }))?;
     } else {
         output::text(&format!(
             "wrote {} rows to {}\n{}",
             curve.points.len(),
             out.display(),
             in_words(&curve)
-        ));
+        ))?;
     }
     Ok(if complete == [true, true] {
         ExitStatus::Done

@@ -7,10 +7,8 @@ use clap::Args;
 use super::progress::RunProgress;
 use super::run_command::Failure;
 use super::scheduler::{ShardArgument, threads};
-use super::{ExitStatus, interrupt, output};
-use crate::study::{
-    AccuracyOptions, PipelineError, ReducedEngineSource, RunRequest, Study, run, run_shard,
-};
+use super::{ExitStatus, output};
+use crate::study::{AccuracyOptions, ReducedEngineSource, RunRequest, Study, run, run_shard};
 
 /// Arguments of the command.
 #[derive(Debug, Args)]
@@ -43,11 +41,7 @@ pub(super) fn command(arguments: RunArguments) -> Result<ExitStatus, Failure> {
     let shard = arguments.shard.map(ShardArgument::shard).transpose()?;
     let out = arguments.out;
     let results = out.unwrap_or_else(|| Path::new("results").join(&study.name));
-    let signals = interrupt::watch().map_err(|error| Failure {
-        status: ExitStatus::InternalError,
-        message: format!("cannot watch for signals: {error}"),
-    })?;
-    let progress = RunProgress::new().stopped_by(signals);
+    let progress = RunProgress::new();
     let request = RunRequest {
         study: &study,
         results: &results,
@@ -58,15 +52,7 @@ pub(super) fn command(arguments: RunArguments) -> Result<ExitStatus, Failure> {
         Some(shard) => run_shard(request, shard, &ReducedEngineSource, &progress),
     };
     progress.finish();
-    let outcome = match outcome {
-        Err(error @ PipelineError::Interrupted { .. }) => {
-            return Err(Failure {
-                status: signals.came().unwrap_or(ExitStatus::Interrupted),
-                message: error.to_string(),
-            });
-        }
-        outcome => outcome?,
-    };
+    let outcome = outcome?;
     let what = shard.map_or_else(String::new, |shard| format!("shard {shard} of "));
     if outcome.rows_solved == 0 {
         output::message(&format!(
@@ -85,7 +71,7 @@ pub(super) fn command(arguments: RunArguments) -> Result<ExitStatus, Failure> {
         // Statistics are those of the whole, once it is merged.
         return Ok(ExitStatus::Done);
     }
-    output::result(arguments.json, &outcome.summary);
+    output::result(arguments.json, &outcome.summary)?;
     Ok(super::stats::status_of(&outcome.summary))
 }
 

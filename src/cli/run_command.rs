@@ -6,26 +6,33 @@ use std::io::{self, ErrorKind};
 use clap::Parser;
 
 use super::{
-    Arguments, Command, ExitStatus, campbell, check, compare, estimate, explain, import, init, man,
-    merge, model, optimum, output, plan, replay, report, response, run, slurm, stats, status,
-    tradeoff, verify,
+    Arguments, Command, ExitStatus, campbell, check, compare, estimate, explain, import, init,
+    interrupt, man, merge, model, optimum, output, plan, replay, report, response, run, slurm,
+    stats, status, tradeoff, verify,
 };
 
 /// Carries out the command line `arguments` (the first is the program's name).
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
-        Err(error) => {
-            // Help and version are results; anything else is wrong use. A closed pipe is no error.
-            let _ = error.print();
-            return if error.use_stderr() {
-                ExitStatus::Usage
-            } else {
-                ExitStatus::Done
-            };
-        }
+        Err(error) => return output::of_clap(&error).unwrap_or_else(|failure| failed(&failure)),
     };
-    let ended = match arguments.command {
+    if let Err(error) = interrupt::watch(&arguments.command) {
+        return failed(&Failure {
+            status: ExitStatus::InternalError,
+            message: format!("cannot watch for signals: {error}"),
+        });
+    }
+    carry_out(arguments.command).unwrap_or_else(|failure| failed(&failure))
+}
+
+fn failed(failure: &Failure) -> ExitStatus {
+    output::message(&format!("error: {}", failure.message));
+    interrupt::ended(failure.status)
+}
+
+fn carry_out(command: Command) -> Result<ExitStatus, Failure> {
+    match command {
         Command::Init(arguments) => init::command(&arguments),
         Command::Check { study, json } => check::command(&study, json),
         Command::Model {
@@ -99,14 +106,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Report(arguments) => report::command(&arguments),
         Command::Plot(arguments) => report::plot(&arguments),
         Command::Explain(arguments) => explain::explain(&arguments),
-        Command::Schema => Ok(explain::schema()),
-        Command::Completions(arguments) => Ok(explain::completions(&arguments)),
+        Command::Schema => explain::schema(),
+        Command::Completions(arguments) => explain::completions(&arguments),
         Command::Man(arguments) => man::command(&arguments),
-    };
-    ended.unwrap_or_else(|failure| {
-        output::message(&format!("error: {}", failure.message));
-        failure.status
-    })
+    }
 }
 
 /// A command that failed: what to say and how to exit.

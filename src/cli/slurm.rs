@@ -24,7 +24,7 @@ pub struct SlurmArguments {
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: u16,
     /// Time limit of each shard, as `sbatch --time` takes it; a shard that reaches it queues again.
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", value_parser = time_limit)]
     pub time: Option<String>,
     /// The script; it must not exist yet [default: NAME-slurm.sh].
     #[arg(long, value_name = "FILE")]
@@ -32,6 +32,13 @@ pub struct SlurmArguments {
 }
 
 pub(super) fn command(arguments: &SlurmArguments) -> Result<ExitStatus, Failure> {
+    for (name, path) in [
+        ("STUDY", Some(&arguments.study)),
+        ("--out", arguments.out.as_ref()),
+        ("--script", arguments.script.as_ref()),
+    ] {
+        refuse_control_characters(name, path)?;
+    }
     let study = Study::read(&arguments.study)?;
     can_be_cut(&study)?;
     let default = || PathBuf::from(format!("{}-slurm.sh", study.name));
@@ -62,8 +69,45 @@ pub(super) fn command(arguments: &SlurmArguments) -> Result<ExitStatus, Failure>
         "wrote {0}; `bash {0}` submits {1} shards and their merge",
         script.display(),
         arguments.tasks
-    ));
+    ))?;
     Ok(ExitStatus::Done)
+}
+
+/// A path in the script is one word of one line.
+fn refuse_control_characters(name: &str, path: Option<&PathBuf>) -> Result<(), Failure> {
+    let absolute = path.map(|path| std::path::absolute(path).unwrap_or_else(|_| path.clone()));
+    match absolute {
+        Some(path) if path.to_string_lossy().contains(char::is_control) => {
+            Err(Failure::usage(format!(
+                "{name} {}: accepted: a path without control characters, which a script of the shell takes for ends of lines \
+                 or orders",
+                path.display()
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A time limit in one of the forms of `sbatch --time`.
+fn time_limit(text: &str) -> Result<String, String> {
+    let number = |part: &str| {
+        (1..=9).contains(&part.len()) && part.bytes().all(|byte| byte.is_ascii_digit())
+    };
+    let (days, clock) = match text.split_once('-') {
+        Some((days, clock)) => (Some(days), clock),
+        None => (None, text),
+    };
+    let parts: Vec<&str> = clock.split(':').collect();
+    let known =
+        days.is_none_or(number) && parts.len() <= 3 && parts.iter().all(|part| number(part));
+    let endless = ["UNLIMITED", "INFINITE"].contains(&text.to_ascii_uppercase().as_str());
+    if known || endless {
+        Ok(text.to_owned())
+    } else {
+        Err("accepted: MINUTES, MINUTES:SECONDS, HOURS:MINUTES:SECONDS, DAYS-HOURS, DAYS-HOURS:MINUTES, \
+             DAYS-HOURS:MINUTES:SECONDS or UNLIMITED, like 12:00:00"
+            .to_owned())
+    }
 }
 
 /// What the script is made from; paths absolute and quoted for the shell.

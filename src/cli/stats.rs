@@ -37,7 +37,7 @@ pub(super) fn command(arguments: &StatsArguments) -> Result<ExitStatus, Failure>
                 .transpose()?,
             summary,
         };
-        output::result(arguments.json, &report);
+        output::result(arguments.json, &report)?;
         return Ok(status_of(&report.summary));
     };
     let PartialSummary {
@@ -54,9 +54,9 @@ pub(super) fn command(arguments: &StatsArguments) -> Result<ExitStatus, Failure>
             rows_stored: *stored,
             rows_planned: *planned,
             summary,
-        });
+        })?;
     } else {
-        output::text(&format!("{warning}\n\n{summary}\n{warning}"));
+        output::text(&format!("{warning}\n\n{summary}\n{warning}"))?;
     }
     Ok(ExitStatus::Done)
 }

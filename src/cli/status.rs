@@ -26,11 +26,11 @@ pub(super) fn command(arguments: &StatusArguments) -> Result<ExitStatus, Failure
     let status = status_of_folder(&arguments.results)?;
     if arguments.missing {
         let numbers: Vec<String> = status.missing_shards.iter().map(u32::to_string).collect();
-        output::text(&numbers.join(","));
+        output::text(&numbers.join(","))?;
     } else if arguments.json {
-        output::json_only(&status);
+        output::json_only(&status)?;
     } else {
-        output::text(&lines(&status).join("\n"));
+        output::text(&lines(&status).join("\n"))?;
     }
     Ok(ExitStatus::Done)
 }

@@ -60,6 +60,6 @@ pub(super) fn command(arguments: &TradeoffArguments) -> Result<ExitStatus, Failu
     progress.finish();
     let report = report?;
     output::message(&format!("tables in {}", results.display()));
-    output::result(arguments.json, &report);
+    output::result(arguments.json, &report)?;
     Ok(ExitStatus::Done)
 }

@@ -9,7 +9,7 @@ use serde_json::json;
 use super::progress::RunProgress;
 use super::run_command::Failure;
 use super::scheduler::threads;
-use super::{ExitStatus, interrupt, output};
+use super::{ExitStatus, output};
 use crate::study::{
     PipelineError, ReducedEngineSource, Repair, StoredStudy, Study, TimeDomainRequest,
     VerifyRequest, audit_peaks, repair, verify, verify_in_time,
@@ -66,7 +66,7 @@ pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure
             progress.finish();
             let report = report?;
             name_table(&stored, "verification.parquet");
-            Ok(finish(arguments, &report, report.verified))
+            finish(arguments, &report, report.verified)
         }
         Question::DenseSweep => {
             let stored = stored()?;
@@ -74,7 +74,7 @@ pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure
             progress.finish();
             let report = report?;
             name_table(&stored, "peak_audit.parquet");
-            Ok(finish(arguments, &report, report.verified))
+            finish(arguments, &report, report.verified)
         }
         Question::TimeDomain(row) => {
             let request = TimeDomainRequest {
@@ -84,7 +84,7 @@ pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure
             let report = verify_in_time(&stored()?, &ReducedEngineSource, request, &progress);
             progress.finish();
             let report = report?;
-            Ok(finish(arguments, &report, report.verified))
+            finish(arguments, &report, report.verified)
         }
         Question::Files => repaired(arguments),
     }
@@ -99,11 +99,7 @@ fn repaired(arguments: &VerifyArguments) -> Result<ExitStatus, Failure> {
         let file = Some(arguments.target.clone());
         (Path::new("results").join(name), file)
     };
-    let signals = interrupt::watch().map_err(|error| Failure {
-        status: ExitStatus::InternalError,
-        message: format!("cannot watch for signals: {error}"),
-    })?;
-    let progress = RunProgress::new().stopped_by(signals);
+    let progress = RunProgress::new();
     let repaired = repair(
         &results,
         study.as_deref(),
@@ -113,10 +109,18 @@ fn repaired(arguments: &VerifyArguments) -> Result<ExitStatus, Failure> {
     );
     progress.finish();
     let repaired = match repaired {
-        Err(error @ PipelineError::Interrupted { .. }) => {
+        Err(PipelineError::Interrupted {
+            folder,
+            stored,
+            planned,
+        }) => {
+            // What was set aside is forgotten by a second repair, and known to a run.
             return Err(Failure {
-                status: signals.came().unwrap_or(ExitStatus::Interrupted),
-                message: error.to_string(),
+                status: ExitStatus::Interrupted,
+                message: format!(
+                    "interrupted: {stored} of {planned} rows are stored in {}; `blisk run` continues",
+                    folder.display()
+                ),
             });
         }
         other => other?,
@@ -129,9 +133,9 @@ fn repaired(arguments: &VerifyArguments) -> Result<ExitStatus, Failure> {
             "rows_solved": repaired.outcome.as_ref().map(|outcome| outcome.rows_solved),
             "rows_reused": repaired.outcome.as_ref().map(|outcome| outcome.rows_reused),
             "different": repaired.different,
-        }));
+        }))?;
     } else {
-        output::text(&words.join("\n"));
+        output::text(&words.join("\n"))?;
     }
     Ok(if repaired.different.is_empty() {
         ExitStatus::Done
@@ -180,13 +184,13 @@ fn finish(
     arguments: &VerifyArguments,
     report: &(impl Serialize + Display),
     verified: bool,
-) -> ExitStatus {
-    output::result(arguments.json, report);
-    if verified {
+) -> Result<ExitStatus, Failure> {
+    output::result(arguments.json, report)?;
+    Ok(if verified {
         ExitStatus::Done
     } else {
         ExitStatus::VerificationFailed
-    }
+    })
 }
 
 /// The results that `target`, a study file or a results folder, stands for.

@@ -12,7 +12,8 @@ pub struct Source {
     pub text: String,
     /// Full paths within the crate that it names, from the crate root.
     pub paths: Vec<Vec<String>>,
-    code: String,
+    /// The text without comments, strings and tests.
+    pub code: String,
 }
 
 /// Every `.rs` file under `root`, which is the crate root.

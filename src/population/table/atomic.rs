@@ -3,11 +3,12 @@
 //! A file is written beside its place, synced, renamed, and its folder synced. Whoever is
 //! interrupted leaves a hidden `.*.tmp`, which [`remove_leftovers`] takes away.
 
+use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::TableError;
 use crate::platform;
@@ -23,6 +24,25 @@ pub fn digest_file(path: &Path) -> io::Result<String> {
     let mut hasher = blake3::Hasher::new();
     io::copy(&mut File::open(path)?, &mut hasher)?;
     Ok(hasher.finalize().to_hex().to_string())
+}
+
+/// Temporary files of this process.
+static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes the files that this process has under construction and lets it neither begin nor finish another:
+/// for a process that ends at once.
+pub fn abandon_unfinished() {
+    let files = unfinished();
+    for path in &*files {
+        // Whoever writes to the folder next tries again.
+        let _ = std::fs::remove_file(path);
+    }
+    // Nobody gets the list any more.
+    std::mem::forget(files);
 }
 
 /// A file under construction; without [`AtomicFile::commit`] it vanishes.
@@ -74,6 +94,11 @@ impl Write for BufferedFile {
 impl AtomicFile {
     /// Opens a temporary file in the folder of `target`, which is made if need be.
     pub(super) fn create(target: &Path) -> Result<Self, TableError> {
+        if is_special(target) {
+            let reason = "a device or pipe is no place for this file";
+            let error = io::Error::new(io::ErrorKind::InvalidInput, reason);
+            return Err(TableError::io("write", target)(error));
+        }
         if let Some(folder) = folder_of(target) {
             std::fs::create_dir_all(folder).map_err(TableError::io("create the folder", folder))?;
         }
@@ -81,7 +106,12 @@ impl AtomicFile {
             .file_name()
             .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let temporary = target.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
-        let file = File::create(&temporary).map_err(TableError::io("create", &temporary))?;
+        let file = {
+            let mut unfinished = unfinished();
+            let file = File::create(&temporary).map_err(TableError::io("create", &temporary))?;
+            unfinished.insert(temporary.clone());
+            file
+        };
         Ok(Self {
             target: target.to_owned(),
             temporary,
@@ -130,9 +160,13 @@ impl AtomicFile {
         self.file
             .sync_all()
             .map_err(TableError::io("sync", &self.temporary))?;
-        std::fs::rename(&self.temporary, target)
-            .map_err(TableError::io("rename a finished file to", target))?;
-        self.committed = true;
+        {
+            let mut unfinished = unfinished();
+            std::fs::rename(&self.temporary, target)
+                .map_err(TableError::io("rename a finished file to", target))?;
+            unfinished.remove(&self.temporary);
+            self.committed = true;
+        }
         sync_folder_of(target)
     }
 }
@@ -140,6 +174,7 @@ impl AtomicFile {
 impl Drop for AtomicFile {
     fn drop(&mut self) {
         if !self.committed {
+            unfinished().remove(&self.temporary);
             // Nothing more can be done about a leftover than to try to remove it.
             let _ = std::fs::remove_file(&self.temporary);
         }
@@ -199,11 +234,23 @@ fn folder_of(target: &Path) -> Option<&Path> {
     })
 }
 
-/// Writes `content` to `target` atomically.
+/// Whether `target` is there and is neither a file nor a folder: a device or a pipe, which a rename would replace.
+fn is_special(target: &Path) -> bool {
+    std::fs::metadata(target).is_ok_and(|found| !found.is_file() && !found.is_dir())
+}
+
+/// Writes `content` to `target` atomically; to a device or a pipe, as it comes.
 ///
 /// # Errors
 /// The file system refused.
 pub fn write_atomically(target: &Path, content: &[u8]) -> Result<(), TableError> {
+    if is_special(target) {
+        let written = File::options()
+            .write(true)
+            .open(target)
+            .and_then(|mut file| file.write_all(content));
+        return written.map_err(TableError::io("write", target));
+    }
     let file = AtomicFile::create(target)?;
     let mut writer = file.writer()?;
     let written = writer.write_all(content).and_then(|()| writer.flush());

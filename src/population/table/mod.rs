@@ -27,7 +27,7 @@ mod verification;
 mod writer;
 
 pub use accuracy_ladder::{AccuracyLadder, MeasuredSetting};
-pub use atomic::{digest_file, remove_leftovers, write_atomically};
+pub use atomic::{abandon_unfinished, digest_file, remove_leftovers, write_atomically};
 pub use column::{ColumnKind, ColumnSpec};
 pub use curve::{CURVE_COLUMNS, CurveFormat, CurvePoint, write_curve};
 pub use distribution::{DISTRIBUTION_COLUMNS, write_distribution};

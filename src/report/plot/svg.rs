@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::report::visible;
+
 /// Which part of a text stands at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::report) enum Anchor {
@@ -165,10 +167,10 @@ fn px(value: f64) -> String {
     }
 }
 
-/// `text` as it stands in HTML and SVG.
+/// `text` as it stands in HTML and SVG, whose XML has no place for control characters.
 pub(in crate::report) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
+    for character in visible(text).chars() {
         match character {
             '&' => escaped.push_str("&amp;"),
             '<' => escaped.push_str("&lt;"),
