@@ -51,7 +51,8 @@ pub use stopping::{
 };
 pub use surrogate_worth::SurrogateWorth;
 pub use tail_fit::{
-    Estimate, TAIL_PERCENTILES, TailFit, TailLaw, TailParameters, TailPercentile, fit_tails,
+    Estimate, MOST_RESAMPLED, TAIL_PERCENTILES, TailFit, TailLaw, TailParameters, TailPercentile,
+    fit_tails,
 };
 pub use two_phase_design::{Allocation, EstimateTarget, Population, SamplingMethod, pilot_places};
 pub use two_phase_estimate::{MeanEstimate, StratumSample, TwoPhasePercentile, TwoPhaseSample};
