@@ -7,6 +7,7 @@
 //! | --- | --- | --- |
 //! | [`platform`] | | what the operating system says of machine and processes |
 //! | [`linalg`] | | a thin layer over faer |
+//! | [`input`] | | the keys of TOML files, and what is wrong with them |
 //! | [`model`] | `sector`, `cyclic`, `reduced_model`, `reduction`, `cache` | from a sector to the reduced model |
 //! | [`response`] | `mistuning`, `friction`, `harmonic_balance`, `forced_response` | one wheel to its peak |
 //! | [`population`] | `monte_carlo`, `statistics`, `table` | all wheels to tables |
@@ -15,6 +16,7 @@
 //! | [`cli`] | | the commands; the only code that prints |
 
 pub mod cli;
+pub mod input;
 pub mod linalg;
 pub mod model;
 pub mod platform;

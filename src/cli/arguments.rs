@@ -7,7 +7,7 @@ use clap::{Parser, Subcommand};
 use super::campbell::CampbellArguments;
 use super::compare::CompareArguments;
 use super::estimate::EstimateArguments;
-use super::explain::{CompletionsArguments, ExplainArguments};
+use super::explain::{CompletionsArguments, ExplainArguments, SchemaArguments};
 use super::fidelity::FidelityArguments;
 use super::import::ImportArguments;
 use super::init::InitArguments;
@@ -193,13 +193,13 @@ pub enum Command {
         after_help = "Example:\n  blisk plot results/quickstart amplitude --out amplitude.svg"
     )]
     Plot(PlotArguments),
-    /// Say what a key of a study file accepts, what it means and its default.
+    /// Say what a key of a study file, or of an import file, accepts, what it means and its default.
     #[command(
-        after_help = "Examples:\n  blisk explain solver.peak_tolerance\n  blisk explain contact"
+        after_help = "Examples:\n  blisk explain solver.peak_tolerance\n  blisk explain contact\n  blisk explain import.contact"
     )]
     Explain(ExplainArguments),
-    /// Print the JSON Schema of study files, for editors.
-    Schema,
+    /// Print the JSON Schema of study files, or of import files, for editors.
+    Schema(SchemaArguments),
     /// Print a script that completes commands and options in a shell.
     #[command(
         after_help = "Example:\n  blisk completions bash > ~/.local/share/bash-completion/completions/blisk"

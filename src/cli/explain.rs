@@ -8,17 +8,28 @@ use serde::Serialize;
 
 use super::run_command::Failure;
 use super::{Arguments, ExitStatus, output};
+use crate::input::nearest_key_names;
+use crate::model::sector::import::{import_keys, import_schema};
 use crate::study::{KeySpec, Value, keys_below, nearest_keys, study_schema};
 
 /// Arguments of `blisk explain`.
 #[derive(Debug, Args)]
 pub struct ExplainArguments {
-    /// A key, like `solver.peak_tolerance`, or a table, like `solver` [default: all keys].
+    /// A key, like `solver.peak_tolerance`, or a table, like `solver`; `import` for the keys of import files
+    /// [default: all keys of study files].
     #[arg(value_name = "KEY")]
     key: Option<String>,
     /// Print JSON.
     #[arg(long)]
     json: bool,
+}
+
+/// Arguments of `blisk schema`.
+#[derive(Debug, Args)]
+pub struct SchemaArguments {
+    /// The schema of import files (`blisk import`) instead.
+    #[arg(long)]
+    import: bool,
 }
 
 /// Arguments of `blisk completions`.
@@ -83,25 +94,54 @@ fn plain(words: &str) -> String {
 
 pub(super) fn explain(arguments: &ExplainArguments) -> Result<ExitStatus, Failure> {
     let name = arguments.key.as_deref().unwrap_or_default();
-    let found: Vec<Explanation> = keys_below(name).iter().map(Explanation::from).collect();
+    let mut keys = keys_below(name);
+    if keys.is_empty() {
+        keys = import_keys_below(name);
+    }
+    let found: Vec<Explanation> = keys.iter().map(Explanation::from).collect();
     if found.is_empty() {
+        let near = if name.starts_with("import.") {
+            nearest_key_names(&import_keys_below("import"), name)
+        } else {
+            nearest_keys(name)
+        };
         return Err(Failure::usage(format!(
             "there is no key {name}; did you mean {}?",
-            nearest_keys(name).join(" or ")
+            near.join(" or ")
         )));
     }
     if arguments.json {
         output::json_only(&found)?;
         return Ok(ExitStatus::Done);
     }
-    let table = keys_below(name).iter().any(|key| key.value == Value::Table);
+    let table = keys.iter().any(|key| key.value == Value::Table);
     let text: Vec<String> = found.iter().map(ToString::to_string).collect();
     output::text(&text.join(if table { "\n" } else { "" }))?;
     Ok(ExitStatus::Done)
 }
 
-pub(super) fn schema() -> Result<ExitStatus, Failure> {
-    output::json_only(&study_schema())?;
+/// Keys of import files, each after the word `import`: all of them for that word, else those that `name` is, or
+/// that stand below it.
+fn import_keys_below(name: &str) -> Vec<KeySpec> {
+    let name = name.strip_prefix("import.").unwrap_or(name);
+    let below = format!("{name}.");
+    let chosen = |key: &KeySpec| name == "import" || key.key == name || key.key.starts_with(&below);
+    import_keys()
+        .into_iter()
+        .filter(chosen)
+        .map(|key| KeySpec {
+            key: format!("import.{}", key.key),
+            ..key
+        })
+        .collect()
+}
+
+pub(super) fn schema(arguments: &SchemaArguments) -> Result<ExitStatus, Failure> {
+    output::json_only(&if arguments.import {
+        import_schema()
+    } else {
+        study_schema()
+    })?;
     Ok(ExitStatus::Done)
 }
 

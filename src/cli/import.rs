@@ -4,13 +4,16 @@ use std::fmt::{self, Write as _};
 use std::fs;
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::model::cyclic::contact_free_frequencies_hz;
-use crate::model::sector::import::{ImportReport, calculix_equations, import};
+use crate::model::sector::import::{
+    IMPORT_TEMPLATES, ImportReport, calculix_equations, foreign, import,
+};
 use crate::model::sector::{Body, ModelError, bundle};
 use crate::study::PipelineError;
 
@@ -18,9 +21,10 @@ use crate::study::PipelineError;
 #[derive(Debug, Args)]
 pub struct ImportArguments {
     /// The import file: which meshes, matrices and sets make up the wheel.
-    pub file: PathBuf,
+    #[arg(required_unless_present = "template")]
+    pub file: Option<PathBuf>,
     /// The folder of the bundle to write.
-    #[arg(long, value_name = "DIR", required_unless_present = "equations")]
+    #[arg(long, value_name = "DIR", required_unless_present_any = ["equations", "template"])]
     pub out: Option<PathBuf>,
     /// Compute so many contact-free natural frequencies per nodal diameter as well, and write them to
     /// DIR/frequencies.csv.
@@ -30,6 +34,14 @@ pub struct ImportArguments {
     /// no bundle.
     #[arg(long, value_name = "BODY", conflicts_with = "out")]
     pub equations: Option<BodyArgument>,
+    /// Print a commented import file for the files of a code, and write no bundle.
+    #[arg(
+        long,
+        value_name = "CODE",
+        conflicts_with_all = ["file", "out", "equations", "json"],
+        value_parser = PossibleValuesParser::new(IMPORT_TEMPLATES.map(|(name, _)| name))
+    )]
+    pub template: Option<String>,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
@@ -69,19 +81,30 @@ impl fmt::Display for Outcome {
 }
 
 pub(super) fn command(arguments: &ImportArguments) -> Result<ExitStatus, Failure> {
+    if let Some(code) = &arguments.template {
+        let chosen = IMPORT_TEMPLATES.iter().find(|(name, _)| name == code);
+        output::text(&chosen.map_or("", |(_, text)| text))?;
+        return Ok(ExitStatus::Done);
+    }
+    let Some(file) = &arguments.file else {
+        return Err(Failure::usage("FILE is missing".to_owned()));
+    };
+    if let Some(advice) = foreign(file) {
+        return Err(Failure::usage(advice));
+    }
     if let Some(body) = arguments.equations {
         let body = match body {
             BodyArgument::Blisk => Body::Blisk,
             BodyArgument::Ring => Body::Ring,
         };
-        let equations = calculix_equations(&arguments.file, body).map_err(PipelineError::from)?;
+        let equations = calculix_equations(file, body).map_err(PipelineError::from)?;
         output::text(&equations)?;
         return Ok(ExitStatus::Done);
     }
     let Some(out) = &arguments.out else {
         return Err(Failure::usage("--out DIR is missing".to_owned()));
     };
-    let imported = import(&arguments.file).map_err(PipelineError::from)?;
+    let imported = import(file).map_err(PipelineError::from)?;
     bundle::write(&imported.model, out).map_err(PipelineError::from)?;
     let mut frequencies_hz = Vec::new();
     if let Some(count) = arguments.frequencies {

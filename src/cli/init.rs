@@ -8,7 +8,7 @@ use clap::builder::PossibleValuesParser;
 use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::population::table::write_atomically;
-use crate::study::{EXAMPLES, ModelSource, Study};
+use crate::study::{EXAMPLES, example_beside_its_data};
 
 /// Arguments of `blisk init`.
 #[derive(Debug, Args)]
@@ -28,41 +28,38 @@ pub struct InitArguments {
 
 pub(super) fn command(arguments: &InitArguments) -> Result<ExitStatus, Failure> {
     let out = &arguments.out;
-    if out.exists() {
+    let example = EXAMPLES.iter().find(|(name, _)| *name == arguments.example);
+    let (text, data) = example_beside_its_data(example.map_or("", |(_, text)| text));
+    let folder = out.parent().unwrap_or_else(|| Path::new(""));
+    let mut written: Vec<(PathBuf, &str)> = Vec::new();
+    for (path, text) in data {
+        let path = folder.join(path);
+        // The same data may be there from another `init`.
+        if std::fs::read(&path).is_ok_and(|there| there == text.as_bytes()) {
+            continue;
+        }
+        written.push((path, text));
+    }
+    written.push((out.clone(), &text));
+    if let Some((there, _)) = written.iter().find(|(path, _)| path.exists()) {
         return Err(Failure {
             status: ExitStatus::InputOutput,
             message: format!(
                 "{} exists already and is not overwritten; choose another --out",
-                out.display()
+                there.display()
             ),
         });
     }
-    let text = EXAMPLES
-        .iter()
-        .find(|(name, _)| *name == arguments.example)
-        .map_or("", |(_, text)| text);
-    write_atomically(out, text.as_bytes())?;
+    for (path, text) in &written {
+        write_atomically(path, text.as_bytes())?;
+    }
+    let read = match written.len() - 1 {
+        0 => String::new(),
+        files => format!(", and beside it {files} files that it reads"),
+    };
     output::text(&format!(
-        "wrote {}; next: blisk check {0}, blisk run {0}",
+        "wrote {}{read}; next: blisk check {0}, blisk run {0}",
         out.display()
     ))?;
-    if let Some(missing) = missing_input(out) {
-        output::message(&format!(
-            "{missing}: this example reads files of the repository; put some there, or change their paths"
-        ));
-    }
     Ok(ExitStatus::Done)
-}
-
-/// What a study reads and is not there.
-fn missing_input(file: &Path) -> Option<String> {
-    match Study::read(file) {
-        Err(error) => Some(error.to_string()),
-        Ok(study) => match &study.model {
-            ModelSource::Bundle { path, written } if !path.exists() => {
-                Some(format!("there is no sector bundle {written}"))
-            }
-            _ => None,
-        },
-    }
 }

@@ -63,7 +63,7 @@ impl Kept {
             | Command::Report(_)
             | Command::Plot(_)
             | Command::Explain(_)
-            | Command::Schema
+            | Command::Schema(_)
             | Command::Completions(_)
             | Command::Man(_) => {
                 Self::Else("nothing of this command is kept; the same command begins again")

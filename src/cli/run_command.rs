@@ -106,7 +106,7 @@ fn carry_out(command: Command) -> Result<ExitStatus, Failure> {
         Command::Report(arguments) => report::command(&arguments),
         Command::Plot(arguments) => report::plot(&arguments),
         Command::Explain(arguments) => explain::explain(&arguments),
-        Command::Schema => explain::schema(),
+        Command::Schema(arguments) => explain::schema(&arguments),
         Command::Completions(arguments) => explain::completions(&arguments),
         Command::Man(arguments) => man::command(&arguments),
     }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::source_map::SourceMap;
 use super::validate_accuracy::KEYS_OF_ACCURACY;
 use super::{AccuracyOptions, LoadCase, Mistuning, NodalDiameterTable, RotationLoad};
+use crate::input::SourceMap;
 use crate::model::reduction::ReductionOptions;
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::monte_carlo::Scenario;

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use super::raw::{RawContact, RawHead, RawModel, RawModelKind, RawStudy};
-use super::source_map::SourceMap;
 use super::validate_accuracy::accuracy;
 use super::validate_contact::contact_variations;
 use super::validate_damping::{damping, nodal_diameter_damping};
@@ -13,6 +12,7 @@ use super::validate_mistuning::mistuning;
 use super::validate_solver::{solver, tuned_harmonics};
 use super::validate_stop::stop;
 use super::{Finding, ModelSource, OutputOptions, Problem, RotationOptions, Study, StudyError};
+use crate::input::SourceMap;
 use crate::model::reduction::{Basis, ReductionOptions};
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
 

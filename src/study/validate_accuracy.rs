@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::raw::RawAccuracy;
-use super::source_map::SourceMap;
 use super::validate::Check;
 use super::{AccuracyOptions, Finding, Problem, Study, StudyError};
+use crate::input::SourceMap;
 
 /// Keys that the program sets itself under `[accuracy]`.
 pub(super) const KEYS_OF_ACCURACY: [&str; 13] = [

@@ -15,7 +15,11 @@ if [ -z "$blisk" ]; then
     blisk=$here/../../target/release/blisk
 fi
 mkdir -p "$folder"
-cp "$here"/*.inp "$here"/steel.inc "$here"/*.toml "$folder"
+cp "$here"/*.inp "$here"/steel.inc "$here"/wheel_*.toml "$folder"
+# The studies stand beside their bundles there.
+for state in rest speed; do
+    sed "s|^path = .*|path = \"bundle_$state\"|" "$here/study_$state.toml" >"$folder/study_$state.toml"
+done
 cd "$folder"
 
 order=${ORDER:-2}
@@ -40,4 +44,5 @@ for state in rest speed; do
     "$blisk" import "check_$state.toml" --out "check_$state" --frequencies 10 >/dev/null
     python3 "$here/compare.py" "check_$state/frequencies.csv" "blisk_cyclic_$state.dat" "ring_cyclic_$state.dat"
     "$blisk" import "wheel_$state.toml" --out "bundle_$state"
+    "$blisk" check "study_$state.toml"
 done

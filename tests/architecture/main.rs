@@ -16,6 +16,7 @@ use paths::{Source, sources};
 const WINGS: &[(&str, &[&str])] = &[
     ("platform", &[]),
     ("linalg", &[]),
+    ("input", &[]),
     (
         "model",
         &["sector", "cyclic", "reduced_model", "reduction", "cache"],

@@ -29,7 +29,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 17] = [
+const NOT_RUN: [(&str, &str); 19] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -59,6 +59,11 @@ const NOT_RUN: [(&str, &str); 17] = [
     ("python3 benches/scaling/run.py", "measures for minutes"),
     ("gmsh", "is no part of a clone"),
     ("ccx", "is no part of a clone"),
+    ("pip install", "installs outside of the clone"),
+    (
+        "python studies/ansys/",
+        "needs ansys-mapdl-reader; tests/readers/ansys_files.py runs it",
+    ),
 ];
 
 /// First words of the lines and spans that are commands of other programs.

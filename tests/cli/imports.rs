@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use blisk::model::sector::import::{IMPORT_TEMPLATES, import_keys, import_schema};
+
 use crate::blisk::Place;
+use crate::study_keys::{as_json, violations};
 
 fn wheel() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/calculix_wheel/wheel_speed.toml")
@@ -110,7 +113,7 @@ fn a_refused_import_ends_with_the_code_of_its_cause() {
         ),
         (
             "files.toml",
-            "code = \"calculix\"\nname = \"x\"\nsectors = 3\n[blisk]\njob = \"absent\"\nlow_face = \"A\"\nhigh_face = \"B\"\n\
+            "code = \"calculix\"\nname = \"x\"\nsectors = 3\n[blisk]\njob = \"absent\"\nblade_job = \"absent\"\nlow_face = \"A\"\nhigh_face = \"B\"\n\
              [[force]]\nnode = 1\ncomponent = \"z\"\n[[observe]]\nname = \"x\"\nnode = 1\n",
             7,
             "absent.inp",
@@ -122,6 +125,278 @@ fn a_refused_import_ends_with_the_code_of_its_cause() {
         assert!(ended.stderr.contains(message), "{}", ended.stderr);
         assert!(!place.path("bundle").exists());
     }
+    assert_eq!(place.run(&["import"]).code, 2);
     assert_eq!(place.run(&["import", "bad.toml"]).code, 2);
     assert_eq!(place.run(&["import", "none.toml", "--out", "b"]).code, 7);
+}
+
+/// A bundle of a solid whose stiffness lost its couplings, as a study reads it.
+#[test]
+fn a_study_of_a_bundle_without_couplings_ends_with_4() {
+    let place = Place::with(STUDY);
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/wheel8");
+    std::fs::create_dir(place.path("bundle")).expect("a folder");
+    for entry in std::fs::read_dir(data).expect("a bundle") {
+        let path = entry.expect("an entry").path();
+        if path.is_file() {
+            let name = path
+                .file_name()
+                .expect("a name")
+                .to_string_lossy()
+                .into_owned();
+            let mut text = std::fs::read_to_string(&path).expect("a file");
+            if name == "K.mtx" {
+                let kept: Vec<&str> = text
+                    .lines()
+                    .skip(1)
+                    .filter(|line| {
+                        let words: Vec<&str> = line.split_whitespace().collect();
+                        words.len() == 3 && words[0] == words[1]
+                    })
+                    .collect();
+                // The first of them is the line of sizes.
+                let n = kept.len() - 1;
+                text = format!(
+                    "%%MatrixMarket matrix coordinate real symmetric\n{n} {n} {n}\n{}\n",
+                    kept[1..].join("\n")
+                );
+            }
+            place.write(&format!("bundle/{name}"), &text);
+        }
+    }
+    let ended = place.run(&["model", "study.toml"]);
+    assert_eq!(ended.code, 4, "{}", ended.stderr);
+    for words in [
+        "K couples none of the 208 nodes",
+        "was only one triangle of it written",
+    ] {
+        assert!(ended.stderr.contains(words), "{}", ended.stderr);
+    }
+}
+
+/// Name and text of a file of a finite-element code, and what the answer to it must hold.
+const FOREIGN: [(&str, &str, [&str; 3]); 13] = [
+    (
+        "wheel.cdb",
+        "/COM,ANSYS RELEASE\n/PREP7\n",
+        ["a mesh of Ansys", "--template ansys", "`blisk.mesh`"],
+    ),
+    (
+        "wheel.txt",
+        "/COM,ANSYS RELEASE\n/PREP7\n",
+        ["a mesh of Ansys", "--template ansys", "`blisk.mesh`"],
+    ),
+    (
+        "file.full",
+        "\u{0}\u{1}",
+        [
+            "matrices of Ansys",
+            "full_to_matrix_market.py file.full",
+            "--template ansys",
+        ],
+    ),
+    (
+        "file.rst",
+        "\u{0}\u{1}",
+        [
+            "result file of Ansys",
+            "full_to_matrix_market.py",
+            "WRFULL,1",
+        ],
+    ),
+    (
+        "k.mapping",
+        "  Matrix Eqn   Node   DOF\n",
+        ["rows of Ansys", "`blisk.dofs`", "--template ansys"],
+    ),
+    (
+        "k.matrix",
+        "title\n  1\n",
+        ["Harwell-Boeing", "`blisk.stiffness`", "--template ansys"],
+    ),
+    (
+        "k.mtx",
+        "%%MatrixMarket matrix coordinate real symmetric\n",
+        [
+            "Matrix Market",
+            "matrix_format = \"matrix_market\"",
+            "`blisk.stiffness`",
+        ],
+    ),
+    (
+        "wheel.inp",
+        "*NODE,NSET=ALL\n1,0,0,0\n",
+        [
+            "a deck of CalculiX or Abaqus",
+            "--template calculix",
+            "`blisk.job`",
+        ],
+    ),
+    (
+        "wheel.sti",
+        "1 1 2.0\n",
+        [
+            "a matrix file of CalculiX",
+            "--template calculix",
+            "`blisk.job`",
+        ],
+    ),
+    (
+        "wheel.bdf",
+        "BEGIN BULK\nGRID,1,,0.,0.,0.\n",
+        ["bulk data of Nastran", "--template nastran", "`blisk.mesh`"],
+    ),
+    (
+        "wheel.pch",
+        "DMIG    KAAX           0       6\n",
+        [
+            "a punch file of Nastran",
+            "--template nastran",
+            "`blisk.stiffness`",
+        ],
+    ),
+    (
+        "wheel.op4",
+        "       2       2       6       2KAA\n",
+        ["OUTPUT4", "matrix_format = \"op4\"", "--template nastran"],
+    ),
+    (
+        "wheel.op2",
+        "\u{0}\u{1}",
+        [
+            "result file of Nastran",
+            "OUTPUT4 in ASCII",
+            "--template nastran",
+        ],
+    ),
+];
+
+#[test]
+fn a_file_of_another_code_in_the_place_of_an_import_file_is_answered_with_the_command_to_type() {
+    let place = Place::new();
+    for (name, text, words) in FOREIGN {
+        place.write(name, text);
+        let ended = place.run(&["import", name, "--out", "bundle"]);
+        assert_eq!(ended.code, 2, "{name}: {}", ended.stderr);
+        assert!(
+            ended.stderr.contains("not an import file"),
+            "{}",
+            ended.stderr
+        );
+        for part in words {
+            assert!(
+                ended.stderr.contains(part),
+                "{name}: {part}: {}",
+                ended.stderr
+            );
+        }
+    }
+    // What is an import file by its text is one under any name.
+    place.write("import.inp", "code = \"calculix\"\n");
+    let ended = place.run(&["import", "import.inp", "--out", "bundle"]);
+    assert_eq!(ended.code, 4, "{}", ended.stderr);
+    assert!(
+        ended.stderr.contains("sectors is missing"),
+        "{}",
+        ended.stderr
+    );
+}
+
+#[test]
+fn templates_explanations_and_the_schema_of_import_files_are_printed() {
+    let place = Place::new();
+    for (code, text) in IMPORT_TEMPLATES {
+        let ended = place.run(&["import", "--template", code]);
+        assert_eq!(
+            (ended.code, ended.stdout.as_str()),
+            (0, text),
+            "{}",
+            ended.stderr
+        );
+    }
+    assert_eq!(place.run(&["import", "--template", "abaqus"]).code, 2);
+    let all = place.run(&["explain", "import"]);
+    assert_eq!(all.code, 0, "{}", all.stderr);
+    for key in import_keys() {
+        let name = format!("import.{}", key.key);
+        assert!(all.stdout.contains(&name), "{name}");
+        let ended = place.run(&["explain", &name]);
+        assert_eq!(ended.code, 0, "{name}: {}", ended.stderr);
+        assert!(ended.stdout.starts_with(&name), "{name}: {}", ended.stdout);
+    }
+    let short = place.run(&["explain", "contact.pairing"]);
+    assert!(
+        short.stdout.starts_with("import.contact.pairing\n"),
+        "{}",
+        short.stdout
+    );
+    let wrong = place.run(&["explain", "import.contact.pairin"]);
+    assert_eq!(wrong.code, 2);
+    assert!(
+        wrong
+            .stderr
+            .contains("did you mean import.contact.pairing?"),
+        "{}",
+        wrong.stderr
+    );
+    let printed = place.run(&["schema", "--import"]).stdout;
+    let printed: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
+    assert_eq!(printed, import_schema());
+}
+
+#[test]
+fn the_schema_of_import_files_accepts_all_there_are_and_the_guide_has_every_key() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let schema = import_schema();
+    let mut texts: Vec<String> = IMPORT_TEMPLATES.map(|(_, text)| text.to_owned()).to_vec();
+    for folder in ["studies/calculix", "tests/data/calculix_wheel"] {
+        for state in ["rest", "speed"] {
+            let path = root.join(folder).join(format!("wheel_{state}.toml"));
+            texts.push(std::fs::read_to_string(path).expect("an import file"));
+        }
+    }
+    for text in &texts {
+        assert_eq!(
+            violations(&schema, &as_json(text), ""),
+            Vec::<String>::new(),
+            "{text}"
+        );
+    }
+    for (good, bad) in [
+        ("sectors = 24", "sectors = 0"),
+        ("sectors = 24", "sektors = 24"),
+        ("[contact]", "[contact]\npairing = \"near\""),
+        ("component = \"z\"", ""),
+    ] {
+        let spoiled = texts[0].replace(good, bad);
+        assert_ne!(
+            violations(&schema, &as_json(&spoiled), ""),
+            Vec::<String>::new(),
+            "{bad}"
+        );
+    }
+    let guide = std::fs::read_to_string(root.join("docs/import.md")).expect("the guide");
+    let table = guide
+        .split("## What is done with it")
+        .next()
+        .expect("its first part");
+    for key in import_keys() {
+        let name = key.key.rsplit('.').next().expect("a name");
+        let named = [
+            format!("`{name}`"),
+            format!("`[{name}]`"),
+            format!("`[[{name}]]`"),
+        ];
+        assert!(named.iter().any(|name| table.contains(name)), "{}", key.key);
+    }
+}
+
+#[test]
+fn the_recipe_of_the_guide_for_ansys_is_the_script() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let script = std::fs::read_to_string(root.join("studies/ansys/full_to_matrix_market.py"));
+    let guide = std::fs::read_to_string(root.join("docs/import.md")).expect("the guide");
+    let block = format!("```python\n{}```\n", script.expect("the script"));
+    assert!(guide.contains(&block), "docs/import.md has another recipe");
+    assert_eq!(guide.matches("```python").count(), 1);
 }

@@ -8,6 +8,7 @@ use super::error_place::{Accepted, Item, Matrix, Place, StiffnessKind};
 use super::import::ImportProblem;
 use super::line_problem::LineProblem;
 use super::sector_model::Component;
+use crate::input::{Finding, listed};
 
 /// A refused model: what is wrong, where, the value found and what is accepted.
 #[derive(Debug, Error)]
@@ -69,6 +70,14 @@ pub enum ModelError {
         path: PathBuf,
         /// What is wrong.
         problem: Box<ImportProblem>,
+    },
+    /// Keys or values of an import file are not accepted; every one that was found.
+    #[error("{}", listed(path, findings))]
+    ImportFile {
+        /// The import file.
+        path: PathBuf,
+        /// What was found.
+        findings: Vec<Finding>,
     },
     /// A name cannot stand in the unquoted CSV files of a bundle.
     #[error(
@@ -232,6 +241,16 @@ pub enum ModelError {
         "the blade held at its root has no positive definite stiffness and mass; accepted: a K_blade that is positive definite on the blade's own dofs"
     )]
     CantileverNotPositiveDefinite,
+    /// A stiffness couples none of the nodes of a solid.
+    #[error(
+        "{matrix} couples none of the {nodes} nodes that it has; accepted: the stiffness of a solid, with its entries off the diagonal (was only one triangle of it written, and the other one kept?)"
+    )]
+    NoCouplings {
+        /// The matrix.
+        matrix: Matrix,
+        /// Nodes with an entry.
+        nodes: usize,
+    },
     /// A blade stiffness stands where the structure has none.
     #[error(
         "K_blade has {value:e} at (dof {row}, dof {column}) where K has no entry; accepted: a share of K"

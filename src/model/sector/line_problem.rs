@@ -154,6 +154,16 @@ pub enum LineProblem {
         /// Entry (column, row), 0 if absent.
         mirror: f64,
     },
+    /// A `general` matrix of which one triangle is written.
+    #[error(
+        "{entries} entries stand {side} the diagonal and none on the other side; accepted in a general file: both triangles, else a banner that says symmetric, and the lower triangle (is only one triangle written?)"
+    )]
+    OneTriangle {
+        /// Entries off the diagonal.
+        entries: usize,
+        /// `above` or `below`.
+        side: &'static str,
+    },
 }
 
 /// A part of a file that a line should hold.

@@ -122,6 +122,9 @@ fn parse(text: &str) -> Result<SymmetricSparse, (usize, LineProblem)> {
             },
         ));
     }
+    if general {
+        one_triangle(&entries).map_err(|problem| (line, problem))?;
+    }
     let mut triplets = Vec::with_capacity(order.len());
     for (row, column) in order {
         let Entry { value, line } = entries[&(row, column)];
@@ -145,6 +148,19 @@ fn parse(text: &str) -> Result<SymmetricSparse, (usize, LineProblem)> {
         }
     }
     Ok(SymmetricSparse::from_lower_triplets(dimension, &triplets))
+}
+
+/// Refuses a matrix whose entries off the diagonal stand on one side of it.
+fn one_triangle(entries: &HashMap<(usize, usize), Entry>) -> Result<(), LineProblem> {
+    let apart = || entries.iter().filter(|(_, entry)| entry.value != 0.0);
+    let above = apart().filter(|((row, column), _)| row < column).count();
+    let below = apart().filter(|((row, column), _)| row > column).count();
+    if above.min(below) > 0 || above.max(below) < 2 {
+        return Ok(());
+    }
+    let side = if above > 0 { "above" } else { "below" };
+    let entries = above.max(below);
+    Err(LineProblem::OneTriangle { entries, side })
 }
 
 /// `Some(true)` for a general, `Some(false)` for a symmetric file, `None` for any other banner.

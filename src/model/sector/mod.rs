@@ -14,6 +14,7 @@ mod parametric_mesh;
 mod parametric_options;
 mod sector_model;
 mod validate;
+mod validate_couplings;
 
 pub use assembly::{AssembledMesh, SolidElement, SolidMesh};
 pub use error::ModelError;

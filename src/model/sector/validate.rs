@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use super::error::ModelError;
 use super::error_place::{Item, Matrix, Place};
 use super::sector_model::{Component, Dof, MAX_SECTORS, SectorModel};
+use super::validate_couplings::check_couplings;
 use crate::linalg::{Complex64, SymmetricSparse};
 
 /// Tolerance on positions, as a fraction of the largest distance from the origin.
@@ -88,6 +89,7 @@ pub fn validate(model: &SectorModel) -> Result<(), ModelError> {
     let high = check_cyclic(model)?;
     let layout = Layout { node_dofs, high };
     check_faces_complete(model, &layout)?;
+    check_couplings(model)?;
     check_blade_stiffness(model, &layout)?;
     check_contact(model, &layout)?;
     for force in std::iter::once(&model.force).chain(&model.load_case_forces) {

@@ -1,9 +1,9 @@
 //! The keys of a study file that say what the contact between blisk and ring is.
 
 use super::Value::{Either, List, Name, Number, Table};
-use super::key::{Entry, REQUIRED, entry};
 use super::study_keys::{ABOVE_ZERO, TRUNCATION};
 use super::{Range, Value};
+use crate::input::{Entry, REQUIRED, entry};
 
 const SPEED: Value = Number(Range::above(0.0).up_to(1e6));
 

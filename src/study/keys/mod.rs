@@ -5,9 +5,8 @@ mod key;
 mod model_keys;
 mod schema;
 mod study_keys;
-mod value;
 
-pub use key::{KeySpec, keys, keys_below, nearest_keys};
+pub use crate::input::{KeySpec, Range, Value};
+pub use key::{keys, keys_below, nearest_keys};
 pub use schema::study_schema;
 pub(super) use study_keys::{EXCITATION_N, NORMAL_LOAD_N};
-pub use value::{Range, Value};

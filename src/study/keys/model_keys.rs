@@ -1,8 +1,8 @@
 //! The keys of the models of a study file.
 
 use super::Value::{Name, Number, Table, Text, Whole};
-use super::key::{Entry, REQUIRED, entry};
 use super::{Range, Value};
+use crate::input::{Entry, REQUIRED, entry};
 
 const ABOVE_ZERO: Value = Number(Range::above(0.0));
 const AT_LEAST_ZERO: Value = Number(Range::at_least(0.0));

@@ -3,8 +3,8 @@
 use super::Value::{
     Ascending, Either, Flag, List, Name, Number, Numbers, Pairs, Table, Tables, Text, Whole,
 };
-use super::key::{Entry, REQUIRED, entry};
 use super::{Range, Value};
+use crate::input::{Entry, REQUIRED, entry};
 
 pub(super) const ABOVE_ZERO: Value = Number(Range::above(0.0));
 /// Factor on a force vector, N: the solver was tested over this range, and its square, since the vector itself has the

@@ -41,6 +41,18 @@ fn spoiled_files_of_other_codes_are_read_or_refused() {
             Ok(_) => true,
             Err(error) => {
                 assert_clear(&error.to_string());
+                if let ModelError::ImportFile {
+                    path: named,
+                    findings,
+                } = &error
+                    && *named == path
+                {
+                    let lines = String::from_utf8_lossy(bytes).lines().count().max(1);
+                    assert!(!findings.is_empty());
+                    for finding in findings {
+                        assert!((1..=lines).contains(&finding.line), "{finding:?}");
+                    }
+                }
                 if let ModelError::ImportLine {
                     path: named, line, ..
                 }

@@ -7,4 +7,6 @@ mod other_writers;
 mod projection;
 mod refused;
 pub mod small;
+mod templates;
+mod triangles;
 mod writers;

@@ -68,13 +68,19 @@ fn import_files_are_refused_with_key_and_value() {
             "import.toml",
             "sectors",
             "sektors",
-            &["import.toml:3", "sektors", "expected one of"],
+            &[
+                "import.toml:3",
+                "unknown key sektors; did you mean sectors?",
+            ],
         ),
         (
             "import.toml",
             "sectors = 8",
             "sectors = 0",
-            &["`sectors` is 0", "accepted: a whole number from 1"],
+            &[
+                "import.toml:3: sectors = 0 is not accepted",
+                "accepted: whole number, 1 to 10000",
+            ],
         ),
         (
             "import.toml",
@@ -86,7 +92,11 @@ fn import_files_are_refused_with_key_and_value() {
             "import.toml",
             "\"LOW\"",
             "\"LEFT\"",
-            &["mesh: `blisk.low_face`", "LEFT", "HIGH, IN"],
+            &[
+                "import.toml:8: blisk.low_face = \"LEFT\" is not accepted",
+                "accepted: a set of ",
+                "HIGH, IN",
+            ],
         ),
         (
             "import.toml",
@@ -108,13 +118,16 @@ fn import_files_are_refused_with_key_and_value() {
             "import.toml",
             "[[force]]\nnode = 2\ncomponent = \"z\"\n",
             "",
-            &["`force` is missing", "[[force]]"],
+            &["force is missing; accepted: one or more tables [[force]]"],
         ),
         (
             "import.toml",
             "component = \"z\"",
             "component = \"x\"",
-            &["unknown variant `x`", "`r`, `t`, `z`"],
+            &[
+                "force[0].component = \"x\" is not accepted",
+                "\"r\", \"t\", \"z\"",
+            ],
         ),
         (
             "import.toml",
@@ -126,19 +139,19 @@ fn import_files_are_refused_with_key_and_value() {
             "import.toml",
             "ring = \"OUT\"",
             "ring = \"ALL_PART\"",
-            &["`contact.ring`", "ALL_PART"],
+            &["contact.ring = \"ALL_PART\" is not accepted"],
         ),
         (
             "import.toml",
             "set = \"RING\"\n",
             "",
-            &["`ring.set` is missing"],
+            &["ring.set is missing"],
         ),
         (
             "import.toml",
             "blade_job = \"blade\"",
             "",
-            &["`blisk.blade_elements` is missing", "blisk.blade_job"],
+            &["blisk.blade_elements is missing", "blisk.blade_job"],
         ),
         (
             "import.toml",
@@ -371,7 +384,7 @@ fn files_of_nastran_are_refused_with_file_line_and_value() {
             "punch",
             "DMIG,MAAX,0",
             "DMIG,MBBX,0",
-            &["punch:101", "DMIG MAAX 1", "after the header"],
+            &["punch:268", "DMIG MAAX 1", "after the header"],
         ),
         (
             "mesh",

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::writers::{self, Op4};
 
-/// A sector small enough to read: one brick on eight sectors, a ring brick under it, matrices that are
-/// diagonal but for one coupling.
+/// A sector small enough to read: one brick on eight sectors, a ring brick under it, matrices that couple
+/// every two nodes of a brick weakly.
 pub struct Small {
     pub files: Vec<(&'static str, String)>,
 }
@@ -44,11 +44,19 @@ impl Small {
             .iter()
             .flat_map(|&node| [0, 1, 2].map(|i| (node, i)))
             .collect();
+        Self::matrix_of(scale, rows)
+    }
+
+    fn matrix_of(scale: f64, rows: Vec<(usize, usize)>) -> super::cartesian::CartesianMatrix {
         let mut lower = Vec::new();
-        for row in 0..rows.len() {
-            lower.push((row, row, scale));
-            if row == 2 {
-                lower.push((5, row, -0.25 * scale));
+        for column in 0..rows.len() {
+            lower.push((column, column, scale));
+            for row in column + 1..rows.len() {
+                let ((a, i), (b, j)) = (rows[row], rows[column]);
+                if i == j && (a < 10) == (b < 10) {
+                    let share = if (row, column) == (5, 2) { 0.25 } else { 0.01 };
+                    lower.push((row, column, -share * scale));
+                }
             }
         }
         super::cartesian::CartesianMatrix { rows, lower }
@@ -88,11 +96,9 @@ impl Small {
     /// With those rows (node, direction) alone that `kept` chooses.
     pub fn calculix_of(kept: fn(&(usize, usize)) -> bool) -> Self {
         let matrix = |scale: f64| {
-            let mut matrix = Self::matrix(scale, &Self::all());
-            matrix.rows.retain(kept);
-            let n = matrix.rows.len();
-            matrix.lower.retain(|&(row, column, _)| row.max(column) < n);
-            matrix
+            let mut rows = Self::matrix(scale, &Self::all()).rows;
+            rows.retain(kept);
+            Self::matrix_of(scale, rows)
         };
         let names = ["LOW", "HIGH", "RLOW", "RHIGH", "IN", "OUT"];
         let mut deck = writers::calculix_deck(&Self::all_nodes(), &Self::named_sets(names));
@@ -123,9 +129,14 @@ impl Small {
     }
 
     pub fn ansys() -> Self {
-        let names = ["LOW", "HIGH", "RLOW", "RHIGH", "IN", "OUT"];
+        Self::ansys_with(["LOW", "HIGH", "RLOW", "RHIGH", "IN", "OUT"], vec![])
+    }
+
+    /// With these sets and more.
+    pub fn ansys_with(names: [&'static str; 6], more: Vec<(&'static str, Vec<usize>)>) -> Self {
         let mut sets = Self::named_sets(names);
         sets.push(("RING", (11..=18).collect()));
+        sets.extend(more);
         let mut mesh = writers::ansys_cdb(&Self::all_nodes(), &sets);
         let element = |number: usize, nodes: [usize; 8]| {
             let head = [1, 1, 1, 1, 0, 0, 0, 0, 8, 0, number];
@@ -171,7 +182,12 @@ impl Small {
     }
 
     pub fn nastran() -> Self {
-        let mut mesh = Self::nastran_mesh();
+        Self::nastran_with(vec![])
+    }
+
+    /// With more sets.
+    pub fn nastran_with(more: Vec<(&'static str, Vec<usize>)>) -> Self {
+        let mut mesh = Self::nastran_mesh(more);
         mesh += "CHEXA          1       1       1       2       6       5       3       4+\n+              8       7\n";
         mesh += "CHEXA,2,1,11,12,16,15,13,14\n,18,17\n";
         let mut punch = writers::dmig(&Self::matrix(100.0, &Self::all()), "KAAX", true);
@@ -189,7 +205,7 @@ impl Small {
     }
 
     pub fn op4() -> Self {
-        let mesh = Self::nastran_mesh();
+        let mesh = Self::nastran_mesh(vec![]);
         let mut both = writers::op4(&Self::matrix(100.0, &Self::all()), "KAA", Op4::Sparse);
         both += &writers::op4(&Self::matrix(1.0, &Self::all()), "MAA", Op4::Dense);
         let keys = "stiffness = \"op4\"\nstiffness_name = \"KAA\"\nmass_name = \"MAA\"\ndofs = \"dofs\"\n\
@@ -219,9 +235,10 @@ impl Small {
         }
     }
 
-    fn nastran_mesh() -> String {
+    fn nastran_mesh(more: Vec<(&'static str, Vec<usize>)>) -> String {
         let mut sets = Self::named_sets(["1", "2", "4", "5", "6", "7"]);
         sets.push(("3", (11..=18).collect()));
+        sets.extend(more);
         writers::nastran_bulk(&Self::all_nodes(), &sets)
     }
 
@@ -229,6 +246,12 @@ impl Small {
         let code = format!("nastran{more}");
         let text = Self::import_file(&code, keys, ["1", "2", "3", "4", "5", "6", "7"], "");
         text.replace("sectors = 8", "sectors = 8\nposition_tolerance_m = 1e-6")
+    }
+
+    /// The text of a file.
+    pub fn text(&self, name: &str) -> &str {
+        let file = self.files.iter().find(|file| file.0 == name);
+        &file.unwrap().1
     }
 
     pub fn write(&self, folder: &Path) {

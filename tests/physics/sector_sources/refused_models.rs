@@ -33,7 +33,33 @@ struct Case {
     message: &'static str,
 }
 
-const MATRIX_CASES: [Case; 9] = [
+/// The diagonal alone: what is left where the wrong triangle was kept.
+fn diagonal(matrix: &SymmetricSparse) -> SymmetricSparse {
+    let entries: Vec<_> = matrix.lower_entries().filter(|&(i, j, _)| i == j).collect();
+    SymmetricSparse::from_lower_triplets(matrix.dimension(), &entries)
+}
+
+/// A lumped mass is one.
+#[test]
+fn a_mass_without_couplings_is_accepted() {
+    let mut model = WHEEL.clone();
+    model.mass = diagonal(&model.mass);
+    validate(&model).unwrap();
+}
+
+const MATRIX_CASES: [Case; 11] = [
+    Case {
+        name: "K without couplings",
+        spoil: |m| m.stiffness = diagonal(&m.stiffness),
+        kind: |e| matches!(e, ModelError::NoCouplings { .. }),
+        message: "K couples none of the",
+    },
+    Case {
+        name: "K_blade without couplings",
+        spoil: |m| m.blade_stiffness = diagonal(&m.blade_stiffness),
+        kind: |e| matches!(e, ModelError::NoCouplings { .. }),
+        message: "K_blade couples none of the",
+    },
     Case {
         name: "no sectors",
         spoil: |m| m.sectors = 0,

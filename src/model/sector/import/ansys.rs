@@ -124,6 +124,20 @@ impl<'a> Reader<'a> {
                     *value = real(["x", "y", "z"][axis], word).map_err(|p| self.refuse(p))?;
                 }
             }
+            let angles: Vec<&str> = (3..6)
+                .map(|axis| field(integers * width + axis * real_width, real_width))
+                .filter(|word| !word.is_empty())
+                .collect();
+            for word in &angles {
+                if real("an angle of the node", word).map_err(|p| self.refuse(p))? != 0.0 {
+                    let angles = angles.join(" ");
+                    let problem = ImportProblem::NodeRotated {
+                        node: number,
+                        angles,
+                    };
+                    return Err(self.source.refuse(self.at, problem));
+                }
+            }
             if !self.mesh.add_node(number, position) {
                 let what = "node";
                 let problem = ImportProblem::Redefined { what, number };

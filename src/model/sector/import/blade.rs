@@ -12,6 +12,7 @@ use super::run::Run;
 use super::source::refuse;
 use crate::model::sector::assembly::{SolidElement, SolidMesh};
 use crate::model::sector::error::ModelError;
+use crate::model::sector::error_place::Matrix;
 use crate::model::sector::hexahedron20::{Material, NODES};
 use crate::model::sector::sector_model::Body;
 
@@ -21,11 +22,11 @@ pub(super) fn stiffness(
     run: &Run,
     frames: &Frames,
 ) -> Result<(Triplets, BladeSource), ModelError> {
-    if let Some(files) = file.blade_files()? {
-        let (mut rows, matrix) = matrices::read_stiffness(&files)?;
-        let path = files.stiffness;
+    if let Some(files) = &file.blade_files {
+        let (mut rows, matrix) = matrices::read_stiffness(files)?;
+        let path = &files.stiffness;
         run.place_rows(file, &mut rows)
-            .map_err(|problem| refuse(&path, problem))?;
+            .map_err(|problem| refuse(path, problem))?;
         for (index, &(node, direction)) in rows.iter().enumerate() {
             if frames.dof(node, direction).is_none() {
                 let problem = ImportProblem::BladeRow {
@@ -33,22 +34,17 @@ pub(super) fn stiffness(
                     node,
                     direction: direction + 1,
                 };
-                return Err(refuse(&path, problem));
+                return Err(refuse(path, problem));
             }
         }
+        run.require_couplings(Matrix::BladeStiffness, path, &rows, &matrix)?;
         let triplets = frames.turn(&rows, &matrix, file.units.stiffness_and_mass());
         return Ok((triplets, BladeSource::Matrices));
     }
-    let key = "blisk.blade_elements";
-    let Some(name) = &file.blisk.blade_elements else {
-        let accepted = "the element set of the blade, or `blisk.blade_job` with the matrices of the blade alone";
-        return Err(file.missing(key, accepted));
-    };
-    let Some(elements) = run.mesh.element_sets.get(&name.to_ascii_uppercase()) else {
-        return Err(run.unknown(key, name));
-    };
+    let name = file.blisk.blade_elements.as_deref().unwrap_or_default();
+    let elements = run.element_set(name);
     let mesh = &run.mesh;
-    let (nodes, solid) = solid_mesh(file, run, mesh, elements)?;
+    let (nodes, solid) = solid_mesh(file, run, mesh, &elements)?;
     let assembled = solid.assemble()?;
     // `assemble` has turned the matrices to the same frames; only the numbers differ.
     let dof_of = |dof: usize| {

@@ -6,13 +6,14 @@ use std::path::Path;
 
 use super::cyclic_faces::{FacePairs, match_faces, turned_by};
 use super::cylindrical::{Frames, Node};
-use super::import_file::{ForceDirection, ImportFile, Pairing};
+use super::import_file::ImportFile;
 use super::matrices::Matrices;
 use super::problem::{ImportProblem, body_name};
 use super::projection::{Projected, project};
 use super::report::{BodyReport, ImportReport};
 use super::run::Run;
 use super::source::refuse;
+use super::tables::{ForceDirection, Pairing};
 use super::{blade, contact};
 use crate::linalg::{Complex64, SymmetricSparse};
 use crate::model::sector::error::ModelError;
@@ -157,17 +158,10 @@ fn tolerance_m(file: &ImportFile, nodes: &BTreeMap<usize, Node>) -> f64 {
 pub(super) fn face_sets<'a>(
     file: &'a ImportFile,
     runs: &'a [Run],
-) -> impl Iterator<Item = (Body, &'a Run, [(&'static str, &'a str); 2])> {
-    let blisk = [
-        ("blisk.low_face", file.blisk.low_face.as_str()),
-        ("blisk.high_face", file.blisk.high_face.as_str()),
-    ];
-    let ring = file.ring.as_ref().map(|ring| {
-        [
-            ("ring.low_face", ring.low_face.as_str()),
-            ("ring.high_face", ring.high_face.as_str()),
-        ]
-    });
+) -> impl Iterator<Item = (Body, &'a Run, [&'a str; 2])> {
+    let blisk = [file.blisk.low_face.as_str(), file.blisk.high_face.as_str()];
+    let ring = file.ring.as_ref();
+    let ring = ring.map(|ring| [ring.low_face.as_str(), ring.high_face.as_str()]);
     [(Body::Blisk, Some(blisk)), (Body::Ring, ring)]
         .into_iter()
         .filter_map(move |(body, names)| {
@@ -187,9 +181,9 @@ pub(super) fn cyclic_faces(
     let mut faces = BTreeMap::new();
     for (body, run, names) in face_sets(file, runs) {
         let mut sides = Vec::new();
-        for (key, name) in names {
+        for name in names {
             let side: BTreeMap<usize, [f64; 3]> = run
-                .set(key, name)?
+                .set(name)
                 .into_iter()
                 .map(|node| node + run.offset)
                 .filter(|node| free.contains(node) && nodes[node].body == body)
@@ -267,6 +261,10 @@ fn body_reports(
                 mass_kg += if row == column { value } else { 2.0 * value };
             }
         }
+        let mass_is_lumped = mass.iter().all(|&(row, column, _)| {
+            let (row, column) = (&frames.dofs[row], &frames.dofs[column]);
+            row.body != body || row.node == column.node
+        });
         let mut force = vec![0.0; frames.dofs.len()];
         let mut largest = 0.0_f64;
         for &(row, column, value) in stiffness {
@@ -293,6 +291,7 @@ fn body_reports(
             nodes: nodes.len(),
             dofs: frames.dofs.iter().filter(own).count(),
             mass_kg,
+            mass_is_lumped,
             node_offset: run.offset,
             prestressed: facts.stores_matrices.then_some(facts.prestressed),
             rotation_rad_per_s: facts
@@ -324,24 +323,15 @@ fn ground_ring(
     }
 }
 
-/// Nodes that a force or an observed point names.
-fn named_nodes(
-    file: &ImportFile,
-    runs: &[Run],
-    key: &str,
-    node: Option<usize>,
-    set: Option<&String>,
-) -> Result<Vec<usize>, ModelError> {
-    match (node, set) {
-        (Some(node), None) => Ok(vec![node]),
-        (None, Some(name)) => {
-            let key = format!("{key}.set");
-            let run = runs.iter().find(|run| run.mesh.nodes_of(name).is_some());
-            let run = run.unwrap_or(&runs[0]);
-            let nodes = run.set(&key, name)?;
-            Ok(nodes.into_iter().map(|node| node + run.offset).collect())
+/// Nodes that a force or an observed point names: a node, or those of a set.
+fn named_nodes(runs: &[Run], node: Option<usize>, set: Option<&String>) -> Vec<usize> {
+    let run = |name: &String| runs.iter().find(|run| run.mesh.nodes_of(name).is_some());
+    match set.and_then(|name| Some((run(name)?, name))) {
+        Some((run, name)) => {
+            let nodes = run.set(name);
+            nodes.into_iter().map(|node| node + run.offset).collect()
         }
-        _ => Err(file.missing(key, "either node or set")),
+        None => node.into_iter().collect(),
     }
 }
 
@@ -354,14 +344,7 @@ fn force(
 ) -> Result<Vec<(usize, Complex64)>, ModelError> {
     let mut sum: BTreeMap<usize, Complex64> = BTreeMap::new();
     for (index, table) in file.force.iter().enumerate() {
-        let key = format!("force[{index}]");
-        for (part, value) in [("re", table.re), ("im", table.im)] {
-            if !value.is_finite() {
-                let accepted = "a finite number".to_owned();
-                return Err(file.value(&format!("{key}.{part}"), &value, accepted));
-            }
-        }
-        let nodes = named_nodes(file, runs, &key, table.node, table.set.as_ref())?;
+        let nodes = named_nodes(runs, table.node, table.set.as_ref());
         let nodes: BTreeSet<usize> = nodes
             .into_iter()
             .map(|node| low_of_high.get(&node).copied().unwrap_or(node))
@@ -373,8 +356,10 @@ fn force(
         };
         for &node in &nodes {
             let Some(dof) = frames.dof(node, component) else {
-                let accepted = "nodes that are free in that direction".to_owned();
-                return Err(file.value(&key, &format!("node {node}"), accepted));
+                let reason = format!(
+                    "node {node} is not free in that direction; accepted: nodes that are free there"
+                );
+                return Err(file.refuse_value(&format!("force[{index}].component"), reason));
             };
             *sum.entry(dof).or_default() += Complex64::new(table.re, table.im) / nodes.len() as f64;
         }
@@ -385,11 +370,13 @@ fn force(
 fn observed(file: &ImportFile, runs: &[Run]) -> Result<Vec<ObservedNode>, ModelError> {
     let mut observed = Vec::new();
     for (index, table) in file.observe.iter().enumerate() {
-        let key = format!("observe[{index}]");
-        let nodes = named_nodes(file, runs, &key, table.node, table.set.as_ref())?;
+        let nodes = named_nodes(runs, table.node, table.set.as_ref());
         let [node] = nodes.as_slice() else {
-            let found = nodes.len();
-            return Err(refuse(&file.path, ImportProblem::OneNode { key, found }));
+            let reason = format!(
+                "the set has {} nodes; accepted: a set of one node",
+                nodes.len()
+            );
+            return Err(file.refuse_value(&format!("observe[{index}].set"), reason));
         };
         observed.push(ObservedNode {
             name: table.name.clone(),

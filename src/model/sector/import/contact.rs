@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use super::cyclic_faces::nearest;
 use super::cylindrical::{Frames, Node};
-use super::import_file::{ContactTable, ImportFile, Weights};
+use super::import_file::ImportFile;
 use super::problem::ImportProblem;
 use super::projection::Projected;
 use super::report::ContactReport;
 use super::run::Run;
 use super::source::refuse;
 use super::surface::{NodalArea, add_face};
+use super::tables::{ContactTable, Weights};
 use crate::model::sector::error::ModelError;
 use crate::model::sector::sector_model::{Body, ContactPair};
 
@@ -32,9 +33,9 @@ pub(super) fn pairs(
     runs: &[Run],
     sector: &Sector<'_>,
 ) -> Result<(Vec<ContactPair>, ContactReport), ModelError> {
-    let mut blisk = surface(file, table, runs, sector, Body::Blisk)?;
+    let mut blisk = surface(table, runs, sector, Body::Blisk)?;
     let ring = match sector.projected {
-        None => surface(file, table, runs, sector, Body::Ring)?,
+        None => surface(table, runs, sector, Body::Ring)?,
         Some(Projected { offset, .. }) => {
             // The ring has a node at each node of the blisk's surface that it covers.
             blisk.retain(|node, _| sector.frames.is_free(node + offset));
@@ -118,24 +119,22 @@ pub(super) fn pairs(
 /// Area and normal (in r, theta, z) of each node of a body's surface; nodes of the high face count as
 /// those of the low face, whose neighbour in the sector before brings their share.
 fn surface(
-    file: &ImportFile,
     table: &ContactTable,
     runs: &[Run],
     sector: &Sector<'_>,
     body: Body,
 ) -> Result<BTreeMap<usize, NodalArea>, ModelError> {
-    let (key, name) = match body {
-        Body::Blisk => ("contact.blisk", &table.blisk),
-        Body::Ring => ("contact.ring", &table.ring),
+    let name = match body {
+        Body::Blisk => &table.blisk,
+        Body::Ring => &table.ring,
     };
-    let Some(run) = runs.iter().rev().find(|run| run.holds(body)) else {
-        return Err(file.missing("ring", "the files of the ring"));
-    };
+    let run = runs.iter().rev().find(|run| run.holds(body));
+    let run = run.unwrap_or(&runs[0]);
     let mut cartesian: BTreeMap<usize, NodalArea> = BTreeMap::new();
     if let Some(normal) = table.normal {
         // Without elements there are no areas; the surface is its nodes.
         let sign = if body == Body::Blisk { 1.0 } else { -1.0 };
-        let nodes = run.set(key, name)?;
+        let nodes = run.set(name);
         let nodal = NodalArea {
             area_m2: 1.0,
             normal_m2: normal.map(|n| sign * n),
@@ -149,11 +148,10 @@ fn surface(
             .map(|node| (node, nodal))
             .collect());
     }
-    let faces = run
+    let faces: Vec<(usize, usize)> = run
         .mesh
         .faces_of(name)
-        .ok_or_else(|| run.unknown(key, name))?;
-    let faces: Vec<(usize, usize)> = faces
+        .unwrap_or_default()
         .into_iter()
         .filter(|&(element, _)| {
             let nodes = &run.mesh.elements[&element].nodes;

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::build::{cyclic_faces, face_sets};
-use super::import_file::ImportFile;
+use super::import_file::{ImportFile, missing};
 use super::problem::body_name;
 use super::run::Run;
 use crate::model::sector::error::ModelError;
@@ -34,7 +34,7 @@ pub fn calculix_equations(path: &Path, body: Body) -> Result<String, ModelError>
         .collect();
     let faces = cyclic_faces(&file, &runs, &nodes, &free)?;
     let Some((_, run, _)) = face_sets(&file, &runs).find(|(own, ..)| *own == body) else {
-        return Err(file.missing("ring", "the files of the ring"));
+        return Err(file.refuse(vec![missing("ring", "the files of the ring")]));
     };
     let pairs = &faces[body_name(body)].pairs;
     let set = format!("{}_CYCLIC", body_name(body).to_uppercase());

@@ -252,19 +252,10 @@ impl Mesh {
         Some(faces)
     }
 
-    /// Names of all sets and surfaces, for messages.
-    pub fn set_names(&self) -> String {
-        let names: BTreeSet<&str> = self
-            .node_sets
-            .keys()
-            .chain(self.element_sets.keys())
-            .chain(self.surfaces.keys())
-            .map(String::as_str)
-            .collect();
-        if names.is_empty() {
-            return "none: the mesh has no sets".to_owned();
-        }
-        names.into_iter().collect::<Vec<_>>().join(", ")
+    /// Names of all sets and surfaces.
+    pub fn set_names(&self) -> BTreeSet<String> {
+        let sets = self.node_sets.keys().chain(self.element_sets.keys());
+        sets.chain(self.surfaces.keys()).cloned().collect()
     }
 
     /// Material of an element, by the section of a set it belongs to.

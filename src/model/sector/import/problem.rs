@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::model::sector::error_place::Matrix;
 use crate::model::sector::sector_model::Body;
 
 /// A refused model or file of another code: the value found and what is accepted.
@@ -14,14 +15,6 @@ pub enum ImportProblem {
         key: String,
         /// Value found.
         found: String,
-        /// What is accepted.
-        accepted: String,
-    },
-    /// A key of the import file that is needed is absent.
-    #[error("`{key}` is missing; accepted: {accepted}")]
-    KeyMissing {
-        /// Full key.
-        key: String,
         /// What is accepted.
         accepted: String,
     },
@@ -85,10 +78,10 @@ pub enum ImportProblem {
         /// Its number.
         number: usize,
     },
-    /// A set that the mesh does not have.
-    #[error("`{key}` names the set {name}, which is not in the mesh; accepted: one of {accepted}")]
+    /// A set of a deck that refers to one that is not there.
+    #[error("{key} {name} is not in the mesh; accepted: one of {accepted}")]
     SetUnknown {
-        /// Key of the import file.
+        /// Kind of the set.
         key: String,
         /// Name.
         name: String,
@@ -113,7 +106,7 @@ pub enum ImportProblem {
     },
     /// A row has nothing on its diagonal.
     #[error(
-        "row {row} (node {node}, direction {direction}) has no diagonal entry; accepted: a whole matrix (was the file cut off?)"
+        "row {row} (node {node}, direction {direction}) has no diagonal entry; accepted: a whole matrix without the rows of held directions (was the file cut off?)"
     )]
     NoDiagonal {
         /// Row, from 1.
@@ -339,13 +332,51 @@ pub enum ImportProblem {
         /// Nodes of the blisk that they follow.
         blisk: usize,
     },
-    /// A set that must hold one node.
-    #[error("`{key}` names {found} nodes; accepted: one node")]
-    OneNode {
-        /// Key of the import file.
-        key: String,
-        /// Nodes found.
-        found: usize,
+    /// A stiffness couples no node with another.
+    #[error(
+        "{matrix} has no entry off the diagonal that couples two nodes; accepted: the whole matrix, or one triangle where the format says so (was only one triangle written, and the other one kept?)"
+    )]
+    NoCouplings {
+        /// The matrix.
+        matrix: Matrix,
+    },
+    /// A matrix does not couple the nodes of an element.
+    #[error(
+        "{matrix} does not couple nodes {first} and {second} of element {element}: {coupled} of {pairs} pairs of its nodes are coupled; accepted: a matrix of this mesh, with all of its entries, and its own table of rows (is only one triangle left, or are the rows in another order than the table's?)"
+    )]
+    NotCoupled {
+        /// The matrix.
+        matrix: Matrix,
+        /// Number of the element.
+        element: usize,
+        /// A node of it.
+        first: usize,
+        /// Another one, not coupled with the first.
+        second: usize,
+        /// Pairs of its nodes that are coupled.
+        coupled: usize,
+        /// Pairs of its free nodes.
+        pairs: usize,
+    },
+    /// A matrix whose entries off the diagonal all stand on one side of it, where both are expected.
+    #[error(
+        "{entries} entries stand {side} the diagonal and none on the other side; accepted: both triangles, or a file that declares the matrix symmetric (is only one triangle written?)"
+    )]
+    OneTriangle {
+        /// Entries off the diagonal.
+        entries: usize,
+        /// `above` or `below`.
+        side: &'static str,
+    },
+    /// A node whose matrix rows are in a coordinate system of its own.
+    #[error(
+        "node {node} has a rotated coordinate system ({angles} degrees); accepted: nodes in global Cartesian directions (NROTAT none)"
+    )]
+    NodeRotated {
+        /// The node.
+        node: usize,
+        /// Its angles.
+        angles: String,
     },
 }
 

@@ -10,12 +10,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::cyclic_faces::{FacePairs, distance};
 use super::cylindrical::Node;
-use super::import_file::{ContactTable, ImportFile};
+use super::import_file::ImportFile;
 use super::matrices::Matrices;
 use super::problem::{ImportProblem, body_name};
 use super::run::{Run, round_up};
 use super::source::refuse;
 use super::surface::FacePoint;
+use super::tables::ContactTable;
 use crate::linalg::{Matrix, SymmetricSparse, hermitian_eigen};
 use crate::model::sector::error::ModelError;
 use crate::model::sector::sector_model::Body;
@@ -97,7 +98,7 @@ pub(super) fn project(
     let run = &runs[runs.len() - 1];
     Ok(Projected {
         nodes: weights.len(),
-        left_out: run.set("contact.ring", &table.ring)?.len() - weights.len(),
+        left_out: run.set(&table.ring).len() - weights.len(),
         worst_distance_m: weights
             .values()
             .fold(0.0, |worst, (_, distance)| worst.max(*distance)),
@@ -111,11 +112,8 @@ fn blisk_faces(
     nodes: &BTreeMap<usize, Node>,
 ) -> Result<Vec<Face>, ModelError> {
     let run = &runs[0];
-    let (key, body) = ("contact.blisk", Body::Blisk);
-    let faces = run
-        .mesh
-        .faces_of(&table.blisk)
-        .ok_or_else(|| run.unknown(key, &table.blisk))?;
+    let body = Body::Blisk;
+    let faces = run.mesh.faces_of(&table.blisk).unwrap_or_default();
     if faces.is_empty() {
         let name = table.blisk.clone();
         return Err(refuse(
@@ -154,7 +152,7 @@ fn ring_weights(
     let free: BTreeSet<usize> = matrices.rows.iter().map(|&(node, _)| node).collect();
     let mut weights = Weights::new();
     let mut nearest_of_all = (0, f64::INFINITY);
-    for number in run.set("contact.ring", &table.ring)? {
+    for number in run.set(&table.ring) {
         let node = number + run.offset;
         if !free.contains(&node) || nodes[&node].body != Body::Ring {
             continue;

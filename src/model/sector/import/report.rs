@@ -25,6 +25,8 @@ pub struct BodyReport {
     pub dofs: usize,
     /// Mass of the free nodes, kg: without that which the held nodes carry.
     pub mass_kg: f64,
+    /// Whether the mass couples no two nodes: it is lumped, or the entries that would do so were lost.
+    pub mass_is_lumped: bool,
     /// What is added to the node numbers of the file.
     pub node_offset: usize,
     /// A static step stands before the matrices; none where the files do not tell.
@@ -115,6 +117,12 @@ impl fmt::Display for ImportReport {
                 writeln!(
                     f,
                     "  force of a rigid shift along the axis: {residual:.1e} of the stiffness"
+                )?;
+            }
+            if body.mass_is_lumped {
+                writeln!(
+                    f,
+                    "  the mass couples no two nodes: it is lumped (if it should not be, one triangle of it was lost)"
                 )?;
             }
             if body.node_offset > 0 {

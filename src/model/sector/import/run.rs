@@ -1,16 +1,22 @@
 //! The files of one run of another code: mesh and matrices, as numbers of the wheel.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use super::couplings::Couplings;
 use super::cylindrical::Node;
-use super::import_file::{FilesTable, ImportFile, MeshFormat};
-use super::matrices::{self, Matrices};
+use super::files::RunFiles;
+use super::import_file::ImportFile;
+use super::matrices::{self, Matrices, Rows};
 use super::mesh::Mesh;
-use super::problem::{ImportProblem, body_name};
+use super::problem::ImportProblem;
 use super::source::refuse;
+use super::tables::MeshFormat;
 use super::{ansys, deck, nastran};
+use crate::input::{Problem, nearest};
+use crate::linalg::SymmetricSparse;
 use crate::model::sector::error::ModelError;
+use crate::model::sector::error_place::Matrix;
 use crate::model::sector::sector_model::Body;
 
 /// Largest node number accepted: numbers of a second file are raised above it.
@@ -20,7 +26,7 @@ const MOST_NODE_NUMBER: usize = 999_999_999;
 #[derive(Debug)]
 pub(super) struct Run {
     pub body: Body,
-    pub files: FilesTable,
+    pub files: RunFiles,
     pub mesh_path: PathBuf,
     pub mesh: Mesh,
     /// Added to the node numbers of the file, so that two files do not collide.
@@ -33,11 +39,12 @@ impl Run {
     /// The runs of an import file: that of the blisk, and that of the ring if it has one of its own.
     pub fn read_meshes(file: &ImportFile) -> Result<Vec<Self>, ModelError> {
         let mut runs: Vec<Self> = Vec::new();
-        for body in [Body::Blisk, Body::Ring] {
-            let Some(files) = file.files(body) else {
-                continue;
-            };
-            let mesh_path = file.mesh_path(body_name(body), &files)?;
+        let of_ring = file.ring_files.as_ref().map(|files| (Body::Ring, files));
+        for (body, files) in [(Body::Blisk, &file.blisk_files)]
+            .into_iter()
+            .chain(of_ring)
+        {
+            let mesh_path = files.mesh.clone();
             let mesh = match file.mesh_format {
                 MeshFormat::Calculix => deck::read(&mesh_path),
                 MeshFormat::Ansys => ansys::read(&mesh_path),
@@ -60,7 +67,7 @@ impl Run {
             };
             runs.push(Self {
                 body,
-                files,
+                files: files.clone(),
                 offset: runs.first().map_or(0, |run| round_up(largest(run))),
                 mesh_path,
                 mesh,
@@ -68,32 +75,24 @@ impl Run {
             });
         }
         if let (Some(ring), [both]) = (&file.ring, runs.as_mut_slice()) {
-            let Some(set) = &ring.set else {
-                let accepted =
-                    "the set of the ring's nodes or elements, or `ring.mesh` and its matrices";
-                return Err(file.missing("ring.set", accepted));
-            };
-            both.ring_nodes = both.set("ring.set", set)?;
+            let name = ring.set.as_deref().unwrap_or_default();
+            both.ring_nodes = both.set(name);
         }
+        known_sets(file, &runs)?;
         Ok(runs)
     }
 
-    /// Nodes of a set by the numbers of the file.
-    pub fn set(&self, key: &str, name: &str) -> Result<BTreeSet<usize>, ModelError> {
-        self.mesh
-            .nodes_of(name)
-            .ok_or_else(|| self.unknown(key, name))
+    /// Nodes of a set by the numbers of the file; [`known_sets`] has found it.
+    pub fn set(&self, name: &str) -> BTreeSet<usize> {
+        self.mesh.nodes_of(name).unwrap_or_default()
     }
 
-    pub fn unknown(&self, key: &str, name: &str) -> ModelError {
-        refuse(
-            &self.mesh_path,
-            ImportProblem::SetUnknown {
-                key: key.to_owned(),
-                name: name.to_owned(),
-                accepted: self.mesh.set_names(),
-            },
-        )
+    /// Elements of a set.
+    pub fn element_set(&self, name: &str) -> BTreeSet<usize> {
+        let sets = &self.mesh.element_sets;
+        sets.get(&name.to_ascii_uppercase())
+            .cloned()
+            .unwrap_or_default()
     }
 
     /// Whether the run holds a body.
@@ -129,9 +128,8 @@ impl Run {
 
     /// Matrices with rows by the numbers and directions of the wheel; scaled to SI by the caller.
     pub fn matrices(&self, file: &ImportFile) -> Result<Matrices, ModelError> {
-        let prefix = format!("{}.", body_name(self.body));
-        let files = file.matrix_files(&prefix, &self.files)?;
-        let mut matrices = matrices::read(&files)?;
+        let files = &self.files.matrices;
+        let mut matrices = matrices::read(files)?;
         let path = if files.dofs.as_os_str().is_empty() {
             &files.stiffness
         } else {
@@ -150,15 +148,36 @@ impl Run {
                 ));
             }
         }
+        let rows = &matrices.rows;
+        self.require_couplings(
+            Matrix::Stiffness,
+            &files.stiffness,
+            rows,
+            &matrices.stiffness,
+        )?;
+        self.require_couplings(Matrix::Mass, &files.mass, rows, &matrices.mass)?;
         Ok(matrices)
     }
 
-    /// Turns rows of the files to rows of the wheel.
-    pub fn place_rows(
+    /// Refuses a matrix that does not couple the nodes of the mesh's elements.
+    pub fn require_couplings(
         &self,
-        file: &ImportFile,
-        rows: &mut matrices::Rows,
-    ) -> Result<(), ImportProblem> {
+        kind: Matrix,
+        path: &Path,
+        rows: &Rows,
+        matrix: &SymmetricSparse,
+    ) -> Result<(), ModelError> {
+        let own: Rows = rows
+            .iter()
+            .map(|&(node, direction)| (node - self.offset, direction))
+            .collect();
+        Couplings::new(&own, matrix)
+            .require(kind, &self.mesh)
+            .map_err(|problem| refuse(path, problem))
+    }
+
+    /// Turns rows of the files to rows of the wheel.
+    pub fn place_rows(&self, file: &ImportFile, rows: &mut Rows) -> Result<(), ImportProblem> {
         let places = file.axis.places();
         for (index, (node, direction)) in rows.iter_mut().enumerate() {
             if !self.mesh.nodes.contains_key(node) {
@@ -170,6 +189,94 @@ impl Run {
         }
         Ok(())
     }
+}
+
+/// Refuses names of sets that no mesh has, all at once, each with the nearest name there is.
+fn known_sets(file: &ImportFile, runs: &[Run]) -> Result<(), ModelError> {
+    let (first, last) = (&runs[..1], &runs[runs.len() - 1..]);
+    let mut asked: Vec<(String, &[Run], &str)> = vec![
+        ("blisk.low_face".to_owned(), first, &file.blisk.low_face),
+        ("blisk.high_face".to_owned(), first, &file.blisk.high_face),
+    ];
+    if let Some(ring) = &file.ring {
+        asked.push(("ring.low_face".to_owned(), last, &ring.low_face));
+        asked.push(("ring.high_face".to_owned(), last, &ring.high_face));
+        if let (Some(set), 1) = (&ring.set, runs.len()) {
+            asked.push(("ring.set".to_owned(), first, set));
+        }
+    }
+    if let Some(contact) = &file.contact {
+        asked.push(("contact.blisk".to_owned(), first, &contact.blisk));
+        asked.push(("contact.ring".to_owned(), last, &contact.ring));
+    }
+    let forced = file.force.iter().map(|force| force.set.as_deref());
+    let observed = file.observe.iter().map(|node| node.set.as_deref());
+    for (table, sets) in [
+        ("force", forced.collect::<Vec<_>>()),
+        ("observe", observed.collect()),
+    ] {
+        for (index, set) in sets.into_iter().enumerate() {
+            if let Some(set) = set {
+                asked.push((format!("{table}[{index}].set"), runs, set));
+            }
+        }
+    }
+    let mut problems = Vec::new();
+    for (key, runs, name) in asked {
+        if runs.iter().all(|run| run.mesh.nodes_of(name).is_none()) {
+            let names = runs.iter().flat_map(|run| run.mesh.set_names());
+            problems.push(unknown(file, key, name, "a set of", runs, names.collect()));
+        } else if key == "ring.set" && runs[0].set(name).is_empty() {
+            let reason = "the set is empty; accepted: the nodes or elements of the ring".to_owned();
+            problems.push((key, Problem::Conflict { reason }));
+        }
+    }
+    if let (Some(name), None) = (&file.blisk.blade_elements, &file.blade_files) {
+        let sets = &runs[0].mesh.element_sets;
+        if !sets.contains_key(&name.to_ascii_uppercase()) {
+            let (key, names) = ("blisk.blade_elements".to_owned(), sets.keys().cloned());
+            problems.push(unknown(
+                file,
+                key,
+                name,
+                "an element set of",
+                first,
+                names.collect(),
+            ));
+        }
+    }
+    if problems.is_empty() {
+        Ok(())
+    } else {
+        Err(file.refuse(problems))
+    }
+}
+
+/// A set that is not in the meshes of `runs`.
+fn unknown(
+    file: &ImportFile,
+    key: String,
+    name: &str,
+    what: &str,
+    runs: &[Run],
+    names: BTreeSet<String>,
+) -> (String, Problem) {
+    let paths: Vec<String> = runs
+        .iter()
+        .map(|run| run.mesh_path.display().to_string())
+        .collect();
+    let names: Vec<String> = names.into_iter().collect();
+    let listed = if names.is_empty() {
+        "none: the mesh has no sets".to_owned()
+    } else {
+        names.join(", ")
+    };
+    let problem = Problem::NotAccepted {
+        value: file.written(&key),
+        accepted: format!("{what} {}: {listed}", paths.join(" or ")),
+        suggestion: nearest(&name.to_ascii_uppercase(), &names).map(|name| format!("\"{name}\"")),
+    };
+    (key, problem)
 }
 
 /// A position in m, with the axis of rotation along z.

@@ -84,10 +84,15 @@ pub(super) fn require_diagonal(
     }
     match present.iter().position(|&present| !present) {
         None => Ok(()),
-        Some(row) => Err(ImportProblem::NoDiagonal {
-            row: row + 1,
-            node: rows[row].0,
-            direction: rows[row].1 + 1,
-        }),
+        Some(row) => Err(no_diagonal(row, rows)),
+    }
+}
+
+/// The refusal of a row (from 0) that has nothing on the diagonal.
+pub(super) fn no_diagonal(row: usize, rows: &Rows) -> ImportProblem {
+    ImportProblem::NoDiagonal {
+        row: row + 1,
+        node: rows[row].0,
+        direction: rows[row].1 + 1,
     }
 }

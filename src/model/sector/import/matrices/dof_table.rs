@@ -46,7 +46,7 @@ pub(super) fn rows(path: &Path) -> Result<Rows, ModelError> {
                 let problem = ImportProblem::Line {
                     what: "row of a dof table",
                     found: line.to_owned(),
-                    accepted: "row, node and direction: UX, UY, UZ, or 1, 2, 3",
+                    accepted: "row, node and direction: UX, UY, UZ, or 1, 2, 3 (directions count from 1)",
                 };
                 return Err(source.refuse(number, problem));
             }

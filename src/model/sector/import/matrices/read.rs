@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::calculix::no_diagonal;
 use super::dmig::PointMatrix;
 use super::symmetric::{from_full, from_triangle};
 use super::{Matrices, Rows, calculix, dmig, dof_table, harwell_boeing, op4};
@@ -57,13 +58,14 @@ pub(in crate::model::sector::import) fn read(files: &MatrixFiles) -> Result<Matr
         });
     }
     let rows = table(files)?;
+    let name = files.stiffness_name.as_deref();
+    let stiffness = tabled(files, &files.stiffness, name, &rows)?;
+    let diagonal = stiffness.diagonal();
+    if let Some(row) = diagonal.iter().position(|&value| value == 0.0) {
+        return Err(refuse(&files.stiffness, no_diagonal(row, &rows)));
+    }
     Ok(Matrices {
-        stiffness: tabled(
-            files,
-            &files.stiffness,
-            files.stiffness_name.as_deref(),
-            &rows,
-        )?,
+        stiffness,
         mass: tabled(files, &files.mass, files.mass_name.as_deref(), &rows)?,
         rows,
     })

@@ -48,6 +48,14 @@ pub(super) fn from_full(
             });
         }
     }
+    let apart = || entries.iter().filter(|&&(_, _, value)| value != 0.0);
+    let above = apart().filter(|(row, column, _)| row < column).count();
+    let below = apart().filter(|(row, column, _)| row > column).count();
+    if above.min(below) == 0 && above.max(below) > 1 {
+        let side = if above > 0 { "above" } else { "below" };
+        let entries = above.max(below);
+        return Err(ImportProblem::OneTriangle { entries, side });
+    }
     for &(row, column, value) in entries {
         let mirror = all.get(&(column, row)).copied().unwrap_or(0.0);
         if value != mirror {

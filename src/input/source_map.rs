@@ -1,4 +1,4 @@
-//! Where each key of a study file stands, so that every message can name its line.
+//! Where each key of a TOML file stands, so that every message can name its line.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -7,7 +7,7 @@ use strsim::damerau_levenshtein;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::{Excerpt, Finding, Problem};
+use super::finding::{Excerpt, Finding, Problem};
 
 /// Bytes of a line that are shown before and from the beginning of the part that a message is about.
 const BEFORE: usize = 150;
@@ -15,7 +15,7 @@ const AFTER: usize = 250;
 
 /// Spans of the keys and values of a TOML text, by full key.
 #[derive(Debug, Clone, Default)]
-pub(super) struct SourceMap {
+pub(crate) struct SourceMap {
     text: String,
     /// Where each line begins.
     lines: Vec<usize>,
@@ -30,7 +30,7 @@ struct Place {
 
 impl SourceMap {
     /// Parses `text`; a finding if it is no TOML.
-    pub(super) fn new(text: &str) -> Result<Self, Box<Finding>> {
+    pub(crate) fn new(text: &str) -> Result<Self, Box<Finding>> {
         let mut map = Self {
             text: text.to_owned(),
             lines: std::iter::once(0)
@@ -73,12 +73,12 @@ impl SourceMap {
     }
 
     /// Whether `key` is written.
-    pub(super) fn holds(&self, key: &str) -> bool {
+    pub(crate) fn holds(&self, key: &str) -> bool {
         self.places.contains_key(key)
     }
 
     /// Line of `key`, or of the innermost table above it that is there; 1 if there is none.
-    pub(super) fn line(&self, key: &str) -> usize {
+    pub(crate) fn line(&self, key: &str) -> usize {
         let mut path = key;
         loop {
             if let Some(place) = self.places.get(path) {
@@ -92,7 +92,7 @@ impl SourceMap {
     }
 
     /// `problem` with `key`, underlined in the file: the value where that is the matter, else the key.
-    pub(super) fn finding(&self, key: &str, problem: Problem) -> Finding {
+    pub(crate) fn finding(&self, key: &str, problem: Problem) -> Finding {
         let of_value = matches!(problem, Problem::NotAccepted { .. });
         let part = |place: &Place| {
             if of_value {
@@ -145,7 +145,7 @@ impl SourceMap {
     }
 
     /// The value of `key` as written.
-    pub(super) fn value(&self, key: &str) -> String {
+    pub(crate) fn value(&self, key: &str) -> String {
         self.places
             .get(key)
             .and_then(|place| self.text.get(place.value.clone()))
@@ -154,7 +154,10 @@ impl SourceMap {
     }
 
     fn line_at(&self, offset: usize) -> usize {
-        self.lines.partition_point(|&start| start <= offset).max(1)
+        // What is missing at the end is missing on the last line.
+        let last = self.lines.len() - usize::from(self.text.ends_with('\n'));
+        let line = self.lines.partition_point(|&start| start <= offset);
+        line.clamp(1, last.max(1))
     }
 
     /// The innermost key whose name or value covers `offset`.
@@ -168,7 +171,7 @@ impl SourceMap {
     }
 
     /// The finding that an error of the TOML reader stands for.
-    pub(super) fn describe(&self, error: &toml::de::Error) -> Finding {
+    pub(crate) fn describe(&self, error: &toml::de::Error) -> Finding {
         let offset = error.span().map_or(0, |span| span.start);
         let line = self.line_at(offset);
         let key = self.key_at(offset);
@@ -248,7 +251,7 @@ fn split_first(mut names: Vec<String>) -> (String, Vec<String>) {
 }
 
 /// The name nearest to `written`, if it is near enough to be meant.
-fn nearest(written: &str, names: &[String]) -> Option<String> {
+pub(crate) fn nearest(written: &str, names: &[String]) -> Option<String> {
     names
         .iter()
         .map(|name| (damerau_levenshtein(written, name), name))

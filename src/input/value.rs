@@ -1,4 +1,4 @@
-//! What a key of a study file accepts.
+//! What a key accepts.
 
 use std::fmt;
 
@@ -95,6 +95,8 @@ pub enum Value {
     List(&'static Value),
     /// A list of numbers of which some may be the same.
     Numbers(Range),
+    /// This many finite numbers.
+    Vector(u64),
     /// An ascending list of this many values, or of any number from one.
     Ascending(&'static Value, Option<u64>),
     /// A list of lists of two: these names, the first a whole number from the two, the second a number.
@@ -145,6 +147,7 @@ impl fmt::Display for Value {
             }
             Self::List(value) => write!(f, "list of different values: {value}"),
             Self::Numbers(range) => write!(f, "list: {range}"),
+            Self::Vector(count) => write!(f, "{count} numbers"),
             Self::Ascending(value, None) => write!(f, "ascending list: {value}"),
             Self::Ascending(value, Some(count)) => write!(f, "{count} ascending values: {value}"),
             Self::Pairs([first, second], [low, high], range) => write!(
@@ -192,6 +195,10 @@ impl Value {
             }),
             Self::Numbers(range) => json!({
                 "type": "array", "items": Self::Number(*range).schema(), "minItems": 1,
+            }),
+            Self::Vector(count) => json!({
+                "type": "array", "items": Self::Number(Range::ANY).schema(),
+                "minItems": count, "maxItems": count,
             }),
             Self::Ascending(value, count) => {
                 let mut schema = json!({

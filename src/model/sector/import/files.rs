@@ -1,0 +1,176 @@
+//! The files that an import file names, by body: its own keys, or those that a job stands for.
+
+use std::path::{Path, PathBuf};
+
+use super::import_file::missing;
+use super::matrices::{MatrixFiles, MatrixFormat};
+use super::tables::{BliskTable, RingTable};
+use crate::input::Problem;
+
+/// Files of one run: its mesh and its matrices.
+#[derive(Debug, Clone)]
+pub(super) struct RunFiles {
+    pub mesh: PathBuf,
+    pub matrices: MatrixFiles,
+}
+
+/// Keys of the files of one run as written.
+struct Keys<'a> {
+    /// What stands before the names of the keys: `blisk.`, `ring.` or `blisk.blade_`.
+    prefix: &'static str,
+    job: Option<&'a PathBuf>,
+    stiffness: Option<&'a PathBuf>,
+    mass: Option<&'a PathBuf>,
+    /// That of the blade alone is not needed.
+    has_mass: bool,
+    dofs: Option<&'a PathBuf>,
+    stiffness_name: Option<&'a String>,
+    mass_name: Option<&'a String>,
+}
+
+/// Which file a key is for.
+struct Reader<'a> {
+    import_file: &'a Path,
+    format: MatrixFormat,
+    problems: &'a mut Vec<(String, Problem)>,
+}
+
+/// Files of the blisk, of the blade alone and of the ring; what is missing goes to `problems`.
+pub(super) fn files(
+    import_file: &Path,
+    format: MatrixFormat,
+    blisk: &BliskTable,
+    ring: Option<&RingTable>,
+    problems: &mut Vec<(String, Problem)>,
+) -> (RunFiles, Option<MatrixFiles>, Option<RunFiles>) {
+    let mut reader = Reader {
+        import_file,
+        format,
+        problems,
+    };
+    let keys = Keys {
+        prefix: "blisk.",
+        job: blisk.job.as_ref(),
+        stiffness: blisk.stiffness.as_ref(),
+        mass: blisk.mass.as_ref(),
+        has_mass: true,
+        dofs: blisk.dofs.as_ref(),
+        stiffness_name: blisk.stiffness_name.as_ref(),
+        mass_name: blisk.mass_name.as_ref(),
+    };
+    let of_blisk = reader.run(blisk.mesh.as_ref(), &keys);
+    let of_blade = reader.blade(blisk);
+    let of_ring = ring.and_then(|ring| {
+        if ring.mesh.is_none() && ring.job.is_none() && ring.stiffness.is_none() {
+            if ring.set.is_none() {
+                let accepted =
+                    "the set of the ring's nodes or elements in the blisk's files, or `ring.mesh` and its matrices";
+                reader.problems.push(missing("ring.set", accepted));
+            }
+            return None;
+        }
+        let keys = Keys {
+            prefix: "ring.",
+            job: ring.job.as_ref(),
+            stiffness: ring.stiffness.as_ref(),
+            mass: ring.mass.as_ref(),
+            has_mass: true,
+            dofs: ring.dofs.as_ref(),
+            stiffness_name: ring.stiffness_name.as_ref(),
+            mass_name: ring.mass_name.as_ref(),
+        };
+        Some(reader.run(ring.mesh.as_ref(), &keys))
+    });
+    (of_blisk, of_blade, of_ring)
+}
+
+impl Reader<'_> {
+    /// A path of the import file, which is relative to its folder.
+    fn beside(&self, path: &Path) -> PathBuf {
+        let folder = self.import_file.parent();
+        folder.unwrap_or_else(|| Path::new("")).join(path)
+    }
+
+    fn run(&mut self, mesh: Option<&PathBuf>, keys: &Keys<'_>) -> RunFiles {
+        let mesh = match (mesh, keys.job) {
+            (Some(mesh), _) => self.beside(mesh),
+            (None, Some(job)) => self.beside(&with_suffix(job, "inp")),
+            (None, None) => {
+                let accepted = "the file with nodes, elements and sets";
+                let key = format!("{}mesh", keys.prefix);
+                self.problems.push(missing(key, accepted));
+                PathBuf::new()
+            }
+        };
+        RunFiles {
+            mesh,
+            matrices: self.matrices(keys),
+        }
+    }
+
+    /// The files of the blade's stiffness, where a run of its own wrote it.
+    fn blade(&mut self, blisk: &BliskTable) -> Option<MatrixFiles> {
+        if blisk.blade_job.is_none() && blisk.blade_stiffness.is_none() {
+            if blisk.blade_elements.is_none() {
+                let accepted = "the element set of the blade, or `blisk.blade_job` or `blisk.blade_stiffness` with the matrices of the blade alone";
+                self.problems
+                    .push(missing("blisk.blade_elements", accepted));
+            }
+            return None;
+        }
+        Some(self.matrices(&Keys {
+            prefix: "blisk.blade_",
+            job: blisk.blade_job.as_ref(),
+            stiffness: blisk.blade_stiffness.as_ref(),
+            mass: None,
+            has_mass: false,
+            dofs: blisk.blade_dofs.as_ref().or(blisk.dofs.as_ref()),
+            stiffness_name: blisk.blade_stiffness_name.as_ref(),
+            mass_name: None,
+        }))
+    }
+
+    fn matrices(&mut self, keys: &Keys<'_>) -> MatrixFiles {
+        let format = self.format;
+        let calculix = format == MatrixFormat::Calculix;
+        let mut path = |own: Option<&PathBuf>, suffix: &str, key: &str| match (own, keys.job) {
+            (Some(own), _) => self.beside(own),
+            (None, Some(job)) if calculix => self.beside(&with_suffix(job, suffix)),
+            // DMIG names its rows itself.
+            (None, _) if key == "dofs" && format == MatrixFormat::Dmig => PathBuf::new(),
+            (None, _) => {
+                let accepted = match (calculix, key) {
+                    (true, _) => "a file, or the key job with the name of the CalculiX job",
+                    (false, "dofs") => "a file that gives node and direction of each row",
+                    (false, _) => "a file",
+                };
+                let key = format!("{}{key}", keys.prefix);
+                self.problems.push(missing(key, accepted));
+                PathBuf::new()
+            }
+        };
+        let one_file = matches!(format, MatrixFormat::Dmig | MatrixFormat::Op4);
+        // A punch file holds both.
+        let mass = keys.mass.or(keys.stiffness.filter(|_| one_file));
+        MatrixFiles {
+            format,
+            stiffness: path(keys.stiffness, "sti", "stiffness"),
+            mass: if keys.has_mass {
+                path(mass, "mas", "mass")
+            } else {
+                PathBuf::new()
+            },
+            dofs: path(keys.dofs, "dof", "dofs"),
+            stiffness_name: keys.stiffness_name.cloned(),
+            mass_name: keys.mass_name.cloned(),
+        }
+    }
+}
+
+/// The name of a file of a job; a dot in the name of the job is no suffix.
+fn with_suffix(job: &Path, suffix: &str) -> PathBuf {
+    let mut name = job.as_os_str().to_owned();
+    name.push(".");
+    name.push(suffix);
+    PathBuf::from(name)
+}
