@@ -1,4 +1,4 @@
-"""Draws docs/quickstart.svg and writes results/README.md from the results of studies/quickstart.toml.
+"""Draws docs/quickstart.svg from the results of studies/quickstart.toml.
 
     cargo run --release -- run studies/quickstart.toml
     python docs/quickstart.py results/quickstart
@@ -120,59 +120,11 @@ def svg(rows, manifest):
     )
 
 
-def table(rows, manifest):
-    def cell(value, digits):
-        return "-" if value is None else f"{value:.{digits}f}"
-
-    def bounded(row, name, scale, digits):
-        value, low, high = (row[f"{name}{end}"] for end in ("", "_lower", "_upper"))
-        parts = [None if v is None else scale * v for v in (value, low, high)]
-        return f"{cell(parts[0], digits)} [{cell(parts[1], digits)}, {cell(parts[2], digits)}]"
-
-    lines = [
-        "# Results",
-        "",
-        "`blisk run STUDY` writes to `results/<name>/`; docs/results.md describes the files. Nothing here is kept",
-        "but this page and `validation/`.",
-        "",
-        "## Quickstart",
-        "",
-        f"`studies/quickstart.toml`, version {manifest['version']}, seed {manifest['seed']}, "
-        f"{manifest['patterns']} patterns, harmonics {manifest['study']['solver']['harmonics']}, "
-        f"basis {manifest['chosen'].get('basis')}; "
-        f"{manifest['counts']['ok']} rows ok, {manifest['counts']['failed']} failed.",
-        "Amplitudes in um, 95 % bounds in brackets.",
-        "",
-        "| normal load, N | tuned | at, Hz | P50 | P95 | amplification P50 | amplification P95 |",
-        "| ---: | ---: | ---: | ---: | ---: | ---: | ---: |",
-    ]
-    for row in rows:
-        load = row["contact"] if row["normal_load_n"] is None else f"{row['normal_load_n']:g}"
-        cells = [
-            load,
-            cell(micrometres(row["tuned_amplitude_m"]), 2),
-            cell(row["tuned_frequency_hz"], 2),
-            bounded(row, "peak_amplitude_m_p50", 1e6, 2),
-            bounded(row, "peak_amplitude_m_p95", 1e6, 2),
-            bounded(row, "amplification_factor_p50", 1, 3),
-            bounded(row, "amplification_factor_p95", 1, 3),
-        ]
-        lines.append("| " + " | ".join(cells) + " |")
-    lines += [
-        "",
-        "Made by `cargo run --release -- run studies/quickstart.toml` and",
-        "`python docs/quickstart.py results/quickstart`.",
-        "",
-    ]
-    return "\n".join(lines)
-
-
 def main():
     results = Path(sys.argv[1])
     rows = pyarrow.parquet.read_table(results / "scenarios.parquet").to_pylist()
     manifest = json.loads((results / "manifest.json").read_text())
     (ROOT / "docs/quickstart.svg").write_text(svg(rows, manifest))
-    (ROOT / "results/README.md").write_text(table(rows, manifest))
 
 
 main()

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::super::support::Case;
 use super::models::reference_wheel;
-use super::report::{Kind, Section, Verdict, percent, table};
+use super::report::{Section, Verdict, percent, table};
 
 /// Vectors per nodal diameter, both families together.
 const SIZES: [usize; 3] = [4, 8, 12];
@@ -84,16 +84,19 @@ fn verdicts(rows: &[Compared]) -> Vec<Verdict> {
     let attachment = rows.iter().map(|row| row.attachment.unwrap_or(f64::NAN));
     vec![
         Verdict::claim(
+            "both-families",
             format!(
                 "stick and slide modes together are more accurate than as many of either family: in {better} of {} sizes",
                 rows.len()
             ),
             better == rows.len(),
         ),
-        Verdict {
-            kind: Kind::Bar,
-            ..Verdict::at_most("stick_attachment, any size", attachment, 2e-3)
-        },
+        Verdict::at_most(
+            "stick-attachment",
+            "stick_attachment, any size",
+            attachment,
+            2e-3,
+        ),
     ]
 }
 

@@ -69,6 +69,7 @@ pub fn section() -> Section {
         body: table(&header, &cells),
         verdicts: vec![Verdict::at_most(
             "frequency",
+            "frequency",
             compared
                 .iter()
                 .flat_map(|(_, pairs)| pairs.iter().map(relative)),

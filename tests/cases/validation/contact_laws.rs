@@ -81,7 +81,7 @@ fn verdicts(laws: &[OfLaws], rings: &[OfRings]) -> Vec<Verdict> {
     let of_macro_slip = laws.iter().map(|(_, _, found)| change(found[2], found[0]));
     let of_creep = rings.iter().map(|(_, _, found)| change(found[1], found[0]));
     vec![
-        Verdict::share("peaks found", solved.map(Result::is_ok), 1.0),
+        Verdict::share("peaks-found", "peaks found", solved.map(Result::is_ok), 1.0),
         stays_near("simplified_3d", of_simplified),
         stays_near("macro_slip_1d", of_macro_slip),
         stays_near("a creeping ring", of_creep),
@@ -92,6 +92,7 @@ fn verdicts(laws: &[OfLaws], rings: &[OfRings]) -> Vec<Verdict> {
 fn stays_near(what: &str, changes: impl Iterator<Item = f64>) -> Verdict {
     let (worst, count) = worst(changes.map(f64::abs).filter(|change| !change.is_nan()));
     Verdict::claim(
+        &what.replace([' ', '_'], "-"),
         format!(
             "{what} changes the peak by at most {}: {} at worst of {count}",
             percent(NEAR),

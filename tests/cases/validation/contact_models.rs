@@ -218,26 +218,31 @@ fn verdicts(rows: &[Compared]) -> Vec<Verdict> {
     });
     vec![
         Verdict::share(
+            "full-model-to-reference",
             "full model within the tolerances of the reference rows",
             rows.iter().filter_map(Compared::meets_the_reference),
             1.0,
         ),
         Verdict::at_most(
+            "amplitude",
             "fast path against full model, amplitude, no separation",
             errors(false, |difference| difference.amplitude),
             3e-3,
         ),
         Verdict::at_most(
+            "frequency",
             "fast path against full model, frequency, no separation",
             errors(false, |difference| difference.frequency),
             2e-4,
         ),
         Verdict::at_most(
+            "amplitude-with-separation",
             "fast path against full model, amplitude, with separation",
             errors(true, |difference| difference.amplitude),
             1e-2,
         ),
         Verdict::at_most(
+            "amplitude-to-reference",
             "fast path against the reference rows under friction, amplitude",
             to_reference,
             1e-2,

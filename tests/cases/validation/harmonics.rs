@@ -110,17 +110,20 @@ pub fn section() -> Section {
         body: table(&header, &cells),
         verdicts: vec![
             Verdict::share(
+                "converged-peaks-found",
                 "converged peaks found",
                 rows.iter().map(|row| row.truth().is_ok()),
                 1.0,
             ),
             Verdict::share(
+                "stated-error-same-modes",
                 "within the stated error, harmonics converged, same fixed-interface modes",
                 rows.iter()
                     .filter_map(|row| row.is_within(row.same_modes_m)),
                 0.95,
             ),
             Verdict::share(
+                "stated-error",
                 "within the stated error, harmonics and fixed-interface modes converged",
                 rows.iter().filter_map(|row| row.is_within(row.truth())),
                 0.95,

@@ -133,7 +133,7 @@ pub fn section() -> Section {
         compared: "Exact properties whose test runs with `cargo test --release` and is not repeated here; that a test of this name exists is checked."
             .to_owned(),
         body: table(&["oracle", "test"], &cells),
-        verdicts: vec![Verdict::share("tests that exist", found, 1.0)],
+        verdicts: vec![Verdict::share("tests-exist", "tests that exist", found, 1.0)],
     }
 }
 

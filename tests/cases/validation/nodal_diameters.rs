@@ -93,6 +93,7 @@ fn claim(wheel: &[Diameter]) -> Verdict {
     let (low, high) = (mean(&wheel[..half]), mean(&wheel[half..]));
     let correlation = rank_correlation(wheel);
     Verdict::claim(
+        wheel[0].wheel,
         format!(
             "{}: the ring damps the low nodal diameters most (mean effect of the lower half {low:.2}, of the upper half {high:.2}; greatest in nodal \
              diameter {}; rank correlation with the nodal diameter {correlation:+.2})",

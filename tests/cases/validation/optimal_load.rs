@@ -169,6 +169,7 @@ impl Found {
             .map(|(name, at)| format!("{name} {} N", loads[*at]))
             .collect();
         let wheel = self.population.name.split(" of ").next().unwrap();
+        let id = |what: &str| format!("{}-{what}", wheel.replace(' ', "-"));
         let apart = deviations
             .iter()
             .zip(&self.mistuned)
@@ -177,8 +178,14 @@ impl Found {
         let apart: Vec<String> = apart.collect();
         let same = places.iter().all(|(_, at)| *at == tuned);
         vec![
-            Verdict::share(&format!("{wheel}: rows solved"), [self.failed == 0], 1.0),
+            Verdict::share(
+                &id("rows"),
+                &format!("{wheel}: rows solved"),
+                [self.failed == 0],
+                1.0,
+            ),
             Verdict::claim(
+                &id("interior"),
                 format!(
                     "{wheel}: an optimal load between the ends of the loads ({})",
                     list.join(", ")
@@ -186,6 +193,7 @@ impl Found {
                 places.iter().all(|(_, at)| *at > 0 && *at < last),
             ),
             Verdict::claim(
+                &id("same-load"),
                 format!(
                     "{wheel}: the same load is optimal for the tuned wheel and both populations (bounds of the tuned optimum and the lowest P95 apart: {})",
                     if apart.is_empty() {

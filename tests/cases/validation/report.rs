@@ -1,25 +1,31 @@
-//! Sections, verdicts and tables of the report, and the file that they are written to.
+//! Sections, verdicts and tables of the report, and the files that they are written to.
 
 use std::any::Any;
 use std::fmt::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
-use std::sync::Mutex;
+use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::super::support::package;
+pub use super::bars::Verdict;
+use super::bars::{
+    Kind, Open, REPORT, VERDICTS, Verdicts, headline, known_and_open, problems, problems_of_folder,
+};
+use super::identity::Identity;
 
 /// A section of the report.
 #[derive(Clone, Copy)]
 pub struct Entry {
-    /// By which it is asked for.
+    /// By which it is asked for, and with which the names of its verdicts begin.
     pub name: &'static str,
     pub title: &'static str,
     pub compute: fn() -> Section,
 }
 
 /// What was compared, the tables, and what follows from the numbers.
+#[derive(Serialize, Deserialize)]
 pub struct Section {
     /// What was compared with what, with the sizes of the samples.
     pub compared: String,
@@ -30,35 +36,18 @@ pub struct Section {
 
 impl Section {
     fn markdown(&self) -> String {
-        let verdicts: String = self.verdicts.iter().map(Verdict::line).collect();
+        let line = |own: &Verdict| format!("- **{}**, `{}`: {}\n", own.word(), own.id, own.text);
+        let verdicts: String = self.verdicts.iter().map(line).collect();
         format!("{}\n\n{}\n{verdicts}", self.compared, self.body)
     }
 }
 
-/// A judgement computed from the numbers of a section.
-pub struct Verdict {
-    pub kind: Kind,
-    pub text: String,
-    pub met: bool,
-}
-
-/// How the line of a verdict begins.
-const VERDICT: &str = "- **";
-
-/// What a verdict is about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// The program against a stated bar.
-    Bar,
-    /// A claim about ring dampers, which these models confirm or not.
-    Claim,
-}
-
 impl Verdict {
     /// The worst of some errors, given as shares, against a bar; an error that is not a number misses it.
-    pub fn at_most(what: &str, errors: impl IntoIterator<Item = f64>, bar: f64) -> Self {
+    pub fn at_most(id: &str, what: &str, errors: impl IntoIterator<Item = f64>, bar: f64) -> Self {
         let (worst, count) = worst(errors);
         Self {
+            id: id.to_owned(),
             kind: Kind::Bar,
             text: format!(
                 "{what}: {} at worst of {count}, bar {}",
@@ -66,14 +55,17 @@ impl Verdict {
                 percent(bar)
             ),
             met: count > 0 && worst <= bar,
+            figure: Some(worst),
+            bar: Some(bar),
         }
     }
 
-    /// How many of some rows do what is wanted of at least a share of them.
-    pub fn share(what: &str, rows: impl IntoIterator<Item = bool>, bar: f64) -> Self {
+    /// How many of some rows do what is wanted of at least a share of them; the figure is the share that does not.
+    pub fn share(id: &str, what: &str, rows: impl IntoIterator<Item = bool>, bar: f64) -> Self {
         let rows: Vec<bool> = rows.into_iter().collect();
         let within = rows.iter().filter(|&&within| within).count();
         Self {
+            id: id.to_owned(),
             kind: Kind::Bar,
             text: format!(
                 "{what}: {within} of {}, bar {:.0} %",
@@ -81,28 +73,20 @@ impl Verdict {
                 100.0 * bar
             ),
             met: !rows.is_empty() && within as f64 >= bar * rows.len() as f64,
+            figure: Some((rows.len() - within) as f64 / rows.len() as f64),
+            bar: Some(1.0 - bar),
         }
     }
 
-    pub fn claim(text: String, confirmed: bool) -> Self {
+    pub fn claim(id: &str, text: String, confirmed: bool) -> Self {
         Self {
+            id: id.to_owned(),
             kind: Kind::Claim,
             text,
             met: confirmed,
+            figure: None,
+            bar: None,
         }
-    }
-
-    fn word(&self) -> &'static str {
-        match (self.kind, self.met) {
-            (Kind::Bar, true) => "bar met",
-            (Kind::Bar, false) => "BAR NOT MET",
-            (Kind::Claim, true) => "claim confirmed",
-            (Kind::Claim, false) => "CLAIM NOT CONFIRMED",
-        }
-    }
-
-    fn line(&self) -> String {
-        format!("{VERDICT}{}**: {}\n", self.word(), self.text)
     }
 }
 
@@ -148,83 +132,130 @@ pub fn set_name(harmonics: &[u32]) -> String {
     names.join("-")
 }
 
-/// Computes sections, as many at once as there are threads, and writes the report anew whenever one is
-/// done, so that a run that is cut short leaves what it has. `wanted` names those to compute, all if it is
-/// none; the others are kept as they stand. Returns the names of those that could not be computed.
-pub fn write_report(entries: &[Entry], wanted: Option<&str>) -> Vec<&'static str> {
+/// Computes the sections that `wanted` names, all if it is none, as many at once as there are threads. A section is kept
+/// under the digest of the sources, so that a run that was cut short goes on. All of them together are written as the
+/// report; some of them are printed and nothing is written. Returns what does not pass.
+pub fn make_report(entries: &[Entry], wanted: Option<&str>) -> Vec<String> {
+    let identity = Identity::now();
     let names: Vec<&str> = entries.iter().map(|entry| entry.name).collect();
     let wanted: Vec<&str> = wanted.map_or_else(|| names.clone(), |list| list.split(',').collect());
     for name in &wanted {
         assert!(names.contains(name), "{name:?} is none of {names:?}");
     }
-    let folder = package("results/validation");
-    std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join("report.md");
-    let old = std::fs::read_to_string(&path).unwrap_or_default();
-    let kept = entries.iter().map(|entry| {
-        let text = text_of(&old, entry.title).filter(|_| !wanted.contains(&entry.name));
-        text.map_or_else(|| "Not computed yet.\n".to_owned(), str::to_owned)
-    });
-    let texts: Mutex<Vec<String>> = Mutex::new(kept.collect());
-    let failed = entries
+    let kept = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("validation")
+        .join(&identity.sources);
+    std::fs::create_dir_all(&kept).unwrap();
+    let computed: Vec<(&Entry, Result<Section, String>)> = entries
         .par_iter()
         .with_max_len(1)
-        .enumerate()
-        .filter(|(_, entry)| wanted.contains(&entry.name))
-        .filter_map(|(place, entry)| {
-            let section = catch_unwind(AssertUnwindSafe(entry.compute));
+        .filter(|entry| wanted.contains(&entry.name))
+        .map(|entry| {
+            let section = computed(entry, kept.join(format!("{}.toml", entry.name)));
             let text = section.as_ref().map(Section::markdown);
-            let mut texts = texts.lock().unwrap();
-            texts[place] = text
-                .unwrap_or_else(|panic| format!("{VERDICT}NOT COMPUTED**: {}\n", reason(panic)));
-            println!("{}: {}", entry.name, texts[place]);
-            write(&path, entries, &texts);
-            section.is_err().then_some(entry.name)
-        });
-    failed.collect()
+            println!(
+                "{}: {}",
+                entry.name,
+                text.unwrap_or_else(|reason| format!("NOT COMPUTED: {reason}"))
+            );
+            (entry, section)
+        })
+        .collect();
+    let mut sections = Vec::new();
+    let mut failed = Vec::new();
+    for (entry, section) in computed {
+        match section {
+            Ok(section) => sections.push((entry, section)),
+            Err(reason) => failed.push(format!("{}: not computed: {reason}", entry.name)),
+        }
+    }
+    if !failed.is_empty() {
+        return failed;
+    }
+    let verdicts: Vec<Verdict> = sections
+        .iter()
+        .flat_map(|(_, section)| section.verdicts.clone())
+        .collect();
+    let folder = package("results/validation");
+    let open = Open::read(&folder);
+    if sections.len() == entries.len() {
+        write(&folder, &identity, &sections, &verdicts, &open);
+        return problems_of_folder(&folder, &package("results/README.md"));
+    }
+    // Of some sections: the bars listed of others have no verdict here.
+    let of_these = |id: &str| {
+        wanted
+            .iter()
+            .any(|name| id.starts_with(&format!("{name}/")))
+    };
+    let open = Open {
+        bars: open
+            .bars
+            .into_iter()
+            .filter(|bar| of_these(&bar.id))
+            .collect(),
+        known: Vec::new(),
+    };
+    problems(&verdicts, &open)
+}
+
+/// A section, read where it was computed from the same sources already; or why it could not be computed.
+fn computed(entry: &Entry, kept: PathBuf) -> Result<Section, String> {
+    if let Ok(text) = std::fs::read_to_string(&kept) {
+        return Ok(toml::from_str(&text).unwrap());
+    }
+    let found = catch_unwind(AssertUnwindSafe(entry.compute));
+    let mut section = found.map_err(|panic| reason(&*panic))?;
+    for verdict in &mut section.verdicts {
+        verdict.id = format!("{}/{}", entry.name, verdict.id);
+    }
+    std::fs::write(kept, toml::to_string(&section).unwrap()).unwrap();
+    Ok(section)
 }
 
 /// What a panic says.
-fn reason(panic: &Box<dyn Any + Send>) -> String {
+fn reason(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().cloned();
     text.or_else(|| panic.downcast_ref::<&str>().map(|&text| text.to_owned()))
         .unwrap_or_default()
         .replace('\n', " ")
 }
 
-/// The text of a section of a report.
-fn text_of<'a>(report: &'a str, title: &str) -> Option<&'a str> {
-    let heading = format!("\n## {title}\n\n");
-    let start = report.find(&heading)? + heading.len();
-    let text = &report[start..];
-    Some(text.find("\n## ").map_or(text, |end| &text[..end]))
-}
-
-fn write(path: &Path, entries: &[Entry], texts: &[String]) {
+fn write(
+    folder: &Path,
+    identity: &Identity,
+    sections: &[(&Entry, Section)],
+    verdicts: &[Verdict],
+    open: &Open,
+) {
     let mut report = format!(
-        "# Validation report\n\nblisk {}. Made by `cargo test --release --test cases -- --ignored --nocapture \
-         the_validation_report` ([studies/validation](../../studies/validation/README.md)).\n\n{HOW_TO_READ}\n## Summary\n\n\
-         | section | verdict | by the numbers |\n| --- | --- | --- |\n",
-        env!("CARGO_PKG_VERSION")
+        "{}\n\n{} What it solves is in [studies/validation](../../studies/validation/README.md).\n\n{HOW_TO_READ}\n## Summary\n\n\
+         | name | verdict | by the numbers |\n| --- | --- | --- |\n",
+        headline(verdicts, open),
+        identity.line()
     );
-    let sections = || entries.iter().zip(texts);
-    for (entry, text) in sections() {
-        for verdict in text.lines().filter_map(|line| line.strip_prefix(VERDICT)) {
-            let (word, text) = verdict.split_once("**: ").unwrap();
-            writeln!(report, "| {} | **{word}** | {text} |", entry.title).unwrap();
-        }
+    for own in verdicts {
+        report += &own.row();
     }
-    for (entry, text) in sections() {
-        write!(report, "\n## {}\n\n{text}", entry.title).unwrap();
+    write!(report, "\n## Known and open\n\n{}", known_and_open(open)).unwrap();
+    for (entry, section) in sections {
+        write!(report, "\n## {}\n\n{}", entry.title, section.markdown()).unwrap();
     }
-    std::fs::write(path, report).unwrap();
+    std::fs::write(folder.join(REPORT), report).unwrap();
+    let stored = Verdicts {
+        identity: identity.clone(),
+        verdicts: verdicts.to_vec(),
+    };
+    std::fs::write(folder.join(VERDICTS), toml::to_string(&stored).unwrap()).unwrap();
+    super::quickstart::write_page(identity, sections);
 }
 
 const HOW_TO_READ: &str = "\
 ## How to read it
 
-Every number and every verdict is computed by that command; none is typed. A verdict sets the worst number of a table against a bar
-that was fixed beforehand; a claim is one about ring dampers, not about this program. Amplitude: largest over blades and frequency of
+Every number and every verdict is computed by that command from one build; none is typed but in the section of what is known and open. A
+verdict sets the worst number of a table against a bar that was fixed beforehand; a claim is one about ring dampers, not about this program, and may be
+refuted. The command ends with exit code 1 while a bar is not met that is not listed as open. Amplitude: largest over blades and frequency of
 the fundamental harmonic, in um for an excitation of 1 N per sector, if nothing else is said. Differences are relative. *Fast path*: the
 reduced model that a study is run on; *full model*: every contact dof of the Craig-Bampton model, 512 samples, another solver
 (docs/formulation.md, section 9). \"Default settings\" are those of a study that sets nothing under `[reduction]` and `[solver]`, but for the

@@ -297,16 +297,19 @@ fn verdicts(found: &[(Point, Result<PointComparison, Status>)]) -> Vec<Verdict> 
     };
     let mut verdicts = vec![
         Verdict::at_most(
+            "wheel8-largest-blade",
             "wheel8, largest blade, points that became periodic",
             periodic(false).map(|(_, found)| found.largest_difference().abs()),
             5e-3,
         ),
         Verdict::at_most(
+            "lumped24-largest-blade",
             "lumped24, largest blade",
             periodic(true).map(|(_, found)| found.largest_difference().abs()),
             1e-4,
         ),
         Verdict::at_most(
+            "lumped24-any-blade",
             "lumped24, any blade",
             periodic(true).map(|(_, found)| found.blade_difference()),
             2e-4,
@@ -322,6 +325,7 @@ fn verdicts(found: &[(Point, Result<PointComparison, Status>)]) -> Vec<Verdict> 
             })
         };
         verdicts.push(Verdict::share(
+            &format!("wheel8-periodic-in-{}", regime.name().replace(' ', "-")),
             &format!(
                 "wheel8 in {}, tuned and mistuned: a periodic motion within 0.5 % seen",
                 regime.name()
