@@ -140,7 +140,7 @@ fn friction_bounds_the_peak_of_a_hardly_damped_wheel() {
 }
 
 #[test]
-#[ignore = "long form: `cargo test --release --test physics extremes -- --ignored`"]
+#[ignore = "about 1 minute: `cargo test --release --test physics extremes -- --ignored`"]
 fn friction_bounds_the_peak_of_a_hardly_damped_wheel_long() {
     settles(&decades(-7, -1, 4));
 }

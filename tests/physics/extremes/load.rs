@@ -51,7 +51,7 @@ fn twelve_orders_of_force_and_load_together_scale_the_response() {
 }
 
 #[test]
-#[ignore = "long form: `cargo test --release --test physics extremes -- --ignored`"]
+#[ignore = "about 1 minute: `cargo test --release --test physics extremes -- --ignored`"]
 fn twelve_orders_of_force_and_load_together_scale_the_response_long() {
     scales(&decades(-6, 6, 4));
 }
@@ -155,7 +155,7 @@ fn a_slider_goes_from_the_free_wheel_to_the_stuck_one() {
 }
 
 #[test]
-#[ignore = "long form: `cargo test --release --test physics extremes -- --ignored`"]
+#[ignore = "about 1 minute: `cargo test --release --test physics extremes -- --ignored`"]
 fn a_slider_goes_from_the_free_wheel_to_the_stuck_one_long() {
     from_free_to_stuck(&decades(-12, 12, 4));
 }
@@ -252,7 +252,7 @@ fn clapping_ends_in_a_number_or_a_status() {
 }
 
 #[test]
-#[ignore = "long form: `cargo test --release --test physics extremes -- --ignored`"]
+#[ignore = "about 1 minute: `cargo test --release --test physics extremes -- --ignored`"]
 fn clapping_ends_in_a_number_or_a_status_long() {
     let loads = decades(-6, 6, 4);
     for (harmonics, wanted) in [

@@ -77,12 +77,12 @@ fn a_stiff_contact_ties_the_ring_to_the_disk() {
 }
 
 /// Under friction the peak settles as the slider becomes rigid: the elastic travel mu N0 / kt vanishes.
-/// Sampled in time, a slider with so little travel is a jump, at which Newton's method may fail. Wanted is every row;
-/// beyond `jump` N/m, where the travel is 1e-6 of the motion, at most `most_failed` have a status in the place of a peak: known and
-/// open (`results/validation/open_bars.toml`). The jump lies at a sample, not between two: where that counts (60 N, 160
+/// Sampled in time, a slider with so little travel is a jump, at which Newton's method may fail. Wanted is every row. At
+/// most `most_failed` have a status in the place of a peak, first of those up to 2e10 N/m, then of all: known and open
+/// (`results/validation/open_bars.toml`). The jump lies at a sample, not between two: where that counts (60 N, 160
 /// samples: up to 1.1 %) the rows state it as their sampling error (0.2 to 2 %), and agree within it.
-fn settles(stiffnesses: &[f64], jump: f64, most_failed: usize) {
-    let mut failed = 0;
+fn settles(stiffnesses: &[f64], most_failed: [usize; 2]) {
+    let mut failed = [0; 2];
     for load in CHAIN_LOADS {
         let mut peaks: Vec<(f64, f64, f64)> = Vec::new();
         for &kt in stiffnesses {
@@ -97,11 +97,10 @@ fn settles(stiffnesses: &[f64], jump: f64, most_failed: usize) {
                 row.nonlinear_solves,
                 row.newton_iterations
             );
-            assert!(
-                row.status == Status::Ok || kt > jump,
-                "{load} N, {kt:e}: {row:?}"
-            );
-            failed += usize::from(row.status != Status::Ok);
+            if row.status != Status::Ok {
+                failed[0] += usize::from(kt < 2e10);
+                failed[1] += 1;
+            }
             // The band holds the peak: a row without one has failed points, and says how they failed.
             assert_ne!(row.status, Status::NotBracketed, "{load} N, {kt:e}");
             let stated = row.sampling_error.map_or(0.0, f64::abs);
@@ -118,18 +117,24 @@ fn settles(stiffnesses: &[f64], jump: f64, most_failed: usize) {
             }
         }
     }
-    assert!(failed <= most_failed, "{failed} rows failed");
+    println!("{failed:?} rows failed");
+    assert!(
+        failed[0] <= most_failed[0] && failed[1] <= most_failed[1],
+        "{failed:?} rows failed"
+    );
 }
 
 #[test]
 fn a_stiff_slider_settles_to_a_rigid_one() {
-    settles(&decades(5, 13, 1), 2e10, 7);
+    settles(&decades(5, 13, 1), [0, 7]);
 }
 
+/// Fails today, as `results/validation/open_bars.toml` says: a row takes 2975 points where 1501 are the most (60 N, beyond
+/// 2e11 N/m). Of the rows before it one up to 2e10 N/m fails: 20 N, 5.6e8 N/m, after 1501 points.
 #[test]
-#[ignore = "long form: `cargo test --release --test physics extremes -- --ignored`"]
+#[ignore = "about 1 minute: `cargo test --release --test physics extremes -- --ignored`"]
 fn a_stiff_slider_settles_to_a_rigid_one_long() {
-    settles(&decades(5, 13, 4), 2e9, 40);
+    settles(&decades(5, 13, 4), [1, 25]);
 }
 
 /// Ring mass from a ten-thousandth to ten times: the linear stuck peak of each against one solved in
