@@ -33,7 +33,11 @@ pub fn pages() -> Vec<(String, String)> {
 }
 
 /// What begins a command line of the program.
-pub const PROGRAM: [&str; 2] = ["blisk ", "cargo run --release -- "];
+pub const PROGRAM: [&str; 3] = [
+    "blisk ",
+    "cargo run --release -- ",
+    "cargo run --release --locked -- ",
+];
 
 /// The arguments of every command of a page: between backticks, or as a line of its own.
 pub fn commands(page: &str) -> Vec<String> {
