@@ -84,8 +84,9 @@ fn settings() -> BTreeMap<String, String> {
         name.starts_with("CARGO_FEATURE_")
             || ["OPT_LEVEL", "TARGET", "CARGO_CFG_TARGET_FEATURE"].contains(&name)
     };
-    let mut settings: BTreeMap<String, String> =
-        std::env::vars().filter(|(name, _)| of_build(name)).collect();
+    let mut settings: BTreeMap<String, String> = std::env::vars()
+        .filter(|(name, _)| of_build(name))
+        .collect();
     let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let version = match Command::new(&compiler).arg("-vV").output() {
         Ok(output) if output.status.success() => output.stdout,
@@ -97,7 +98,10 @@ fn settings() -> BTreeMap<String, String> {
 }
 
 /// The identity of `files` compiled with `settings`, hexadecimal.
-pub fn identity_of(files: &BTreeMap<String, Vec<u8>>, settings: &BTreeMap<String, String>) -> String {
+pub fn identity_of(
+    files: &BTreeMap<String, Vec<u8>>,
+    settings: &BTreeMap<String, String>,
+) -> String {
     let mut hasher = blake3::Hasher::new();
     let mut add = |part: &[u8]| {
         hasher.update(&(part.len() as u64).to_le_bytes());

@@ -5,6 +5,7 @@
 //!
 //! | wing | rooms, in order | holds |
 //! | --- | --- | --- |
+//! | [`identity`] | | what the program was built from |
 //! | [`platform`] | | what the operating system says of machine and processes |
 //! | [`linalg`] | | a thin layer over faer |
 //! | [`input`] | | the keys of TOML files, and what is wrong with them |
@@ -16,6 +17,7 @@
 //! | [`cli`] | | the commands; the only code that prints |
 
 pub mod cli;
+pub mod identity;
 pub mod input;
 pub mod linalg;
 pub mod model;

@@ -23,10 +23,12 @@ use super::slurm::SlurmArguments;
 use super::stats::StatsArguments;
 use super::status::StatusArguments;
 use super::tradeoff::TradeoffArguments;
+use crate::identity;
 
 /// Forced response of randomly mistuned bladed disks with a friction ring damper.
 #[derive(Debug, Parser)]
-#[command(name = "blisk", version, about, disable_help_subcommand = true)]
+#[command(name = "blisk", version = identity::VERSION, long_version = identity::IN_WORDS)]
+#[command(about, disable_help_subcommand = true)]
 #[command(
     after_help = "Exit codes: 0 done, 1 internal error, 2 usage, 3 study invalid, 4 model invalid,\n5 failures leave a statistic without a value,\n6 all patterns are solved and the target of [stop] is not reached, 7 input/output, 8 store damaged,\n9 different study, 10 locked by another process,\n11 a verification failed, 130/143 interrupted, what is solved is stored."
 )]

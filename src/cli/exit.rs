@@ -59,6 +59,7 @@ impl From<&PipelineError> for ExitStatus {
             PipelineError::Harmonics(_) => Self::StudyInvalid,
             PipelineError::Table(error) => error.into(),
             PipelineError::DifferentStudy { .. }
+            | PipelineError::DifferentBuild { .. }
             | PipelineError::DifferentShards { .. }
             | PipelineError::InputsChanged { .. } => Self::DifferentStudy,
             PipelineError::Interrupted { .. } => Self::Interrupted,

@@ -24,7 +24,9 @@ pub(super) fn command(arguments: &ManArguments) -> Result<ExitStatus, Failure> {
     let commands = program.get_subcommands().cloned();
     let pages: Vec<_> = std::iter::once(program.clone()).chain(commands).collect();
     for page in &pages {
-        let page = Man::new(page.clone()).source(concat!("blisk ", env!("CARGO_PKG_VERSION")));
+        // A page is of a version, not of a build.
+        let page = page.clone().long_version(None);
+        let page = Man::new(page).source(concat!("blisk ", env!("CARGO_PKG_VERSION")));
         let mut text = Vec::new();
         // Writing to memory cannot fail.
         let _ = page.render(&mut text);

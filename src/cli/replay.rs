@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::fidelity::{Fidelity, FidelityArguments};
 use super::run_command::Failure;
-use super::{ExitStatus, output};
+use super::{ExitStatus, output, verify};
 use crate::population::monte_carlo::{ResponseRow, harmonics_name};
 use crate::study::{ReducedEngineSource, Replay, ReplayRequest, StoredStudy, replay};
 
@@ -44,6 +44,7 @@ pub(super) fn command(arguments: &ReplayArguments) -> Result<ExitStatus, Failure
         ));
     }
     let stored = StoredStudy::open(&arguments.results, arguments.study.as_deref())?;
+    verify::warn_of_other_build(&stored);
     let request = ReplayRequest {
         scenario: arguments.scenario,
         pattern: arguments.pattern,

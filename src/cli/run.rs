@@ -8,7 +8,9 @@ use super::progress::RunProgress;
 use super::run_command::Failure;
 use super::scheduler::{ShardArgument, threads};
 use super::{ExitStatus, output};
-use crate::study::{AccuracyOptions, ReducedEngineSource, RunRequest, Study, run, run_shard};
+use crate::study::{
+    AccuracyOptions, ReducedEngineSource, RunRequest, Study, run, run_shard, set_other_builds_aside,
+};
 
 /// Arguments of the command.
 #[derive(Debug, Args)]
@@ -31,6 +33,10 @@ pub struct RunArguments {
     /// harmonics and tolerances, as with `[accuracy]` in the study.
     #[arg(long, value_name = "E", value_parser = accuracy)]
     pub accuracy: Option<AccuracyOptions>,
+    /// Where another build of the program solved the rows of the folder: move them to `superseded/`
+    /// and solve everything anew, rather than end with exit code 9.
+    #[arg(long)]
+    pub solve_anew: bool,
     /// Print the summary as JSON.
     #[arg(long)]
     pub json: bool,
@@ -41,6 +47,14 @@ pub(super) fn command(arguments: RunArguments) -> Result<ExitStatus, Failure> {
     let shard = arguments.shard.map(ShardArgument::shard).transpose()?;
     let out = arguments.out;
     let results = out.unwrap_or_else(|| Path::new("results").join(&study.name));
+    if arguments.solve_anew
+        && let Some(place) = set_other_builds_aside(&results, &study, shard)?
+    {
+        output::message(&format!(
+            "the results of another build are now in {}; everything is solved anew",
+            place.display()
+        ));
+    }
     let progress = RunProgress::new();
     let request = RunRequest {
         study: &study,

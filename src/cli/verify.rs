@@ -195,9 +195,21 @@ fn finish(
 
 /// The results that `target`, a study file or a results folder, stands for.
 fn stored(target: &Path, study: Option<&Path>) -> Result<StoredStudy, Failure> {
-    if target.is_dir() {
-        return Ok(StoredStudy::open(target, study)?);
+    let stored = if target.is_dir() {
+        StoredStudy::open(target, study)?
+    } else {
+        let results = Path::new("results").join(Study::read(target)?.name);
+        StoredStudy::of_study(target, &results)?
+    };
+    warn_of_other_build(&stored);
+    Ok(stored)
+}
+
+/// Says so where rows are solved again by another build than the one that solved them.
+pub(super) fn warn_of_other_build(stored: &StoredStudy) {
+    if let Some(builds) = stored.other_build() {
+        output::message(&format!(
+            "warning: {builds}; a difference can be one of the builds"
+        ));
     }
-    let results = Path::new("results").join(Study::read(target)?.name);
-    Ok(StoredStudy::of_study(target, &results)?)
 }

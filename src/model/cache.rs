@@ -8,6 +8,7 @@ use serde::de::DeserializeOwned;
 use thiserror::Error;
 
 use super::sector::SectorModel;
+use crate::identity;
 
 /// Layout and meaning of the stored bytes; part of every digest, so that an older file is never misread.
 const LAYOUT: u32 = 5;
@@ -30,7 +31,7 @@ pub fn reduction_digest(model: &SectorModel, key: &str) -> String {
         hasher.update(&(part.len() as u64).to_le_bytes());
         hasher.update(part.as_bytes());
     };
-    text(&format!("{LAYOUT} {}", env!("CARGO_PKG_VERSION")));
+    text(&format!("{LAYOUT} build {}", identity::BUILD));
     text(key);
     text(&format!(
         "{:?} {} {:?} {:?} {:?} {:?} {:?}",

@@ -16,6 +16,8 @@ pub struct ComparedFolder {
     pub name: String,
     /// Digest of its study.
     pub study_digest: String,
+    /// Identity of the build that solved it.
+    pub build: String,
     /// Patterns of its study.
     pub patterns: u64,
 }
@@ -133,6 +135,13 @@ pub struct ComparisonReport {
 }
 
 impl ComparisonReport {
+    /// Whether the folders were not all solved by the same build of the program.
+    #[must_use]
+    pub fn builds_differ(&self) -> bool {
+        let mut pairs = self.folders.windows(2);
+        pairs.any(|pair| pair[0].build != pair[1].build)
+    }
+
     /// Whether failed rows leave a comparison without a value.
     #[must_use]
     pub fn failures_cost_a_comparison(&self) -> bool {

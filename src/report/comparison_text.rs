@@ -7,6 +7,7 @@ use super::text_table::TextTable;
 use super::{
     BestLoads, ComparedScenario, ComparisonReport, QuantityComparison, ScenarioComparison,
 };
+use crate::identity;
 use crate::population::statistics::{IntervalEstimate, Percentile, Quantity};
 
 impl fmt::Display for ComparisonReport {
@@ -21,6 +22,7 @@ impl fmt::Display for ComparisonReport {
                 folder.folder.display()
             )?;
         }
+        self.builds(f)?;
         for found in &self.quantities {
             self.quantity(f, found)?;
         }
@@ -46,6 +48,22 @@ impl fmt::Display for ComparisonReport {
 type Unit = (f64, &'static str);
 
 impl ComparisonReport {
+    /// The build of the program that solved the folders.
+    fn builds(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.builds_differ() {
+            let build = self.folders.first().map_or("", |folder| &folder.build);
+            return writeln!(f, "build {}", identity::named(build));
+        }
+        for (place, folder) in self.folders.iter().enumerate() {
+            let build = identity::named(&folder.build);
+            writeln!(f, "{}: build {build}", letter(place))?;
+        }
+        writeln!(
+            f,
+            "WARNING: different builds of the program solved these folders; a difference can be one of the builds"
+        )
+    }
+
     fn quantity(&self, f: &mut fmt::Formatter<'_>, found: &QuantityComparison) -> fmt::Result {
         let (name, unit) = match found.quantity {
             Quantity::PeakAmplitudeM => ("peak amplitude", length_unit(found)),

@@ -21,6 +21,8 @@ pub struct EstimateReport {
     pub name: String,
     /// Version of the program.
     pub version: String,
+    /// Identity of the build that solved its rows.
+    pub build: String,
     /// Digest of the study.
     pub study_digest: String,
     /// Its seed.

@@ -30,6 +30,8 @@ pub struct StudyReport {
 pub struct Provenance {
     /// Version of the program that solved the rows.
     pub version: String,
+    /// Identity of the build that solved the rows.
+    pub build: String,
     /// Random number generator.
     pub generator: String,
     /// Digests of the input files, by path as written in the study.

@@ -82,6 +82,7 @@ fn facts(columns: &ResultColumns) -> ComparedFolder {
         folder: columns.folder.clone(),
         name: columns.manifest.name.clone(),
         study_digest: columns.manifest.study_digest.clone(),
+        build: columns.manifest.build.clone(),
         patterns: columns.patterns.len() as u64,
     }
 }

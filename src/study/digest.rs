@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::{ForceSource, MistuningSource, ModelSource, Study, StudyError};
+use crate::identity;
 use crate::population::monte_carlo::Scenario;
 use crate::population::table::digest_file;
 
@@ -47,7 +48,7 @@ impl StudyDigest {
         without_places(&mut resolved);
         flatten("", &resolved, &mut number_keys);
         number_keys.retain(|key, _| !NEUTRAL.iter().any(|neutral| key.starts_with(neutral)));
-        number_keys.insert("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned());
+        number_keys.insert("version".to_owned(), identity::VERSION.to_owned());
         // The content of an input and its role count, not where it lies.
         for (name, digest) in &inputs {
             let of_load_case = study.load_cases.iter().filter(|case| match &case.force {

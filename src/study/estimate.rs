@@ -21,6 +21,7 @@ use super::{
     Engine, EngineSource, MistuningSource, PipelineError, Progress, Stage, Study, StudyDigest,
     SurrogateOf, load_sector_model, pattern_source,
 };
+use crate::identity;
 use crate::platform::thread_processor_time_s;
 use crate::population::monte_carlo::{
     ResponseRow, Scenario, SurrogatePeak, TunedReference, block_size, plan_blocks, solve_blocks,
@@ -73,6 +74,7 @@ pub fn estimate(
     if let Some(holder) = folder.broken_off() {
         progress.taken_over(&holder.to_string());
     }
+    folder.check_parts()?;
     progress.stage(Stage::LoadModel);
     let model = load_sector_model(study)?;
     let patterns = pattern_source(study, &model)?;
@@ -113,7 +115,8 @@ pub fn estimate(
     };
     let report = EstimateReport {
         name: study.name.clone(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
+        version: identity::VERSION.to_owned(),
+        build: identity::BUILD.to_owned(),
         study_digest: digest.hex(),
         seed: study.seed,
         patterns: work.ids.len() as u64,
@@ -444,7 +447,7 @@ impl Rows<'_> {
             tuned: std::slice::from_ref(&self.tuned),
             progress,
         };
-        let mut sink = PartSink::new(request.results, &self.schema);
+        let mut sink = PartSink::new(request.results, &self.schema)?;
         let solved = solve_blocks(
             self.work.pool,
             &plan_blocks(&ids, &stored, 1, block_size(ids.len())),
@@ -455,6 +458,7 @@ impl Rows<'_> {
             &mut sink,
             &Stop(progress),
         )?;
+        sink.close()?;
         if reused + solved < planned {
             return Err(self.work.interrupted(reused + solved, planned));
         }

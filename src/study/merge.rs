@@ -7,6 +7,7 @@ use super::pipeline::{Clock, RowCounts};
 use super::pipeline_tables::{Facts, TableWork};
 use super::results_folder::{ResultsFolder, finished_rows, verify_tables};
 use super::{PipelineError, RunOutcome, StoredStudy, StudyDigest};
+use crate::identity;
 use crate::population::table::{Manifest, RowStore, RunState, ScenarioEntry, Shard};
 
 /// A finished shard.
@@ -38,6 +39,12 @@ pub fn merge(
     };
     for part in &parts {
         belongs(part, first)?;
+    }
+    if first.manifest.build != identity::BUILD {
+        return Err(PipelineError::DifferentBuild {
+            folder: first.folder.clone(),
+            stored: first.manifest.build.clone(),
+        });
     }
     covers(&parts)?;
     for part in &parts {
@@ -147,6 +154,9 @@ fn belongs(part: &Part, first: &Part) -> Result<(), PipelineError> {
         ours.patterns.to_string(),
         theirs.patterns.to_string(),
     ));
+    let builds = [ours, theirs].map(|manifest| identity::named(&manifest.build).to_owned());
+    let [of_this, of_first] = builds;
+    differences.push(("build".to_owned(), of_this, of_first));
     differences.retain(|(_, ours, theirs)| ours != theirs);
     if !differences.is_empty() {
         return Err(PipelineError::DifferentShards {

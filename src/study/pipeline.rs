@@ -15,6 +15,7 @@ use super::summary::summary_of_rows;
 use super::{
     Engine, EngineSource, PipelineError, Study, StudyDigest, load_sector_model, pattern_source,
 };
+use crate::identity;
 use crate::platform;
 use crate::population::monte_carlo::{Interruption, block_size, plan_blocks, solve_blocks};
 use crate::population::table::{Manifest, PartSink, RowStore, RunRecord, Shard};
@@ -325,7 +326,7 @@ impl Job<'_> {
             tuned: tables.tuned(),
             progress: self.progress,
         };
-        let mut sink = PartSink::new(results, tables.schema());
+        let mut sink = PartSink::new(results, tables.schema())?;
         let solved = solve_blocks(
             pool,
             &blocks,
@@ -333,6 +334,7 @@ impl Job<'_> {
             &mut sink,
             &Stop(self.progress),
         )?;
+        sink.close()?;
         Ok(RowCounts { solved, reused })
     }
 
@@ -399,7 +401,8 @@ impl Clock {
             wall_time_s: self.began.elapsed().as_secs_f64(),
             host: platform::host_name(),
             threads,
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: identity::VERSION.to_owned(),
+            build: identity::BUILD.to_owned(),
             rows_solved: rows.solved,
             rows_reused: rows.reused,
             study_file: std::path::absolute(study_file).unwrap_or_else(|_| study_file.to_owned()),

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use super::StudyError;
+use crate::identity;
 use crate::model::CacheError;
 use crate::model::sector::ModelError;
 use crate::population::table::TableError;
@@ -29,6 +30,14 @@ pub enum PipelineError {
         folder: PathBuf,
         /// `(key, value in the folder, value in the study)`.
         differences: Vec<(String, String, String)>,
+    },
+    /// The results folder holds rows that another build of the program solved.
+    #[error("{} holds rows of another build of the program, and rows of two builds are never mixed:\n  build: stored {}, this program {}\n`blisk run` with --solve-anew sets them aside and solves everything anew; or choose another --out, or go on with the build that solved them (`blisk --version` names it)", folder.display(), identity::named(stored), identity::BUILD)]
+    DifferentBuild {
+        /// The folder.
+        folder: PathBuf,
+        /// Identity of the build that solved them; empty in results of 0.1.0.
+        stored: String,
     },
     /// A shard belongs to another study than another.
     #[error("{} is no shard of the study of {}:\n{}", folder.display(), other.display(), between(differences))]

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::results_folder::RESPONSES;
 use super::summary::{context_of, records_of};
 use super::{Engine, PipelineError, Study, StudyDigest};
+use crate::identity;
 use crate::population::monte_carlo::{Scenario, TunedReference};
 use crate::population::statistics::{Accounting, CONFIDENCE, ScenarioAccumulator, StopOutcome};
 use crate::population::table::{
@@ -281,7 +282,8 @@ impl<'a> TableWork<'a> {
             .collect();
         Manifest {
             schema: SCHEMA_VERSION,
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: identity::VERSION.to_owned(),
+            build: identity::BUILD.to_owned(),
             state,
             name: self.study.name.clone(),
             study_digest: self.schema.header.study_digest.clone(),

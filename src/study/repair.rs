@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use super::lock::FolderLock;
 use super::pipeline::{RunScope, run_in};
-use super::results_folder::{RESPONSES, changed_tables};
+use super::results_folder::{RESPONSES, changed_tables, manifest_lost};
 use super::stored_study::study_of;
 use super::{EngineSource, PipelineError, Progress, RunOutcome, RunRequest, Study};
+use crate::identity;
 use crate::population::table::{
     MANIFEST, Manifest, RunRecord, RunState, Shard, TableError, complete_publication, keep_as_part,
     part_files, set_aside,
@@ -60,10 +61,14 @@ pub fn repair(
         None => tables_of(&records),
     };
     if manifest.is_none() && tables.is_empty() && part_files(results)?.is_empty() {
+        if results.join(RESPONSES).exists() {
+            return Err(manifest_lost(results).into());
+        }
         return Err(PipelineError::NoResults {
             folder: results.to_owned(),
         });
     }
+    refuse_other_builds(results, manifest.as_ref(), &records, &tables)?;
     let goes_on = !part_files(results)?.is_empty();
     let tables_are_whole = repair.tables(results, &tables)?;
     repair.parts(results)?;
@@ -130,6 +135,33 @@ pub fn repair(
             .collect();
     }
     Ok(repair)
+}
+
+/// Rows of another build are left as they are: what is solved again would be of this one.
+fn refuse_other_builds(
+    results: &Path,
+    manifest: Option<&Manifest>,
+    records: &[RunRecord],
+    tables: &BTreeMap<String, String>,
+) -> Result<(), PipelineError> {
+    let stored = match (manifest, records.first()) {
+        (Some(manifest), _) => &manifest.build,
+        (None, Some(record)) => &record.build,
+        (None, None) => return Ok(()),
+    };
+    let whole = || -> Result<bool, TableError> {
+        let parts = part_files(results)?;
+        Ok(manifest.is_some()
+            && changed_tables(results, tables)?.is_empty()
+            && parts.iter().all(|part| part.check().is_ok()))
+    };
+    if stored == identity::BUILD || whole()? {
+        return Ok(());
+    }
+    Err(PipelineError::DifferentBuild {
+        folder: results.to_owned(),
+        stored: stored.clone(),
+    })
 }
 
 /// The tables of the last run that wrote some.

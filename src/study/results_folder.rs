@@ -7,9 +7,10 @@ use serde_json::Value;
 
 use super::lock::{FolderLock, LockHolder};
 use super::{PipelineError, Study, StudyDigest};
+use crate::identity;
 use crate::population::table::{
-    Manifest, RowFile, RunState, ScenarioEntry, Shard, TableError, complete_publication,
-    digest_file, remove_leftovers,
+    MANIFEST, Manifest, PartHeader, RowFile, RunRecord, RunState, ScenarioEntry, Shard, TableError,
+    check_parts, complete_publication, digest_file, remove_leftovers,
 };
 
 /// The table of rows.
@@ -22,6 +23,9 @@ const GROWING: [&str; 4] = [
     "sweep.standard_deviation",
     "sweep.normal_load_n",
 ];
+
+/// Name of the version among the keys of a study.
+pub(super) const VERSION: &str = "version";
 
 /// A results folder that this process alone writes to.
 #[derive(Debug)]
@@ -87,30 +91,54 @@ impl ResultsFolder {
         shard: Option<Shard>,
     ) -> Result<Found, PipelineError> {
         let Some(manifest) = Manifest::read(&self.path)? else {
+            self.check_parts()?;
             if self.path.join(RESPONSES).exists() {
-                return Err(TableError::Damaged {
-                    path: self.path.join("manifest.json"),
-                    reason: format!(
-                        "it is missing beside {RESPONSES}; {}",
-                        repair_of(&self.path)
-                    ),
-                }
-                .into());
+                return Err(manifest_lost(&self.path).into());
             }
             return Ok(Found::Nothing);
         };
-        let differences = differences(&manifest, study, digest, shard);
+        let mut differences = differences(&manifest, study, digest, shard);
+        if manifest.build != identity::BUILD && differences.iter().all(|(key, ..)| key == VERSION) {
+            return Err(self.of_another_build(manifest.build));
+        }
         if !differences.is_empty() {
+            if manifest.build != identity::BUILD {
+                let stored = identity::named(&manifest.build).to_owned();
+                differences.push(("build".to_owned(), stored, identity::BUILD.to_owned()));
+            }
             return Err(PipelineError::DifferentStudy {
                 folder: self.path.clone(),
                 differences,
             });
         }
+        self.check_parts()?;
         if manifest.state == RunState::Running {
             return Ok(Found::Unfinished(Box::new(manifest)));
         }
         verify_tables(&self.path, &manifest)?;
         Ok(Found::Finished(Box::new(manifest)))
+    }
+}
+
+impl ResultsFolder {
+    /// Checks that the parts are those that their header lists, solved by this build.
+    ///
+    /// # Errors
+    /// They are not, or cannot be read.
+    pub(super) fn check_parts(&self) -> Result<(), PipelineError> {
+        match PartHeader::read(&self.path)? {
+            Some(header) if header.build != identity::BUILD => {
+                Err(self.of_another_build(header.build))
+            }
+            _ => Ok(check_parts(&self.path)?),
+        }
+    }
+
+    fn of_another_build(&self, stored: String) -> PipelineError {
+        PipelineError::DifferentBuild {
+            folder: self.path.clone(),
+            stored,
+        }
     }
 }
 
@@ -211,6 +239,22 @@ pub(super) fn verify_tables(results: &Path, manifest: &Manifest) -> Result<(), P
     };
     let reason = format!("{what}; restore it, or {}", repair_of(results));
     Err(TableError::Damaged { path, reason }.into())
+}
+
+/// Tables without a manifest: the records of runs may say which they were.
+pub(super) fn manifest_lost(results: &Path) -> TableError {
+    let records = RunRecord::all(results);
+    let way_out = if records.iter().any(|record| !record.tables.is_empty()) {
+        repair_of(results)
+    } else {
+        "no record in runs/ says what the tables are made from; `blisk run` with --solve-anew moves them to \
+         superseded/ and solves everything anew"
+            .to_owned()
+    };
+    TableError::Damaged {
+        path: results.join(MANIFEST),
+        reason: format!("it is missing beside {RESPONSES}; {way_out}"),
+    }
 }
 
 /// How to have the rows of damaged files solved again.

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::results_folder::verify_tables;
 use super::{EngineSource, PipelineError, Study, StudyDigest, load_sector_model, pattern_source};
+use crate::identity;
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{LoadCaseName, ResponseRow, Scenario, TunedReference};
 use crate::population::table::{
@@ -86,6 +87,20 @@ impl StoredStudy {
             });
         }
         Self::open(results, Some(study_file))
+    }
+
+    /// What to say of the builds of the program where another one solved the rows.
+    #[must_use]
+    pub fn other_build(&self) -> Option<String> {
+        let stored = &self.manifest.build;
+        (stored != identity::BUILD).then(|| {
+            format!(
+                "build {} solved the rows of {}, and this program is build {}",
+                identity::named(stored),
+                self.folder.display(),
+                identity::BUILD
+            )
+        })
     }
 
     /// Sector model and patterns, from the inputs.

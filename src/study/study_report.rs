@@ -65,6 +65,7 @@ pub fn report(
         accuracy_trials: AccuracyTrials::from_choice(&manifest.chosen["accuracy"]),
         provenance: Provenance {
             version: manifest.version,
+            build: manifest.build,
             generator: manifest.generator,
             inputs: manifest.inputs,
             tables: manifest.tables,
@@ -271,26 +272,36 @@ fn law_probabilities() -> impl Iterator<Item = f64> {
     })
 }
 
-/// Solves the wheels of every group, unless what they are made from is no longer there.
+/// Solves the wheels of every group, unless what they are made from is no longer there or another build
+/// solved the rows.
 fn add_wheels(
     request: &ReportRequest,
     source: &dyn EngineSource,
     columns: &ResultColumns,
     groups: &mut [GroupReport],
 ) -> Result<(), PipelineError> {
-    let solved =
-        StoredStudy::open(&request.results, request.study_file.as_deref()).and_then(|stored| {
-            let model = stored.model()?;
-            let engine = stored.engine(&model, source)?;
-            let shown = groups.iter().map(|group| group.shown);
-            shown
-                .map(|scenario| {
-                    let (stored, engine) = (&stored, engine.as_ref());
-                    let columns = &columns.scenarios[scenario];
-                    solve_wheels(stored, &model, engine, columns)
-                })
-                .collect::<Result<Vec<Wheels>, PipelineError>>()
-        });
+    let stored = StoredStudy::open(&request.results, request.study_file.as_deref());
+    if let Some(reason) = stored.as_ref().ok().and_then(StoredStudy::other_build) {
+        let reason = format!("{reason}: its curves need not be those of the rows");
+        for group in groups {
+            group.wheels = Wheels::NotSolved {
+                reason: reason.clone(),
+            };
+        }
+        return Ok(());
+    }
+    let solved = stored.and_then(|stored| {
+        let model = stored.model()?;
+        let engine = stored.engine(&model, source)?;
+        let shown = groups.iter().map(|group| group.shown);
+        shown
+            .map(|scenario| {
+                let (stored, engine) = (&stored, engine.as_ref());
+                let columns = &columns.scenarios[scenario];
+                solve_wheels(stored, &model, engine, columns)
+            })
+            .collect::<Result<Vec<Wheels>, PipelineError>>()
+    });
     match solved {
         Ok(solved) => {
             for (group, wheels) in groups.iter_mut().zip(solved) {

@@ -16,6 +16,7 @@ use super::{
     FullModel, FullRow, FullSettings, MistuningSource, PipelineError, Progress, Stage, Study,
     StudyDigest, load_sector_model, pattern_source,
 };
+use crate::identity;
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::Scenario;
 use crate::population::statistics::{ErrorBound, percentile};
@@ -340,7 +341,7 @@ impl Trade {
         TradeoffReport {
             name: study.name.clone(),
             study_digest: digest.hex(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: identity::VERSION.to_owned(),
             seed: study.seed,
             patterns: self.sample.patterns.clone(),
             scenarios: self.sample.scenarios.iter().map(|own| own.index).collect(),

@@ -14,6 +14,7 @@ use paths::{Source, sources};
 
 /// Wings in order, each with its rooms in order; a wing without rooms has no order inside.
 const WINGS: &[(&str, &[&str])] = &[
+    ("identity", &[]),
     ("platform", &[]),
     ("linalg", &[]),
     ("input", &[]),

@@ -3,6 +3,7 @@
 mod bad_studies;
 mod bad_study_table;
 mod blisk;
+mod builds;
 mod commands;
 mod documentation;
 mod documented_commands;

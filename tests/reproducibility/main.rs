@@ -1,5 +1,6 @@
 //! Reproducibility: threads, interruption, extension and identity of a study, on a made-up engine and a real one.
 
+mod builds;
 mod continuation;
 mod damage;
 mod extension;

@@ -148,11 +148,15 @@ impl AtomicFile {
         self.commit_to(&target)
     }
 
-    /// Syncs the content and puts the file in its folder under a name made from its digest.
-    pub(super) fn commit_as(self, name: impl FnOnce(&str) -> String) -> Result<(), TableError> {
+    /// Syncs the content and puts the file in its folder under a name made from its digest; `name` is
+    /// called when the content is written and before the file takes its place.
+    pub(super) fn commit_as(
+        self,
+        name: impl FnOnce(&str) -> Result<String, TableError>,
+    ) -> Result<(), TableError> {
         let digest =
             digest_file(&self.temporary).map_err(TableError::io("read", &self.temporary))?;
-        let target = self.target.with_file_name(name(&digest));
+        let target = self.target.with_file_name(name(&digest)?);
         self.commit_to(&target)
     }
 

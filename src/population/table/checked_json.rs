@@ -7,6 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::places::is_file;
 use super::{TableError, write_atomically};
 
 /// Between the last key proper and the checksum.
@@ -25,6 +26,9 @@ pub(super) fn write_checked_json(path: &Path, content: &impl Serialize) -> Resul
 
 /// Reads such a file; none if there is none.
 pub(super) fn read_checked_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, TableError> {
+    if !is_file(path)? {
+        return Ok(None);
+    }
     let bytes = match std::fs::read(path) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),

@@ -200,6 +200,9 @@ pub struct Manifest {
     pub schema: u32,
     /// Version of the program.
     pub version: String,
+    /// Identity of the build that solved the rows; empty in results of 0.1.0.
+    #[serde(default)]
+    pub build: String,
     /// Whether the folder is complete.
     pub state: RunState,
     /// Name of the study.
@@ -267,6 +270,9 @@ pub struct RunRecord {
     pub threads: usize,
     /// Version of the program.
     pub version: String,
+    /// Identity of the build; empty in records of 0.1.0.
+    #[serde(default)]
+    pub build: String,
     /// Rows solved by this run.
     pub rows_solved: u64,
     /// Rows taken over from earlier runs.

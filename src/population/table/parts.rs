@@ -1,13 +1,14 @@
 //! Stored rows: parts, one finished file per block of patterns, and finished tables of rows.
 //!
 //! A part is named `part-<first pattern>-<digest>.parquet`: its name is its checksum, and no part is
-//! ever written over. Every file of rows says in its metadata what the rows of each of its scenarios
+//! ever written over. Their header lists them. Every file of rows says in its metadata what the rows of each of its scenarios
 //! are made from; a study takes the rows that are made from the same as its own, whatever else it
 //! has besides.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use super::part_header::{PARTS, PartHeader, part_files};
 use super::responses::ResponseWriter;
 use super::row_file::{RowCursor, RowFile};
 use super::{TableError, TableHeader};
@@ -188,44 +189,12 @@ fn agrees(known: Option<&ResponseRow>, row: &ResponseRow, path: &Path) -> Result
     }
 }
 
-/// The parts of the results folder `results`, by the digests in their names.
-///
-/// # Errors
-/// The folder cannot be read.
-pub fn part_files(results: &Path) -> Result<Vec<RowFile>, TableError> {
-    let folder = results.join("parts");
-    let entries = match std::fs::read_dir(&folder) {
-        Ok(entries) => entries,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(TableError::io("read", &folder)(error)),
-    };
-    let mut files = Vec::new();
-    for entry in entries {
-        let path = entry.map_err(TableError::io("read", &folder))?.path();
-        let name = path.file_name().map(|name| name.to_string_lossy());
-        let Some(name) = name
-            .as_deref()
-            .and_then(|name| name.strip_prefix("part-")?.strip_suffix(".parquet"))
-        else {
-            continue;
-        };
-        let (from, digest) = name.split_once('-').unwrap_or((name, ""));
-        files.push(RowFile {
-            digest: digest.to_owned(),
-            from: from.parse().unwrap_or(0),
-            path,
-        });
-    }
-    files.sort_by(|a, b| a.path.cmp(&b.path));
-    Ok(files)
-}
-
 /// Removes the parts of the results folder `results`.
 ///
 /// # Errors
 /// The folder cannot be removed.
 pub fn remove_parts(results: &Path) -> Result<(), TableError> {
-    let folder = results.join("parts");
+    let folder = results.join(PARTS);
     match std::fs::remove_dir_all(&folder) {
         Ok(()) => Ok(()),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
@@ -237,17 +206,29 @@ pub fn remove_parts(results: &Path) -> Result<(), TableError> {
 #[derive(Debug)]
 pub struct PartSink<'a> {
     schema: &'a RowSchema,
-    folder: PathBuf,
+    results: PathBuf,
+    header: PartHeader,
 }
 
 impl<'a> PartSink<'a> {
-    /// Stores into the results folder `results`.
-    #[must_use]
-    pub fn new(results: &Path, schema: &'a RowSchema) -> Self {
-        Self {
+    /// Stores into the results folder `results`, beside the parts that are there.
+    ///
+    /// # Errors
+    /// The header of the parts that are there cannot be read or is damaged.
+    pub fn new(results: &Path, schema: &'a RowSchema) -> Result<Self, TableError> {
+        Ok(Self {
             schema,
-            folder: results.join("parts"),
-        }
+            results: results.to_owned(),
+            header: PartHeader::read(results)?.unwrap_or_default(),
+        })
+    }
+
+    /// Lists the last part.
+    ///
+    /// # Errors
+    /// The header cannot be written.
+    pub fn close(mut self) -> Result<(), TableError> {
+        self.header.close(&self.results)
     }
 }
 
@@ -268,9 +249,17 @@ impl RowSink for PartSink<'_> {
             .iter()
             .map(|&scenario| row_digests[scenario].clone())
             .collect();
-        let path = self.folder.join(format!("part-{first:010}.parquet"));
+        let results = &self.results;
+        let path = results
+            .join(PARTS)
+            .join(format!("part-{first:010}.parquet"));
         let mut writer = ResponseWriter::create(&path, scenarios, header, &digests)?;
         writer.write(rows)?;
-        writer.finish_as(|digest| format!("part-{first:010}-{digest}.parquet"))
+        let header = &mut self.header;
+        writer.finish_as(|digest| {
+            let name = format!("part-{first:010}-{digest}.parquet");
+            header.announce(results, &name)?;
+            Ok(name)
+        })
     }
 }

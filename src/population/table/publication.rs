@@ -7,12 +7,12 @@
 use std::path::{Path, PathBuf};
 
 use super::atomic::move_file;
+use super::part_header::{PARTS, PartHeader};
+use super::places::{DAMAGED, SIDE_FILES, SUPERSEDED, Standing, TABLES, is_folder};
 use super::{MANIFEST, Manifest, TableError, digest_file, remove_parts};
 
 /// The folder that finished tables wait in.
 const NEXT: &str = "next";
-/// The folder that damaged files are moved to.
-const DAMAGED: &str = "damaged";
 
 /// Tables on their way into the results folder.
 #[derive(Debug)]
@@ -109,7 +109,10 @@ pub fn keep_as_part(results: &Path, path: &Path, digest: &str) -> Result<(), Tab
         return Ok(());
     }
     let name = format!("part-{:010}-{digest}.parquet", 0);
-    move_file(path, &results.join("parts").join(name))
+    let mut header = PartHeader::read(results)?.unwrap_or_default();
+    header.announce(results, &name)?;
+    move_file(path, &results.join(PARTS).join(name))?;
+    header.close(results)
 }
 
 /// Moves a damaged file of the results folder `results` to `damaged/`, under a free name; its new place.
@@ -121,13 +124,44 @@ pub fn set_aside(results: &Path, path: &Path) -> Result<PathBuf, TableError> {
         .file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let folder = results.join(DAMAGED);
+    is_folder(&folder)?;
     let mut place = folder.join(&name);
     for number in 1.. {
-        if !place.exists() {
+        if stands(&place)? == Standing::Nothing {
             break;
         }
         place = folder.join(format!("{name}.{number}"));
     }
     move_file(path, &place)?;
     Ok(place)
+}
+
+/// Moves results, parts and records of runs of the results folder `results` to a folder of their own in
+/// `superseded/`; that folder, if there was anything to move.
+///
+/// # Errors
+/// A file cannot be moved.
+pub fn supersede(results: &Path) -> Result<Option<PathBuf>, TableError> {
+    let aside = results.join(SUPERSEDED);
+    is_folder(&aside)?;
+    let mut number = 1;
+    while stands(&aside.join(number.to_string()))? != Standing::Nothing {
+        number += 1;
+    }
+    let place = aside.join(number.to_string());
+    let mut moved = false;
+    // The manifest goes first: without it nothing vouches for what an interrupted move leaves.
+    let names = [MANIFEST, NEXT, PARTS, "runs"];
+    for name in names.iter().chain(&TABLES).chain(&SIDE_FILES) {
+        let path = results.join(name);
+        if stands(&path)? != Standing::Nothing {
+            move_file(&path, &place.join(name))?;
+            moved = true;
+        }
+    }
+    Ok(moved.then_some(place))
+}
+
+fn stands(path: &Path) -> Result<Standing, TableError> {
+    Standing::at(path).map_err(TableError::io("read", path))
 }

@@ -219,7 +219,10 @@ impl ResponseWriter {
     }
 
     /// The same under a name made from the digest of the file.
-    pub(super) fn finish_as(mut self, name: impl FnOnce(&str) -> String) -> Result<(), TableError> {
+    pub(super) fn finish_as(
+        mut self,
+        name: impl FnOnce(&str) -> Result<String, TableError>,
+    ) -> Result<(), TableError> {
         self.flush()?;
         self.writer.finish_as(name)
     }

@@ -4,11 +4,14 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 
 use super::responses::ResponseReader;
-use super::{TableError, digest_file};
+use super::{TableError, digest_stored};
 use crate::population::monte_carlo::ResponseRow;
 
 /// What comes after the digest in a message about a file that does not have it.
 const NOT_AS_WRITTEN: &str = "its content is not what was written; `blisk verify DIR --repair` sets it aside and solves its rows again";
+/// What comes after the name of a file that is not there.
+const MISSING: &str =
+    "it is missing; restore it, or let `blisk verify DIR --repair` have its rows solved again";
 
 /// A file of rows that should have this digest.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,14 +30,10 @@ impl RowFile {
     /// # Errors
     /// The file cannot be read, is missing, or is not as written.
     pub fn check(&self) -> Result<(), TableError> {
-        match digest_file(&self.path) {
-            Ok(found) if found == self.digest => Ok(()),
-            Ok(_) => Err(TableError::damaged(&self.path, NOT_AS_WRITTEN)),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(TableError::damaged(
-                &self.path,
-                "it is missing; restore it, or let `blisk verify DIR --repair` solve its rows again",
-            )),
-            Err(error) => Err(TableError::io("read", &self.path)(error)),
+        match digest_stored(&self.path)? {
+            Some(found) if found == self.digest => Ok(()),
+            Some(_) => Err(TableError::damaged(&self.path, NOT_AS_WRITTEN)),
+            None => Err(TableError::damaged(&self.path, MISSING)),
         }
     }
 }

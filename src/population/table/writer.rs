@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::atomic::{AtomicFile, BufferedFile};
 use super::column::{Values, frame, key, polars_schema};
 use super::{ColumnSpec, TableError};
+use crate::identity;
 use crate::population::monte_carlo::{LoadCaseName, Scenario};
 
 /// Version of the tables; raised when a column changes its meaning.
@@ -64,10 +65,7 @@ impl TableHeader {
                 "blisk.schema_version".to_owned(),
                 SCHEMA_VERSION.to_string(),
             ),
-            (
-                "blisk.version".to_owned(),
-                env!("CARGO_PKG_VERSION").to_owned(),
-            ),
+            ("blisk.version".to_owned(), identity::VERSION.to_owned()),
             (STUDY_DIGEST_KEY.to_owned(), self.study_digest.clone()),
         ];
         for (key, value) in more {
@@ -166,7 +164,10 @@ impl TableWriter {
     }
 
     /// The same under a name made from the digest of the file.
-    pub(super) fn finish_as(self, name: impl FnOnce(&str) -> String) -> Result<(), TableError> {
+    pub(super) fn finish_as(
+        self,
+        name: impl FnOnce(&str) -> Result<String, TableError>,
+    ) -> Result<(), TableError> {
         self.writer
             .finish()
             .map_err(|error| self.file.failed(error))?;

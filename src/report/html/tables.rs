@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use super::table::Table;
+use crate::identity;
 use crate::population::statistics::{FitStatus, Percentile, Quantity, SampleStatistics};
 use crate::report::plot::escaped;
 use crate::report::summary_text::four_digits;
@@ -371,6 +372,7 @@ pub(super) fn provenance(report: &StudyReport) -> String {
     table.fact("study", &summary.name);
     table.fact("study digest", &summary.study_digest);
     table.fact("program", &format!("blisk {}", made.version));
+    table.fact("build", identity::named(&made.build));
     table.fact("seed", &summary.seed.to_string());
     table.fact("generator", &made.generator);
     table.fact("patterns", &summary.patterns.to_string());
