@@ -7,8 +7,6 @@
 //! The commit is no part of the digest. It is one whose covered files are those of this build, which stays true when
 //! later commits leave these files alone; so nothing of `.git` has to be watched, and a commit costs no compilation.
 
-#![expect(clippy::print_stdout, reason = "a build script speaks to Cargo so")]
-
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
@@ -37,7 +35,7 @@ fn main() {
 }
 
 /// Content of every covered file by its path, with `/` between folders and one character at the end of a line.
-pub fn covered_files(root: &Path) -> std::io::Result<BTreeMap<String, Vec<u8>>> {
+pub(crate) fn covered_files(root: &Path) -> std::io::Result<BTreeMap<String, Vec<u8>>> {
     let mut files = BTreeMap::new();
     for place in COVERED {
         let path = root.join(place);
@@ -98,7 +96,7 @@ fn settings() -> BTreeMap<String, String> {
 }
 
 /// The identity of `files` compiled with `settings`, hexadecimal.
-pub fn identity_of(
+pub(crate) fn identity_of(
     files: &BTreeMap<String, Vec<u8>>,
     settings: &BTreeMap<String, String>,
 ) -> String {
@@ -120,7 +118,7 @@ pub fn identity_of(
 }
 
 /// The commit whose covered files are those below `root`; `, changed` after it where some are not; `none` without one.
-pub fn commit_of(root: &Path) -> String {
+pub(crate) fn commit_of(root: &Path) -> String {
     let git = |arguments: &[&str], places: &[&str]| -> Option<String> {
         let output = Command::new("git")
             .args(arguments)

@@ -154,6 +154,9 @@ pub enum Command {
         /// Set damaged files aside, into `damaged/`, and solve again what they held; draws no rows.
         #[arg(long, conflicts_with_all = ["dense_sweep", "time_domain"])]
         repair: bool,
+        /// Read all files and compare them with their checksums; draws no rows and changes nothing.
+        #[arg(long, conflicts_with_all = ["dense_sweep", "time_domain", "repair"])]
+        integrity: bool,
         /// Where the inputs lie now: beside this study file [default: that of the last run].
         #[arg(long, value_name = "FILE")]
         study: Option<PathBuf>,

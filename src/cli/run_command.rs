@@ -82,6 +82,7 @@ fn carry_out(command: Command) -> Result<ExitStatus, Failure> {
             scenario,
             pattern,
             repair,
+            integrity,
             study,
             threads,
             json,
@@ -89,10 +90,10 @@ fn carry_out(command: Command) -> Result<ExitStatus, Failure> {
             target,
             sample,
             seed,
-            question: if repair {
-                verify::Question::Files
-            } else {
-                verify::Question::of(dense_sweep, time_domain, scenario.zip(pattern))
+            question: match (repair, integrity) {
+                (true, _) => verify::Question::Files,
+                (_, true) => verify::Question::Integrity,
+                _ => verify::Question::of(dense_sweep, time_domain, scenario.zip(pattern)),
             },
             study,
             threads,

@@ -6,8 +6,8 @@ use clap::Args;
 
 use super::run_command::Failure;
 use super::{ExitStatus, output};
-use crate::population::table::write_atomically;
-use crate::study::{Study, can_be_cut};
+use crate::population::table::{Shard, write_atomically};
+use crate::study::{Study, can_be_cut, is_shard_of};
 
 /// Arguments of the command.
 #[derive(Debug, Args)]
@@ -41,6 +41,11 @@ pub(super) fn command(arguments: &SlurmArguments) -> Result<ExitStatus, Failure>
     }
     let study = Study::read(&arguments.study)?;
     can_be_cut(&study)?;
+    let last = Shard {
+        number: arguments.tasks,
+        count: arguments.tasks,
+    };
+    is_shard_of(&study, last)?;
     let default = || PathBuf::from(format!("{}-slurm.sh", study.name));
     let script = arguments.script.clone().unwrap_or_else(default);
     if script.exists() {

@@ -10,9 +10,10 @@ use super::progress::RunProgress;
 use super::run_command::Failure;
 use super::scheduler::threads;
 use super::{ExitStatus, output};
+use crate::identity;
 use crate::study::{
-    PipelineError, ReducedEngineSource, Repair, StoredStudy, Study, TimeDomainRequest,
-    VerifyRequest, audit_peaks, repair, verify, verify_in_time,
+    FileState, Integrity, PipelineError, ReducedEngineSource, Repair, StoredStudy, Study,
+    TimeDomainRequest, VerifyRequest, audit_peaks, integrity, repair, verify, verify_in_time,
 };
 
 /// Arguments of the command.
@@ -38,6 +39,8 @@ pub(super) enum Question {
     TimeDomain(Option<(usize, u32)>),
     /// None: are the files as they were written? Damaged ones are set aside and solved again.
     Files,
+    /// None: are the files as they were written? Nothing is changed.
+    Integrity,
 }
 
 impl Question {
@@ -87,7 +90,72 @@ pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure
             finish(arguments, &report, report.verified)
         }
         Question::Files => repaired(arguments),
+        Question::Integrity => looked_at(arguments),
     }
+}
+
+/// Reads all files and changes none.
+fn looked_at(arguments: &VerifyArguments) -> Result<ExitStatus, Failure> {
+    let results = if arguments.target.is_dir() {
+        arguments.target.clone()
+    } else {
+        Path::new("results").join(Study::read(&arguments.target)?.name)
+    };
+    let found = integrity(&results)?;
+    if arguments.json {
+        output::json_only(&json!({ "whole": found.is_whole(), "integrity": found }));
+    } else {
+        output::text(&of_files(&found).join("\n"));
+    }
+    Ok(if found.is_whole() {
+        ExitStatus::Done
+    } else {
+        ExitStatus::StoreDamaged
+    })
+}
+
+/// What the files of a folder are found to be: a line for each that is not whole, and the numbers.
+fn of_files(found: &Integrity) -> Vec<String> {
+    let name = |state: FileState| match state {
+        FileState::Whole => "whole",
+        FileState::Damaged => "damaged",
+        FileState::Missing => "missing",
+        FileState::Unverified => "unverified",
+        FileState::Foreign => "foreign",
+    };
+    let others = found
+        .files
+        .iter()
+        .filter(|file| file.state != FileState::Whole);
+    let mut lines: Vec<String> = others
+        .map(|file| {
+            format!(
+                "{:<10}  {}: {}",
+                name(file.state),
+                file.file.display(),
+                file.reason
+            )
+        })
+        .collect();
+    let build = found.build.as_deref().map_or("not known", identity::named);
+    lines.push(format!("{}: build {build}", found.folder.display()));
+    let states = [
+        FileState::Whole,
+        FileState::Damaged,
+        FileState::Missing,
+        FileState::Unverified,
+        FileState::Foreign,
+    ];
+    let counts = states.map(|state| {
+        let count = found
+            .files
+            .iter()
+            .filter(|file| file.state == state)
+            .count();
+        format!("{count} {}", name(state))
+    });
+    lines.push(format!("files: {}", counts.join(", ")));
+    lines
 }
 
 /// Sets damaged files aside and solves again what they held.

@@ -6,5 +6,7 @@ mod reduced_model;
 pub mod reduction;
 pub mod sector;
 
-pub use cache::{CacheError, read_cached, reduction_digest, write_cached};
+pub use cache::{
+    CacheError, is_whole_entry, read_cached, reduction_digest, write_cached, writer_of_leftover,
+};
 pub use reduced_model::{NodalDiameterReport, ReducedModel, ReducedNodalDiameter};

@@ -122,7 +122,9 @@ impl AccuracyChoice {
         // A study with more patterns than the sample has the same sample.
         let sampled = sampled_patterns(study).min(study.patterns as usize);
         let digest = reduction_digest(sector, &format!("accuracy with its worst {keys} {sampled}"));
-        if let Some(stored) = cache.and_then(|folder| read_cached(folder, &digest)) {
+        let stored: Option<Self> = cache.and_then(|folder| read_cached(folder, &digest));
+        let asked = |stored: &Self| stored.accepted.total_cmp(&accuracy.amplitude_error).is_eq();
+        if let Some(stored) = stored.filter(asked) {
             return Ok(stored);
         }
         let patterns = pattern_source(study, sector)?;

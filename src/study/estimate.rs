@@ -31,7 +31,7 @@ use crate::population::statistics::{
 };
 use crate::population::table::{
     EstimateRow, MANIFEST, PartSink, RowSchema, RowStore, TableError, TableHeader, digest_file,
-    write_atomically, write_estimate_rows,
+    write_atomically, write_estimate, write_estimate_rows,
 };
 use crate::report::{EstimateReport, ScenarioEstimate};
 use crate::response::mistuning::PatternSource;
@@ -133,11 +133,7 @@ pub fn estimate(
         })?,
         scenarios,
     };
-    let json = serde_json::to_string_pretty(&report).map_err(|error| TableError::Encoding {
-        path: results.join("estimate.json"),
-        reason: error.to_string(),
-    })?;
-    write_atomically(&results.join("estimate.json"), json.as_bytes())?;
+    write_estimate(results, &report)?;
     write_atomically(&results.join("summary.txt"), report.to_string().as_bytes())?;
     clock
         .record(&study.path, request.threads, counts, BTreeMap::new())

@@ -1,5 +1,6 @@
 //! How far a results folder is, seen without touching it.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Serialize;
@@ -57,13 +58,16 @@ pub struct FolderStatus {
 pub fn status_of_folder(results: &Path) -> Result<FolderStatus, PipelineError> {
     let mut shards = Vec::new();
     let mut missing = Vec::new();
-    let folders = shard_folders(results);
-    let count = folders.keys().map(|(count, _)| *count).max().unwrap_or(0);
+    let mut known = BTreeMap::new();
+    for (cut, folder) in shard_folders(results)? {
+        // A folder that no shard has begun in tells nothing, not even how many shards there are.
+        if let Some(status) = own_status(&folder)? {
+            known.insert(cut, status);
+        }
+    }
+    let count = known.keys().map(|(count, _)| *count).max().unwrap_or(0);
     for number in 1..=count {
-        let shard = match folders.get(&(count, number)) {
-            Some(folder) => own_status(folder)?,
-            None => None,
-        };
+        let shard = known.remove(&(count, number));
         if shard
             .as_ref()
             .is_none_or(|shard| shard.work != Work::Finished)

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::PipelineError;
 use crate::platform::{boot_identity, host_name, process_start};
-use crate::population::table::TableError;
+use crate::population::table::{TableError, is_file};
 
 /// Name of the lock in its folder.
 const LOCK: &str = ".lock";
@@ -88,6 +88,11 @@ impl FolderLock {
     /// Locks the folder `folder`; also whoever held it before and did not let go of it by himself.
     pub(super) fn take(folder: &Path) -> Result<(Self, Option<LockHolder>), PipelineError> {
         let path = folder.join(LOCK);
+        if let Err(TableError::Damaged { path, reason }) = is_file(&path) {
+            let (reason, _) = reason.split_once(';').unwrap_or((&reason, ""));
+            let reason = format!("{reason}; remove it");
+            return Err(TableError::Damaged { path, reason }.into());
+        }
         let io = |source| TableError::Io {
             action: "write to the folder",
             path: folder.to_owned(),
@@ -174,6 +179,7 @@ pub(super) fn holder(folder: &Path) -> Option<(LockHolder, bool)> {
 }
 
 fn read(path: &Path) -> Option<LockHolder> {
+    is_file(path).ok().filter(|there| *there)?;
     let mut text = String::new();
     File::open(path).ok()?.read_to_string(&mut text).ok()?;
     serde_json::from_str(&text).ok()

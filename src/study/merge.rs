@@ -8,7 +8,12 @@ use super::pipeline_tables::{Facts, TableWork};
 use super::results_folder::{ResultsFolder, finished_rows, verify_tables};
 use super::{PipelineError, RunOutcome, StoredStudy, StudyDigest};
 use crate::identity;
-use crate::population::table::{Manifest, RowStore, RunState, ScenarioEntry, Shard};
+use crate::population::table::{
+    Manifest, RowStore, RunState, ScenarioEntry, Shard, TableError, is_folder,
+};
+
+/// Missing shards that a message names.
+const NAMED: usize = 20;
 
 /// A finished shard.
 struct Part {
@@ -87,7 +92,7 @@ fn shards(reason: String) -> PipelineError {
 fn expanded(folders: &[PathBuf]) -> Result<Vec<PathBuf>, PipelineError> {
     let mut all = Vec::new();
     for folder in folders {
-        let inside = shard_folders(folder);
+        let inside = shard_folders(folder)?;
         let is_shard = Manifest::read(folder)?.is_some_and(|manifest| manifest.shard.is_some());
         if inside.is_empty() || is_shard {
             all.push(folder.clone());
@@ -98,20 +103,29 @@ fn expanded(folders: &[PathBuf]) -> Result<Vec<PathBuf>, PipelineError> {
     Ok(all)
 }
 
-/// The folders of shards below the results folder `results`.
-pub(super) fn shard_folders(results: &Path) -> BTreeMap<(u32, u32), PathBuf> {
-    let entries = std::fs::read_dir(results.join("shards"));
-    let paths = entries
-        .into_iter()
-        .flatten()
-        .flatten()
-        .map(|entry| entry.path());
-    paths
-        .filter_map(|path| {
-            let shard = Shard::of_folder(&path)?;
-            Some(((shard.count, shard.number), path))
-        })
-        .collect()
+/// The folders of shards below the results folder `results`, by count and number. Links are not followed.
+pub(super) fn shard_folders(
+    results: &Path,
+) -> Result<BTreeMap<(u32, u32), PathBuf>, PipelineError> {
+    let shards = results.join("shards");
+    let mut found = BTreeMap::new();
+    if !is_folder(&shards)? {
+        return Ok(found);
+    }
+    let unread = |source| TableError::Io {
+        action: "read",
+        path: shards.clone(),
+        source,
+    };
+    for entry in std::fs::read_dir(&shards).map_err(unread)? {
+        let path = entry.map_err(unread)?.path();
+        if let Some(shard) = Shard::of_folder(&path)
+            && is_folder(&path)?
+        {
+            found.insert((shard.count, shard.number), path);
+        }
+    }
+    Ok(found)
 }
 
 fn read(folder: PathBuf) -> Result<Part, PipelineError> {
@@ -215,13 +229,21 @@ fn covers(parts: &[Part]) -> Result<(), PipelineError> {
         )));
     }
     let count = parts.first().map_or(0, |part| part.shard.count);
-    let missing: Vec<String> = (1..=count)
-        .filter(|number| parts.iter().all(|part| part.shard.number != *number))
+    let mut missing = (1..=count).filter(|number| {
+        let place = parts.binary_search_by_key(number, |part| part.shard.number);
+        place.is_err()
+    });
+    let mut named: Vec<String> = missing
+        .by_ref()
+        .take(NAMED)
         .map(|number| format!("{number}/{count}"))
         .collect();
-    if missing.is_empty() {
-        Ok(())
-    } else {
-        Err(shards(format!("missing shards: {}", missing.join(", "))))
+    if named.is_empty() {
+        return Ok(());
     }
+    match missing.count() {
+        0 => {}
+        others => named.push(format!("and {others} others")),
+    }
+    Err(shards(format!("missing shards: {}", named.join(", "))))
 }

@@ -16,6 +16,7 @@ use super::{
 };
 use crate::population::statistics::CONFIDENCE;
 use crate::population::statistics::{Quantity, percentile, smallest_sample};
+use crate::population::table::is_folder;
 use crate::report::{ComparedScenario, OptimumExcitation, OptimumReport};
 use crate::response::forced_response::ContactCondition;
 
@@ -106,6 +107,7 @@ fn settled(request: &OptimumRequest<'_>) -> Result<Study, PipelineError> {
         .to_vec();
     let sector = load_sector_model(&study)?;
     let cache = request.results.join("model");
+    is_folder(&cache)?;
     let choice = AccuracyChoice::of(&study, accuracy, &sector, Some(&cache))?;
     Ok(choice.applied_to(request.study))
 }
@@ -155,6 +157,7 @@ impl Search<'_> {
             return Ok(load.value);
         }
         let folder = self.folder(normal_load_n);
+        is_folder(&folder)?;
         let mut study = self.request.study.clone();
         study.contacts = vec![ContactCondition::Full { normal_load_n }];
         // Loads are compared over the same patterns, so that none may stop before the others.

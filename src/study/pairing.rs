@@ -1,7 +1,6 @@
 //! Which rows of two scenarios belong together: those of the same pattern.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use serde::Serialize;
 
@@ -46,9 +45,8 @@ impl<'a> PatternMatcher<'a> {
     pub(super) fn new(folders: &'a [ResultColumns]) -> Result<Self, PipelineError> {
         let stored = |columns: &ResultColumns| -> Result<_, PipelineError> {
             let path = columns.folder.join("patterns.parquet");
-            let wanted = folders.len() > 1
-                && columns.manifest.tables.contains_key("patterns.parquet")
-                && Path::new(&path).exists();
+            let wanted =
+                folders.len() > 1 && columns.manifest.tables.contains_key("patterns.parquet");
             Ok(if wanted {
                 Some(read_patterns(&path)?)
             } else {

@@ -8,7 +8,7 @@ use super::{
     Engine, EngineSource, PipelineError, Progress, Stage, StoredModel, StoredStudy, VerifyRequest,
 };
 use crate::population::monte_carlo::{ResponseRow, Scenario};
-use crate::population::table::{PeakAuditRecord, TableHeader, write_peak_audit};
+use crate::population::table::{PeakAuditRecord, TableHeader, write_peak_audit, write_side_table};
 use crate::report::PeakAuditReport;
 use crate::response::forced_response::{DensePeak, FrequencyBand, dense_peak};
 use crate::response::harmonic_balance::Status;
@@ -54,8 +54,9 @@ pub fn audit_peaks(
             compression: stored.study.output.compression,
             load_cases: stored.load_cases(),
         };
-        let path = folder.path().join("peak_audit.parquet");
-        write_peak_audit(&path, &records, &header, seed)?;
+        write_side_table(folder.path(), "peak_audit.parquet", |path| {
+            write_peak_audit(path, &records, &header, seed)
+        })?;
         Ok(PeakAuditReport::new(
             &stored.manifest.name,
             seed,

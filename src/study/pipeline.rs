@@ -7,7 +7,7 @@ use std::time::Instant;
 use rayon::ThreadPool;
 
 use super::lock::unix_seconds;
-use super::pipeline_goal::{Goal, can_be_cut};
+use super::pipeline_goal::{Goal, can_be_cut, is_shard_of};
 use super::pipeline_rows::RowWork;
 use super::pipeline_tables::{Facts, TableWork};
 use super::results_folder::{Found, ResultsFolder, finished_rows, is_complete};
@@ -18,7 +18,9 @@ use super::{
 use crate::identity;
 use crate::platform;
 use crate::population::monte_carlo::{Interruption, block_size, plan_blocks, solve_blocks};
-use crate::population::table::{Manifest, PartSink, RowStore, RunRecord, Shard};
+use crate::population::table::{
+    Manifest, PartSink, RowStore, RunRecord, Shard, is_folder, remove_leftovers,
+};
 use crate::report::StudySummary;
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::PatternSource;
@@ -115,6 +117,7 @@ pub fn run_shard(
     progress: &dyn Progress,
 ) -> Result<RunOutcome, PipelineError> {
     can_be_cut(request.study)?;
+    is_shard_of(request.study, shard)?;
     let folder = request.results.join("shards").join(shard.folder_name());
     let model = request.results.join("model");
     let of_shard = RunRequest {
@@ -151,6 +154,10 @@ pub(super) fn run_in(
     let clock = Clock::start();
     let digest = StudyDigest::of(study)?;
     let mut folder = ResultsFolder::open(results)?;
+    // Of a shard it lies beside the others.
+    if is_folder(scope.model_cache)? {
+        remove_leftovers(scope.model_cache)?;
+    }
     if let Some(holder) = folder.broken_off() {
         progress.taken_over(&holder.to_string());
     }

@@ -7,7 +7,7 @@
 
 use super::{PipelineError, Study};
 use crate::population::statistics::{StopOptions, StopOutcome};
-use crate::population::table::RowStore;
+use crate::population::table::{RowStore, Shard};
 
 /// Where the run of a study may end.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,4 +108,22 @@ pub fn can_be_cut(study: &Study) -> Result<(), PipelineError> {
             ),
         }),
     }
+}
+
+/// Whether the patterns of `study` can be cut so that `shard` is one of the shares.
+///
+/// # Errors
+/// There are more shards than patterns, or no such share of them.
+pub fn is_shard_of(study: &Study, shard: Shard) -> Result<(), PipelineError> {
+    let patterns = u64::from(study.patterns);
+    if shard.is_of(patterns) {
+        return Ok(());
+    }
+    let most = Shard::most(patterns);
+    let reason = format!(
+        "{} has {patterns} patterns, of which {shard} is no share; accepted: k/n with n from 1 to {most} \
+         and k from 1 to n",
+        study.path.display()
+    );
+    Err(PipelineError::Shards { reason })
 }

@@ -78,7 +78,7 @@ impl EngineSource for ReducedEngineSource {
         };
         let digest = reduction_digest(model, &key);
         let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
-        let stored = if let Some(stored) = cached {
+        let stored = if let Some(stored) = cached.filter(|stored| stored.fits(study, model)) {
             stored
         } else {
             let (reduction, fixed_interface) = reduce_sector(study, model)?;

@@ -14,6 +14,7 @@ use super::reduced_engine::row_settings;
 use super::{PipelineError, Study};
 use crate::model::ReducedModel;
 use crate::model::reduction::{Basis, BasisChoice, Reduction, ReductionOptions};
+use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
 use crate::response::forced_response::{Harmonics, HigherHarmonics, RowsBeyondTolerance};
 use crate::response::harmonic_balance::TransformError;
@@ -31,6 +32,29 @@ pub(super) struct Stored {
     beyond: Option<StoredBeyond>,
     /// The tuned wheel that harmonics other than 1 are taken in, where the study asks for it.
     tuned_harmonics: Option<ReducedModel>,
+}
+
+impl Stored {
+    /// Whether sectors, contact and harmonic sets are as many as `study` and `sector` have.
+    pub(super) fn fits(&self, study: &Study, sector: &SectorModel) -> bool {
+        let orders: usize = study.excited_orders().iter().map(|own| own.1.len()).sum();
+        let nonlinear = study.contacts.iter();
+        let loads = nonlinear
+            .filter(|own| own.normal_load_n().is_some())
+            .count();
+        let models = [Some(&self.model), self.tuned_harmonics.as_ref()];
+        let beyond = self.beyond.as_ref();
+        let models = models.into_iter().chain([beyond.map(|own| &own.model)]);
+        let sets = [Some(&self.harmonics), beyond.map(|own| &own.harmonics)];
+        self.model.contact.weights.len() == sector.contact_pairs.len()
+            && models
+                .flatten()
+                .all(|model| model.sectors == sector.sectors)
+            && sets
+                .into_iter()
+                .flatten()
+                .all(|sets| sets.len() == orders * loads)
+    }
 }
 
 /// The model and sets for rows that the others are not good enough for.

@@ -10,8 +10,9 @@ use super::stored_study::study_of;
 use super::{EngineSource, PipelineError, Progress, RunOutcome, RunRequest, Study};
 use crate::identity;
 use crate::population::table::{
-    MANIFEST, Manifest, RunRecord, RunState, Shard, TableError, complete_publication, keep_as_part,
-    part_files, set_aside,
+    ASIDE, MANIFEST, Manifest, PartHeader, RunRecord, RunState, Shard, SideTables, TableError,
+    complete_publication, is_file, keep_as_part, misplacements, part_files, renew_header,
+    set_aside, unlisted_parts,
 };
 
 /// What a repair came to.
@@ -48,6 +49,7 @@ pub fn repair(
         outcome: None,
         different: Vec::new(),
     };
+    repair.misplaced(results)?;
     let next = results.join("next");
     repair.manifest(results, &next)?;
     complete_publication(results)?;
@@ -60,8 +62,9 @@ pub fn repair(
         Some(manifest) => manifest.tables.clone(),
         None => tables_of(&records),
     };
-    if manifest.is_none() && tables.is_empty() && part_files(results)?.is_empty() {
-        if results.join(RESPONSES).exists() {
+    let parts = listed_parts(results)?;
+    if manifest.is_none() && tables.is_empty() && parts.is_empty() {
+        if is_file(&results.join(RESPONSES))? {
             return Err(manifest_lost(results).into());
         }
         return Err(PipelineError::NoResults {
@@ -69,9 +72,16 @@ pub fn repair(
         });
     }
     refuse_other_builds(results, manifest.as_ref(), &records, &tables)?;
-    let goes_on = !part_files(results)?.is_empty();
+    let goes_on = !parts.is_empty();
     let tables_are_whole = repair.tables(results, &tables)?;
-    repair.parts(results)?;
+    let solved_here = match &manifest {
+        Some(manifest) => manifest.build == identity::BUILD,
+        None => records
+            .first()
+            .is_some_and(|record| record.build == identity::BUILD),
+    };
+    repair.parts(results, solved_here)?;
+    repair.others(results)?;
     let finished = match &manifest {
         Some(manifest) => manifest.state == RunState::Finished,
         None => !tables.is_empty(),
@@ -108,25 +118,8 @@ pub fn repair(
         }
     };
     drop(lock);
-    let shard = match &manifest {
-        Some(manifest) => manifest.shard,
-        None => Shard::of_folder(results),
-    };
-    let model = match shard {
-        None => results.join("model"),
-        Some(_) => results.join("../../model"),
-    };
-    let request = RunRequest {
-        study: &study,
-        results,
-        threads,
-    };
-    let scope = RunScope {
-        shard,
-        model_cache: &model,
-        held: manifest.as_ref().map_or(0, |manifest| manifest.patterns),
-    };
-    repair.outcome = Some(run_in(request, scope, source, progress)?);
+    let again = (&study, manifest.as_ref(), threads);
+    repair.outcome = Some(solve_again(results, again, source, progress)?);
     if let Some(after) = Manifest::read(results)? {
         repair.different = tables
             .into_iter()
@@ -135,6 +128,45 @@ pub fn repair(
             .collect();
     }
     Ok(repair)
+}
+
+/// Solves the rows of `study` that are lost in the folder `results`, whose manifest was `manifest`.
+fn solve_again(
+    results: &Path,
+    (study, manifest, threads): (&Study, Option<&Manifest>, usize),
+    source: &dyn EngineSource,
+    progress: &dyn Progress,
+) -> Result<RunOutcome, PipelineError> {
+    let shard = match manifest {
+        Some(manifest) => manifest.shard,
+        None => Shard::of_folder(results),
+    };
+    let model = match shard {
+        None => results.join("model"),
+        Some(_) => results.join("../../model"),
+    };
+    let request = RunRequest {
+        study,
+        results,
+        threads,
+    };
+    let scope = RunScope {
+        shard,
+        model_cache: &model,
+        held: manifest.map_or(0, |manifest| manifest.patterns),
+    };
+    run_in(request, scope, source, progress)
+}
+
+/// What stands among the parts, listed or not; a damaged header is one of it.
+fn listed_parts(results: &Path) -> Result<Vec<PathBuf>, TableError> {
+    let listed = match part_files(results) {
+        Err(TableError::Damaged { path, .. }) => return Ok(vec![path]),
+        listed => listed?,
+    };
+    let mut all = unlisted_parts(results)?;
+    all.extend(listed.into_iter().map(|part| part.path));
+    Ok(all)
 }
 
 /// Rows of another build are left as they are: what is solved again would be of this one.
@@ -150,10 +182,9 @@ fn refuse_other_builds(
         (None, None) => return Ok(()),
     };
     let whole = || -> Result<bool, TableError> {
-        let parts = part_files(results)?;
         Ok(manifest.is_some()
             && changed_tables(results, tables)?.is_empty()
-            && parts.iter().all(|part| part.check().is_ok()))
+            && part_files(results).is_ok_and(|parts| parts.iter().all(|part| part.check().is_ok())))
     };
     if stored == identity::BUILD || whole()? {
         return Ok(());
@@ -191,28 +222,94 @@ impl Repair {
         let changed = changed_tables(results, tables)?;
         let whole = changed.is_empty();
         for name in changed {
-            let path = results.join(name);
-            if path.exists() {
-                self.put(results, path)?;
-            } else {
-                self.missing.push(path);
-            }
+            self.put_or_miss(results, results.join(name))?;
         }
         // Without a digest nothing vouches for it.
         let unknown = results.join(RESPONSES);
-        if !tables.contains_key(RESPONSES) && unknown.exists() {
+        if !tables.contains_key(RESPONSES) && is_file(&unknown)? {
             self.put(results, unknown)?;
         }
         Ok(whole)
     }
 
-    fn parts(&mut self, results: &Path) -> Result<(), TableError> {
+    /// Links and whatever else stands in a place that it does not belong to go aside.
+    fn misplaced(&mut self, results: &Path) -> Result<(), TableError> {
+        for error in misplacements(results)? {
+            if let TableError::Damaged { path, reason } = error {
+                if ASIDE.iter().any(|name| path.ends_with(name)) {
+                    let (reason, _) = reason.split_once(';').unwrap_or((&reason, ""));
+                    let reason = format!("{reason}; remove it");
+                    return Err(TableError::Damaged { path, reason });
+                }
+                self.put(results, path)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Parts that are not as written or not listed go aside, and so do those without a header unless this
+    /// build `solved` the rows of the folder; the header lists what is left.
+    fn parts(&mut self, results: &Path, solved: bool) -> Result<(), TableError> {
+        let before = (self.set_aside.len(), self.missing.len());
+        let headed = match PartHeader::read(results) {
+            Err(TableError::Damaged { path, .. }) => {
+                self.put(results, path)?;
+                false
+            }
+            header => header?.is_some(),
+        };
         for part in part_files(results)? {
             match part.check() {
-                Err(TableError::Damaged { path, .. }) => self.put(results, path)?,
+                Err(TableError::Damaged { path, .. }) => self.put_or_miss(results, path)?,
                 other => other?,
             }
         }
+        let beside = unlisted_parts(results)?;
+        let without_header = !headed && !beside.is_empty();
+        if headed || !solved {
+            for path in beside {
+                self.put(results, path)?;
+            }
+        }
+        if without_header || before != (self.set_aside.len(), self.missing.len()) {
+            renew_header(results)?;
+        }
+        Ok(())
+    }
+
+    /// Tables of commands beside `run` and records of runs that are not as written go aside.
+    fn others(&mut self, results: &Path) -> Result<(), TableError> {
+        let noted = match SideTables::read(results) {
+            Err(TableError::Damaged { path, .. }) => {
+                self.put(results, path)?;
+                SideTables::default()
+            }
+            noted => noted?,
+        };
+        for (name, table) in &noted.tables {
+            match table.check(&results.join(name)) {
+                Err(TableError::Damaged { path, .. }) => {
+                    noted.without(results, name)?;
+                    self.put_or_miss(results, path)?;
+                }
+                other => other?,
+            }
+        }
+        for path in RunRecord::places(results)? {
+            match RunRecord::read(&path) {
+                Err(TableError::Damaged { path, .. }) => self.put(results, path)?,
+                other => drop(other?),
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets aside what stands in a place, or notes that nothing does.
+    fn put_or_miss(&mut self, results: &Path, path: PathBuf) -> Result<(), TableError> {
+        if std::fs::symlink_metadata(&path).is_ok() {
+            return self.put(results, path);
+        }
+        self.missing.push(path);
         Ok(())
     }
 

@@ -10,7 +10,7 @@ use super::{PipelineError, Study, StudyDigest};
 use crate::identity;
 use crate::population::table::{
     MANIFEST, Manifest, PartHeader, RowFile, RunRecord, RunState, ScenarioEntry, Shard, TableError,
-    check_parts, complete_publication, digest_file, remove_leftovers,
+    check_parts, complete_publication, digest_stored, is_file, misplacements, remove_leftovers,
 };
 
 /// The table of rows.
@@ -55,8 +55,11 @@ impl ResultsFolder {
             source,
         })?;
         let (lock, broken_off) = FolderLock::take(path)?;
+        if let Some(error) = misplacements(path)?.into_iter().next() {
+            return Err(error.into());
+        }
         complete_publication(path)?;
-        for folder in [path.to_owned(), path.join("parts"), path.join("runs")] {
+        for folder in ["", "parts", "runs", "model"].map(|name| path.join(name)) {
             remove_leftovers(&folder)?;
         }
         Ok(Self {
@@ -92,7 +95,7 @@ impl ResultsFolder {
     ) -> Result<Found, PipelineError> {
         let Some(manifest) = Manifest::read(&self.path)? else {
             self.check_parts()?;
-            if self.path.join(RESPONSES).exists() {
+            if is_file(&self.path.join(RESPONSES))? {
                 return Err(manifest_lost(&self.path).into());
             }
             return Ok(Found::Nothing);
@@ -226,16 +229,15 @@ pub(super) fn verify_tables(results: &Path, manifest: &Manifest) -> Result<(), P
     else {
         return Ok(());
     };
-    if results.join("next").join("manifest.json").exists() {
+    if is_file(&results.join("next").join(MANIFEST))? {
         return Err(PipelineError::Unfinished {
             folder: results.to_owned(),
         });
     }
     let path = results.join(name);
-    let what = if path.exists() {
-        "its content is not what was written"
-    } else {
-        "it is missing"
+    let what = match digest_stored(&path)? {
+        Some(_) => "its content is not what was written",
+        None => "it is missing",
     };
     let reason = format!("{what}; restore it, or {}", repair_of(results));
     Err(TableError::Damaged { path, reason }.into())
@@ -276,19 +278,10 @@ pub(super) fn changed_tables(
     let mut changed = Vec::new();
     for (name, expected) in tables {
         let path = results.join(name);
-        match digest_file(&path) {
-            Ok(found) if found == *expected => {}
-            Ok(_) => changed.push(name.clone()),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                changed.push(name.clone());
-            }
-            Err(source) => {
-                return Err(TableError::Io {
-                    action: "read",
-                    path,
-                    source,
-                });
-            }
+        match digest_stored(&path) {
+            Ok(Some(found)) if found == *expected => {}
+            Ok(_) | Err(TableError::Damaged { .. }) => changed.push(name.clone()),
+            Err(error) => return Err(error),
         }
     }
     Ok(changed)

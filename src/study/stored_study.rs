@@ -10,7 +10,7 @@ use crate::identity;
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{LoadCaseName, ResponseRow, Scenario, TunedReference};
 use crate::population::table::{
-    Manifest, ResponseReader, RunRecord, RunState, ScenarioEntry, TableError,
+    Manifest, ResponseReader, RunRecord, RunState, ScenarioEntry, TableError, is_folder,
 };
 use crate::response::mistuning::{Pattern, PatternSource};
 
@@ -125,7 +125,7 @@ impl StoredStudy {
         source: &dyn EngineSource,
     ) -> Result<Box<dyn super::Engine>, PipelineError> {
         let cache = self.folder.join("model");
-        let cache = cache.exists().then_some(cache);
+        let cache = is_folder(&cache)?.then_some(cache);
         source.build(&self.study, &model.sector, cache.as_deref())
     }
 

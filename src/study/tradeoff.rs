@@ -21,7 +21,7 @@ use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::Scenario;
 use crate::population::statistics::{ErrorBound, percentile};
 use crate::population::table::{
-    TRADEOFF_TARGETS, TableHeader, TradeoffRecord, TradeoffRow, write_tradeoff,
+    TRADEOFF_TARGETS, TableHeader, TradeoffRecord, TradeoffRow, write_side_table, write_tradeoff,
     write_tradeoff_rows, write_tradeoff_times,
 };
 use crate::report::{FullContactCheck, TradeoffChoice, TradeoffReference, TradeoffReport};
@@ -96,10 +96,16 @@ pub fn tradeoff(
         ("blisk.reference", trade.reference.kind.name().to_owned()),
         ("blisk.sample_patterns", format!("{:?}", report.patterns)),
     ];
-    let path = |name: &str| folder.path().join(name);
-    write_tradeoff(&path("tradeoff.parquet"), &report.settings, &header, &more)?;
-    write_tradeoff_rows(&path("tradeoff_rows.parquet"), &trade.rows(), &header)?;
-    write_tradeoff_times(&path("tradeoff_times.parquet"), &report.settings, &header)?;
+    let settings = &report.settings;
+    write_side_table(folder.path(), "tradeoff.parquet", |path| {
+        write_tradeoff(path, settings, &header, &more)
+    })?;
+    write_side_table(folder.path(), "tradeoff_rows.parquet", |path| {
+        write_tradeoff_rows(path, &trade.rows(), &header)
+    })?;
+    write_side_table(folder.path(), "tradeoff_times.parquet", |path| {
+        write_tradeoff_times(path, settings, &header)
+    })?;
     Ok(report)
 }
 

@@ -14,7 +14,9 @@ use super::{
     StoredModel, StoredStudy,
 };
 use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
-use crate::population::table::{TableHeader, VerificationRecord, write_verification};
+use crate::population::table::{
+    TableHeader, VerificationRecord, write_side_table, write_verification,
+};
 use crate::report::{VerificationContext, VerificationReport};
 use crate::response::reference::{ReferencePeak, ReferenceSettings};
 
@@ -256,8 +258,9 @@ fn write_records(
         compression: stored.study.output.compression,
         load_cases: stored.load_cases(),
     };
-    let path = folder.join("verification.parquet");
-    Ok(write_verification(&path, records, &header, seed)?)
+    Ok(write_side_table(folder, "verification.parquet", |path| {
+        write_verification(path, records, &header, seed)
+    })?)
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ mod report;
 mod rotation;
 mod runs;
 mod statistics;
+mod stored_numbers;
 mod study_keys;
 mod tradeoff;
 mod verification;

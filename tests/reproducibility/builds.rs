@@ -1,7 +1,7 @@
 //! The identity of a build: what changes it and what does not; and parts of another build.
 
 #[path = "../../build.rs"]
-#[allow(dead_code)]
+#[allow(dead_code, clippy::print_stdout)]
 mod build_script;
 
 use std::collections::BTreeMap;

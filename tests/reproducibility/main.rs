@@ -5,6 +5,8 @@ mod continuation;
 mod damage;
 mod extension;
 mod folder;
+mod forged;
+mod integrity;
 mod mock_engine;
 mod scale;
 mod shards;

@@ -58,14 +58,44 @@ fn every_cut_merges_to_the_same_bytes_in_any_order() {
 }
 
 #[test]
-fn more_shards_than_patterns_leave_some_empty() {
+fn more_shards_than_patterns_are_refused() {
     let study = study(5, |text| text);
     let folder = tempfile::tempdir().expect("a temporary folder");
-    for number in 1..=8 {
-        solve(folder.path(), &study, number, 8);
+    for (number, count) in [(1, u32::MAX), (6, 6), (0, 5), (6, 5), (1, 0), (0, 0)] {
+        let request = RunRequest {
+            study: &study,
+            results: folder.path(),
+            threads: 1,
+        };
+        let shard = Shard { number, count };
+        let refused = run_shard(request, shard, &MockSource::default(), &Silent);
+        let words = refused.expect_err("no such share").to_string();
+        assert!(words.contains("n from 1 to 5"), "{words}");
+    }
+    assert!(std::fs::read_dir(folder.path()).expect("a folder").count() == 0);
+    for number in 1..=5 {
+        solve(folder.path(), &study, number, 5);
     }
     merge(&[folder.path().to_owned()], folder.path(), None).expect("merged");
     assert!(bytes(folder.path()) == reference(5));
+}
+
+#[test]
+fn a_folder_named_like_a_shard_of_billions_is_no_shard() {
+    let small = study(20, |text| text);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for number in 1..=3 {
+        solve(folder.path(), &small, number, 4);
+    }
+    for name in ["1-of-4294967295", "1-of-99999", "0-of-0"] {
+        std::fs::create_dir_all(folder.path().join("shards").join(name)).expect("made");
+    }
+    let status = status_of_folder(folder.path()).expect("a status");
+    assert_eq!(status.missing_shards, [4]);
+    let shards: Vec<PathBuf> = (1..=3)
+        .map(|number| folder.path().join(format!("shards/{number}-of-4")))
+        .collect();
+    refused(&shards, &folder.path().join("out"), "missing shards: 4/4");
 }
 
 fn refused(shards: &[PathBuf], out: &Path, expected: &str) -> PipelineError {

@@ -7,12 +7,16 @@ use serde::Serialize;
 use super::TableError;
 use super::column::{ColumnKind, ColumnSpec};
 use super::reader::TableReader;
+use super::side_tables::check_side_table;
 
 use ColumnKind::{Boolean, Float64, Int32, String as Text};
 
 const fn column(name: &'static str, kind: ColumnKind) -> ColumnSpec {
     ColumnSpec::new(name, kind, "", "")
 }
+
+/// Name of the table.
+const TRADEOFF: &str = "tradeoff.parquet";
 
 /// Columns read; the file has more.
 const COLUMNS: &[ColumnSpec] = &[
@@ -83,12 +87,12 @@ impl AccuracyLadder {
     /// Reads `tradeoff.parquet` of the folder `results`; none if there is none.
     ///
     /// # Errors
-    /// The file cannot be read.
+    /// The file cannot be read, or is not as it was written.
     pub fn read(results: &Path) -> Result<Option<Self>, TableError> {
-        let path = results.join("tradeoff.parquet");
-        if !path.exists() {
+        if !check_side_table(results, TRADEOFF)? {
             return Ok(None);
         }
+        let path = results.join(TRADEOFF);
         let table = TableReader::open(&path, COLUMNS)?;
         let rows = table.read(0, table.rows())?;
         let (setting, samples) = (rows.int32("setting")?, rows.int32("samples_per_period")?);
@@ -129,7 +133,7 @@ mod tests {
     use super::*;
     use crate::population::table::column::Values;
     use crate::population::table::writer::TableWriter;
-    use crate::population::table::{Compression, TableHeader};
+    use crate::population::table::{CHECKSUMS, Compression, TableHeader, write_side_table};
 
     #[test]
     fn settings_are_read_from_a_table_with_these_columns() {
@@ -160,6 +164,14 @@ mod tests {
         ];
         writer.write(values).expect("rows");
         writer.finish().expect("an end");
+        let unknown = AccuracyLadder::read(folder.path()).expect_err("nothing vouches for it");
+        assert!(unknown.to_string().contains(CHECKSUMS), "{unknown}");
+        let copied = |to: &Path| {
+            std::fs::create_dir_all(to.parent().expect("a folder")).expect("made");
+            std::fs::copy(&path, to).expect("copied");
+            Ok(())
+        };
+        write_side_table(folder.path(), TRADEOFF, copied).expect("written");
         let ladder = AccuracyLadder::read(folder.path()).expect("a table");
         let ladder = ladder.expect("a ladder");
         assert_eq!(ladder.study_digest, "d");

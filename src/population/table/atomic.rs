@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::TableError;
+use crate::model::writer_of_leftover;
 use crate::platform;
 
 /// Bytes that are gathered before they are written.
@@ -108,7 +109,10 @@ impl AtomicFile {
         let temporary = target.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
         let file = {
             let mut unfinished = unfinished();
-            let file = File::create(&temporary).map_err(TableError::io("create", &temporary))?;
+            // What a killed process with the same number left, or a link of that name, is not written to.
+            let _ = std::fs::remove_file(&temporary);
+            let created = File::create_new(&temporary);
+            let file = created.map_err(TableError::io("create", &temporary))?;
             unfinished.insert(temporary.clone());
             file
         };
@@ -206,16 +210,23 @@ pub fn remove_leftovers(folder: &Path) -> Result<(), TableError> {
     };
     for entry in entries {
         let path = entry.map_err(TableError::io("read", folder))?.path();
-        let name = path.file_name().map(|name| name.to_string_lossy());
-        let writer = name
-            .as_deref()
-            .and_then(|name| name.strip_prefix('.')?.strip_suffix(".tmp"))
-            .and_then(|name| name.rsplit_once('.')?.1.parse::<u32>().ok());
-        if writer.is_some_and(|process| platform::process_start(process).is_none()) {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let writer = writer_of_temporary(&name).or_else(|| writer_of_leftover(&name));
+        let ended = |process: u32| platform::process_start(process).is_none();
+        if writer.is_some_and(ended) && !path.is_dir() {
             std::fs::remove_file(&path).map_err(TableError::io("remove", &path))?;
         }
     }
     Ok(())
+}
+
+/// The process that writes, or wrote and did not finish, the hidden file `name`; none for any other file.
+pub(super) fn writer_of_temporary(name: &str) -> Option<u32> {
+    let (_, process) = name
+        .strip_prefix('.')?
+        .strip_suffix(".tmp")?
+        .rsplit_once('.')?;
+    process.parse().ok()
 }
 
 /// A rename is durable once the folder is synced, where a folder can be opened.

@@ -54,6 +54,25 @@ pub(super) fn read_checked_json<T: DeserializeOwned>(path: &Path) -> Result<Opti
         .map_err(|error| TableError::damaged(path, error.to_string()))
 }
 
+/// Name of what an estimate came to.
+const ESTIMATE: &str = "estimate.json";
+
+/// Writes what an estimate came to into the folder `results`.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_estimate(results: &Path, estimate: &impl Serialize) -> Result<(), TableError> {
+    write_checked_json(&results.join(ESTIMATE), estimate)
+}
+
+/// Reads what an estimate came to in the folder `results`; none if there is none.
+///
+/// # Errors
+/// The file cannot be read or is damaged.
+pub fn read_estimate<T: DeserializeOwned>(results: &Path) -> Result<Option<T>, TableError> {
+    read_checked_json(&results.join(ESTIMATE))
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;

@@ -8,6 +8,8 @@ use serde_json::Value;
 
 use super::TableError;
 use super::checked_json::{read_checked_json, write_checked_json};
+use super::manifest_check::check_tables;
+use super::places::is_folder;
 use crate::population::monte_carlo::{LoadCaseName, Scenario, TunedReference};
 use crate::population::statistics::{Accounting, StopOutcome};
 use crate::response::forced_response::{ContactCondition, ErrorEstimate};
@@ -15,6 +17,8 @@ use crate::response::harmonic_balance::Status;
 
 /// Name of the manifest in its folder.
 pub const MANIFEST: &str = "manifest.json";
+/// Name of the folder of the records of runs.
+pub(super) const RUNS: &str = "runs";
 
 /// Whether a results folder is complete.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -143,6 +147,9 @@ impl ScenarioEntry {
     }
 }
 
+/// Shards of a study at most, each a folder and a task.
+const MOST_SHARDS: u32 = 100_000;
+
 /// One of `count` shares of the patterns of a study, cut by their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
@@ -153,6 +160,18 @@ pub struct Shard {
 }
 
 impl Shard {
+    /// Whether there is such a share of `patterns` patterns.
+    #[must_use]
+    pub fn is_of(self, patterns: u64) -> bool {
+        (1..=self.count).contains(&self.number) && u64::from(self.count) <= Self::most(patterns)
+    }
+
+    /// Shards that `patterns` patterns can be cut into at most.
+    #[must_use]
+    pub fn most(patterns: u64) -> u64 {
+        patterns.min(u64::from(MOST_SHARDS))
+    }
+
     /// The patterns of this shard among all `ids`.
     #[must_use]
     pub fn of(self, ids: &[u32]) -> &[u32] {
@@ -177,7 +196,7 @@ impl Shard {
             number: number.parse().ok()?,
             count: count.parse().ok()?,
         };
-        (1..=shard.count).contains(&shard.number).then_some(shard)
+        shard.is_of(u64::from(MOST_SHARDS)).then_some(shard)
     }
 
     /// Name of its folder.
@@ -243,9 +262,14 @@ impl Manifest {
     /// Reads `manifest.json` of the folder `results`; none if there is none.
     ///
     /// # Errors
-    /// The file cannot be read or is damaged.
+    /// The file cannot be read or is damaged, or says what no run writes.
     pub fn read(results: &Path) -> Result<Option<Self>, TableError> {
-        read_checked_json(&results.join(MANIFEST))
+        let path = results.join(MANIFEST);
+        let manifest: Option<Self> = read_checked_json(&path)?;
+        if let Some(manifest) = &manifest {
+            manifest.check(&path)?;
+        }
+        Ok(manifest)
     }
 
     /// Writes `manifest.json` into the folder `results`.
@@ -289,13 +313,46 @@ impl RunRecord {
     /// The intact records of the folder `results`, the last one first.
     #[must_use]
     pub fn all(results: &Path) -> Vec<Self> {
-        let mut records: Vec<Self> = (1..=u32::MAX)
-            .map(|number| place(results, number))
-            .take_while(|path| path.exists())
-            .filter_map(|path| read_checked_json(&path).ok().flatten())
-            .collect();
-        records.reverse();
-        records
+        let numbers = Self::numbers(results).unwrap_or_default();
+        let read = |number: &u32| Self::read(&place(results, *number)).ok().flatten();
+        numbers.iter().rev().filter_map(read).collect()
+    }
+
+    /// Reads the record in the file `path`; none if there is none.
+    ///
+    /// # Errors
+    /// The file cannot be read or is damaged.
+    pub fn read(path: &Path) -> Result<Option<Self>, TableError> {
+        let record: Option<Self> = read_checked_json(path)?;
+        if let Some(record) = &record {
+            check_tables(path, &record.tables)?;
+        }
+        Ok(record)
+    }
+
+    /// Where the records of the folder `results` are, in order.
+    ///
+    /// # Errors
+    /// The folder cannot be read.
+    pub fn places(results: &Path) -> Result<Vec<PathBuf>, TableError> {
+        let numbers = Self::numbers(results)?.into_iter();
+        Ok(numbers.map(|number| place(results, number)).collect())
+    }
+
+    /// Numbers of the records of the folder `results`, ascending.
+    fn numbers(results: &Path) -> Result<Vec<u32>, TableError> {
+        let folder = results.join(RUNS);
+        if !is_folder(&folder)? {
+            return Ok(Vec::new());
+        }
+        let mut numbers = Vec::new();
+        for entry in std::fs::read_dir(&folder).map_err(TableError::io("read", &folder))? {
+            let name = entry.map_err(TableError::io("read", &folder))?.file_name();
+            let number = name.to_str().and_then(|name| name.strip_suffix(".json"));
+            numbers.extend(number.and_then(|number| number.parse::<u32>().ok()));
+        }
+        numbers.sort_unstable();
+        Ok(numbers)
     }
 
     /// Writes the record under the next free number of `runs/` in the folder `results`.
@@ -303,16 +360,14 @@ impl RunRecord {
     /// # Errors
     /// The file cannot be written.
     pub fn write(&self, results: &Path) -> Result<(), TableError> {
-        let free = (1..=u32::MAX)
-            .map(|number| place(results, number))
-            .find(|path| !path.exists());
-        match free {
-            Some(path) => write_checked_json(&path, self),
+        let last = Self::numbers(results)?.pop().unwrap_or(0);
+        match last.checked_add(1) {
+            Some(free) => write_checked_json(&place(results, free), self),
             None => Ok(()),
         }
     }
 }
 
 fn place(results: &Path, number: u32) -> PathBuf {
-    results.join("runs").join(format!("{number}.json"))
+    results.join(RUNS).join(format!("{number}.json"))
 }

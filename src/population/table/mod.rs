@@ -10,6 +10,7 @@ mod error;
 mod estimate_rows;
 mod main_effects;
 mod manifest;
+mod manifest_check;
 mod part_header;
 mod parts;
 mod pattern_file;
@@ -22,6 +23,7 @@ mod reader;
 mod responses;
 mod row_file;
 mod scenarios;
+mod side_tables;
 mod tail_fits;
 mod traced_curve;
 mod tradeoff;
@@ -30,6 +32,7 @@ mod writer;
 
 pub use accuracy_ladder::{AccuracyLadder, MeasuredSetting};
 pub use atomic::{abandon_unfinished, digest_file, remove_leftovers, write_atomically};
+pub use checked_json::{read_estimate, write_estimate};
 pub use column::{ColumnKind, ColumnSpec};
 pub use curve::{CURVE_COLUMNS, CurveFormat, CurvePoint, write_curve};
 pub use distribution::{DISTRIBUTION_COLUMNS, write_distribution};
@@ -50,6 +53,7 @@ pub use publication::{Staging, complete_publication, keep_as_part, set_aside, su
 pub use responses::{RESPONSE_COLUMNS, ResponseReader, ResponseWriter};
 pub use row_file::RowFile;
 pub use scenarios::{SCENARIO_COLUMNS, ScenarioExtras, ScenarioRecord, write_scenarios};
+pub use side_tables::{CHECKSUMS, SideTable, SideTables, write_side_table};
 pub use tail_fits::{TAIL_FIT_COLUMNS, TailFitRecord, write_tail_fits};
 pub use traced_curve::{Direction, TRACE_COLUMNS, TracePoint, write_traced_curve};
 pub use tradeoff::{

@@ -176,11 +176,6 @@ pub fn misplacements(results: &Path) -> Result<Vec<TableError>, TableError> {
     Ok(found)
 }
 
-/// Whether a manifest may list `name` among its tables.
-pub(super) fn is_table(name: &str) -> bool {
-    TABLES.contains(&name)
-}
-
 /// Whether `text` is a BLAKE3 digest, hexadecimal.
 pub(super) fn is_digest(text: &str) -> bool {
     let digit = |byte: u8| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte);

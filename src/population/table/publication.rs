@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 
 use super::atomic::move_file;
 use super::part_header::{PARTS, PartHeader};
-use super::places::{DAMAGED, SIDE_FILES, SUPERSEDED, Standing, TABLES, is_folder};
+use super::places::{DAMAGED, SIDE_FILES, SUPERSEDED, Standing, TABLES, is_file, is_folder};
 use super::{MANIFEST, Manifest, TableError, digest_file, remove_parts};
 
 /// The folder that finished tables wait in.
-const NEXT: &str = "next";
+pub(super) const NEXT: &str = "next";
 
 /// Tables on their way into the results folder.
 #[derive(Debug)]
@@ -65,6 +65,7 @@ impl Staging {
 /// A file cannot be moved, or is damaged.
 pub fn complete_publication(results: &Path) -> Result<bool, TableError> {
     let next = results.join(NEXT);
+    is_folder(&next)?;
     let Some(manifest) = Manifest::read(&next)? else {
         discard(results)?;
         return Ok(false);
@@ -73,14 +74,14 @@ pub fn complete_publication(results: &Path) -> Result<bool, TableError> {
     if let Ok(Some(before)) = Manifest::read(results) {
         for name in before.tables.keys() {
             let path = results.join(name);
-            if !manifest.tables.contains_key(name) && path.exists() {
+            if !manifest.tables.contains_key(name) && is_file(&path)? {
                 std::fs::remove_file(&path).map_err(TableError::io("remove", &path))?;
             }
         }
     }
     for name in manifest.tables.keys() {
         let staged = next.join(name);
-        if staged.exists() {
+        if is_file(&staged)? {
             move_file(&staged, &results.join(name))?;
         }
     }
@@ -91,7 +92,7 @@ pub fn complete_publication(results: &Path) -> Result<bool, TableError> {
 }
 
 /// Removes what waits in `next/`.
-fn discard(results: &Path) -> Result<(), TableError> {
+pub(super) fn discard(results: &Path) -> Result<(), TableError> {
     let next = results.join(NEXT);
     match std::fs::remove_dir_all(&next) {
         Ok(()) => Ok(()),
@@ -105,7 +106,7 @@ fn discard(results: &Path) -> Result<(), TableError> {
 /// # Errors
 /// The file cannot be moved.
 pub fn keep_as_part(results: &Path, path: &Path, digest: &str) -> Result<(), TableError> {
-    if !path.exists() {
+    if !is_file(path)? {
         return Ok(());
     }
     let name = format!("part-{:010}-{digest}.parquet", 0);
