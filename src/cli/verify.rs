@@ -103,9 +103,9 @@ fn looked_at(arguments: &VerifyArguments) -> Result<ExitStatus, Failure> {
     };
     let found = integrity(&results)?;
     if arguments.json {
-        output::json_only(&json!({ "whole": found.is_whole(), "integrity": found }));
+        output::json_only(&json!({ "whole": found.is_whole(), "integrity": found }))?;
     } else {
-        output::text(&of_files(&found).join("\n"));
+        output::text(&of_files(&found).join("\n"))?;
     }
     Ok(if found.is_whole() {
         ExitStatus::Done
