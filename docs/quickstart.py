@@ -97,7 +97,7 @@ def svg(rows, manifest):
     line([(LEFT - 70, BOTTOM), (RIGHT + 70, BOTTOM)], INK)
     text((LEFT + RIGHT) / 2, BOTTOM + 42, "damper normal load per sector, N (logarithmic)")
     middle = (TOP + BOTTOM) / 2
-    text(22, middle, "peak blade amplitude, um", extra=f'transform="rotate(-90 22 {middle})"')
+    text(22, middle, "peak blade amplitude, µm", extra=f'transform="rotate(-90 22 {middle})"')
     head = rows[0]
     text(
         WIDTH / 2,

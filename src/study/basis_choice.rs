@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::PipelineError;
-use super::contact_displacement::ContactMotion;
+use super::contact_displacement::{CarriedHarmonics, ContactMotion};
 use super::load_cases::Excitation;
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
@@ -43,21 +43,18 @@ pub struct BasisError {
     /// not found.
     pub error: Option<f64>,
     /// Largest error of the relative displacement at the contact over the same conditions under
-    /// friction; none if there is none or a peak was not found.
+    /// friction, in the harmonics that the basis carries; none if there is none or a peak was not found.
     pub contact_displacement: Option<ContactDisplacementErrors>,
 }
 
-impl BasisError {
-    /// The larger of the two errors, each over what is accepted of it for `wanted_error`.
-    fn excess(&self, wanted_error: f64) -> f64 {
-        let contact = self.contact_displacement.map_or(0.0, |errors| {
-            errors.any_nodal_diameter.error / ContactDisplacementErrors::accepted(wanted_error)
-        });
-        let peak = self
-            .error
-            .map_or(f64::INFINITY, |error| error / wanted_error);
-        peak.max(contact)
-    }
+/// The larger of the errors of the tuned peak and of the contact displacement, each over what is accepted of
+/// it for `wanted_error`.
+fn excess(peak: Option<f64>, contact: Option<ContactDisplacementErrors>, wanted_error: f64) -> f64 {
+    let contact = contact.map_or(0.0, |errors| {
+        errors.any_nodal_diameter.error / ContactDisplacementErrors::accepted(wanted_error)
+    });
+    peak.map_or(f64::INFINITY, |error| error / wanted_error)
+        .max(contact)
 }
 
 /// The chosen basis and the evidence for it.
@@ -140,38 +137,47 @@ pub(super) fn choose_basis_under(
     for ((peaks, whole), (_, judged)) in reference.iter().zip(&wholes).zip(cases) {
         motions.push(peaks.contact_motions(whole, *judged)?);
     }
-    let mut tried: Vec<(BasisChoice, BasisError)> = Vec::new();
+    let all_carried = cases
+        .iter()
+        .all(|(_, judged)| judged.tuned_harmonics.is_none());
+    let mut tried: Vec<(BasisChoice, BasisError, f64)> = Vec::new();
     for choice in candidates(reduction, options) {
         let model = reduction.tuned(choice)?;
         let models: Vec<ReducedModel> = cases.iter().map(|(case, _)| case.of(&model)).collect();
         let errors = of_cases(&models)?;
         let errors = errors.iter().zip(&reference);
+        let error = errors
+            .map(|(own, reference)| own.error(reference))
+            .try_fold(0.0, |largest: f64, error| Some(largest.max(error?)));
+        // A basis is chosen by all harmonics, and said to be short of those alone that it carries.
+        let displacement = largest_displacement_error(&motions, &models, CarriedHarmonics::All);
         let own = BasisError {
             basis: choice.to_string(),
             vectors: vectors(reduction, choice),
-            error: errors
-                .map(|(own, reference)| own.error(reference))
-                .try_fold(0.0, |largest: f64, error| Some(largest.max(error?))),
-            contact_displacement: largest_displacement_error(&motions, &models),
+            error,
+            contact_displacement: if all_carried {
+                displacement
+            } else {
+                largest_displacement_error(&motions, &models, CarriedHarmonics::Fundamental)
+            },
         };
-        let enough = own.excess(options.error) <= 1.0;
-        tried.push((choice, own));
-        if enough {
+        let excess = excess(error, displacement, options.error);
+        tried.push((choice, own, excess));
+        if excess <= 1.0 {
             break;
         }
     }
     // The last one where it meets the wanted error, else the best of all.
-    let size = |own: &BasisError| own.excess(options.error);
     let best = (0..tried.len())
         .rev()
-        .min_by(|&a, &b| size(&tried[a].1).total_cmp(&size(&tried[b].1)));
+        .min_by(|&a, &b| tried[a].2.total_cmp(&tried[b].2));
     if let Some(best) = best {
         let taken = tried.remove(best);
         tried.push(taken);
     }
     let choice = tried
         .last()
-        .map_or(BasisChoice::CraigBampton, |(choice, _)| *choice);
+        .map_or(BasisChoice::CraigBampton, |(choice, ..)| *choice);
     Ok((
         choice,
         BasisEvidence {
@@ -181,7 +187,7 @@ pub(super) fn choose_basis_under(
                 .zip(cases)
                 .filter_map(|(peaks, (_, judged))| peaks.reach(reduction, *judged))
                 .min_by(f64::total_cmp),
-            tried: tried.into_iter().map(|(_, own)| own).collect(),
+            tried: tried.into_iter().map(|(_, own, _)| own).collect(),
         },
     ))
 }
@@ -240,11 +246,15 @@ fn vectors(reduction: &Reduction<'_>, choice: BasisChoice) -> usize {
 fn largest_displacement_error(
     motions: &[Vec<ContactMotion<'_>>],
     models: &[ReducedModel],
+    carried: CarriedHarmonics,
 ) -> Option<ContactDisplacementErrors> {
     motions
         .iter()
         .zip(models)
-        .flat_map(|(motions, model)| motions.iter().map(|motion| motion.errors_of(model)))
+        .flat_map(|(motions, model)| {
+            let motions = motions.iter();
+            motions.map(|motion| motion.errors_of(model, carried))
+        })
         .reduce(|a, b| Some(a?.larger(b?)))?
 }
 

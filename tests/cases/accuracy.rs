@@ -29,7 +29,7 @@ fn quickstart(patterns: u32) -> Study {
     let text = std::fs::read_to_string(package("studies/quickstart.toml")).unwrap();
     let (before, _) = text.split_once("[sweep]").unwrap();
     let before = before
-        .replace("patterns = 200", &format!("patterns = {patterns}"))
+        .replace("patterns = 440", &format!("patterns = {patterns}"))
         .replace("basis = \"stick_partial_slide\"\nerror = 0.01\n", "");
     let text =
         format!("{before}[sweep]\nnormal_load_n = [240, 480, 1600]\nstandard_deviation = [0.03]\n");

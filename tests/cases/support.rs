@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use blisk::report::Warning;
 use blisk::response::forced_response::ContactCondition;
 use blisk::response::mistuning::{Pattern, PatternSource};
 use blisk::study::{
@@ -103,6 +104,11 @@ impl Case {
     /// The basis that was taken.
     pub fn basis(&self) -> String {
         self.engine.model_report().basis
+    }
+
+    /// What is said about the basis.
+    pub fn warnings(&self) -> Vec<Warning> {
+        self.engine.model_report().warnings
     }
 
     /// Settings chosen where the study says `auto`.
