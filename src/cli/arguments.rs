@@ -28,7 +28,7 @@ use crate::identity;
 /// Forced response of randomly mistuned bladed disks with a friction ring damper.
 #[derive(Debug, Parser)]
 #[command(name = "blisk", version = identity::VERSION, long_version = identity::IN_WORDS)]
-#[command(about, disable_help_subcommand = true)]
+#[command(about, disable_help_subcommand = true, max_term_width = 100)]
 #[command(
     after_help = "Exit codes: 0 done, 1 internal error, 2 usage, 3 study invalid, 4 model invalid,\n5 failures leave a statistic without a value,\n6 all patterns are solved and the target of [stop] is not reached, 7 input/output, 8 store damaged,\n9 different study, 10 locked by another process,\n11 a verification failed, 130/143 interrupted, what is solved is stored."
 )]
@@ -170,8 +170,8 @@ pub enum Command {
     },
     /// Compare a percentile between scenarios, on common patterns where there are any.
     ///
-    /// Within one results folder each scenario is compared with the first of its load case, engine order
-    /// and standard deviation; between folders, with the scenario of the first folder that has the same
+    /// Within one results folder each scenario is compared with the best of its load case, engine order
+    /// and standard deviation, the one with the lowest percentile of the peak amplitude; between folders, with the scenario of the first folder that has the same
     /// load case, engine order, standard deviation and load.
     Compare(CompareArguments),
     /// Search for the normal load with the lowest percentile, on the same patterns at every load.
@@ -198,9 +198,10 @@ pub enum Command {
         after_help = "Example:\n  blisk plot results/quickstart amplitude --out amplitude.svg"
     )]
     Plot(PlotArguments),
-    /// Say what a key of a study file, or of an import file, accepts, what it means and its default.
+    /// Say what a key of a study file, or of an import file, accepts, what it means and its default; or find keys by
+    /// words.
     #[command(
-        after_help = "Examples:\n  blisk explain solver.peak_tolerance\n  blisk explain contact\n  blisk explain import.contact"
+        after_help = "Examples:\n  blisk explain solver.peak_tolerance\n  blisk explain contact\n  blisk explain friction\n  blisk explain import.contact"
     )]
     Explain(ExplainArguments),
     /// Print the JSON Schema of study files, or of import files, for editors.

@@ -14,7 +14,8 @@ pub struct CompareArguments {
     /// Results folders; the baseline is in the first.
     #[arg(required = true, value_name = "DIR")]
     results: Vec<PathBuf>,
-    /// Scenario of the first folder, counted from 0, that all others are compared with.
+    /// Scenario of the first folder, counted from 0, that all others are compared with [default: the best
+    /// load of one folder, the same load of several].
     #[arg(long, value_name = "I")]
     baseline: Option<usize>,
     /// The percentile.

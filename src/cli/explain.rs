@@ -10,15 +10,15 @@ use super::run_command::Failure;
 use super::{Arguments, ExitStatus, output};
 use crate::input::nearest_key_names;
 use crate::model::sector::import::{import_keys, import_schema};
-use crate::study::{KeySpec, Value, keys_below, nearest_keys, study_schema};
+use crate::study::{KeySpec, keys_about, keys_below, nearest_keys, study_schema, terms_about};
 
 /// Arguments of `blisk explain`.
 #[derive(Debug, Args)]
 pub struct ExplainArguments {
-    /// A key, like `solver.peak_tolerance`, or a table, like `solver`; `import` for the keys of import files
-    /// [default: all keys of study files].
-    #[arg(value_name = "KEY")]
-    key: Option<String>,
+    /// A key, like `solver.peak_tolerance`, a table, like `solver`, or words, like `friction`, that are sought in
+    /// names and meanings; `import` for the keys of import files [default: all keys of study files].
+    #[arg(value_name = "KEY|WORD")]
+    words: Vec<String>,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -93,30 +93,38 @@ fn plain(words: &str) -> String {
 }
 
 pub(super) fn explain(arguments: &ExplainArguments) -> Result<ExitStatus, Failure> {
-    let name = arguments.key.as_deref().unwrap_or_default();
-    let mut keys = keys_below(name);
+    let name = arguments.words.join(" ");
+    let mut keys = keys_below(&name);
     if keys.is_empty() {
-        keys = import_keys_below(name);
+        keys = import_keys_below(&name);
     }
-    let found: Vec<Explanation> = keys.iter().map(Explanation::from).collect();
-    if found.is_empty() {
+    let mut terms = Vec::new();
+    if keys.is_empty() {
+        keys = keys_about(&name);
+        terms = terms_about(&name);
+    }
+    if keys.is_empty() && terms.is_empty() {
         let near = if name.starts_with("import.") {
-            nearest_key_names(&import_keys_below("import"), name)
+            nearest_key_names(&import_keys_below("import"), &name)
         } else {
-            nearest_keys(name)
+            nearest_keys(&name)
         };
         return Err(Failure::usage(format!(
             "there is no key {name}; did you mean {}?",
             near.join(" or ")
         )));
     }
+    let found: Vec<Explanation> = keys.iter().map(Explanation::from).collect();
     if arguments.json {
         output::json_only(&found)?;
         return Ok(ExitStatus::Done);
     }
-    let table = keys.iter().any(|key| key.value == Value::Table);
-    let text: Vec<String> = found.iter().map(ToString::to_string).collect();
-    output::text(&text.join(if table { "\n" } else { "" }))?;
+    let apart = !terms.is_empty() || keys.len() > 1;
+    let terms = terms
+        .iter()
+        .map(|term| format!("{}\n  meaning   {}\n", term.word, term.meaning));
+    let text: Vec<String> = terms.chain(found.iter().map(ToString::to_string)).collect();
+    output::text(&text.join(if apart { "\n" } else { "" }))?;
     Ok(ExitStatus::Done)
 }
 

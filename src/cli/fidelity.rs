@@ -45,7 +45,8 @@ impl FromStr for HarmonicsArgument {
 /// Which model is solved, and how finely.
 #[derive(Debug, Clone, PartialEq, Eq, Args)]
 pub struct FidelityArguments {
-    /// The reduced model of the study, or every contact dof of the whole wheel.
+    /// The reduced model of the study, or every contact dof of the whole wheel; says nothing about friction, unlike
+    /// `full` in the column `contact` (`blisk explain full`).
     #[arg(long, value_enum, default_value = "reduced")]
     pub fidelity: Fidelity,
     /// Harmonics instead of those of the study, like 1,3,5.

@@ -33,6 +33,9 @@ pub struct OptimumArguments {
     /// Folder of the search, with a results folder for each load [default: results/NAME-optimum].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Results folder whose loads on the same patterns are not solved again [default: results/NAME].
+    #[arg(long, value_name = "DIR")]
+    solved: Option<PathBuf>,
     /// Number of threads [default: all cores]; results do not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -55,11 +58,14 @@ pub(super) fn command(arguments: &OptimumArguments) -> Result<ExitStatus, Failur
     let study = Study::read(&arguments.study)?;
     let named = || Path::new("results").join(format!("{}-optimum", study.name));
     let results = arguments.out.clone().unwrap_or_else(named);
+    let of_study = || Path::new("results").join(&study.name);
+    let solved = arguments.solved.clone().unwrap_or_else(of_study);
     let progress = RunProgress::new();
     let report = find_optimum(
         OptimumRequest {
             study: &study,
             results: &results,
+            solved: &solved,
             between_n: arguments.between,
             percent: arguments.percentile,
             quantity: match arguments.quantity {

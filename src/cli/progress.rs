@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::interrupt::{Signals, signals_of_process};
 use super::output;
+use crate::report::ExpectedCost;
 use crate::response::harmonic_balance::Status;
 use crate::study::{Progress, Stage};
 
@@ -119,6 +120,13 @@ impl Progress for RunProgress {
             1e3 * surrogate_s,
             surrogate_s / row_s
         ));
+    }
+
+    fn cost(&self, cost: &ExpectedCost) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| output::message(cost)),
+            None => output::message(cost),
+        }
     }
 
     fn taken_over(&self, holder: &str) {

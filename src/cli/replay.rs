@@ -10,6 +10,7 @@ use super::fidelity::{Fidelity, FidelityArguments};
 use super::run_command::Failure;
 use super::{ExitStatus, output, verify};
 use crate::population::monte_carlo::{ResponseRow, harmonics_name};
+use crate::report::LengthUnit;
 use crate::study::{ReducedEngineSource, Replay, ReplayRequest, StoredStudy, replay};
 
 /// Arguments of `blisk replay`.
@@ -111,6 +112,7 @@ fn as_text(replay: &Replay) -> String {
             "NOT the same"
         }
     );
+    let unit = LengthUnit::of(replay.delivered.peak_amplitude_m);
     let mut line =
         |name: &str, status: &str, amplitude: Option<f64>, hz: Option<f64>, factor: Option<f64>| {
             let number =
@@ -118,8 +120,8 @@ fn as_text(replay: &Replay) -> String {
             // Writing to a String cannot fail.
             let _ = writeln!(
                 text,
-                "  {name}: {status}, {} m at {} Hz, amplification factor {}",
-                number(amplitude),
+                "  {name}: {status}, {} at {} Hz, amplification factor {}",
+                amplitude.map_or("-".to_owned(), |value| unit.precise(value)),
                 number(hz),
                 number(factor)
             );

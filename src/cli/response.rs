@@ -10,6 +10,7 @@ use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::table::{CurveFormat, TableHeader, write_curve, write_traced_curve};
+use crate::report::LengthUnit;
 use crate::response::forced_response::ContactCondition;
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::Status;
@@ -190,8 +191,10 @@ pub(super) fn command(arguments: &ResponseArguments) -> Result<ExitStatus, Failu
     } else {
         let largest = largest.map_or_else(String::new, |(amplitude, point)| {
             format!(
-                "; largest {amplitude:.6e} m at {} Hz, blade {}",
-                point.frequency_hz, point.blade
+                "; largest {} at {} Hz, blade {}",
+                LengthUnit::of([amplitude]).precise(amplitude),
+                point.frequency_hz,
+                point.blade
             )
         });
         output::text(&format!(
@@ -274,11 +277,12 @@ fn in_words(curve: &TracedCurve) -> String {
         ended(curve.status[0]),
         ended(curve.status[1])
     )];
+    let unit = LengthUnit::of(curve.largest.as_ref().and_then(|own| own.amplitude_m));
     lines.extend(curve.folds.iter().map(|fold| {
         format!(
-            "fold at {} Hz, {:.6e} m ({})",
+            "fold at {} Hz, {} ({})",
             fold.frequency_hz,
-            fold.amplitude_m,
+            unit.precise(fold.amplitude_m),
             fold.direction.name()
         )
     }));
@@ -299,8 +303,8 @@ fn in_words(curve: &TracedCurve) -> String {
     });
     if let Some(largest) = &curve.largest {
         lines.push(format!(
-            "largest {:.6e} m at {} Hz, blade {}",
-            largest.amplitude_m.unwrap_or_default(),
+            "largest {} at {} Hz, blade {}",
+            unit.precise(largest.amplitude_m.unwrap_or_default()),
             largest.frequency_hz,
             largest.blade.unwrap_or_default()
         ));

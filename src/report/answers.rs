@@ -1,7 +1,8 @@
 //! The answers that a report opens with: which normal load, how sure, and how much of it is numerical error.
 
-use super::summary_text::four_digits;
-use super::words::{Quantities, load_with_unit, percent_words, share_words};
+use super::words::{
+    LengthUnit, four_digits, load_per_sector, load_with_unit, percent_words, share_words,
+};
 use super::{
     BestLoads, CommonErrors, GroupReport, LoadChoice, NumericalError, PercentileError,
     ScenarioErrors, ScenarioSummary, StatedErrors, StudyReport,
@@ -20,16 +21,20 @@ pub struct Answer {
     pub reasons: Vec<String>,
 }
 
-/// The answers for one group: for P99 and P95 which load to choose, and how much is numerical error.
+/// The answers for one group: for P99 and P95 which load to choose, those that are known before those that are
+/// not, and how much is numerical error.
 #[must_use]
 pub fn answers(report: &StudyReport, group: &GroupReport) -> Vec<Answer> {
     let writer = Writer {
         report,
         group,
-        units: Quantities::of(&report.summary),
+        units: LengthUnit::of_summary(&report.summary),
     };
     let asked = || group.choices.iter().filter(|choice| choice.percent > 90.0);
-    let mut answers: Vec<Answer> = asked().map(|choice| writer.load(choice)).collect();
+    let (known, unknown): (Vec<&LoadChoice>, Vec<&LoadChoice>) =
+        asked().partition(|choice| choice.lowest.is_some());
+    let loads = known.into_iter().chain(unknown);
+    let mut answers: Vec<Answer> = loads.map(|choice| writer.load(choice)).collect();
     answers.extend(asked().find_map(|choice| writer.error(choice)));
     answers
 }
@@ -37,7 +42,7 @@ pub fn answers(report: &StudyReport, group: &GroupReport) -> Vec<Answer> {
 struct Writer<'a> {
     report: &'a StudyReport,
     group: &'a GroupReport,
-    units: Quantities,
+    units: LengthUnit,
 }
 
 impl Writer<'_> {
@@ -46,8 +51,17 @@ impl Writer<'_> {
     }
 
     fn load_of(&self, index: usize) -> String {
+        self.with_speed(index, load_with_unit)
+    }
+
+    /// The same where a load is named for the first time.
+    fn load_per_sector_of(&self, index: usize) -> String {
+        self.with_speed(index, load_per_sector)
+    }
+
+    fn with_speed(&self, index: usize, words: fn(&str, Option<f64>) -> String) -> String {
         let scenario = self.scenario(index);
-        let load = load_with_unit(scenario.contact, scenario.normal_load_n);
+        let load = words(scenario.contact, scenario.normal_load_n);
         match scenario.speed_rpm {
             Some(speed) => format!("{load} ({speed} rpm)"),
             None => load,
@@ -91,8 +105,8 @@ impl Writer<'_> {
         let value = found.percentile.value.unwrap_or(f64::NAN);
         let verdict = format!(
             "{}: P{percent} = {}{}.",
-            self.load_of(lowest),
-            self.units.amplitude(value),
+            self.load_per_sector_of(lowest),
+            self.units.length(value),
             self.as_stress(value),
         );
         let mut reasons = vec![self.how_sure(lowest, &found.percentile)];
@@ -133,10 +147,10 @@ impl Writer<'_> {
             (Some(lower), Some(upper)) => format!(
                 "lies between {} and {}",
                 self.units.number(lower),
-                self.units.amplitude(upper)
+                self.units.length(upper)
             ),
-            (Some(lower), None) => format!("is above {}", self.units.amplitude(lower)),
-            (None, Some(upper)) => format!("is below {}", self.units.amplitude(upper)),
+            (Some(lower), None) => format!("is above {}", self.units.length(lower)),
+            (None, Some(upper)) => format!("is below {}", self.units.length(upper)),
             (None, None) => "has no bounds".to_owned(),
         };
         format!(
@@ -187,10 +201,7 @@ impl Writer<'_> {
             .iter()
             .filter(|load| load.could_be_best && load.scenario.scenario != lowest)
             .map(|load| {
-                let of_sample = load
-                    .percentile
-                    .value
-                    .map(|value| self.units.amplitude(value));
+                let of_sample = load.percentile.value.map(|value| self.units.length(value));
                 let of_sample = of_sample.map_or(String::new(), |value| format!(" ({value})"));
                 format!("{}{of_sample}", self.load_of(load.scenario.scenario))
             })
@@ -212,7 +223,7 @@ impl Writer<'_> {
             Some((lower, upper)) => reasons.push(format!(
                 "At the truly best of these loads the P{percent} lies between {} and {} (95 %, the choice allowed for).",
                 self.units.number(lower),
-                self.units.amplitude(upper)
+                self.units.length(upper)
             )),
             None if self.report.summary.patterns < choice.patterns_of_best => reasons.push(format!(
                 "Bounds on the P{percent} at the truly best of these loads, the choice allowed for, need {} patterns.",
@@ -288,7 +299,7 @@ impl Writer<'_> {
             reasons.push(format!(
                 "Were these wheels solved without error, their P{percent} would lie between {} and {}.",
                 self.units.number(lowest),
-                self.units.amplitude(highest)
+                self.units.length(highest)
             ));
         }
         if let Some(range) = around(found.percentile.lower, found.percentile.upper) {
@@ -311,7 +322,7 @@ impl Writer<'_> {
         if let Some(corrected) = found.corrected {
             reasons.push(format!(
                 "With every row corrected by its own sampling and harmonic error the P{percent} would be {}.",
-                self.units.amplitude(corrected)
+                self.units.length(corrected)
             ));
         }
         reasons.extend(self.common(&errors.common));

@@ -77,6 +77,8 @@ pub struct ScenarioComparison {
     pub percentile: PercentileComparison,
     /// `p_value` adjusted for all comparisons of this quantity (Holm 1979).
     pub adjusted_p_value: Option<f64>,
+    /// Whether the adjusted one comes from a `p_value` at its floor: it is then an upper bound.
+    pub adjusted_p_value_is_bound: bool,
     /// Facts about the pairs; null for independent populations.
     pub pairs: Option<PairFacts>,
 }
@@ -117,6 +119,19 @@ pub struct QuantityComparison {
     pub best: Vec<BestLoads>,
 }
 
+/// How the baselines of a comparison were chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BaselineChoice {
+    /// In each group the load with the lowest percentile of the peak amplitude; the first one where no
+    /// percentile has a value.
+    Lowest,
+    /// The scenario that the user names.
+    Named,
+    /// The scenario of the first folder with the same keys.
+    SameKeys,
+}
+
 /// A comparison of scenarios.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ComparisonReport {
@@ -126,6 +141,8 @@ pub struct ComparisonReport {
     pub resamples: u32,
     /// Seed of the resamples, that of the first study.
     pub seed: u64,
+    /// How the baselines were chosen.
+    pub baseline_choice: BaselineChoice,
     /// The folders.
     pub folders: Vec<ComparedFolder>,
     /// Scenarios without a counterpart in the first folder.

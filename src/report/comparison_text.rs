@@ -1,11 +1,15 @@
-//! A comparison of scenarios as text.
+//! A comparison of scenarios as text of at most 80 columns.
 
 use std::fmt;
 
-use super::summary_text::{four_digits, load, trimmed};
 use super::text_table::TextTable;
+use super::words::{
+    LengthUnit, excitation, four_digits, load_per_sector, load_with_unit, load_words, paragraph,
+    trimmed,
+};
 use super::{
-    BestLoads, ComparedScenario, ComparisonReport, QuantityComparison, ScenarioComparison,
+    BaselineChoice, BestLoads, ComparedScenario, ComparisonReport, QuantityComparison,
+    ScenarioComparison,
 };
 use crate::identity;
 use crate::population::statistics::{IntervalEstimate, Percentile, Quantity};
@@ -23,29 +27,24 @@ impl fmt::Display for ComparisonReport {
             )?;
         }
         self.builds(f)?;
+        writeln!(f, "{}", paragraph(&self.baselines()))?;
         for found in &self.quantities {
             self.quantity(f, found)?;
         }
         for scenario in &self.unmatched {
-            writeln!(
-                f,
-                "\nno counterpart in {}: {}; --baseline compares it",
+            let line = format!(
+                "no counterpart in {}: {}; --baseline compares it",
                 letter(0),
                 self.name(scenario)
-            )?;
+            );
+            writeln!(f, "\n{}", paragraph(&line))?;
         }
-        writeln!(
-            f,
-            "\n95 % intervals in brackets from {} resamples of the patterns (seed {}); p: Holm's, for all \
-             rows of a table together;\nbetter: share of patterns with a smaller value; failed rows \
-             stand where they do most harm, - = none or not estimable.",
-            self.resamples, self.seed
-        )
+        writeln!(f, "\n{}", paragraph(&self.notes()))
     }
 }
 
-/// Metres per unit, or 1 for a ratio, and the unit.
-type Unit = (f64, &'static str);
+/// Unit of the values of a table; a ratio has none.
+type Unit = Option<LengthUnit>;
 
 impl ComparisonReport {
     /// The build of the program that solved the folders.
@@ -58,81 +57,149 @@ impl ComparisonReport {
             let build = identity::named(&folder.build);
             writeln!(f, "{}: build {build}", letter(place))?;
         }
-        writeln!(
-            f,
-            "WARNING: different builds of the program solved these folders; a difference can be one of the builds"
+        let warning = "WARNING: different builds of the program solved these folders; a difference can be \
+                       one of the builds";
+        writeln!(f, "{}", paragraph(warning))
+    }
+
+    /// Which scenarios the others are compared with, and why.
+    fn baselines(&self) -> String {
+        let percent = trimmed(self.percent);
+        match self.baseline_choice {
+            BaselineChoice::Lowest => format!(
+                "baseline: the load with the lowest P{percent} of the peak amplitude; --baseline I takes \
+                 scenario I"
+            ),
+            BaselineChoice::Named => "baseline: the scenario of --baseline".to_owned(),
+            BaselineChoice::SameKeys => {
+                "baseline: the same load in A; --baseline I takes scenario I of A".to_owned()
+            }
+        }
+    }
+
+    fn notes(&self) -> String {
+        let comparisons = self.quantities.iter().flat_map(|found| &found.comparisons);
+        let bound = comparisons
+            .filter(|found| found.adjusted_p_value_is_bound)
+            .find_map(|found| found.percentile.p_value_floor);
+        let bound = bound.map_or_else(String::new, |floor| {
+            format!(
+                " p <=: no resample has the other sign, and {} of them cannot show a p below {floor:.4}, \
+                 which Holm's method multiplies by the number of rows: p is this or less.",
+                self.resamples
+            )
+        });
+        format!(
+            "Loads are normal loads per sector. 95 % intervals in brackets, from {} resamples of the \
+             patterns (seed {}). p: two-sided, by Holm's method for all rows of a quantity together.{bound} \
+             better: share of patterns with a smaller value than under the baseline. worst: largest ratio \
+             of one pattern. as sharp as: two independent samples of this size. Failed rows stand where \
+             they do most harm; - = none or not estimable.",
+            self.resamples, self.seed
         )
     }
 
     fn quantity(&self, f: &mut fmt::Formatter<'_>, found: &QuantityComparison) -> fmt::Result {
-        let (name, unit) = match found.quantity {
-            Quantity::PeakAmplitudeM => ("peak amplitude", length_unit(found)),
-            Quantity::AmplificationFactor => ("amplification factor", (1.0, "")),
-        };
         let percent = trimmed(self.percent);
-        let heading = format!("P{percent} of the {name} {}", unit.1);
-        writeln!(f, "\n{}", heading.trim_end())?;
-        let [of_baseline, of_candidate] =
-            ["baseline", "candidate"].map(|side| format!("{side} P{percent}"));
-        let mut table = TextTable::new(&[
-            "baseline",
-            "candidate",
-            "patterns",
-            &of_baseline,
-            &of_candidate,
-            "difference",
-            "ratio",
-            "p",
-            "better",
-            "worst",
-            "as sharp as",
-        ]);
-        for comparison in &found.comparisons {
-            table.row(self.row(comparison, unit));
+        let unit = match found.quantity {
+            Quantity::PeakAmplitudeM => Some(length_unit(found)),
+            Quantity::AmplificationFactor => None,
+        };
+        match unit {
+            Some(unit) => writeln!(f, "\nP{percent} of the peak amplitude, {}", unit.name())?,
+            None => writeln!(f, "\nP{percent} of the amplification factor")?,
         }
-        write!(f, "{table}")?;
+        for together in found.comparisons.chunk_by(told_together) {
+            self.together(f, together, unit)?;
+        }
         for best in &found.best {
-            writeln!(f, "{}", self.best(best, &percent, unit))?;
+            writeln!(f, "{}", paragraph(&self.best(best, &percent, unit)))?;
         }
         Ok(())
     }
 
-    fn row(&self, found: &ScenarioComparison, unit: Unit) -> Vec<String> {
-        let percentile = &found.percentile;
-        let pairs = found.pairs.as_ref();
-        let patterns = match (found.pairing, found.patterns) {
-            ("independent", [x, y]) => format!("{x} and {y}, independent"),
+    /// Comparisons with one heading: of the same groups, folders and patterns.
+    fn together(
+        &self,
+        f: &mut fmt::Formatter<'_>,
+        found: &[ScenarioComparison],
+        unit: Unit,
+    ) -> fmt::Result {
+        let first = &found[0];
+        // Where every candidate has a baseline of its own, that is the same load in the other folder.
+        let one_baseline = found.iter().all(|own| own.baseline == first.baseline)
+            && self.baseline_choice != BaselineChoice::SameKeys;
+        let heading = self.heading(first, one_baseline, unit);
+        writeln!(f, "\n{}", paragraph(&heading))?;
+        let percent = trimmed(self.percent);
+        let value = format!("P{percent}");
+        let [of_baseline, of_candidate] = [&first.baseline, &first.candidate]
+            .map(|own| format!("P{percent} {}", letter(own.folder)));
+        let mut values = TextTable::new(&if one_baseline {
+            ["load N", &value, "difference", "ratio", "p"]
+        } else {
+            ["load N", &of_baseline, &of_candidate, "difference", "p"]
+        });
+        let mut header = vec!["load N", "ratio", "better", "worst", "as sharp as"];
+        if one_baseline {
+            header.remove(1);
+        }
+        let mut pairs = TextTable::new(&header);
+        for own in found {
+            let load = load_words(own.candidate.contact, own.candidate.normal_load_n);
+            let percentile = &own.percentile;
+            let candidate = point(&percentile.candidate, unit);
+            let difference = interval(percentile.difference.as_ref(), unit);
+            let ratio = interval(percentile.ratio.as_ref(), None);
+            let p = probability(own);
+            let mut of_pairs = vec![load.clone()];
+            values.row(if one_baseline {
+                vec![load, candidate, difference, ratio, p]
+            } else {
+                of_pairs.push(ratio);
+                let baseline = point(&percentile.baseline, unit);
+                vec![load, baseline, candidate, difference, p]
+            });
+            of_pairs.extend(facts_about_pairs(own));
+            pairs.row(of_pairs);
+        }
+        write!(f, "{values}")?;
+        if !one_baseline || first.pairs.is_some() {
+            write!(f, "\n{pairs}")?;
+        }
+        Ok(())
+    }
+
+    fn heading(&self, first: &ScenarioComparison, one_baseline: bool, unit: Unit) -> String {
+        let patterns = match (first.pairing, first.patterns) {
+            ("independent", [x, y]) => format!("{x} and {y} independent patterns"),
             ("same_blades", [x, _]) => format!("{x} sets of blades"),
             ("same_unit_draws", [x, _]) => format!("{x} unit draws"),
-            (_, [x, _]) => format!("{x} common"),
+            (_, [x, _]) => format!("{x} common patterns"),
         };
-        vec![
-            self.name(&found.baseline),
-            self.name(&found.candidate),
-            patterns,
-            point(&percentile.baseline, unit),
-            point(&percentile.candidate, unit),
-            interval(percentile.difference.as_ref(), unit),
-            interval(percentile.ratio.as_ref(), (1.0, "")),
-            found
-                .adjusted_p_value
-                .map_or_else(dash, |p| format!("{p:.4}")),
-            pairs
-                .and_then(|pairs| pairs.improved_share)
-                .map_or_else(dash, |share| format!("{:.1} %", 100.0 * share)),
-            pairs
-                .and_then(|pairs| pairs.worst)
-                .map_or_else(dash, |worst| {
-                    format!(
-                        "{} times, pattern {}",
-                        four_digits(worst.ratio),
-                        worst.pattern
-                    )
-                }),
-            pairs
-                .and_then(|pairs| pairs.effective_sample_size)
-                .map_or_else(dash, |size| format!("2 x {size:.0}")),
-        ]
+        let candidates = format!(
+            "{}{}",
+            self.folder(&first.candidate),
+            group(&first.candidate)
+        );
+        if !one_baseline {
+            return format!(
+                "{candidates}, against the same load in {}; {patterns}",
+                letter(first.baseline.folder)
+            );
+        }
+        let baseline = &first.baseline;
+        format!(
+            "{candidates}, against {}{}{}: {}; {patterns}",
+            self.folder(baseline),
+            load_per_sector(baseline.contact, baseline.normal_load_n),
+            if group(baseline) == group(&first.candidate) {
+                String::new()
+            } else {
+                format!(" ({})", group(baseline))
+            },
+            point(&first.percentile.baseline, unit),
+        )
     }
 
     /// Which load is the lowest, and which could be.
@@ -150,7 +217,7 @@ impl ComparisonReport {
         });
         let bound = |bound: Option<f64>| bound.map_or_else(dash, |value| shown(value, unit));
         format!(
-            "lowest P{percent} ({heading}): at load {}; with 95 % confidence the best of the loads is \
+            "lowest P{percent} ({heading}): at {}; with 95 % confidence the best of the loads is \
              among {}, its P{percent} in [{} {}]",
             of(&|scenario, _| Some(scenario) == best.lowest),
             of(&|_, possible| possible),
@@ -178,23 +245,55 @@ impl ComparisonReport {
     }
 }
 
-fn load_of(scenario: &ComparedScenario) -> String {
-    let unit = if scenario.normal_load_n.is_some() {
-        " N"
+/// Whether two comparisons can stand in one table.
+fn told_together(a: &ScenarioComparison, b: &ScenarioComparison) -> bool {
+    let alike =
+        |a: &ComparedScenario, b: &ComparedScenario| a.folder == b.folder && group(a) == group(b);
+    alike(&a.baseline, &b.baseline)
+        && alike(&a.candidate, &b.candidate)
+        && (a.pairing, a.patterns) == (b.pairing, b.patterns)
+}
+
+fn facts_about_pairs(found: &ScenarioComparison) -> [String; 3] {
+    let pairs = found.pairs.as_ref();
+    let better = pairs.and_then(|pairs| pairs.improved_share);
+    let worst = pairs.and_then(|pairs| pairs.worst);
+    let size = pairs.and_then(|pairs| pairs.effective_sample_size);
+    [
+        better.map_or_else(dash, |share| format!("{:.1} %", 100.0 * share)),
+        worst.map_or_else(dash, |worst| {
+            let ratio = four_digits(worst.ratio);
+            format!("{ratio} times, pattern {}", worst.pattern)
+        }),
+        size.map_or_else(dash, |size| format!("2 x {size:.0}")),
+    ]
+}
+
+/// The adjusted probability, marked where it is an upper bound.
+fn probability(found: &ScenarioComparison) -> String {
+    let mark = if found.adjusted_p_value_is_bound {
+        "<= "
     } else {
         ""
     };
-    format!("{}{unit}", load(scenario.contact, scenario.normal_load_n))
+    found
+        .adjusted_p_value
+        .map_or_else(dash, |p| format!("{mark}{p:.4}"))
+}
+
+fn load_of(scenario: &ComparedScenario) -> String {
+    load_with_unit(scenario.contact, scenario.normal_load_n)
 }
 
 fn group(scenario: &ComparedScenario) -> String {
     let deviation = scenario.standard_deviation;
-    let case = scenario.load_case;
     format!(
-        "{}EO {}{}",
-        case.map_or_else(String::new, |name| format!("{name}, ")),
-        scenario.engine_order,
-        deviation.map_or_else(String::new, |s| format!(", {} %", trimmed(100.0 * s)))
+        "{}{}",
+        excitation(scenario.load_case, scenario.engine_order),
+        deviation.map_or_else(String::new, |s| format!(
+            ", standard deviation {} %",
+            trimmed(100.0 * s)
+        ))
     )
 }
 
@@ -209,18 +308,14 @@ fn letter(place: usize) -> String {
         )
 }
 
-/// The largest unit in which no percentile is below 1.
-fn length_unit(found: &QuantityComparison) -> Unit {
+fn length_unit(found: &QuantityComparison) -> LengthUnit {
     let values = found.comparisons.iter().flat_map(|comparison| {
         [
             comparison.percentile.baseline.value,
             comparison.percentile.candidate.value,
         ]
     });
-    let smallest = values.flatten().fold(f64::INFINITY, f64::min);
-    let units = [(1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm")];
-    let fits = |unit: &Unit| smallest.is_finite() && smallest >= unit.0;
-    units.into_iter().find(fits).unwrap_or((1.0, "m"))
+    LengthUnit::of(values.flatten())
 }
 
 fn point(found: &Percentile, unit: Unit) -> String {
@@ -240,7 +335,7 @@ fn interval(found: Option<&IntervalEstimate>, unit: Unit) -> String {
 }
 
 fn shown(value: f64, unit: Unit) -> String {
-    four_digits(value / unit.0)
+    unit.map_or_else(|| four_digits(value), |unit| unit.number(value))
 }
 
 fn dash() -> String {

@@ -6,8 +6,8 @@ use std::fmt;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::summary_text::{excitation, four_digits, load, trimmed};
 use super::text_table::TextTable;
+use super::words::{LengthUnit, excitation, four_digits, load_per_sector, trimmed};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{
     Accounting, Allocation, EstimateTarget, MeanEstimate, PointStatus, Quantity, SamplingMethod,
@@ -135,9 +135,9 @@ impl fmt::Display for ScenarioEstimate {
         });
         writeln!(
             f,
-            "\n{}{deviation}, load {}: {} rows solved, {} failed",
+            "\n{}{deviation}, {}: {} rows solved, {} failed",
             excitation(self.load_case, self.engine_order),
-            load(&self.contact, self.normal_load_n),
+            load_per_sector(&self.contact, self.normal_load_n),
             self.rows.planned(),
             self.rows.failed()
         )?;
@@ -173,12 +173,17 @@ impl fmt::Display for ScenarioEstimate {
             )?,
         }
         let mut table = TextTable::new(&["", "value", "95 % bounds", "patterns"]);
+        let means = self.quantities.iter().filter_map(|own| {
+            let length = own.quantity == Quantity::PeakAmplitudeM;
+            own.mean.as_ref().filter(|_| length).map(|mean| mean.value)
+        });
+        let unit = LengthUnit::of(means);
         for quantity in &self.quantities {
             let shown = |value: Option<f64>| {
                 value.map_or_else(
                     || "-".to_owned(),
                     |value| match quantity.quantity {
-                        Quantity::PeakAmplitudeM => format!("{:.2} um", 1e6 * value),
+                        Quantity::PeakAmplitudeM => unit.length(value),
                         Quantity::AmplificationFactor => four_digits(value),
                     },
                 )

@@ -5,6 +5,7 @@ mod answers;
 mod campbell;
 mod comparison;
 mod comparison_text;
+mod cost;
 mod estimate;
 mod figures;
 mod html;
@@ -16,6 +17,7 @@ mod plan;
 mod plot;
 mod rotation;
 mod stated_errors;
+mod study_echo;
 mod study_report;
 mod summary;
 mod summary_text;
@@ -33,9 +35,10 @@ pub use accuracy_trials::{AccuracyTrial, AccuracyTrials};
 pub use answers::{Answer, answers};
 pub use campbell::{CampbellCrossing, CampbellMode, CampbellReport};
 pub use comparison::{
-    BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet, QuantityComparison,
-    ScenarioComparison,
+    BaselineChoice, BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet,
+    QuantityComparison, ScenarioComparison,
 };
+pub use cost::{ExpectedCost, ExpectedTime};
 pub use estimate::{EstimateReport, QuantityEstimate, ScenarioEstimate};
 pub use figures::{FIGURES, Figure, FigureName, figure};
 pub use html::html_report;
@@ -46,6 +49,7 @@ pub use peak_audit::PeakAuditReport;
 pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};
 pub use rotation::RotationFacts;
 pub use stated_errors::{ErrorRows, ErrorSpread, StatedErrors};
+pub use study_echo::{EchoedExcitation, EchoedLoad, EchoedModel, Remark, StudyEcho, Travel};
 pub use study_report::{
     CommonErrors, DistributionReport, GroupReport, LoadChoice, PercentileError, Provenance,
     ScenarioErrors, StudyReport, Wheels,
@@ -58,4 +62,4 @@ pub use verification::{ErrorDistribution, RegimeErrors, VerificationContext, Ver
 pub use visible::{is_order, visible, with_orders_escaped};
 pub use warning::Warning;
 pub use wheel_report::{PairReport, ResponseCurve, WheelCurves, WheelReport, WheelStateReport};
-pub use words::setting;
+pub use words::{LengthUnit, setting};

@@ -138,7 +138,7 @@ impl fmt::Display for ModelReport {
 
 fn place(error: &ContactDisplacementError) -> String {
     format!(
-        "{:.2} % (engine order {}, {} N, harmonic {}, ND {})",
+        "{:.2} % (engine order {}, {} N per sector, harmonic {}, ND {})",
         100.0 * error.error,
         error.engine_order,
         error.normal_load_n,

@@ -5,8 +5,8 @@ use std::fmt;
 use serde::Serialize;
 
 use super::BestLoads;
-use super::summary_text::{excitation, four_digits, trimmed};
 use super::text_table::TextTable;
+use super::words::{LengthUnit, excitation, four_digits, paragraph, trimmed};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::Quantity;
 
@@ -69,26 +69,29 @@ impl fmt::Display for OptimumReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let percent = trimmed(self.percent);
         let several = !self.excitations.is_empty();
-        writeln!(
-            f,
-            "study {}: P{percent} of {}{} over the same {} patterns at every load\n",
+        let values = self.best.loads.iter();
+        let unit = (self.quantity == Quantity::PeakAmplitudeM)
+            .then(|| LengthUnit::of(values.filter_map(|load| load.percentile.value)));
+        let quantity = match unit {
+            Some(unit) => format!("the peak amplitude in {}", unit.name()),
+            None => "the amplification factor".to_owned(),
+        };
+        let heading = format!(
+            "study {}: P{percent} of {quantity}{} over the same {} patterns at every load; N is the normal \
+             load per sector",
             self.name,
-            self.quantity.name(),
             if several {
                 ", each wheel by its largest over load cases and engine orders,"
             } else {
                 ""
             },
             self.patterns
-        )?;
+        );
+        writeln!(f, "{}\n", paragraph(&heading))?;
         let shown = |value: Option<f64>| {
-            value.map_or_else(
-                || "-".to_owned(),
-                |value| match self.quantity {
-                    Quantity::PeakAmplitudeM => format!("{value:.4e}"),
-                    Quantity::AmplificationFactor => four_digits(value),
-                },
-            )
+            let digits =
+                |value: f64| unit.map_or_else(|| four_digits(value), |unit| unit.number(value));
+            value.map_or_else(|| "-".to_owned(), digits)
         };
         let heading = format!("P{percent}");
         let mut headings = vec!["load N", &heading, "lower", "upper", "could be best"];
@@ -110,16 +113,17 @@ impl fmt::Display for OptimumReport {
         }
         write!(f, "{table}")?;
         let load = |load: Option<f64>| load.map_or_else(|| "-".to_owned(), trimmed);
-        writeln!(
-            f,
-            "\nlowest at {} N; with 95 % confidence the best load lies in [{} {}] N, its P{percent} in \
-             [{} {}];\nthe bounds of the load hold if the percentile has one minimum, - = not enclosed",
+        let verdict = format!(
+            "lowest at {} N per sector; with 95 % confidence the best load lies in [{} {}] N, its \
+             P{percent} in [{} {}]; the bounds of the load hold if the percentile has one minimum, - = \
+             not enclosed",
             load(self.normal_load_n),
             load(self.normal_load_lower_n),
             load(self.normal_load_upper_n),
             shown(self.best.lower),
             shown(self.best.upper),
-        )?;
+        );
+        writeln!(f, "\n{}", paragraph(&verdict))?;
         if !self.resolved {
             writeln!(
                 f,

@@ -4,8 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::summary_text::{four_digits, trimmed};
 use super::text_table::TextTable;
+use super::words::{duration, four_digits, trimmed};
 use crate::population::statistics::{Accounting, ExpectedSum, StopOptions};
 
 /// Plan of a study, from a pilot. Times are those of this machine while the pilot was solved.
@@ -131,8 +131,8 @@ impl fmt::Display for StudyPlan {
         writeln!(
             f,
             "set-up {}; {} of CPU a pattern; a thread had {:.0} % of a processor",
-            time(self.set_up_s),
-            time(self.cpu_s_per_pattern),
+            duration(self.set_up_s),
+            duration(self.cpu_s_per_pattern),
             100.0 * self.processor_share
         )?;
         self.line_of(f, "all patterns", &self.time)?;
@@ -185,15 +185,15 @@ impl StudyPlan {
         what: &str,
         planned: &PlannedTime,
     ) -> fmt::Result {
-        let upper = planned.wall_upper_s.map_or("?".to_owned(), time);
+        let upper = planned.wall_upper_s.map_or("?".to_owned(), duration);
         writeln!(
             f,
             "{what}: {} patterns, {} of CPU, {} on {} threads [{} {upper}]",
             planned.patterns,
-            time(planned.cpu_s.value),
-            time(planned.wall_s),
+            duration(planned.cpu_s.value),
+            duration(planned.wall_s),
             self.threads,
-            time(planned.wall_lower_s)
+            duration(planned.wall_lower_s)
         )
     }
 }
@@ -222,17 +222,6 @@ impl fmt::Display for PlannedStop {
 
 fn percent(share: f64) -> String {
     format!("{} %", four_digits(100.0 * share))
-}
-
-/// A time in the unit that suits it.
-fn time(seconds: f64) -> String {
-    match seconds {
-        s if s < 1.0 => format!("{s:.3} s"),
-        s if s < 120.0 => format!("{s:.1} s"),
-        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
-        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
-        s => format!("{:.1} d", s / 86_400.0),
-    }
 }
 
 fn size(bytes: u64) -> String {

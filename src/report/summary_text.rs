@@ -3,35 +3,11 @@
 use std::fmt;
 
 use super::text_table::TextTable;
+use super::words::{
+    LengthUnit, excitation, excitation_and_deviation, load_per_sector, load_words, trimmed,
+};
 use super::{BestLoad, NumericalError, ScenarioSummary, StudySummary};
-use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{PointStatus, SampleStatistics, ScenarioLook, StopOutcome};
-
-/// A unit of length in which amplitudes are shown.
-#[derive(Clone, Copy)]
-pub(super) struct Unit {
-    pub(super) name: &'static str,
-    pub(super) metres: f64,
-}
-
-const UNITS: [Unit; 4] = [
-    Unit {
-        name: "m",
-        metres: 1.0,
-    },
-    Unit {
-        name: "mm",
-        metres: 1e-3,
-    },
-    Unit {
-        name: "um",
-        metres: 1e-6,
-    },
-    Unit {
-        name: "nm",
-        metres: 1e-9,
-    },
-];
 
 impl fmt::Display for StudySummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -65,7 +41,7 @@ impl fmt::Display for StudySummary {
         if let Some(scale) = self.stress_pa_per_m {
             writeln!(f, "{}", stress_line(scale, &self.scenarios))?;
         }
-        let unit = unit_of(&self.scenarios);
+        let unit = LengthUnit::of_summary(self);
         let groups = self.scenarios.chunk_by(ScenarioSummary::same_group);
         for group in groups {
             writeln!(f, "\n{}", heading(&group[0]))?;
@@ -87,8 +63,11 @@ impl fmt::Display for StudySummary {
         writeln!(
             f,
             "\nP50, P95, P99 are order statistics over the patterns with 95 % bounds in brackets \
-             (distribution-free, failed rows at both infinities); - = not estimable.\n\
-             Amplification factor: peak over the tuned peak of the same normal load."
+             (distribution-free); failed rows count as very small in the lower bound and as very large \
+             in the upper one. - = not estimable, or no such thing: the linear limits slide, stuck and \
+             free have no slip.\n\
+             A load N is the normal load per sector. Amplification factor: peak over the tuned peak of \
+             the same normal load."
         )
     }
 }
@@ -156,18 +135,15 @@ fn stress_line(pa_per_m: f64, scenarios: &[ScenarioSummary]) -> String {
 }
 
 fn heading(scenario: &ScenarioSummary) -> String {
-    let excitation = excitation(scenario.load_case, scenario.engine_order);
-    match scenario.standard_deviation {
-        Some(deviation) => format!(
-            "{excitation}, standard deviation {} %",
-            trimmed(100.0 * deviation)
-        ),
-        None => format!("{excitation}, patterns from a file"),
-    }
+    excitation_and_deviation(
+        scenario.load_case,
+        scenario.engine_order,
+        scenario.standard_deviation,
+    )
 }
 
-fn amplitudes(group: &[ScenarioSummary], unit: Unit) -> TextTable {
-    let column = |name: &str| format!("{name} {}", unit.name);
+fn amplitudes(group: &[ScenarioSummary], unit: LengthUnit) -> TextTable {
+    let column = |name: &str| format!("{name} {}", unit.name());
     let header = [
         "load N".to_owned(),
         column("tuned"),
@@ -182,9 +158,9 @@ fn amplitudes(group: &[ScenarioSummary], unit: Unit) -> TextTable {
     ];
     let mut table = TextTable::new(&header.each_ref().map(String::as_str));
     for scenario in group {
-        let metres = |value: f64| four_digits(value / unit.metres);
+        let metres = |value: f64| unit.number(value);
         let mut row = vec![
-            load(scenario.contact, scenario.normal_load_n),
+            load_words(scenario.contact, scenario.normal_load_n),
             scenario
                 .tuned_amplitude_m
                 .map_or_else(|| scenario.tuned_status.to_owned(), metres),
@@ -195,8 +171,10 @@ fn amplitudes(group: &[ScenarioSummary], unit: Unit) -> TextTable {
         row.extend(percentiles(&scenario.peak_amplitude_m, metres));
         row.push(scenario.rows.ok().to_string());
         row.push(scenario.rows.failed().to_string());
-        row.push(share(scenario.mean_slipping_fraction));
-        row.push(share(scenario.separated_rows));
+        // Pairs of a linear limit stick or slide by definition: no share of them is a result.
+        let friction = scenario.normal_load_n.is_some();
+        row.push(share(scenario.mean_slipping_fraction.filter(|_| friction)));
+        row.push(share(scenario.separated_rows.filter(|_| friction)));
         table.row(row);
     }
     table
@@ -210,7 +188,7 @@ fn factors(group: &[ScenarioSummary]) -> TextTable {
         "amplification P99",
     ]);
     for scenario in group {
-        let mut row = vec![load(scenario.contact, scenario.normal_load_n)];
+        let mut row = vec![load_words(scenario.contact, scenario.normal_load_n)];
         row.extend(percentiles(&scenario.amplification_factor, |value| {
             format!("{value:.3}")
         }));
@@ -235,7 +213,7 @@ fn percentiles(sample: &SampleStatistics, show: impl Fn(f64) -> String) -> Vec<S
         .collect()
 }
 
-fn best_line(best: &BestLoad, unit: Unit) -> String {
+fn best_line(best: &BestLoad, unit: LengthUnit) -> String {
     let what = match best.quantity {
         "tuned_amplitude_m" => "tuned amplitude",
         _ => "P95 amplitude",
@@ -251,53 +229,15 @@ fn best_line(best: &BestLoad, unit: Unit) -> String {
         "; not enclosed by a lower and a higher load"
     };
     format!(
-        "lowest {what} ({}{deviation}): {} {} at load {}{place}",
+        "lowest {what} ({}{deviation}): {} at {}{place}",
         excitation(best.load_case, best.engine_order),
-        four_digits(best.amplitude_m / unit.metres),
-        unit.name,
-        load(best.contact, best.normal_load_n),
+        unit.length(best.amplitude_m),
+        load_per_sector(best.contact, best.normal_load_n),
     )
-}
-
-/// Load case, where there is one, and engine order.
-pub(super) fn excitation(load_case: Option<LoadCaseName>, engine_order: u32) -> String {
-    let case = load_case.map_or_else(String::new, |name| format!("load case {name}, "));
-    format!("{case}engine order {engine_order}")
-}
-
-pub(super) fn load(contact: &str, normal_load_n: Option<f64>) -> String {
-    // As written in the study.
-    normal_load_n.map_or_else(|| contact.to_owned(), |load| load.to_string())
 }
 
 fn share(fraction: Option<f64>) -> String {
     fraction.map_or("-".to_owned(), |fraction| {
         format!("{:.1} %", 100.0 * fraction)
     })
-}
-
-/// The largest unit in which no tuned amplitude or mean is below 1.
-pub(super) fn unit_of(scenarios: &[ScenarioSummary]) -> Unit {
-    let smallest = scenarios
-        .iter()
-        .flat_map(|scenario| [scenario.tuned_amplitude_m, scenario.peak_amplitude_m.mean])
-        .flatten()
-        .fold(f64::INFINITY, f64::min);
-    UNITS
-        .into_iter()
-        .find(|unit| smallest >= unit.metres)
-        .unwrap_or(UNITS[UNITS.len() - 1])
-}
-
-/// `value` with four significant digits, or as a whole number.
-pub(super) fn four_digits(value: f64) -> String {
-    let before_point = value.abs().max(1e-9).log10().floor() as i32;
-    let decimals = (3 - before_point).clamp(0, 9) as usize;
-    format!("{value:.decimals$}")
-}
-
-/// `value` with at most six decimals and no trailing zeros.
-pub(super) fn trimmed(value: f64) -> String {
-    let text = format!("{value:.6}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

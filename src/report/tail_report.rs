@@ -5,10 +5,10 @@ use std::fmt;
 use serde::Serialize;
 
 use super::StudySummary;
-use super::summary_text::{excitation, four_digits, load};
 use super::text_table::TextTable;
+use super::words::{LengthUnit, excitation, four_digits, load_per_sector};
 use crate::population::statistics::{
-    Estimate, FitStatus, Percentile, TailFit, TailLaw, TailPercentile,
+    Estimate, FitStatus, Percentile, Quantity, TailFit, TailLaw, TailPercentile,
 };
 use crate::population::table::TailFitRecord;
 
@@ -27,14 +27,16 @@ impl fmt::Display for StatisticsReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.summary)?;
         for record in self.tails.iter().flatten() {
-            write!(f, "\n{}", heading(record))?;
+            let unit = (record.quantity == Quantity::PeakAmplitudeM)
+                .then(|| LengthUnit::of_summary(&self.summary));
+            write!(f, "\n{}", heading(record, unit))?;
             let mut table = TextTable::new(&["", "P95", "P99", "P99.9", "P99.99", "fit"]);
-            let empirical = |p: &TailPercentile| shown(sample(&p.empirical).as_ref());
+            let empirical = |p: &TailPercentile| shown(sample(&p.empirical).as_ref(), unit);
             let mut row = vec!["sample".to_owned()];
             row.extend(record.fits[0].percentiles.iter().map(empirical));
             table.row(row);
             for fit in &record.fits {
-                table.row(law_row(fit));
+                table.row(law_row(fit, unit));
             }
             write!(f, "{table}")?;
         }
@@ -50,13 +52,16 @@ impl fmt::Display for StatisticsReport {
     }
 }
 
-fn heading(record: &TailFitRecord) -> String {
+fn heading(record: &TailFitRecord, unit: Option<LengthUnit>) -> String {
     let scenario = &record.scenario;
     let deviation = scenario.standard_deviation;
     format!(
-        "tail of {} at load {}, {}{}\n",
-        record.quantity.name(),
-        load(scenario.contact.name(), scenario.contact.normal_load_n()),
+        "tail of the {} at {}, {}{}\n",
+        match unit {
+            Some(unit) => format!("peak amplitude in {}", unit.name()),
+            None => "amplification factor".to_owned(),
+        },
+        load_per_sector(scenario.contact.name(), scenario.contact.normal_load_n()),
         excitation(scenario.load_case, scenario.engine_order),
         deviation.map_or_else(String::new, |s| format!(
             ", standard deviation {} %",
@@ -73,7 +78,7 @@ fn sample(found: &Percentile) -> Option<Estimate> {
     })
 }
 
-fn law_row(fit: &TailFit) -> Vec<String> {
+fn law_row(fit: &TailFit, unit: Option<LengthUnit>) -> Vec<String> {
     let name = match fit.law {
         TailLaw::WeibullBoundedAbove => "Weibull, bounded above",
         TailLaw::GeneralisedExtremeValue => "generalised extreme value",
@@ -83,7 +88,7 @@ fn law_row(fit: &TailFit) -> Vec<String> {
         let marks = [(p.outside_interval, "*"), (p.extrapolates, "+")];
         let marks = marks.iter().filter(|mark| mark.0 && p.model.is_some());
         let marks: String = marks.map(|mark| mark.1).collect();
-        format!("{}{marks}", shown(p.model.as_ref()))
+        format!("{}{marks}", shown(p.model.as_ref(), unit))
     }));
     row.push(verdict(fit));
     row
@@ -110,7 +115,8 @@ fn verdict(fit: &TailFit) -> String {
 }
 
 /// Four significant digits, in the unit of the table.
-fn shown(estimate: Option<&Estimate>) -> String {
+fn shown(estimate: Option<&Estimate>, unit: Option<LengthUnit>) -> String {
+    let digits = |value: f64| unit.map_or_else(|| four_digits(value), |unit| unit.number(value));
     let bound = |bound: Option<f64>| bound.map_or_else(|| "-".to_owned(), digits);
     estimate.map_or_else(
         || "-".to_owned(),
@@ -119,13 +125,4 @@ fn shown(estimate: Option<&Estimate>) -> String {
             format!("{} [{lower} {upper}]", digits(found.value))
         },
     )
-}
-
-/// Amplitudes in metres are small: scientific where four decimals say nothing.
-fn digits(value: f64) -> String {
-    if value != 0.0 && value.abs() < 0.01 {
-        format!("{value:.3e}")
-    } else {
-        four_digits(value)
-    }
 }

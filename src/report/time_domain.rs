@@ -4,8 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::summary_text::excitation;
 use super::text_table::TextTable;
+use super::words::{LengthUnit, excitation, load_per_sector};
 use crate::population::monte_carlo::{LoadCaseName, ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;
 use crate::response::time_integration::{PeriodicMotion, PointComparison, Stability};
@@ -170,9 +170,9 @@ fn largest(amplitudes_m: &[f64]) -> f64 {
 
 impl fmt::Display for TimeDomainReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let number = |value: Option<f64>, unit: &str| {
-            value.map_or_else(|| "-".to_owned(), |value| format!("{value:.6e}{unit}"))
-        };
+        let unit = LengthUnit::of(self.delivered_amplitude_m);
+        let length =
+            |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| unit.precise(value));
         let short = |value: Option<f64>, unit: &str| {
             value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1e}{unit}"))
         };
@@ -181,13 +181,12 @@ impl fmt::Display for TimeDomainReport {
         };
         writeln!(
             f,
-            "study {}: scenario {}, pattern {}, {}, {} N, {} Hz, harmonics {}, basis {}",
+            "study {}: scenario {}, pattern {}, {}, {}, {} Hz, harmonics {}, basis {}",
             self.name,
             self.scenario,
             self.pattern,
             excitation(self.load_case, self.engine_order),
-            self.normal_load_n
-                .map_or_else(|| "-".to_owned(), |load| load.to_string()),
+            load_per_sector("-", self.normal_load_n),
             self.frequency_hz
                 .map_or_else(|| "-".to_owned(), |hz| format!("{hz:.4}")),
             self.harmonics,
@@ -203,7 +202,7 @@ impl fmt::Display for TimeDomainReport {
             ("time integration, viscous", self.time_domain_amplitude_m),
             ("its mean at harmonic 1", self.mean_fundamental_amplitude_m),
         ] {
-            table.row(vec![path.to_owned(), number(amplitude_m, " m")]);
+            table.row(vec![path.to_owned(), length(amplitude_m)]);
         }
         write!(f, "\n{table}\n")?;
         let mut table = TextTable::new(&["steps per period", "periods", "status", "amplitude"]);
@@ -212,7 +211,7 @@ impl fmt::Display for TimeDomainReport {
                 step.steps_per_period.to_string(),
                 step.periods.to_string(),
                 step.status.name().to_owned(),
-                number(Some(step.amplitude_m), " m"),
+                length(Some(step.amplitude_m)),
             ]);
         }
         writeln!(f, "{table}")?;
@@ -228,7 +227,10 @@ impl fmt::Display for TimeDomainReport {
             "change over the last period: blades {}, contact forces {}, ring {}; drift {}",
             short(self.blade_change_per_period, ""),
             short(self.force_change_per_period, ""),
-            short(self.creep_per_period_m, " m"),
+            short(
+                self.creep_per_period_m.map(|own| own / unit.metres()),
+                &format!(" {}", unit.name())
+            ),
             short(self.drift, "")
         )?;
         let multiplier = self

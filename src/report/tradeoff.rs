@@ -190,7 +190,7 @@ impl TradeoffReport {
     fn loads(&self) -> String {
         let listed = |loads: &[f64]| {
             let loads: Vec<String> = loads.iter().map(f64::to_string).collect();
-            format!("loads {} N", loads.join(", "))
+            format!("loads {} N per sector", loads.join(", "))
         };
         let cases = self.load_cases.chunk_by(|a, b| a == b);
         let mut first = 0;

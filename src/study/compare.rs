@@ -9,11 +9,12 @@ use super::result_columns::sorted_values;
 use super::{PipelineError, ResultColumns, ScenarioColumns};
 use crate::population::statistics::{
     CONFIDENCE, Expansion, PairFacts, PercentileEstimator, Quantity, RESAMPLES, best_set_at,
-    compare_independent, compare_paired, holm, percentile, percentile_at, resample_percentile,
+    compare_independent, compare_paired, holm_with_origins, percentile, percentile_at,
+    resample_percentile,
 };
 use crate::report::{
-    BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet, QuantityComparison,
-    ScenarioComparison,
+    BaselineChoice, BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet,
+    QuantityComparison, ScenarioComparison,
 };
 
 /// Streams of the resamples of comparisons, apart from those of tail fits; the same for all of them,
@@ -29,9 +30,9 @@ pub(super) const HALF_ERROR: f64 = 0.975;
 pub struct CompareRequest {
     /// Results folders; the baseline is in the first.
     pub folders: Vec<PathBuf>,
-    /// Scenario of the first folder that all others are compared with. Absent: in one folder the
-    /// first scenario of each load case, engine order and standard deviation; of several, the scenario of
-    /// the first folder with the same keys.
+    /// Scenario of the first folder that all others are compared with. Absent: in one folder the scenario
+    /// with the lowest percentile of the peak amplitude of each load case, engine order and standard
+    /// deviation; of several, the scenario of the first folder with the same keys.
     pub baseline: Option<usize>,
     /// The percentile in percent.
     pub percent: f64,
@@ -68,6 +69,11 @@ pub fn compare(request: &CompareRequest) -> Result<ComparisonReport, PipelineErr
         percent: request.percent,
         resamples: RESAMPLES,
         seed: work.seed,
+        baseline_choice: match request.baseline {
+            Some(_) => BaselineChoice::Named,
+            None if folders.len() == 1 => BaselineChoice::Lowest,
+            None => BaselineChoice::SameKeys,
+        },
         folders: folders.iter().map(facts).collect(),
         unmatched: unmatched
             .into_iter()
@@ -109,10 +115,7 @@ impl Comparison<'_> {
             for (index, candidate) in columns.scenarios.iter().enumerate() {
                 let of_candidate = match baseline {
                     Some(index) => Some(index),
-                    None if self.folders.len() == 1 => first
-                        .scenarios
-                        .iter()
-                        .position(|other| same_group(other, candidate)),
+                    None if self.folders.len() == 1 => self.lowest_beside(candidate),
                     None if folder == 0 => Some(index),
                     None => first
                         .scenarios
@@ -127,6 +130,22 @@ impl Comparison<'_> {
             }
         }
         Ok((pairs, unmatched))
+    }
+
+    /// The scenario of the first folder with the lowest percentile of the peak amplitude among those of
+    /// the group of `scenario`; the first of them where none has a value.
+    fn lowest_beside(&self, scenario: &ScenarioColumns) -> Option<usize> {
+        let of_group = self.folders[0].scenarios.iter().enumerate();
+        let of_group = of_group.filter(|(_, other)| same_group(other, scenario));
+        let value = |own: &ScenarioColumns| {
+            let (sorted, failed) = sorted_values(own.values(Quantity::PeakAmplitudeM));
+            let found = percentile(&sorted, failed, self.percent);
+            found.value.unwrap_or(f64::INFINITY)
+        };
+        of_group
+            .map(|(index, own)| (index, value(own)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(index, _)| index)
     }
 
     fn columns(&self, (folder, index): Place) -> &ScenarioColumns {
@@ -146,8 +165,14 @@ impl Comparison<'_> {
             .iter()
             .map(|comparison| comparison.percentile.p_value)
             .collect();
-        for (comparison, adjusted) in comparisons.iter_mut().zip(holm(&p_values)) {
-            comparison.adjusted_p_value = adjusted;
+        let at_floor: Vec<bool> = comparisons
+            .iter()
+            .map(|comparison| comparison.percentile.is_at_floor())
+            .collect();
+        for (comparison, adjusted) in comparisons.iter_mut().zip(holm_with_origins(&p_values)) {
+            comparison.adjusted_p_value = adjusted.map(|(value, _)| value);
+            comparison.adjusted_p_value_is_bound =
+                adjusted.is_some_and(|(_, origin)| at_floor[origin]);
         }
         QuantityComparison {
             quantity,
@@ -194,6 +219,7 @@ impl Comparison<'_> {
             patterns_left_out: left_out,
             percentile,
             adjusted_p_value: None,
+            adjusted_p_value_is_bound: false,
             pairs: (!independent).then(|| PairFacts::new(&ids, &x, &y, self.percent)),
         }
     }

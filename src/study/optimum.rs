@@ -1,30 +1,41 @@
 //! Search for the normal load with the lowest percentile: the same patterns at every load.
 //!
-//! Golden-section search (Kiefer 1953) over the logarithm of the load. Each load is a run of the study in
-//! a folder of its own, so that a search that was interrupted continues and nothing is solved twice.
+//! Loads that are solved already on the same patterns, in the results of the study or by an earlier search,
+//! count like those that the search solves itself. Each of its own is a run of the study in a folder of its
+//! own, so that a search that was interrupted continues and nothing is solved twice.
 //! All loads see the same patterns (common random numbers), which takes most of the sampling error out
 //! of their differences. A ring serves every load case and engine order of its wheel, so that where there are
 //! several, the percentile is that of the largest value of each wheel over them.
 
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::time::Instant;
 
 use super::compare::{best_loads, same_patterns};
+use super::load_search::{LoadRange, four_digits};
 use super::result_columns::sorted_values;
+use super::solved_loads::{
+    Holding, SolvedLoad, cpu_s_per_row, folders_of_loads, solved_loads, study_at,
+};
 use super::{
     AccuracyChoice, AccuracyOptions, EngineSource, PipelineError, Progress, ResultColumns,
-    RunRequest, Study, load_sector_model, run,
+    RunRequest, Stage, Study, load_sector_model, run,
 };
 use crate::population::statistics::CONFIDENCE;
 use crate::population::statistics::{Quantity, percentile, smallest_sample};
 use crate::population::table::is_folder;
-use crate::report::{ComparedScenario, OptimumExcitation, OptimumReport};
+use crate::report::{
+    ComparedScenario, ExpectedCost, ExpectedTime, OptimumExcitation, OptimumReport,
+};
 use crate::response::forced_response::ContactCondition;
-
-/// Golden ratio less 1.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
+use crate::response::harmonic_balance::Status;
 
 /// Loads solved at most.
 const MOST_LOADS: usize = 24;
+
+/// Rows on each thread, and seconds, after which the time of the others is estimated where nothing else says it.
+const TIMED_ROWS: u64 = 4;
+const TIMED_S: f64 = 1.0;
 
 /// What to search.
 #[derive(Debug, Clone, Copy)]
@@ -33,6 +44,8 @@ pub struct OptimumRequest<'a> {
     pub study: &'a Study,
     /// Folder of the search: one results folder per load.
     pub results: &'a Path,
+    /// Results folder of the study, whose loads are not solved again; it need not be there.
+    pub solved: &'a Path,
     /// Lowest and highest normal load per sector, N.
     pub between_n: [f64; 2],
     /// The percentile in percent.
@@ -57,17 +70,24 @@ pub fn find_optimum(
 ) -> Result<OptimumReport, PipelineError> {
     refuse(&request)?;
     let settled = settled(&request)?;
+    let [low, high] = request.between_n;
     let mut search = Search {
         request: OptimumRequest {
             study: &settled,
             ..request
         },
+        range: LoadRange {
+            low: four_digits(low),
+            high: four_digits(high),
+            resolution: request.resolution,
+        },
         source,
         progress,
         loads: Vec::new(),
+        solved: 0,
     };
-    let [low, high] = request.between_n;
-    let ended = search.golden_section(low, high)?;
+    search.take_over()?;
+    let ended = search.solve()?;
     search.report(ended)
 }
 
@@ -112,7 +132,7 @@ fn settled(request: &OptimumRequest<'_>) -> Result<Study, PipelineError> {
     Ok(choice.applied_to(request.study))
 }
 
-/// A load that was solved.
+/// A load with its values.
 struct Load {
     normal_load_n: f64,
     columns: ResultColumns,
@@ -124,71 +144,167 @@ struct Load {
 
 struct Search<'a> {
     request: OptimumRequest<'a>,
+    range: LoadRange,
     source: &'a dyn EngineSource,
     progress: &'a dyn Progress,
+    /// Ascending.
     loads: Vec<Load>,
+    /// Loads that this search has solved, now or before.
+    solved: usize,
 }
 
 impl Search<'_> {
-    /// Whether the loads that enclose the best one are as close as wanted.
-    fn golden_section(&mut self, low: f64, high: f64) -> Result<bool, PipelineError> {
-        let (mut a, mut b) = (low.ln(), high.ln());
-        self.value(low)?;
-        self.value(high)?;
-        while self.loads.len() < MOST_LOADS {
-            if (b - a).exp() - 1.0 <= self.request.resolution {
-                return Ok(true);
+    /// Takes over the loads that are solved already, and says what the others will cost.
+    fn take_over(&mut self) -> Result<(), PipelineError> {
+        let (study, folder) = (self.request.study, self.request.solved);
+        let mut taken = Vec::new();
+        let mut cpu_s = None;
+        let mut unused = String::new();
+        match solved_loads(study, folder)? {
+            Holding::Nothing => {}
+            Holding::Other(reason) => {
+                unused = format!(" (no load of {} is taken: {reason})", folder.display());
             }
-            let (left, right) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
-            if self.value(left.exp())? <= self.value(right.exp())? {
-                b = right;
-            } else {
-                a = left;
+            Holding::Loads(loads) => {
+                for load in loads {
+                    if self.range.contains(load.normal_load_n) {
+                        cpu_s = cpu_s.or_else(|| cpu_s_per_row(folder, &load.columns));
+                        taken.push(format!("{} N", load.normal_load_n));
+                        self.add(load);
+                    }
+                }
             }
         }
-        Ok(false)
+        for (normal_load_n, folder) in folders_of_loads(self.request.results) {
+            if !self.range.contains(normal_load_n) || self.knows(normal_load_n) {
+                continue;
+            }
+            if let Holding::Loads(loads) = solved_loads(study, &folder)? {
+                for load in loads {
+                    taken.push(format!("{} N", load.normal_load_n));
+                    cpu_s = cpu_s.or_else(|| cpu_s_per_row(&folder, &load.columns));
+                    self.solved += 1;
+                    self.add(load);
+                }
+            }
+        }
+        self.announce(&taken, &unused, cpu_s);
+        Ok(())
     }
 
-    /// The percentile at a load, solved if it has not been.
-    fn value(&mut self, normal_load_n: f64) -> Result<f64, PipelineError> {
-        let normal_load_n = four_digits(normal_load_n);
-        let known = |load: &&Load| load.normal_load_n.total_cmp(&normal_load_n).is_eq();
-        if let Some(load) = self.loads.iter().find(known) {
-            return Ok(load.value);
+    fn announce(&self, taken: &[String], unused: &str, cpu_s_per_row: Option<f64>) {
+        let loads = self.range.expected(&self.values(), self.left());
+        let rows = loads as u64 * self.rows_of_a_load();
+        let from = if taken.is_empty() {
+            "no load is solved yet".to_owned()
+        } else {
+            format!("solved already: {}", taken.join(", "))
+        };
+        let of = |cpu_s: f64| cpu_s * rows as f64;
+        self.progress.cost(&ExpectedCost {
+            what: format!("{from}{unused}; about {loads} loads to solve"),
+            rows,
+            time: cpu_s_per_row
+                .map(of)
+                .or((loads == 0).then_some(0.0))
+                .map(|cpu_s| ExpectedTime {
+                    cpu_s,
+                    wall_s: cpu_s / self.request.threads as f64,
+                    threads: self.request.threads,
+                    measured_on: "the rows that are solved".to_owned(),
+                }),
+        });
+    }
+
+    fn rows_of_a_load(&self) -> u64 {
+        let scenarios = study_at(self.request.study, self.range.low).scenarios();
+        u64::from(self.request.study.patterns) * scenarios.len() as u64
+    }
+
+    /// Loads that may still be solved.
+    fn left(&self) -> usize {
+        MOST_LOADS.saturating_sub(self.solved)
+    }
+
+    /// The loads and their percentiles, ascending.
+    fn values(&self) -> Vec<(f64, f64)> {
+        let loads = self.loads.iter();
+        loads.map(|load| (load.normal_load_n, load.value)).collect()
+    }
+
+    fn knows(&self, normal_load_n: f64) -> bool {
+        let same = |load: &Load| load.normal_load_n.total_cmp(&normal_load_n).is_eq();
+        self.loads.iter().any(same)
+    }
+
+    /// Solves loads until those that enclose the best one are as close as wanted, and says whether they are.
+    fn solve(&mut self) -> Result<bool, PipelineError> {
+        while let Some(normal_load_n) = self.range.next(&self.values()) {
+            if self.left() == 0 {
+                return Ok(false);
+            }
+            self.solve_load(normal_load_n)?;
         }
+        Ok(true)
+    }
+
+    fn solve_load(&mut self, normal_load_n: f64) -> Result<(), PipelineError> {
         let folder = self.folder(normal_load_n);
         is_folder(&folder)?;
-        let mut study = self.request.study.clone();
-        study.contacts = vec![ContactCondition::Full { normal_load_n }];
-        // Loads are compared over the same patterns, so that none may stop before the others.
-        study.stop = None;
+        let study = study_at(self.request.study, normal_load_n);
         let run_request = RunRequest {
             study: &study,
             results: &folder,
             threads: self.request.threads,
         };
-        run(run_request, self.source, self.progress)?;
-        let columns = ResultColumns::read(&folder)?;
+        // Where no finished run says what a row takes, the first rows do.
+        let loads = 1 + self.range.expected(&self.values(), self.left() - 1);
+        let timed = Timed::new(
+            self.progress,
+            loads as u64 * self.rows_of_a_load(),
+            &run_request,
+        );
+        let progress = if self.loads.is_empty() {
+            &timed as &dyn Progress
+        } else {
+            self.progress
+        };
+        run(run_request, self.source, progress)?;
+        self.solved += 1;
+        self.add(SolvedLoad {
+            normal_load_n,
+            columns: ResultColumns::read(&folder)?,
+        });
+        Ok(())
+    }
+
+    fn add(&mut self, load: SolvedLoad) {
+        let SolvedLoad {
+            normal_load_n,
+            columns,
+        } = load;
         let largest = columns.largest(self.request.quantity);
         let (sorted, failed) = sorted_values(&largest);
         let found = percentile(&sorted, failed, self.request.percent);
-        let value = found.value.unwrap_or(f64::INFINITY);
-        self.loads.push(Load {
-            normal_load_n,
-            columns,
-            largest,
-            value,
-        });
-        Ok(value)
+        let place = self
+            .loads
+            .partition_point(|own| own.normal_load_n < normal_load_n);
+        self.loads.insert(
+            place,
+            Load {
+                normal_load_n,
+                columns,
+                largest,
+                value: found.value.unwrap_or(f64::INFINITY),
+            },
+        );
     }
 
     fn folder(&self, normal_load_n: f64) -> PathBuf {
         self.request.results.join(format!("load-{normal_load_n}"))
     }
 
-    fn report(mut self, resolved: bool) -> Result<OptimumReport, PipelineError> {
-        self.loads
-            .sort_by(|a, b| a.normal_load_n.total_cmp(&b.normal_load_n));
+    fn report(self, resolved: bool) -> Result<OptimumReport, PipelineError> {
         let request = &self.request;
         let alike = self
             .loads
@@ -284,7 +400,82 @@ fn no_patterns_in_common() -> PipelineError {
     }
 }
 
-/// A load with four significant digits: what a folder is named by, and close enough.
-fn four_digits(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
+/// Passes everything on, and says what all rows will take once the first of them are solved.
+struct Timed<'a> {
+    progress: &'a dyn Progress,
+    rows: u64,
+    threads: usize,
+    /// When rows began, and how many are solved since.
+    began: Mutex<Option<(Instant, u64)>>,
+}
+
+impl<'a> Timed<'a> {
+    fn new(progress: &'a dyn Progress, rows: u64, request: &RunRequest<'_>) -> Self {
+        Self {
+            progress,
+            rows,
+            threads: request.threads,
+            began: Mutex::new(None),
+        }
+    }
+
+    /// Time of a row so far, once; none before there are enough.
+    fn timed(&self) -> Option<f64> {
+        let mut began = self.began.lock().ok()?;
+        let (start, solved) = began.as_mut()?;
+        *solved += 1;
+        let seconds = start.elapsed().as_secs_f64();
+        let enough = *solved >= TIMED_ROWS * self.threads as u64 && seconds >= TIMED_S;
+        let wall_s = enough.then(|| seconds / *solved as f64);
+        if enough {
+            *began = None;
+        }
+        wall_s
+    }
+}
+
+impl Progress for Timed<'_> {
+    fn stage(&self, stage: Stage) {
+        self.progress.stage(stage);
+    }
+
+    fn begin_rows(&self, planned: u64, done: u64) {
+        if let Ok(mut began) = self.began.lock() {
+            *began = Some((Instant::now(), 0));
+        }
+        self.progress.begin_rows(planned, done);
+    }
+
+    fn row(&self, status: Status) {
+        if let Some(wall_s) = self.timed() {
+            let wall_s = wall_s * self.rows as f64;
+            self.progress.cost(&ExpectedCost {
+                what: "the loads to solve".to_owned(),
+                rows: self.rows,
+                time: Some(ExpectedTime {
+                    cpu_s: wall_s * self.threads as f64,
+                    wall_s,
+                    threads: self.threads,
+                    measured_on: "the first rows".to_owned(),
+                }),
+            });
+        }
+        self.progress.row(status);
+    }
+
+    fn cost(&self, cost: &ExpectedCost) {
+        self.progress.cost(cost);
+    }
+
+    fn taken_over(&self, holder: &str) {
+        self.progress.taken_over(holder);
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.progress.stop_requested()
+    }
+
+    fn saved(&self) {
+        self.progress.saved();
+    }
 }

@@ -21,7 +21,7 @@ use crate::population::monte_carlo::{Interruption, block_size, plan_blocks, solv
 use crate::population::table::{
     Manifest, PartSink, RowStore, RunRecord, Shard, is_folder, remove_leftovers,
 };
-use crate::report::StudySummary;
+use crate::report::{ExpectedCost, StudySummary};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::PatternSource;
 
@@ -52,6 +52,8 @@ pub trait Progress: Sync {
     fn row(&self, _status: Status) {}
     /// Mean processor time of a surrogate and of a row of an estimate, as measured so far, s.
     fn surrogate_times(&self, _surrogate_s: f64, _row_s: f64) {}
+    /// What the command is about to solve, and how long that takes; said before the long part.
+    fn cost(&self, _cost: &ExpectedCost) {}
     /// The folder is taken over from a process that ended without letting go of it.
     fn taken_over(&self, _holder: &str) {}
     /// Whether the run is to store what it has and stop.

@@ -17,7 +17,7 @@ use crate::population::table::{
 pub(super) const RESPONSES: &str = "responses.parquet";
 
 /// Lists of the study that may grow while the rows of their former members stay.
-const GROWING: [&str; 4] = [
+pub(super) const GROWING: [&str; 4] = [
     "contact.normal_load.speed_rpm",
     "excitation.engine_orders",
     "sweep.standard_deviation",

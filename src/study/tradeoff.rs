@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::ladder::{Knob, LadderSetting, projection_name};
 use super::ladder_bench::{LadderBench, LadderValues};
+use super::ladder_cost::LadderPlan;
 use super::ladder_measure::{Compared, Measured, error_bound, errors_of_load_cases};
 use super::ladder_reference::{LadderEnds, LadderReference};
 use super::ladder_sample::LadderSample;
@@ -78,7 +79,9 @@ pub fn tradeoff(
     let patterns = pattern_source(study, &sector)?;
     let pool = pool_of(request.threads)?;
     let ids = sample_of_patterns(study, &patterns, request.patterns);
-    let trade = pool.install(|| Trade::measure(study, &sector, &patterns, ids, progress))?;
+    let threads = request.threads;
+    let measure = || Trade::measure((study, &sector), &patterns, ids, threads, progress);
+    let trade = pool.install(measure)?;
     let checks = if request.full {
         pool.install(|| trade.checked_by_full_contact(&sector, &patterns))?
     } else {
@@ -139,10 +142,10 @@ struct Trade {
 
 impl Trade {
     fn measure(
-        study: &Study,
-        sector: &SectorModel,
+        (study, sector): (&Study, &SectorModel),
         patterns: &PatternSource,
         ids: Vec<u32>,
+        threads: usize,
         progress: &dyn Progress,
     ) -> Result<Self, PipelineError> {
         progress.stage(Stage::Reduce);
@@ -152,6 +155,13 @@ impl Trade {
         progress.stage(Stage::Rows);
         let space = bench.space(ends.best.basis);
         let levels = space.one_at_a_time(&ends.base, REFERENCE_TOLERANCE);
+        let plan = LadderPlan {
+            ends: &ends,
+            levels: &levels,
+            combinations: PROPOSED.len(),
+            threads,
+        };
+        plan.announce(&mut bench, patterns, progress)?;
         let rows = (bench.sample().scenarios.len() * probed) as u64;
         progress.begin_rows((levels.len() + PROPOSED.len()) as u64 * rows, 0);
         let reference = LadderReference::solve(&mut bench, &ends, patterns)?;

@@ -105,7 +105,9 @@ fn two_load_cases_in_one_study_are_two_studies_of_one_bit_for_bit() {
     }
     let compared = place.run(&["compare", "results/both", "--percentile", "50"]);
     assert!(
-        compared.stdout.contains("slide (disk, EO 1, 3 %)"),
+        compared
+            .stdout
+            .contains("load case disk, engine order 1, standard deviation 3 %, against"),
         "{}",
         compared.stdout
     );

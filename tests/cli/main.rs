@@ -20,5 +20,6 @@ mod runs;
 mod statistics;
 mod stored_numbers;
 mod study_keys;
+mod texts;
 mod tradeoff;
 mod verification;

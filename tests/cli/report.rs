@@ -104,6 +104,19 @@ fn a_report_is_one_page_that_needs_nothing_else() {
 }
 
 #[test]
+fn a_report_opens_with_a_percentile_that_the_patterns_support() {
+    let place = finished(&study());
+    let text = place
+        .run(&["report", "results/small", "--no-curves"])
+        .stdout;
+    let p95 = text.find("95th percentile").expect("a question");
+    let p99 = text.find("99th percentile").expect("a question");
+    let unknown = text.find("Not known").expect("80 patterns give no P99");
+    assert!(p95 < p99 && p99 < unknown, "{text}");
+    assert!(text.contains("N per sector: P95 ="), "{text}");
+}
+
+#[test]
 fn the_numbers_of_a_report_are_those_of_the_other_commands() {
     let place = finished(&study());
     let report = json(&place, &["report", "results/small", "--json"]);

@@ -707,7 +707,7 @@ fn explain_says_what_a_key_accepts_and_suggests_what_was_meant() {
             .contains("solver.harmonics")
     );
     for (wrong, meant) in [
-        ("peak_tolerance", "solver.peak_tolerance"),
+        ("peak_tolerence", "solver.peak_tolerance"),
         ("solver.peak_tolerence", "solver.peak_tolerance"),
     ] {
         let ended = place.run(&["explain", wrong]);

@@ -69,6 +69,19 @@ fn a_trade_off_names_the_cheapest_settings_and_writes_the_same_tables_with_any_t
     };
     assert!(error("1") > error("1-3-5") && error("1-3-5") > error("1-3-5-7"));
     let shown = place.run(&["tradeoff", "study.toml", "--patterns", "4"]);
+    // Settings, rows and time are said before the ladder is solved.
+    let said = shown
+        .stderr
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ");
+    for words in [
+        "settings of 4 patterns: about",
+        "rows; about",
+        "of processor time",
+    ] {
+        assert!(said.contains(words), "{words} in {said}");
+    }
     assert!(
         shown.stdout.contains("cheapest within 1 %: setting"),
         "{}",

@@ -38,6 +38,19 @@ pub struct PercentileComparison {
     /// Two-sided probability of such a difference if there were none, failed rows at their worst;
     /// at most 0.05 where the interval of the difference excludes 0.
     pub p_value: Option<f64>,
+    /// Smallest value that `p_value` can have: the one where no resample has the other sign. There the
+    /// probability is this or less.
+    pub p_value_floor: Option<f64>,
+}
+
+impl PercentileComparison {
+    /// Whether `p_value` is as small as it can be, so that it is an upper bound.
+    #[must_use]
+    pub fn is_at_floor(&self) -> bool {
+        self.p_value
+            .zip(self.p_value_floor)
+            .is_some_and(|(value, floor)| value <= floor)
+    }
 }
 
 /// Values beyond a percentile from which on percentile intervals of resamples are taken as they are.
@@ -140,6 +153,7 @@ fn compare(
         difference: None,
         ratio: None,
         p_value: None,
+        p_value_floor: None,
     };
     let Some((x, y)) = resamples else {
         return comparison;
@@ -157,6 +171,7 @@ fn compare(
     let bounds = |contrast: fn(f64, f64) -> f64| Bounds::new(&x, &y, contrast, expansion);
     let differences = bounds(|x, y| y - x);
     comparison.p_value = Some(differences.p_value(0.0));
+    comparison.p_value_floor = Some(differences.p_value_floor());
     comparison.difference = Some(differences.estimate(points.map(|(x, y)| y - x)));
     // A ratio has a sense, and grows with the candidate, for positive values only.
     let positive = |values: &[f64]| values.first().is_some_and(|&lowest| lowest > 0.0);
@@ -222,8 +237,16 @@ impl Bounds {
         let share = |count: usize| (1.0 + count as f64) / (1.0 + self.lowest.len() as f64);
         let not_above = self.lowest.partition_point(|&value| value <= null);
         let not_below = self.highest.len() - self.highest.partition_point(|&value| value < null);
-        let one_sided = share(not_above).min(share(not_below));
-        (2.0 * self.expansion.probability(one_sided)).min(1.0)
+        self.two_sided(share(not_above).min(share(not_below)))
+    }
+
+    /// The same where no resample is on the other side.
+    fn p_value_floor(&self) -> f64 {
+        self.two_sided(1.0 / (1.0 + self.lowest.len() as f64))
+    }
+
+    fn two_sided(&self, share: f64) -> f64 {
+        (2.0 * self.expansion.probability(share)).min(1.0)
     }
 }
 

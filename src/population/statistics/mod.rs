@@ -34,7 +34,7 @@ pub use error_bound::{ErrorBound, LoadCaseErrors};
 pub use extreme_value::{ExtremeValueLaw, anderson_darling};
 pub use extreme_value_fit::{FEWEST_VALUES, FitStatus, SHAPE_RANGE, fit_extreme_value, fit_gumbel};
 pub use main_effects::{FEWEST_ROWS, MainEffects, VarianceShare, main_effects};
-pub use multiplicity::{best_set, best_set_at, holm};
+pub use multiplicity::{best_set, best_set_at, holm, holm_with_origins};
 pub use order_statistics::{
     CONFIDENCE, Percentile, PercentileRanks, PointStatus, failure_gate, percentile, percentile_at,
     percentile_ranks, percentile_ranks_at, point_rank, smallest_sample, wilks_sample,

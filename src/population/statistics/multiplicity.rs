@@ -7,16 +7,26 @@ use super::percentile_resamples::PercentileResamples;
 /// rejection among all of them no more likely than 5 %. Comparisons without a probability stay without.
 #[must_use]
 pub fn holm(p_values: &[Option<f64>]) -> Vec<Option<f64>> {
+    let adjusted = holm_with_origins(p_values).into_iter();
+    adjusted.map(|own| own.map(|(value, _)| value)).collect()
+}
+
+/// The same, each with the place of the probability that it is a multiple of: its own, or a smaller one.
+#[must_use]
+pub fn holm_with_origins(p_values: &[Option<f64>]) -> Vec<Option<(f64, usize)>> {
     let mut order: Vec<usize> = (0..p_values.len())
         .filter(|&place| p_values[place].is_some())
         .collect();
     let value = |place: usize| p_values[place].unwrap_or(1.0);
     order.sort_by(|&a, &b| value(a).total_cmp(&value(b)));
     let mut adjusted = vec![None; p_values.len()];
-    let mut largest: f64 = 0.0;
+    let mut largest = (0.0, 0);
     for (step, &place) in order.iter().enumerate() {
         let factor = (order.len() - step) as f64;
-        largest = largest.max((factor * value(place)).min(1.0));
+        let own = (factor * value(place)).min(1.0);
+        if step == 0 || own > largest.0 {
+            largest = (own, place);
+        }
         adjusted[place] = Some(largest);
     }
     adjusted

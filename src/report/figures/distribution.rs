@@ -3,7 +3,7 @@
 use super::{Figure, FigureName};
 use crate::population::statistics::{FitStatus, Quantity, TailLaw};
 use crate::report::plot::{Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend};
-use crate::report::words::{Quantities, load_with_unit, setting};
+use crate::report::words::{LengthUnit, load_with_unit, setting};
 use crate::report::{DistributionReport, GroupReport, ScenarioSummary, StudyReport};
 
 /// Lower end of the vertical axis.
@@ -30,7 +30,7 @@ pub(super) fn of_load(
         .iter()
         .find(|found| found.quantity == quantity)?;
     let scenario = &report.summary.scenarios[group.shown];
-    let units = Quantities::of(&report.summary);
+    let units = LengthUnit::of_summary(&report.summary);
     let (scale, x_title) = match quantity {
         Quantity::PeakAmplitudeM => (
             units.metres(),

@@ -7,7 +7,7 @@ use crate::population::statistics::{Percentile, SampleStatistics};
 use crate::report::plot::{
     Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend, nice_top,
 };
-use crate::report::words::{Quantities, load_words, percent_words, setting};
+use crate::report::words::{LengthUnit, load_words, percent_words, setting};
 use crate::report::{GroupReport, LoadChoice, ScenarioSummary, StudyReport};
 
 /// Lower end of the vertical axis.
@@ -144,7 +144,7 @@ pub(super) fn by_load(
         .iter()
         .map(|&scenario| &report.summary.scenarios[scenario])
         .collect();
-    let units = Quantities::of(&report.summary);
+    let units = LengthUnit::of_summary(&report.summary);
     let amplitude = name == FigureName::Amplitude;
     let scale = if amplitude { units.metres() } else { 1.0 };
     let sample = |load: &ScenarioSummary| -> SampleStatistics {

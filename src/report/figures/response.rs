@@ -2,7 +2,7 @@
 
 use super::{Figure, FigureName};
 use crate::report::plot::{Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend};
-use crate::report::words::{Quantities, load_with_unit, setting, share_words};
+use crate::report::words::{LengthUnit, load_with_unit, setting, share_words};
 use crate::report::{GroupReport, ResponseCurve, StudyReport, WheelCurves, WheelReport};
 
 /// Lower end of the vertical axis.
@@ -23,7 +23,7 @@ pub(super) fn of_wheel(
         FigureName::MedianResponse => ("median", "median", &wheels.median),
         _ => ("worst", "extreme", &wheels.worst),
     };
-    let units = Quantities::of(&report.summary);
+    let units = LengthUnit::of_summary(&report.summary);
     let metres = units.metres();
     let limits = [&wheel.stuck, &wheel.slide];
     let curves = || {
@@ -71,7 +71,7 @@ pub(super) fn of_wheel(
     let at = frame.at(wheel.peak_frequency_hz, wheel.peak_amplitude_m / metres);
     let words = format!(
         "delivered peak: {} at {:.2} Hz, blade {}",
-        units.amplitude(wheel.peak_amplitude_m),
+        units.length(wheel.peak_amplitude_m),
         wheel.peak_frequency_hz,
         wheel.peak_blade
     );
@@ -116,7 +116,7 @@ fn stretches(frame: &Frame<'_>, curve: &ResponseCurve, metres: f64) -> Vec<Vec<(
     stretches
 }
 
-fn caption(wheel: &WheelCurves, units: Quantities) -> String {
+fn caption(wheel: &WheelCurves, units: LengthUnit) -> String {
     let factor = wheel
         .amplification_factor
         .map_or_else(String::new, |factor| {
@@ -148,7 +148,7 @@ fn caption(wheel: &WheelCurves, units: Quantities) -> String {
         "Largest amplitude of any blade, harmonics {}, solved again for this figure. Delivered peak: {} at {:.2} Hz, \
          blade {}{factor}{error}.{limits}{lost}",
         wheel.harmonics,
-        units.amplitude(wheel.peak_amplitude_m),
+        units.length(wheel.peak_amplitude_m),
         wheel.peak_frequency_hz,
         wheel.peak_blade,
     )

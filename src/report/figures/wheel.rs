@@ -6,7 +6,7 @@ use super::{Figure, FigureName};
 use crate::report::plot::{
     Anchor, Axis, Frame, LegendEntry, SIDES, Scale, Svg, TOP, legend, nice_top,
 };
-use crate::report::words::{Quantities, setting, share_words};
+use crate::report::words::{LengthUnit, setting, share_words};
 use crate::report::{GroupReport, PairReport, StudyReport, WheelReport, WheelStateReport};
 
 /// Lower ends of the panels of amplitudes and deviations, and upper end of the second.
@@ -24,7 +24,7 @@ pub(super) fn blades(
     wheels: &WheelReport,
 ) -> Option<Figure> {
     let state = wheels.state.as_ref()?;
-    let units = Quantities::of(&report.summary);
+    let units = LengthUnit::of_summary(&report.summary);
     let amplitudes: Vec<f64> = state
         .amplitude_m
         .iter()

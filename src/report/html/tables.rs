@@ -7,8 +7,9 @@ use super::table::Table;
 use crate::identity;
 use crate::population::statistics::{FitStatus, Percentile, Quantity, SampleStatistics};
 use crate::report::plot::escaped;
-use crate::report::summary_text::four_digits;
-use crate::report::words::{Quantities, load_words, percent_words, setting, share_words};
+use crate::report::words::{
+    LengthUnit, four_digits, load_words, percent_words, setting, share_words,
+};
 use crate::report::{ErrorSpread, GroupReport, PercentileError, ScenarioSummary, StudyReport};
 
 /// What stands where there is nothing.
@@ -16,7 +17,7 @@ const NONE: &str = "–";
 
 /// Amplitudes of every load.
 pub(super) fn amplitudes(report: &StudyReport, group: &GroupReport) -> String {
-    let units = Quantities::of(&report.summary);
+    let units = LengthUnit::of_summary(&report.summary);
     let column = |name: &str| format!("{name}, {}", units.name());
     let by_speed = has_speeds(report, group);
     let mut header = vec!["load, N".to_owned()];
@@ -257,7 +258,7 @@ pub(super) fn errors(report: &StudyReport, group: &GroupReport) -> String {
 
 /// Percentiles of fitted laws beside those of the sample, at the load shown.
 pub(super) fn tails(report: &StudyReport, group: &GroupReport) -> String {
-    let units = Quantities::of(&report.summary);
+    let units = LengthUnit::of_summary(&report.summary);
     let mut table = Table::new(&["", "P95", "P99", "P99.9", "P99.99", "goodness of fit"]);
     for found in &group.distributions {
         let (quantity, unit) = match found.quantity {

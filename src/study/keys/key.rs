@@ -3,6 +3,7 @@
 use super::contact_keys::CONTACT_KEYS;
 use super::model_keys::MODEL_KEYS;
 use super::study_keys::{LEADING_KEYS, REDUCTION_KEYS, STUDY_KEYS};
+use super::terms::mentions;
 use crate::input::{KeySpec, nearest_key_names};
 
 /// Parameters that `[contact.variation]` can let vary.
@@ -49,6 +50,15 @@ pub fn keys_below(name: &str) -> Vec<KeySpec> {
     keys()
         .into_iter()
         .filter(|key| name.is_empty() || key.key == name || key.key.starts_with(&below))
+        .collect()
+}
+
+/// The keys whose name or meaning has every one of `words`, in any case of letters.
+#[must_use]
+pub fn keys_about(words: &str) -> Vec<KeySpec> {
+    keys()
+        .into_iter()
+        .filter(|key| mentions(&[&key.key, key.meaning], words))
         .collect()
 }
 

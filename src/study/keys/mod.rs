@@ -5,8 +5,10 @@ mod key;
 mod model_keys;
 mod schema;
 mod study_keys;
+mod terms;
 
 pub use crate::input::{KeySpec, Range, Value};
-pub use key::{keys, keys_below, nearest_keys};
+pub use key::{keys, keys_about, keys_below, nearest_keys};
 pub use schema::study_schema;
 pub(super) use study_keys::{EXCITATION_N, NORMAL_LOAD_N};
+pub use terms::{Term, terms_about};

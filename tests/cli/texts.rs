@@ -1,0 +1,221 @@
+//! What people read: widths, units, names and the floor of a probability.
+
+use serde_json::Value;
+
+use crate::blisk::{GOOD, Place};
+
+/// Friction at two loads between the linear limits, enough patterns for a P99.
+fn study() -> String {
+    GOOD.replace("patterns = 10", "patterns = 380").replace(
+        "[\"slide\", 50, \"stuck\"]",
+        "[\"slide\", 50, 100, \"stuck\"]",
+    )
+}
+
+/// A finished study in `results/small`.
+fn finished(study: &str) -> Place {
+    let place = Place::with(study);
+    let run = place.run(&["run", "study.toml"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    place
+}
+
+fn output(place: &Place, arguments: &[&str]) -> String {
+    let ended = place.run(arguments);
+    assert_eq!(ended.code, 0, "{arguments:?}: {}", ended.stderr);
+    ended.stdout
+}
+
+fn json(place: &Place, arguments: &[&str]) -> Value {
+    serde_json::from_str(&output(place, arguments)).expect("JSON")
+}
+
+fn widest(text: &str) -> usize {
+    text.lines()
+        .map(|line| line.chars().count())
+        .max()
+        .unwrap_or(0)
+}
+
+#[test]
+fn a_comparison_takes_the_best_load_as_baseline_marks_the_floor_of_p_and_fits_80_columns() {
+    let place = finished(&study());
+    let request = ["compare", "results/small", "--percentile", "99"];
+    let report = json(&place, &[&request[..], &["--json"]].concat());
+    assert_eq!(report["baseline_choice"], "lowest");
+    let amplitude = &report["quantities"][0];
+    let best = &amplitude["best"][0]["lowest"];
+    assert_eq!(*best, 2, "100 N is the best load of this wheel");
+    for quantity in report["quantities"].as_array().expect("two") {
+        let comparisons = quantity["comparisons"].as_array().expect("a list");
+        assert_eq!(comparisons.len(), 3);
+        for own in comparisons {
+            assert_eq!(own["baseline"]["scenario"], *best);
+            // No p is below what the resamples can show, and a bound is one that comes from there.
+            let p = own["percentile"]["p_value"].as_f64().expect("p");
+            let floor = own["percentile"]["p_value_floor"]
+                .as_f64()
+                .expect("a floor");
+            assert!(floor > 0.0 && p >= floor, "{p}, {floor}");
+            if p <= floor {
+                assert_eq!(own["adjusted_p_value_is_bound"], true);
+            }
+        }
+    }
+    let text = output(&place, &request);
+    assert!(widest(&text) <= 80, "{}\n{text}", widest(&text));
+    for words in [
+        "against 100 N per sector",
+        "lowest P99 of the peak amplitude; --baseline I",
+        "p <=: no resample has the other sign",
+    ] {
+        let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(flat.contains(words), "{words}\n{text}");
+    }
+    // Every load is worse than the best one in every resample: the p in the table is a bound.
+    let marked = text.lines().filter(|line| line.contains("<= 0.0"));
+    assert!(marked.count() >= 3, "{text}");
+    let named = json(
+        &place,
+        &[&request[..], &["--baseline", "0", "--json"]].concat(),
+    );
+    assert_eq!(named["baseline_choice"], "named");
+    let of_named = &named["quantities"][0]["comparisons"][0];
+    assert_eq!(of_named["baseline"]["scenario"], 0);
+    // Folders against each other fit as well.
+    let text = output(&place, &["compare", "results/small", "results/small"]);
+    assert!(widest(&text) <= 80, "{}\n{text}", widest(&text));
+    assert!(text.contains("against the same load in A"), "{text}");
+}
+
+#[test]
+fn amplitudes_have_one_unit_in_every_text_and_loads_are_named_per_sector() {
+    let place = finished(&study());
+    let stats = output(&place, &["stats", "results/small"]);
+    let unit = "µm";
+    assert!(stats.contains(&format!("tuned {unit}")), "{stats}");
+    let page = {
+        output(&place, &["report", "results/small", "--no-curves"]);
+        std::fs::read_to_string(place.path("results/small/report.html")).expect("a page")
+    };
+    assert!(page.contains(&format!("tuned, {unit}")));
+    for arguments in [
+        "compare results/small",
+        "stats results/small --tails",
+        "replay results/small --scenario 1 --pattern 3",
+        "optimum study.toml --between 50:200 --resolution 1",
+        "estimate study.toml --solves 120 --out results/estimate",
+        "response study.toml --pattern tuned --load 50 --frequencies 340:370:5 --out c.csv",
+    ] {
+        let text = output(&place, &arguments.split(' ').collect::<Vec<_>>());
+        assert!(text.contains(unit), "{arguments}\n{text}");
+        for other in [" um", " mm", " m ", "e-4", "e-5"] {
+            assert!(!text.contains(other), "{arguments}: {other}\n{text}");
+        }
+    }
+    assert!(stats.contains("at 100 N per sector"), "{stats}");
+    assert!(page.contains("per sector"));
+}
+
+#[test]
+fn linear_limits_show_no_share_of_slipping_pairs() {
+    let place = finished(&study());
+    let stats = output(&place, &["stats", "results/small"]);
+    for limit in ["slide", "stuck"] {
+        let row = stats
+            .lines()
+            .find(|line| line.trim_start().starts_with(limit));
+        let cells: Vec<&str> = row.expect("a row").split_whitespace().collect();
+        assert_eq!(cells[cells.len() - 2..], ["-", "-"], "{stats}");
+    }
+}
+
+#[test]
+fn check_says_the_study_in_words_and_remarks_on_what_is_unusual() {
+    let place = Place::with(GOOD);
+    let text = output(&place, &["check", "study.toml"]);
+    for words in [
+        "6 sectors of",
+        "normal law, standard deviation 3 %",
+        "macro_slip_1d: friction coefficient 0.3",
+        "50 N per sector (50 N per sector is 300 N on all 6)",
+        "engine order 2, 10 N on each sector: excites nodal diameter 2, travelling forwards",
+        "structural loss factor 0.002",
+        "harmonics 1, 3",
+        "10 patterns x 3 scenarios = 30 rows, 10 of them with friction",
+        "P99 will have no value: a 95 % interval needs 368 patterns",
+    ] {
+        let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(flat.contains(words), "{words}\n{text}");
+    }
+    assert!(widest(&text) <= 80, "{text}");
+    // Engine order 8 on 6 sectors, and the load of a wheel in the place of that of a sector.
+    let odd = GOOD
+        .replace("engine_orders = [2]", "engine_orders = [8]")
+        .replace("50, \"stuck\"", "240000, \"stuck\"");
+    place.write("odd.toml", &odd);
+    let report = json(&place, &["check", "odd.toml", "--json"]);
+    let echo = &report["echo"];
+    assert_eq!(echo["excitations"][0]["nodal_diameter"], 2);
+    assert_eq!(echo["loads"][1]["wheel_load_n"], 1_440_000.0);
+    let remarks: Vec<&str> = echo["remarks"]
+        .as_array()
+        .expect("remarks")
+        .iter()
+        .filter_map(|own| own["remark"].as_str())
+        .collect();
+    assert!(
+        remarks.contains(&"aliased_engine_order") && remarks.contains(&"large_load"),
+        "{remarks:?}"
+    );
+    let text = output(&place, &["check", "odd.toml"]);
+    assert!(
+        text.contains("engine order 8 on 6 sectors excites nodal diameter 2"),
+        "{text}"
+    );
+    // What is usual has no such remarks.
+    let usual = json(&place, &["check", "study.toml", "--json"]);
+    let few = |own: &Value| own["remark"] == "few_patterns";
+    assert!(
+        usual["echo"]["remarks"]
+            .as_array()
+            .expect("remarks")
+            .iter()
+            .all(few)
+    );
+}
+
+#[test]
+fn explain_finds_keys_and_terms_by_words_of_their_names_and_meanings() {
+    let place = Place::new();
+    let friction = output(&place, &["explain", "friction"]);
+    assert!(
+        friction.contains("contact.friction_coefficient\n"),
+        "{friction}"
+    );
+    // By a word of its meaning alone, in any case, and by several words.
+    let revolutions = output(&place, &["explain", "Revolutions"]);
+    assert!(
+        revolutions.contains("contact.normal_load.speed_rpm"),
+        "{revolutions}"
+    );
+    let both = output(&place, &["explain", "friction", "coefficient"]);
+    assert!(both.contains("contact.friction_coefficient\n") && !both.contains("contact.ring\n"));
+    // One word with two meanings.
+    let full = output(&place, &["explain", "full"]);
+    assert!(full.contains("full (column contact)") && full.contains("full (option --fidelity"));
+    assert_eq!(place.run(&["explain", "no-such-word"]).code, 2);
+}
+
+#[test]
+fn help_is_wrapped() {
+    let place = Place::new();
+    for command in [
+        "run", "optimum", "compare", "verify", "tradeoff", "estimate",
+    ] {
+        let text = output(&place, &[command, "--help"]);
+        assert!(widest(&text) <= 100, "{command}: {}", widest(&text));
+    }
+    let text = output(&place, &["--help"]);
+    assert!(widest(&text) <= 100, "{}", widest(&text));
+}
