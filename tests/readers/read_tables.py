@@ -4,7 +4,8 @@
 
 All four must see the same rows, columns, types, nulls and values; ids and counts must be Int32, work
 counts Int64, flags Boolean, names String and all other numbers Float64; and each file must carry the
-unit and the description of each of its columns and the digest of the study.
+unit and the description of each of its columns, in the file's metadata and in that of the Arrow field, and
+the digest of the study.
 """
 
 import json
@@ -57,6 +58,12 @@ def check_metadata(path, columns, digest):
     }
     rows = duckdb.sql(f"SELECT key, value FROM parquet_kv_metadata('{path}')").fetchall()
     by_duckdb = {bytes(key).decode(): bytes(value).decode() for key, value in rows}
+    schema = pyarrow.parquet.read_schema(path)
+    for column in columns:
+        field = {key.decode(): value.decode() for key, value in (schema.field(column).metadata or {}).items()}
+        check(field.get("unit") == by_arrow.get(f"unit.{column}"), path.name, "unit of the field", column)
+        check(field.get("description"), path.name, "no description of the field", column)
+        check(field["description"] == by_arrow.get(f"description.{column}"), path.name, "description of", column)
     for metadata, reader in ((by_arrow, "pyarrow"), (by_duckdb, "DuckDB")):
         check(metadata.get("blisk.study_digest") == digest, path.name, reader, "study digest")
         check(metadata.get("blisk.schema_version") == "1", path.name, reader, "schema version")

@@ -2,8 +2,8 @@
 
 use blisk::population::monte_carlo::{ResponseRow, Scenario};
 use blisk::population::table::{
-    Compression, CurveFormat, CurvePoint, RESPONSE_COLUMNS, ResponseReader, ResponseWriter,
-    TableHeader, write_curve,
+    ColumnSpec, Compression, CurveFormat, CurvePoint, RESPONSE_COLUMNS, ResponseReader,
+    ResponseWriter, TableHeader, write_curve,
 };
 use blisk::response::forced_response::ContactCondition;
 use blisk::response::harmonic_balance::Status;
@@ -156,4 +156,28 @@ fn a_curve_in_csv_reads_back_to_the_last_digit() {
         .expect("a number");
     assert_eq!(Some(amplitude), points[0].amplitude_m);
     assert_eq!(lines[2], "340.1,1,,diverged");
+}
+
+#[test]
+fn every_field_of_the_arrow_schema_has_the_unit_and_the_description_of_its_column() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("responses.parquet");
+    let header = header(Compression::Zstd);
+    let writer = ResponseWriter::create(&path, &scenarios(), &header, &[]);
+    let mut writer = writer.expect("a writer");
+    writer.write([row(0, 0), row(0, 1)]).expect("rows");
+    writer.finish().expect("a table");
+    let mut file = std::fs::File::open(&path).expect("a table");
+    let metadata = polars_parquet::read::read_metadata(&mut file).expect("a footer");
+    let schema = polars_parquet::read::infer_schema(&metadata).expect("an Arrow schema");
+    assert!(schema.len() > 20);
+    for field in schema.iter_values() {
+        let of_field = |column: &&ColumnSpec| field.name == column.name;
+        let column = RESPONSE_COLUMNS.iter().find(of_field).expect("a column");
+        let own = field.metadata.as_ref().expect("metadata of the field");
+        assert_eq!(own.get("unit").map(|unit| unit.as_str()), Some(column.unit));
+        let description = own.get("description").map(|text| text.as_str());
+        assert_eq!(description, Some(column.description));
+        assert!(!column.description.is_empty());
+    }
 }

@@ -1,6 +1,8 @@
 //! Columns of a table: name, type, unit and meaning, and their values in memory.
 
-use polars::prelude::{Column, DataFrame, DataType, NamedFrom, Schema, Series};
+use polars::prelude::{
+    ArrowField, ArrowSchema, Column, CompatLevel, DataFrame, DataType, NamedFrom, Schema, Series,
+};
 
 /// Type of a column; the set that pandas, R, `DuckDB` and MATLAB all read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,6 +100,18 @@ pub(super) fn polars_schema(columns: &[ColumnSpec]) -> Schema {
         .collect()
 }
 
+/// The Arrow schema of `columns`, each field with its unit and description.
+pub(super) fn described_schema(columns: &[ColumnSpec]) -> ArrowSchema {
+    let field = |column: &ColumnSpec| -> ArrowField {
+        let metadata = [("unit", column.unit), ("description", column.description)];
+        let metadata = metadata.map(|(key, value)| (key.into(), value.into()));
+        polars_type(column.kind)
+            .to_arrow_field(column.name.into(), CompatLevel::newest())
+            .with_metadata(metadata.into_iter().collect())
+    };
+    columns.iter().map(field).collect()
+}
+
 /// The frame of `values`, one per column; the reason if they do not fit together.
 pub(super) fn frame(columns: &[ColumnSpec], values: Vec<Values>) -> Result<DataFrame, String> {
     let height = values.first().map_or(0, Values::len);
@@ -131,7 +145,7 @@ pub(super) mod key {
         "contact",
         Text,
         "",
-        "full, or the linear limit stuck, slide or free",
+        "full: friction under the normal load; or the linear limit stuck, slide or free",
     );
     pub(in super::super) const ENGINE_ORDER: ColumnSpec =
         ColumnSpec::new("engine_order", Int32, "1", "Engine order of the excitation");

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use polars::prelude::{BatchedWriter, KeyValueMetadata, ParquetCompression, ParquetWriter};
+use polars_parquet::write::schema_to_metadata_key;
 use serde::{Deserialize, Serialize};
 
 use super::atomic::{AtomicFile, BufferedFile};
-use super::column::{Values, frame, key, polars_schema};
+use super::column::{Values, described_schema, frame, key, polars_schema};
 use super::{ColumnSpec, TableError};
 use crate::identity;
 use crate::population::monte_carlo::{LoadCaseName, Scenario};
@@ -78,6 +79,9 @@ impl TableHeader {
                 column.description.to_owned(),
             ));
         }
+        // In the place of the schema that the writer would make, which says nothing about the columns.
+        let schema = schema_to_metadata_key(&described_schema(columns));
+        pairs.extend(schema.value.map(|value| (schema.key, value)));
         KeyValueMetadata::from_static(pairs)
     }
 }
