@@ -106,7 +106,7 @@ impl fmt::Display for Warning {
                 largest_stated_error,
             } => write!(
                 f,
-                "{rows} of {planned} rows have a sampling or harmonic error beyond its tolerance \
+                "{rows} of {planned} rows state a sampling or harmonic error beyond its tolerance \
                  (stated errors up to {:.1} %); take solver.harmonics = \"auto\" with \
                  solver.rows_beyond_tolerance = \"resolve\", a larger set, or accept it by a larger \
                  solver.harmonic_tolerance",

@@ -105,6 +105,7 @@ fn value(command: &str, before: &str, word: &str) -> String {
         ("FIGURE", ..) => "amplitude",
         ("SHELL", ..) => "bash",
         ("KEY", ..) => "solver",
+        ("WORD", ..) => "friction",
         ("NAME", "--example", _) => "quickstart",
         ("START:STOP:COUNT", ..) => "300:400:3",
         ("LOW:HIGH", ..) => "45:60",

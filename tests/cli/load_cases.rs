@@ -545,7 +545,7 @@ fn a_trade_off_says_under_which_load_case_its_rows_are() {
     assert_eq!((names.len(), of_blade), (9 * settings, 3 * settings));
     let shown = trade(&both, "shown", &[]);
     for words in [
-        "load case blade: loads 50 N; load case disk: loads 50, 50 N",
+        "load case blade: loads 50 N per sector; load case disk: loads 50, 50 N per sector",
         "of its rows under load case disk: median",
     ] {
         assert!(shown.contains(words), "{words}: {shown}");

@@ -20,7 +20,7 @@ pub(super) fn amplitudes(report: &StudyReport, group: &GroupReport) -> String {
     let units = LengthUnit::of_summary(&report.summary);
     let column = |name: &str| format!("{name}, {}", units.name());
     let by_speed = has_speeds(report, group);
-    let mut header = vec!["load, N".to_owned()];
+    let mut header = vec!["load per sector, N".to_owned()];
     header.extend(by_speed.then(|| "load of, rpm".to_owned()));
     header.extend([
         column("tuned"),
@@ -72,7 +72,7 @@ pub(super) fn stresses(report: &StudyReport, group: &GroupReport) -> String {
         return String::new();
     };
     let by_speed = has_speeds(report, group);
-    let mut header = vec!["load, N"];
+    let mut header = vec!["load per sector, N"];
     header.extend(by_speed.then_some("load of, rpm"));
     header.extend(["tuned, MPa", "P50, MPa", "P95, MPa", "P99, MPa"]);
     let mut table = Table::new(&header);
@@ -94,7 +94,7 @@ pub(super) fn stresses(report: &StudyReport, group: &GroupReport) -> String {
 /// Amplification factors of every load, and what its contacts do.
 pub(super) fn factors(report: &StudyReport, group: &GroupReport) -> String {
     let mut table = Table::new(&[
-        "load, N",
+        "load per sector, N",
         "P50",
         "P95",
         "P99",
@@ -107,7 +107,10 @@ pub(super) fn factors(report: &StudyReport, group: &GroupReport) -> String {
         row.extend(percentiles(&scenario.amplification_factor, |factor| {
             format!("{factor:.3}")
         }));
-        row.extend([scenario.mean_slipping_fraction, scenario.separated_rows].map(optional_share));
+        // Pairs of a linear limit stick or slide by definition: no share of them is a result.
+        let friction = scenario.normal_load_n.is_some();
+        let shares = [scenario.mean_slipping_fraction, scenario.separated_rows];
+        row.extend(shares.map(|share| optional_share(share.filter(|_| friction))));
         table.row_chosen(index == group.shown, row);
     }
     table.html()
@@ -217,7 +220,7 @@ pub(super) fn errors(report: &StudyReport, group: &GroupReport) -> String {
     let percent = choice.map_or(95.0, |choice| choice.percent);
     let percentile = percent_words(percent);
     let header = [
-        "load, N".to_owned(),
+        "load per sector, N".to_owned(),
         "sampling".to_owned(),
         "harmonics".to_owned(),
         "stated".to_owned(),
