@@ -7,6 +7,7 @@ use blisk::population::table::{
 };
 use blisk::response::forced_response::ContactCondition;
 use blisk::response::harmonic_balance::Status;
+use polars::prelude::PlSmallStr;
 
 fn header(compression: Compression) -> TableHeader {
     TableHeader {
@@ -175,8 +176,8 @@ fn every_field_of_the_arrow_schema_has_the_unit_and_the_description_of_its_colum
         let of_field = |column: &&ColumnSpec| field.name == column.name;
         let column = RESPONSE_COLUMNS.iter().find(of_field).expect("a column");
         let own = field.metadata.as_ref().expect("metadata of the field");
-        assert_eq!(own.get("unit").map(|unit| unit.as_str()), Some(column.unit));
-        let description = own.get("description").map(|text| text.as_str());
+        assert_eq!(own.get("unit").map(PlSmallStr::as_str), Some(column.unit));
+        let description = own.get("description").map(PlSmallStr::as_str);
         assert_eq!(description, Some(column.description));
         assert!(!column.description.is_empty());
     }
