@@ -41,7 +41,6 @@ const NOT_RUN: [(&str, &str); 19] = [
         "cargo deny",
         "is a program of its own, and asks the network",
     ),
-    ("sed -i", "runs with the tutorial"),
     ("cd \"$PBS_O_WORKDIR\"", "is the scheduler's folder"),
     ("qsub", "needs PBS; the program's part of it is run"),
     ("array=$(qsub", "needs PBS"),
