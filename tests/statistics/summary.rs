@@ -115,7 +115,7 @@ fn the_best_load_is_the_lowest_and_says_whether_it_is_enclosed() {
         "slide",
         "200.0",
         "lowest P95 amplitude",
-        "at load 200\n",
+        "at 200 N per sector\n",
     ] {
         assert!(text.contains(fragment), "{fragment} in\n{text}");
     }
