@@ -68,11 +68,12 @@ fn add_folder(
 
 fn content_of(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut content = std::fs::read(path)?;
+    if !content.contains(&b'\r') {
+        return Ok(content);
+    }
     let ends_line = |place: usize| content[place..].starts_with(b"\r\n");
     let kept: Vec<usize> = (0..content.len()).filter(|&at| !ends_line(at)).collect();
-    if kept.len() < content.len() {
-        content = kept.into_iter().map(|place| content[place]).collect();
-    }
+    content = kept.into_iter().map(|place| content[place]).collect();
     Ok(content)
 }
 

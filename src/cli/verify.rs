@@ -227,7 +227,7 @@ fn in_words(repaired: &Repair, results: &Path) -> Vec<String> {
     }
     lines.push(match &repaired.outcome {
         None if lines.is_empty() => format!("{}: no file is damaged", results.display()),
-        None => "`blisk run` solves its rows again, with the others that are missing".to_owned(),
+        None => "`blisk run` solves the rows that are missing; a table of another command is written by that again".to_owned(),
         Some(outcome) if repaired.different.is_empty() => format!(
             "solved {} rows again, reused {}; every table is the same bytes as before",
             outcome.rows_solved, outcome.rows_reused

@@ -8,12 +8,13 @@ use serde_json::Value;
 use super::compare::{HALF_ERROR, best_loads};
 use super::report_wheels::solve_wheels;
 use super::{EngineSource, PipelineError, ResultColumns, ScenarioColumns, StoredStudy, summarise};
+use crate::identity;
 use crate::population::monte_carlo::{LoadCaseName, ResponseRow};
 use crate::population::statistics::{
     CONFIDENCE, DistributionBand, FitStatus, Quantity, RESAMPLES, TailLaw, fit_extreme_value,
     fit_tails, percentile_at, smallest_sample,
 };
-use crate::population::table::{AccuracyLadder, ResponseReader};
+use crate::population::table::{AccuracyLadder, Manifest, ResponseReader, TableError};
 use crate::report::{
     AccuracyTrials, CommonErrors, ComparedScenario, DistributionReport, ErrorRows, GroupReport,
     LoadChoice, Provenance, ScenarioErrors, StudyReport, Wheels,
@@ -58,10 +59,11 @@ pub fn report(
         add_wheels(request, source, &columns, &mut groups)?;
     }
     let manifest = columns.manifest;
+    let accuracy_ladder = ladder_of(&request.results, &manifest)?;
     Ok(StudyReport {
         summary,
         groups,
-        accuracy_ladder: AccuracyLadder::read(&request.results)?,
+        accuracy_ladder,
         accuracy_trials: AccuracyTrials::from_choice(&manifest.chosen["accuracy"]),
         provenance: Provenance {
             version: manifest.version,
@@ -73,6 +75,22 @@ pub fn report(
             chosen: manifest.chosen,
         },
     })
+}
+
+/// The measured trade-off, which has to be of the build that solved the rows.
+fn ladder_of(results: &Path, manifest: &Manifest) -> Result<Option<AccuracyLadder>, TableError> {
+    let ladder = AccuracyLadder::read(results)?;
+    match ladder {
+        Some(ladder) if ladder.build != manifest.build => Err(TableError::Damaged {
+            path: results.join("tradeoff.parquet"),
+            reason: format!(
+                "build {} measured it, and build {} solved the rows; `blisk tradeoff` measures it anew, or remove it",
+                identity::named(&ladder.build),
+                identity::named(&manifest.build)
+            ),
+        }),
+        ladder => Ok(ladder),
+    }
 }
 
 /// Errors of the rows of every scenario.

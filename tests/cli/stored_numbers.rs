@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use blisk::study::{ReducedEngineSource, ReportRequest, report};
 
 use crate::blisk::{GOOD, Place};
+use crate::builds::forge;
 
 const RESULTS: &str = "results/small";
 
@@ -235,6 +236,16 @@ fn flip_reported(place: &Place, bits: usize) -> usize {
 fn a_flipped_bit_of_any_file_that_a_report_reads_is_found() {
     let place = with_tradeoff();
     assert_eq!(flip_reported(&place, 25), 250);
+    let noted = place.path(RESULTS).join("checksums.json");
+    let before = std::fs::read(&noted).expect("read");
+    forge(&noted, |value| {
+        value["tables"]["tradeoff.parquet"]["build"] = "another".into();
+    });
+    let mixed = place.run(&["report", RESULTS, "--no-curves"]);
+    assert_eq!(mixed.code, 8, "{}", mixed.stderr);
+    let wanted = "build another measured it";
+    assert!(mixed.stderr.contains(wanted), "{}", mixed.stderr);
+    std::fs::write(&noted, before).expect("restored");
     let path = place.path(RESULTS).join("tradeoff.parquet");
     let content = std::fs::read(&path).expect("read");
     let mut flipped = content.clone();

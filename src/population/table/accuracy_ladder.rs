@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::TableError;
 use super::column::{ColumnKind, ColumnSpec};
 use super::reader::TableReader;
-use super::side_tables::check_side_table;
+use super::side_tables::{SideTable, check_side_table};
 
 use ColumnKind::{Boolean, Float64, Int32, String as Text};
 
@@ -79,6 +79,8 @@ impl MeasuredSetting {
 pub struct AccuracyLadder {
     /// Digest of the study that it was measured on.
     pub study_digest: String,
+    /// Identity of the build that measured it.
+    pub build: String,
     /// The settings, in the order of the table.
     pub settings: Vec<MeasuredSetting>,
 }
@@ -89,9 +91,9 @@ impl AccuracyLadder {
     /// # Errors
     /// The file cannot be read, or is not as it was written.
     pub fn read(results: &Path) -> Result<Option<Self>, TableError> {
-        if !check_side_table(results, TRADEOFF)? {
+        let Some(SideTable { build, .. }) = check_side_table(results, TRADEOFF)? else {
             return Ok(None);
-        }
+        };
         let path = results.join(TRADEOFF);
         let table = TableReader::open(&path, COLUMNS)?;
         let rows = table.read(0, table.rows())?;
@@ -123,6 +125,7 @@ impl AccuracyLadder {
             .collect();
         Ok(Some(Self {
             study_digest: table.study_digest().unwrap_or_default().to_owned(),
+            build,
             settings,
         }))
     }
@@ -175,6 +178,7 @@ mod tests {
         let ladder = AccuracyLadder::read(folder.path()).expect("a table");
         let ladder = ladder.expect("a ladder");
         assert_eq!(ladder.study_digest, "d");
+        assert_eq!(ladder.build, crate::identity::BUILD);
         let first = &ladder.settings[0];
         assert_eq!(
             (first.role.as_str(), first.samples_per_period),

@@ -118,7 +118,7 @@ fn wrong_of(index: usize, entry: &ScenarioEntry) -> Option<String> {
     numbers.into_iter().find_map(|(name, value, most)| {
         let value = value.filter(|value| !(0.0..=most).contains(value))?;
         Some(format!(
-            "{name} of scenario {index} is {value}; accepted: 0 to {most:e}"
+            "{name} of scenario {index} is {value:e}; accepted: 0 to {most:e}"
         ))
     })
 }

@@ -126,17 +126,21 @@ pub fn write_side_table(
     discard(results)
 }
 
-/// Checks the table `name` of the folder `results` against its digest; false if there is no such table.
+/// Checks the table `name` of the folder `results` against its digest; what is noted of it, or none if there is no
+/// such table.
 ///
 /// # Errors
 /// Its digest is not noted or another, or a file cannot be read.
-pub(super) fn check_side_table(results: &Path, name: &str) -> Result<bool, TableError> {
+pub(super) fn check_side_table(
+    results: &Path,
+    name: &str,
+) -> Result<Option<SideTable>, TableError> {
     let path = results.join(name);
     if !is_file(&path)? {
-        return Ok(false);
+        return Ok(None);
     }
-    match SideTables::read(results)?.tables.get(name) {
-        Some(table) => table.check(&path).map(|()| true),
+    match SideTables::read(results)?.tables.remove(name) {
+        Some(table) => table.check(&path).map(|()| Some(table)),
         None => Err(TableError::damaged(&path, NOT_NOTED)),
     }
 }
