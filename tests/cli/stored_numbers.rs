@@ -367,7 +367,9 @@ fn rebuilt() -> PathBuf {
     let (old, new) = CHANGED;
     assert!(text.contains(old), "{old}");
     std::fs::write(&source, text.replacen(old, new, 1)).expect("written");
-    let status = std::process::Command::new(env!("CARGO"))
+    let cargo = Path::new(env!("CARGO"));
+    let status = std::process::Command::new(cargo)
+        .env("RUSTC", cargo.with_file_name("rustc"))
         .args(["build", "--release", "--locked"])
         .current_dir(&copy)
         .env("CARGO_TARGET_DIR", copy.join("target"))
@@ -399,6 +401,11 @@ fn copy_all(from: &Path, to: &Path, wanted: &dyn Fn(&str) -> bool) {
             copy_all(&path, &target, &|_| true);
         } else {
             std::fs::copy(&path, &target).expect("copied");
+            // Cargo tells by the times whether anything has to be compiled again.
+            let written = std::fs::metadata(&path).and_then(|found| found.modified());
+            let copied = std::fs::File::options().write(true).open(&target);
+            let dated = copied.and_then(|copied| copied.set_modified(written?));
+            dated.expect("a time");
         }
     }
 }
