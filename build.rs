@@ -2,7 +2,8 @@
 //!
 //! Covered: every file below `src/`, `build.rs`, `Cargo.toml`, `Cargo.lock`, the features, the optimisation level, the
 //! target with its features, and what `rustc -vV` says. Paths count relative to the package and a line may end either
-//! way, so that the same sources in another folder are the same build. Documentation and tests are not covered.
+//! way, so that the same sources in another folder are the same build. Documentation, tests and the examples that
+//! `blisk init` writes are not covered: no number is calculated from them.
 //!
 //! The commit is no part of the digest. It is one whose covered files are those of this build, which stays true when
 //! later commits leave these files alone; so nothing of `.git` has to be watched, and a commit costs no compilation.

@@ -349,7 +349,7 @@ fn rebuilt() -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let copy = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rebuilt");
     let _ = std::fs::remove_dir_all(&copy);
-    for folder in ["src", "benches", "studies"] {
+    for folder in ["src", "benches", "studies", "tests/data"] {
         copy_all(&root.join(folder), &copy.join(folder), &|_| true);
     }
     for file in ["build.rs", "Cargo.toml", "Cargo.lock", "README.md"] {
@@ -454,4 +454,6 @@ fn a_rebuilt_program_with_a_changed_constant_extends_no_folder_of_this_one() {
     assert_eq!(models.count(), 2);
     let back = place.run(&["run", "study.toml"]);
     assert_eq!(back.code, 9, "{}", back.stderr);
+    let copy = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rebuilt");
+    std::fs::remove_dir_all(copy).expect("removed");
 }
