@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod links;
+mod long_tests;
 mod paths;
 
 use std::path::Path;
