@@ -14,6 +14,7 @@ use std::time::Instant;
 use super::compare::{best_loads, same_patterns};
 use super::load_search::{LoadRange, four_digits};
 use super::result_columns::sorted_values;
+use super::results_folder::ResultsFolder;
 use super::solved_loads::{
     Holding, SolvedLoad, cpu_s_per_row, folders_of_loads, solved_loads, study_at,
 };
@@ -179,6 +180,8 @@ impl Search<'_> {
             if !self.range.contains(normal_load_n) || self.knows(normal_load_n) {
                 continue;
             }
+            // Takes away what a search that was killed left there.
+            drop(ResultsFolder::open(&folder)?);
             if let Holding::Loads(loads) = solved_loads(study, &folder)? {
                 for load in loads {
                     taken.push(format!("{} N", load.normal_load_n));
