@@ -30,16 +30,19 @@ fn bytes(place: &Place, results: &str) -> Vec<Vec<u8>> {
     TABLES.map(read).to_vec()
 }
 
-/// Runs the study into `results` with the call `number` of `calls` of every thread failing, after
-/// `ready` undisturbed patterns; false if there was no such call.
-fn run_with_fault(place: &Place, results: &str, calls: (&str, &str), number: usize) -> bool {
+/// Which calls fail: the one of that number of every thread, or from that number on all of them.
+const LASTING: [&str; 2] = ["", "+"];
+
+/// Runs the study into `results` with the calls `when` of `calls` of every thread failing; false if there was no such
+/// call.
+fn run_with_fault(place: &Place, results: &str, calls: (&str, &str), when: &str) -> bool {
     let (calls, error) = calls;
     let log = place.path("strace.log");
     let output = Command::new("strace")
         .args(["-f", "--seccomp-bpf", "-o"])
         .arg(&log)
         .arg(format!("--trace={calls}"))
-        .arg(format!("--inject={calls}:error={error}:when={number}"))
+        .arg(format!("--inject={calls}:error={error}:when={when}"))
         .arg(env!("CARGO_BIN_EXE_blisk"))
         .args(["run", "study.toml", "--threads", "1", "--out", results])
         .current_dir(place.path("."))
@@ -62,7 +65,7 @@ fn run_with_fault(place: &Place, results: &str, calls: (&str, &str), number: usi
             words.contains(results) || hit.iter().any(|line| is_of_message(line, &traced)),
             "{hit:?}: {words}"
         ),
-        code => panic!("{calls} {number}: {code:?}: {words}{hit:?}"),
+        code => panic!("{calls} {when}: {code:?}: {words}{hit:?}"),
     }
     true
 }
@@ -88,13 +91,17 @@ fn fail_in_turn(stride: usize) -> usize {
     assert_eq!(run.code, 0, "{}", run.stderr);
     let expected = bytes(&place, "undisturbed");
     let mut faults = 0;
-    for calls in CALLS {
+    let kinds = CALLS
+        .iter()
+        .flat_map(|calls| LASTING.map(|lasting| (*calls, lasting)));
+    for (calls, lasting) in kinds {
         for number in (1..).step_by(stride) {
-            let hit = run_with_fault(&place, "out", calls, number);
+            let when = format!("{number}{lasting}");
+            let hit = run_with_fault(&place, "out", calls, &when);
             let run = place.run(&["run", "study.toml", "--out", "out"]);
-            assert_eq!(run.code, 0, "{calls:?} {number}: {}", run.stderr);
-            assert!(bytes(&place, "out") == expected, "{calls:?} {number}");
-            assert!(!leftovers(&place.path("out")), "{calls:?} {number}");
+            assert_eq!(run.code, 0, "{calls:?} {when}: {}", run.stderr);
+            assert!(bytes(&place, "out") == expected, "{calls:?} {when}");
+            assert!(!leftovers(&place.path("out")), "{calls:?} {when}");
             std::fs::remove_dir_all(place.path("out")).expect("removed");
             if !hit {
                 break;
