@@ -1,7 +1,7 @@
 //! Runs the binary in a folder of its own.
 
 use std::path::PathBuf;
-use std::process::Command;
+use std::process::{Child, Command, Stdio};
 
 /// What a command came to.
 pub struct Ended {
@@ -82,6 +82,19 @@ impl Place {
         std::fs::write(self.path(name), content).expect("write");
     }
 
+    /// A command that goes on by itself. Whoever runs the tests may ignore signals, which a child would inherit.
+    pub fn start(&self, arguments: &[&str]) -> Child {
+        Command::new("env")
+            .arg("--default-signal=INT,TERM,HUP,USR1")
+            .arg(env!("CARGO_BIN_EXE_blisk"))
+            .args(arguments)
+            .current_dir(self.folder.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the binary starts")
+    }
+
     pub fn run(&self, arguments: &[&str]) -> Ended {
         let output = Command::new(env!("CARGO_BIN_EXE_blisk"))
             .args(arguments)
@@ -93,5 +106,24 @@ impl Place {
             stdout: String::from_utf8(output.stdout).expect("UTF-8"),
             stderr: String::from_utf8(output.stderr).expect("UTF-8"),
         }
+    }
+}
+
+/// Sends the signal of this name; false if the command has ended already.
+pub fn signal(child: &Child, name: &str) -> bool {
+    Command::new("sh")
+        .args(["-c", &format!("kill -{name} {} 2>/dev/null", child.id())])
+        .status()
+        .expect("a shell")
+        .success()
+}
+
+/// Waits for the end of a command; a signal has code -1.
+pub fn ended(child: Child) -> Ended {
+    let output = child.wait_with_output().expect("it ends");
+    Ended {
+        code: output.status.code().unwrap_or(-1),
+        stdout: String::new(),
+        stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
     }
 }

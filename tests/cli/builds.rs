@@ -5,6 +5,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::blisk::{Ended, GOOD, Place};
+use crate::forgery::forge;
 
 const RESULTS: &str = "results/small";
 const OTHER: &str = "0123456789abcdef0123456789abcdef";
@@ -14,19 +15,6 @@ fn this_build(place: &Place) -> String {
     let version = place.run(&["--version"]).stdout;
     let line = version.lines().find_map(|line| line.strip_prefix("build "));
     line.expect("a build").to_owned()
-}
-
-/// Changes a file that ends in a checksum of itself, and makes that checksum fit again.
-pub fn forge(path: &Path, change: impl FnOnce(&mut Value)) {
-    let text = std::fs::read_to_string(path).expect("read");
-    let mut value: Value = serde_json::from_str(&text).expect("JSON");
-    value.as_object_mut().expect("an object").remove("checksum");
-    change(&mut value);
-    let text = serde_json::to_string_pretty(&value).expect("JSON");
-    let body = text.strip_suffix("\n}").expect("an object");
-    let checksum = blake3::hash(body.as_bytes()).to_hex();
-    let whole = format!("{body},\n  \"checksum\": \"{checksum}\"\n}}\n");
-    std::fs::write(path, whole).expect("written");
 }
 
 fn of_another_build(manifest: &Path) {

@@ -5,40 +5,10 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::blisk::{Ended, GOOD, Place};
+use crate::blisk::{Ended, GOOD, Place, ended, signal};
 
 /// Time after a signal within which a command has to end.
 const AT_ONCE: Duration = Duration::from_secs(5);
-
-/// Whoever runs the tests may ignore signals, which a child would inherit.
-fn start(place: &Place, arguments: &[&str]) -> Child {
-    Command::new("env")
-        .arg("--default-signal=INT,TERM,HUP,USR1")
-        .arg(env!("CARGO_BIN_EXE_blisk"))
-        .args(arguments)
-        .current_dir(place.path("."))
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the binary starts")
-}
-
-fn signal(child: &Child, name: &str) {
-    // It may have ended meanwhile.
-    let _ = Command::new("sh")
-        .args(["-c", &format!("kill -{name} {} 2>/dev/null", child.id())])
-        .status()
-        .expect("a shell");
-}
-
-fn ended(child: Child) -> Ended {
-    let output = child.wait_with_output().expect("it ends");
-    Ended {
-        code: output.status.code().unwrap_or(-1),
-        stdout: String::new(),
-        stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
-    }
-}
 
 /// A command, what has to be there before it, and the files that it makes.
 struct Job {
@@ -207,7 +177,7 @@ fn interrupted(job: &Job, wanted: u32, seed: u64) -> Duration {
         for _ in 0..3 {
             assert!(attempts < 20 * wanted, "{}: {done} of {attempts}", job.name);
             attempts += 1;
-            let mut child = start(&place, &job.command);
+            let mut child = place.start(&job.command);
             std::thread::sleep(whole.mul_f64(sequence.below_one()));
             if child.try_wait().expect("a child").is_some() {
                 // The machine may have been busier when the undisturbed run was timed.
@@ -216,6 +186,7 @@ fn interrupted(job: &Job, wanted: u32, seed: u64) -> Duration {
             }
             let (name, code) =
                 [("INT", 130), ("TERM", 143), ("KILL", -1)][(3.0 * sequence.below_one()) as usize];
+            // It may have ended meanwhile.
             signal(&child, name);
             let asked = Instant::now();
             let stopped = ended(child);
@@ -310,10 +281,11 @@ fn a_signal_ends_every_solving_command_in_time_though_one_row_takes_minutes() {
     ];
     let all = [&stores[..], &keeps_nothing[..]].concat();
     for (name, code) in [("INT", 130), ("TERM", 143)] {
-        let children: Vec<Child> = all.iter().map(|line| start(&place, &words(line))).collect();
+        let children: Vec<Child> = all.iter().map(|line| place.start(&words(line))).collect();
         std::thread::sleep(Duration::from_secs(2));
         let asked = Instant::now();
         for child in &children {
+            // It may have ended meanwhile.
             signal(child, name);
         }
         for (line, child) in all.iter().zip(children) {

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::blisk::{Ended, GOOD, Place};
+use crate::blisk::{Ended, GOOD, Place, ended, signal};
 
 const TABLES: [&str; 5] = [
     "responses.parquet",
@@ -33,26 +33,6 @@ fn undisturbed(place: &Place) -> (Vec<Vec<u8>>, Duration) {
     (bytes(place, "undisturbed"), began.elapsed())
 }
 
-/// Whoever runs the tests may ignore signals, which a child would inherit.
-fn start(place: &Place, arguments: &[&str]) -> Child {
-    Command::new("env")
-        .arg("--default-signal=INT,TERM,HUP,USR1")
-        .arg(env!("CARGO_BIN_EXE_blisk"))
-        .args(arguments)
-        .current_dir(place.path("."))
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the binary starts")
-}
-
-fn signal(child: &Child, name: &str) {
-    let sent = Command::new("sh")
-        .args(["-c", &format!("kill -{name} {}", child.id())])
-        .status();
-    assert!(sent.expect("a shell").success());
-}
-
 /// Waits until a part of `results` is stored.
 fn await_part(place: &Place, results: &str) {
     let parts = place.path(results).join("parts");
@@ -67,15 +47,6 @@ fn await_part(place: &Place, results: &str) {
     }
 }
 
-fn ended(child: Child) -> Ended {
-    let output = child.wait_with_output().expect("it ends");
-    Ended {
-        code: output.status.code().unwrap_or(-1),
-        stdout: String::new(),
-        stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
-    }
-}
-
 /// Kills a run of `study` at `kills` instants of its way, no two alike, then lets it end.
 fn killed(kills: u32, study: &str) {
     let place = Place::with(study);
@@ -87,7 +58,7 @@ fn killed(kills: u32, study: &str) {
         assert!(attempts < 10 * kills, "{done} kills of {attempts} attempts");
         let out = format!("killed{round}");
         for continued in 0..5 {
-            let mut child = start(&place, &["run", "study.toml", "--out", &out]);
+            let mut child = place.start(&["run", "study.toml", "--out", &out]);
             // A sequence that fills the time of a run evenly (golden ratio).
             let share = (f64::from(attempts) * 0.618_033_988_75).fract();
             attempts += 1;
@@ -135,9 +106,9 @@ fn a_signal_stores_what_is_solved_and_the_same_command_continues() {
     let place = Place::with(&study(400));
     let expected = undisturbed(&place).0;
     for (name, code) in [("INT", 130), ("TERM", 143), ("HUP", 143), ("USR1", 143)] {
-        let child = start(&place, &["run", "study.toml", "--out", name]);
+        let child = place.start(&["run", "study.toml", "--out", name]);
         await_part(&place, name);
-        signal(&child, name);
+        assert!(signal(&child, name));
         let asked = Instant::now();
         let stopped = ended(child);
         assert!(asked.elapsed() < Duration::from_secs(5), "{name}");
@@ -162,10 +133,10 @@ fn a_signal_stores_what_is_solved_and_the_same_command_continues() {
     assert!(!run.stderr.contains("reused 0"), "{}", run.stderr);
     assert!(bytes(&place, "TERM") == expected);
     // Once more ends it at once, whatever it is at.
-    let child = start(&place, &["run", "study.toml", "--out", "twice"]);
+    let child = place.start(&["run", "study.toml", "--out", "twice"]);
     await_part(&place, "twice");
-    signal(&child, "INT");
-    signal(&child, "INT");
+    assert!(signal(&child, "INT"));
+    assert!(signal(&child, "INT"));
     let asked = Instant::now();
     assert_eq!(ended(child).code, 130);
     assert!(asked.elapsed() < Duration::from_secs(2));
@@ -186,7 +157,7 @@ fn a_signal_that_is_ignored_from_the_start_stays_ignored() {
         .spawn()
         .expect("a shell");
     await_part(&place, "kept");
-    signal(&child, "HUP");
+    assert!(signal(&child, "HUP"));
     let run = ended(child);
     assert_eq!(run.code, 0, "{}", run.stderr);
 }
@@ -194,9 +165,9 @@ fn a_signal_that_is_ignored_from_the_start_stays_ignored() {
 #[test]
 fn a_living_process_keeps_others_out_and_a_killed_one_is_taken_over() {
     let place = Place::with(&study(400));
-    let mut child = start(&place, &["run", "study.toml", "--out", "out"]);
+    let mut child = place.start(&["run", "study.toml", "--out", "out"]);
     await_part(&place, "out");
-    signal(&child, "STOP");
+    assert!(signal(&child, "STOP"));
     let holder = format!("process {} on ", child.id());
     let refused = place.run(&["run", "study.toml", "--out", "out"]);
     assert_eq!(refused.code, 10, "{}", refused.stderr);
@@ -214,7 +185,7 @@ fn a_living_process_keeps_others_out_and_a_killed_one_is_taken_over() {
             .is_some_and(|rows| rows >= 24)
     );
     // A reader that is broken off leaves nothing behind.
-    let mut reader = start(&place, &["status", "out"]);
+    let mut reader = place.start(&["status", "out"]);
     reader.kill().expect("killed");
     reader.wait().expect("ended");
     child.kill().expect("killed");
@@ -240,10 +211,7 @@ fn shards_run_side_by_side_and_merge_to_the_tables_of_a_run_at_once() {
     let workers: Vec<Child> = (1..=3)
         .map(|number| {
             let shard = format!("{number}/3");
-            start(
-                &place,
-                &["run", "study.toml", "--out", "out", "--shard", &shard],
-            )
+            place.start(&["run", "study.toml", "--out", "out", "--shard", &shard])
         })
         .collect();
     for worker in workers {

@@ -8,6 +8,8 @@ mod commands;
 mod documentation;
 mod documented_commands;
 mod faults;
+#[path = "../shared/forgery.rs"]
+mod forgery;
 mod imports;
 mod interrupted_commands;
 mod interruption;

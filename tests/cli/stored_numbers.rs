@@ -6,22 +6,9 @@ use std::path::{Path, PathBuf};
 use blisk::study::{ReducedEngineSource, ReportRequest, report};
 
 use crate::blisk::{GOOD, Place};
-use crate::builds::forge;
+use crate::forgery::{Numbers, forge};
 
 const RESULTS: &str = "results/small";
-
-/// Numbers without pattern to the eye (Steele et al. 2014, `splitmix64`).
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) % bound as u64) as usize
-    }
-}
 
 /// Studies whose reduced models differ: other wheels, other loads, other settings.
 fn variants(count: usize) -> Vec<String> {

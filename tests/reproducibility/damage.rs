@@ -6,22 +6,10 @@ use blisk::population::table::TableError;
 use blisk::study::{PipelineError, RunOutcome, Study, repair, status_of_folder, summarise};
 
 use crate::folder::{Silent, bytes, copy, files, interrupt_in, reference, run_in};
+use crate::forgery::Numbers;
 use crate::mock_engine::{MockSource, study, study_text};
 
 const PATTERNS: u32 = 40;
-
-/// Numbers without pattern to the eye (Steele et al. 2014, `splitmix64`).
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) % bound as u64) as usize
-    }
-}
 
 /// How a file is damaged.
 #[derive(Debug, Clone, Copy)]

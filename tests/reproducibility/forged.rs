@@ -14,22 +14,10 @@ use blisk::study::{
 use serde_json::{Value, json};
 
 use crate::folder::{Silent, copy, files, interrupt_in, run_in};
+use crate::forgery::forge;
 use crate::mock_engine::{MockSource, study, study_text};
 
 const PATTERNS: u32 = 12;
-
-/// Changes a file that ends in a checksum of itself, and makes that checksum fit again.
-fn forge(path: &Path, change: impl FnOnce(&mut Value)) {
-    let text = std::fs::read_to_string(path).expect("read");
-    let mut value: Value = serde_json::from_str(&text).expect("JSON");
-    value.as_object_mut().expect("an object").remove("checksum");
-    change(&mut value);
-    let text = serde_json::to_string_pretty(&value).expect("JSON");
-    let body = text.strip_suffix("\n}").expect("an object");
-    let checksum = blake3::hash(body.as_bytes()).to_hex();
-    let whole = format!("{body},\n  \"checksum\": \"{checksum}\"\n}}\n");
-    std::fs::write(path, whole).expect("written");
-}
 
 /// A folder with results in `results`, finished or with parts, a study file, and files that are no concern of them.
 fn place(finished: bool) -> tempfile::TempDir {

@@ -6,6 +6,8 @@ mod damage;
 mod extension;
 mod folder;
 mod forged;
+#[path = "../shared/forgery.rs"]
+mod forgery;
 mod integrity;
 mod mock_engine;
 mod scale;

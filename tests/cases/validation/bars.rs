@@ -349,7 +349,6 @@ mod tests {
 
     /// The stored report with its bars; `.ci/run` thus fails by this test.
     #[test]
-    #[ignore = "until studies/validation/run.sh has made the report with its verdicts"]
     fn the_stored_report_holds_every_bar_that_is_not_listed_as_open() {
         let found = problems_of_folder(
             &package("results/validation"),
@@ -360,7 +359,6 @@ mod tests {
 
     /// The stored report with one bar missed on purpose: the check of a folder sees it.
     #[test]
-    #[ignore = "until studies/validation/run.sh has made the report with its verdicts"]
     fn a_bar_missed_on_purpose_in_the_stored_report_is_seen() {
         let folder = tempfile::tempdir().unwrap();
         let copied = |name: &str| {
