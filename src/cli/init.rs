@@ -55,6 +55,7 @@ pub(super) fn command(arguments: &InitArguments) -> Result<ExitStatus, Failure> 
     }
     let read = match written.len() - 1 {
         0 => String::new(),
+        1 => ", and beside it a file that it reads".to_owned(),
         files => format!(", and beside it {files} files that it reads"),
     };
     output::text(&format!(

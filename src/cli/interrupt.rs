@@ -1,7 +1,7 @@
 //! Signals: the first one has a command store what it has and end, the second ends it at once.
 //!
 //! Every command is watched. One that stores rows while it solves them gets time to do so; every other is
-//! ended where it stands, which costs nothing: files appear whole and at its end.
+//! ended where it stands, which costs nothing: a sector bundle gets its header last, any other file appears whole.
 
 use std::io;
 use std::sync::Arc;

@@ -1,5 +1,6 @@
 //! Progress of a run on stderr: a bar on a terminal, a plain line now and then elsewhere.
 
+use std::fmt::Display;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -46,6 +47,14 @@ impl RunProgress {
                 solved: 0,
             }),
             signals: signals_of_process(),
+        }
+    }
+
+    /// A message, above the bar if there is one.
+    fn say(&self, value: &impl Display) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| output::message(value)),
+            None => output::message(value),
         }
     }
 
@@ -114,7 +123,7 @@ impl Progress for RunProgress {
     }
 
     fn surrogate_times(&self, surrogate_s: f64, row_s: f64) {
-        output::message(&format!(
+        self.say(&format!(
             "measured: a row takes {:.1} ms of processor time, a surrogate {:.1} ms, {:.2} of a row",
             1e3 * row_s,
             1e3 * surrogate_s,
@@ -123,14 +132,11 @@ impl Progress for RunProgress {
     }
 
     fn cost(&self, cost: &ExpectedCost) {
-        match &self.bar {
-            Some(bar) => bar.suspend(|| output::message(cost)),
-            None => output::message(cost),
-        }
+        self.say(cost);
     }
 
     fn taken_over(&self, holder: &str) {
-        output::message(&format!("taken over from {holder}, which was broken off"));
+        self.say(&format!("taken over from {holder}, which was broken off"));
     }
 
     fn stop_requested(&self) -> bool {

@@ -8,9 +8,11 @@ use std::borrow::Cow;
 pub fn is_order(character: char) -> bool {
     match character {
         '\n' | '\t' => false,
-        '\u{200b}'..='\u{200f}'
+        '\u{ad}'
+        | '\u{61c}'
+        | '\u{200b}'..='\u{200f}'
         | '\u{2028}'..='\u{202e}'
-        | '\u{2066}'..='\u{2069}'
+        | '\u{2060}'..='\u{2069}'
         | '\u{feff}' => true,
         other => other.is_control(),
     }
@@ -50,8 +52,8 @@ mod tests {
         let plain = "a\tb\n24 blades, 3 µm – 95 %";
         assert_eq!(visible(plain), plain);
         assert_eq!(
-            visible("\u{1b}[2J\r\u{9b}31m\u{7f}\u{202e}"),
-            "\\u{1b}[2J\\u{d}\\u{9b}31m\\u{7f}\\u{202e}"
+            visible("\u{1b}[2J\r\u{9b}31m\u{7f}\u{202e}\u{61c}\u{2060}\u{ad}"),
+            "\\u{1b}[2J\\u{d}\\u{9b}31m\\u{7f}\\u{202e}\\u{61c}\\u{2060}\\u{ad}"
         );
     }
 }

@@ -1,6 +1,7 @@
 //! `blisk import` from outside: a bundle that a study reads, exit codes, JSON.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use blisk::model::sector::import::{IMPORT_TEMPLATES, import_keys, import_schema};
 
@@ -389,6 +390,23 @@ fn the_schema_of_import_files_accepts_all_there_are_and_the_guide_has_every_key(
         ];
         assert!(named.iter().any(|name| table.contains(name)), "{}", key.key);
     }
+}
+
+#[test]
+fn an_import_file_may_come_through_a_pipe() {
+    let place = Place::new();
+    let output = Command::new("sh")
+        .args([
+            "-c",
+            "printf 'code = \"calculix\"\\n' | \"$0\" import /dev/stdin --out out",
+        ])
+        .arg(env!("CARGO_BIN_EXE_blisk"))
+        .current_dir(place.path("."))
+        .output()
+        .expect("a shell");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(stderr.contains("sectors is missing"), "{stderr}");
+    assert!(!stderr.contains("code is missing"), "{stderr}");
 }
 
 #[test]

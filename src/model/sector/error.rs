@@ -468,7 +468,7 @@ pub enum ModelError {
     NoForce,
     /// The force is so small or large that powers of the response would vanish or overflow.
     #[error(
-        "force: the largest entry is {largest_n:e} N; accepted: 1e-30 to 1e30 N, times excitation.amplitude_n"
+        "force: the largest entry is {largest_n:e} N; accepted: 1e-30 to 1e30 N per newton of excitation.amplitude_n"
     )]
     ForceOutOfRange {
         /// Largest entry, N.

@@ -62,6 +62,13 @@ pub struct ObservedNode {
     pub node: usize,
 }
 
+impl ObservedNode {
+    /// Whether a bundle can hold the name: its CSV files have no quotes.
+    pub(super) fn is_name(name: &str) -> bool {
+        !name.is_empty() && name.trim() == name && !name.contains([',', '"', '\n', '\r'])
+    }
+}
+
 /// One cyclic sector, structure only: no contact springs, boundary conditions already applied.
 ///
 /// Both cyclic faces are present; the high face of sector n is the low face of sector n + 1.

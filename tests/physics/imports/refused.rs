@@ -159,6 +159,45 @@ fn import_files_are_refused_with_key_and_value() {
             "blade_elements = \"DISK\"",
             &["element 1 of the blade", "a brick of 8 nodes", "C3D20"],
         ),
+        (
+            "import.toml",
+            "blade_job = \"blade\"",
+            "blade_job = \"blade\"\nblade_elements = \"DISK\"",
+            &[
+                "blisk.blade_elements",
+                "also given; accepted: one of the two",
+            ],
+        ),
+        (
+            "import.toml",
+            "set = \"RING\"\n",
+            "set = \"RING\"\njob = \"ring\"\n",
+            &["ring.set", "also given; accepted: one of the two"],
+        ),
+        (
+            "import.toml",
+            "[contact]",
+            "[contact]\nnormal = [0, 0, 0]",
+            &["contact.normal", "the normal has no direction"],
+        ),
+        (
+            "import.toml",
+            "name = \"tip\"",
+            "name = \"tip, outer\"",
+            &["observe[0].name", "accepted: no comma"],
+        ),
+        (
+            "import.toml",
+            "node = 2\ncomponent",
+            "node = 2222\ncomponent",
+            &["force[0].node", "no mesh has node 2222"],
+        ),
+        (
+            "mesh",
+            "*NSET,NSET=LOW,GENERATE\n1,4",
+            "*NSET,NSET=LOW",
+            &["blisk.low_face", "the set is empty; accepted: a set with"],
+        ),
     ];
     assert_refused(&Small::calculix(), cases);
 }

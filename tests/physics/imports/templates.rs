@@ -127,8 +127,9 @@ fn every_key(left_out: &str) -> String {
         match key.value {
             Value::Table => writeln!(text, "[{}]", key.key).unwrap(),
             Value::Tables => writeln!(text, "[[{}]]", key.key).unwrap(),
-            // Either a node or a set.
+            // Either a node or a set; either sets or files of their own for blade and ring.
             _ if key.key == left_out || name == "node" => {}
+            _ if ["blisk.blade_elements", "ring.set"].contains(&key.key.as_str()) => {}
             value => writeln!(text, "{name} = {}", sample(value)).unwrap(),
         }
     }

@@ -79,6 +79,22 @@ fn a_name_that_csv_cannot_hold_is_refused() {
     assert!(error.to_string().contains("tip, leading"), "{error}");
 }
 
+/// Files of two models never read as one: the header goes before the first file of the new model is written.
+#[test]
+fn a_bundle_that_was_replaced_in_part_is_refused() {
+    let model = bundle::read(&data("wheel8")).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    bundle::write(&model, directory.path()).unwrap();
+    let mass = directory.path().join("M.mtx");
+    std::fs::remove_file(&mass).unwrap();
+    std::fs::create_dir(&mass).unwrap();
+    bundle::write(&model, directory.path()).unwrap_err();
+    std::fs::remove_dir(&mass).unwrap();
+    std::fs::write(&mass, "").unwrap();
+    let error = bundle::read(directory.path()).unwrap_err().to_string();
+    assert!(error.contains("model.toml"), "{error}");
+}
+
 #[test]
 fn a_missing_bundle_is_named() {
     let error = bundle::read(&data("no-such-wheel")).unwrap_err();

@@ -2,16 +2,18 @@
 
 use std::fmt::Write as _;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use super::header::{FILE_NAME, Header};
 use super::read::{CONTACT, CYCLIC, DOFS, FORCE, OBSERVE};
 use crate::model::sector::error::ModelError;
 use crate::model::sector::matrix_market;
-use crate::model::sector::sector_model::{Body, SectorModel};
+use crate::model::sector::sector_model::{Body, ObservedNode, SectorModel};
 use crate::model::sector::validate::validate;
 
-/// Writes `model` as a bundle into `directory`, made if absent; files of the same names are replaced.
+/// Writes `model` as a bundle into `directory`, made if absent; files of the same names are replaced. The header
+/// goes first and comes last: a bundle that was not written to its end has none, and is refused.
 ///
 /// Reading the bundle gives the same model bit for bit.
 ///
@@ -22,7 +24,7 @@ pub fn write(model: &SectorModel, directory: &Path) -> Result<(), ModelError> {
     validate(model)?;
     for (index, observed) in model.observed.iter().enumerate() {
         let name = &observed.name;
-        if name.is_empty() || name.trim() != name || name.contains([',', '"', '\n', '\r']) {
+        if !ObservedNode::is_name(name) {
             return Err(ModelError::NameNotWritable {
                 index,
                 name: name.clone(),
@@ -34,6 +36,13 @@ pub fn write(model: &SectorModel, directory: &Path) -> Result<(), ModelError> {
         |source| ModelError::File { path, source }
     };
     fs::create_dir_all(directory).map_err(file_error(directory))?;
+    let old_header = directory.join(FILE_NAME);
+    match fs::remove_file(&old_header) {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            return Err(file_error(&old_header)(error));
+        }
+        _ => {}
+    }
     let header = Header::new(&model.name, model.sectors);
     let files = &header.files;
     for (matrix, comment, name) in [

@@ -15,6 +15,9 @@ const ELEMENT_FIELDS: usize = 11;
 /// Nodes on the first line of an element.
 const NODES_ON_FIRST_LINE: usize = 8;
 
+/// Largest width and repetition in a Fortran format: no line is longer than their product.
+const MOST_IN_FORMAT: usize = 64;
+
 struct Reader<'a> {
     source: &'a Source,
     lines: Vec<&'a str>,
@@ -90,7 +93,7 @@ impl<'a> Reader<'a> {
                 real_width = width;
             }
         }
-        if integers.0 == 0 || integers.0 > 64 || real_width > 64 {
+        if integers.0 == 0 || integers.0.max(integers.1).max(real_width) > MOST_IN_FORMAT {
             return Err(self.source.refuse(
                 self.at,
                 ImportProblem::MatrixKind {

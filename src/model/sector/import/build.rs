@@ -325,7 +325,7 @@ fn ground_ring(
 
 /// Nodes that a force or an observed point names: a node, or those of a set.
 fn named_nodes(runs: &[Run], node: Option<usize>, set: Option<&String>) -> Vec<usize> {
-    let run = |name: &String| runs.iter().find(|run| run.mesh.nodes_of(name).is_some());
+    let run = |name: &String| runs.iter().find(|run| !run.set(name).is_empty());
     match set.and_then(|name| Some((run(name)?, name))) {
         Some((run, name)) => {
             let nodes = run.set(name);
@@ -345,6 +345,12 @@ fn force(
     let mut sum: BTreeMap<usize, Complex64> = BTreeMap::new();
     for (index, table) in file.force.iter().enumerate() {
         let nodes = named_nodes(runs, table.node, table.set.as_ref());
+        if let Some(node) = table.node
+            && !runs.iter().any(|run| run.has_node(node))
+        {
+            let reason = format!("no mesh has node {node}; accepted: the number of a node");
+            return Err(file.refuse_value(&format!("force[{index}].node"), reason));
+        }
         let nodes: BTreeSet<usize> = nodes
             .into_iter()
             .map(|node| low_of_high.get(&node).copied().unwrap_or(node))

@@ -118,13 +118,16 @@ impl Reader<'_> {
             }
             return None;
         }
+        // A job of the blade's own has its own table.
+        let has_table = blisk.blade_job.is_some() && self.format == MatrixFormat::Calculix;
+        let of_blisk = blisk.dofs.as_ref().filter(|_| !has_table);
         Some(self.matrices(&Keys {
             prefix: "blisk.blade_",
             job: blisk.blade_job.as_ref(),
             stiffness: blisk.blade_stiffness.as_ref(),
             mass: None,
             has_mass: false,
-            dofs: blisk.blade_dofs.as_ref().or(blisk.dofs.as_ref()),
+            dofs: blisk.blade_dofs.as_ref().or(of_blisk),
             stiffness_name: blisk.blade_stiffness_name.as_ref(),
             mass_name: None,
         }))

@@ -125,9 +125,12 @@ const KINDS: &[Kind] = &[
 const BEGINNING: u64 = 1 << 20;
 
 /// What a file of a finite-element code is, and the command to type, where `path` is one and no import file;
-/// none for a file that cannot be read.
+/// none for a file that cannot be read, or can be read only once.
 #[must_use]
 pub fn foreign(path: &Path) -> Option<String> {
+    if !path.metadata().is_ok_and(|found| found.is_file()) {
+        return None;
+    }
     let mut bytes = Vec::new();
     File::open(path)
         .ok()?

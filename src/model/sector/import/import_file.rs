@@ -14,6 +14,7 @@ use super::tables::{
 };
 use crate::input::{Finding, Problem, SourceMap, check};
 use crate::model::sector::error::ModelError;
+use crate::model::sector::sector_model::ObservedNode;
 
 /// An import file with its formats decided, its numbers checked and its files named.
 #[derive(Debug)]
@@ -142,6 +143,35 @@ fn together(raw: &RawFile, problems: &mut Vec<(String, Problem)>) {
             "a table with the files of the ring, as there is a [contact]",
         )),
         _ => {}
+    }
+    let mut conflict = |key: String, reason: &str| {
+        let reason = reason.to_owned();
+        problems.push((key, Problem::Conflict { reason }));
+    };
+    if let Some(ring) = &raw.ring {
+        let has_files = ring.mesh.is_some() || ring.job.is_some() || ring.stiffness.is_some();
+        if ring.set.is_some() && has_files {
+            let reason = "files of the ring are also given; accepted: one of the two";
+            conflict("ring.set".to_owned(), reason);
+        }
+    }
+    let blade = &raw.blisk;
+    if blade.blade_elements.is_some()
+        && (blade.blade_job.is_some() || blade.blade_stiffness.is_some())
+    {
+        let reason = "matrices of the blade alone are also given; accepted: one of the two";
+        conflict("blisk.blade_elements".to_owned(), reason);
+    }
+    let normal = raw.contact.as_ref().and_then(|contact| contact.normal);
+    if normal.is_some_and(|normal| normal.iter().all(|&part| part == 0.0)) {
+        let reason = "the normal has no direction; accepted: one number at least that is not 0";
+        conflict("contact.normal".to_owned(), reason);
+    }
+    for (index, observed) in raw.observe.iter().enumerate() {
+        if !ObservedNode::is_name(&observed.name) {
+            let reason = "the name cannot be written to a bundle; accepted: no comma, quotes or line ends, no blank first or last";
+            conflict(format!("observe[{index}].name"), reason);
+        }
     }
     let forces = raw
         .force

@@ -82,6 +82,12 @@ impl Run {
         Ok(runs)
     }
 
+    /// Whether a node of the wheel stands in the mesh.
+    pub fn has_node(&self, node: usize) -> bool {
+        let own = node.checked_sub(self.offset);
+        own.is_some_and(|own| self.mesh.nodes.contains_key(&own))
+    }
+
     /// Nodes of a set by the numbers of the file; [`known_sets`] has found it.
     pub fn set(&self, name: &str) -> BTreeSet<usize> {
         self.mesh.nodes_of(name).unwrap_or_default()
@@ -226,8 +232,12 @@ fn known_sets(file: &ImportFile, runs: &[Run]) -> Result<(), ModelError> {
         if runs.iter().all(|run| run.mesh.nodes_of(name).is_none()) {
             let names = runs.iter().flat_map(|run| run.mesh.set_names());
             problems.push(unknown(file, key, name, "a set of", runs, names.collect()));
-        } else if key == "ring.set" && runs[0].set(name).is_empty() {
-            let reason = "the set is empty; accepted: the nodes or elements of the ring".to_owned();
+        } else if runs.iter().all(|run| run.set(name).is_empty()) {
+            let accepted = match key.as_str() {
+                "ring.set" => "the nodes or elements of the ring",
+                _ => "a set with nodes or elements",
+            };
+            let reason = format!("the set is empty; accepted: {accepted}");
             problems.push((key, Problem::Conflict { reason }));
         }
     }

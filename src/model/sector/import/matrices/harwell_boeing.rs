@@ -13,6 +13,9 @@ use crate::model::sector::import::source::{Problem, Source, real};
 use crate::model::sector::line_problem::LineProblem;
 use crate::model::sector::matrix_market::integer;
 
+/// Largest width and repetition in a Fortran format: no line is longer than their product.
+const MOST_IN_FORMAT: usize = 1000;
+
 /// Fields a line holds and their width, as a Fortran format says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Fields {
@@ -46,7 +49,8 @@ impl Fields {
             },
             width: width.parse().ok()?,
         };
-        (fields.per_line > 0 && fields.width > 0).then_some(fields)
+        let possible = 1..=MOST_IN_FORMAT;
+        (possible.contains(&fields.per_line) && possible.contains(&fields.width)).then_some(fields)
     }
 
     /// The field `index` of a line, without blanks; empty where the line is shorter.

@@ -224,7 +224,7 @@ impl<'a> Reader<'a> {
         let end = row
             .checked_add(count)
             .filter(|&end| row > 0 && end <= header.rows + 1);
-        if column == 0 || end.is_none() && header.kind <= 2 {
+        if column == 0 || row == 0 || end.is_none() && header.kind <= 2 {
             return Err(self.refuse(LineProblem::EntryOutside {
                 row,
                 column,
