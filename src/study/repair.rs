@@ -177,9 +177,14 @@ fn refuse_other_builds(
     tables: &BTreeMap<String, String>,
 ) -> Result<(), PipelineError> {
     let stored = match (manifest, records.first()) {
-        (Some(manifest), _) => &manifest.build,
-        (None, Some(record)) => &record.build,
-        (None, None) => return Ok(()),
+        (Some(manifest), _) => manifest.build.clone(),
+        (None, Some(record)) => record.build.clone(),
+        // An estimate that was interrupted has neither.
+        (None, None) => match PartHeader::read(results) {
+            Ok(Some(header)) => header.build,
+            Ok(None) | Err(TableError::Damaged { .. }) => return Ok(()),
+            Err(error) => return Err(error.into()),
+        },
     };
     let whole = || -> Result<bool, TableError> {
         Ok(manifest.is_some()
@@ -191,7 +196,7 @@ fn refuse_other_builds(
     }
     Err(PipelineError::DifferentBuild {
         folder: results.to_owned(),
-        stored: stored.clone(),
+        stored,
     })
 }
 
@@ -251,13 +256,14 @@ impl Repair {
     /// build `solved` the rows of the folder; the header lists what is left.
     fn parts(&mut self, results: &Path, solved: bool) -> Result<(), TableError> {
         let before = (self.set_aside.len(), self.missing.len());
-        let headed = match PartHeader::read(results) {
+        let build = match PartHeader::read(results) {
             Err(TableError::Damaged { path, .. }) => {
                 self.put(results, path)?;
-                false
+                None
             }
-            header => header?.is_some(),
+            header => header?.map(|header| header.build),
         };
+        let headed = build.is_some();
         for part in part_files(results)? {
             match part.check() {
                 Err(TableError::Damaged { path, .. }) => self.put_or_miss(results, path)?,
@@ -272,7 +278,7 @@ impl Repair {
             }
         }
         if without_header || before != (self.set_aside.len(), self.missing.len()) {
-            renew_header(results)?;
+            renew_header(results, build)?;
         }
         Ok(())
     }

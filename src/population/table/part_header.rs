@@ -197,13 +197,15 @@ pub fn check_parts(results: &Path) -> Result<(), TableError> {
     Err(TableError::damaged(&first, NOT_LISTED))
 }
 
-/// Makes the header of parts anew, from the names and contents of those that are there, which this build has solved.
+/// Makes the header of parts anew, from the names and contents of those that are there, which `build` has solved; none:
+/// this one.
 ///
 /// # Errors
 /// A file cannot be read or written.
-pub fn renew_header(results: &Path) -> Result<(), TableError> {
+pub fn renew_header(results: &Path, build: Option<String>) -> Result<(), TableError> {
     let folder = results.join(PARTS);
     let mut header = PartHeader::new();
+    header.build = build.unwrap_or(header.build);
     for path in names_in_parts(results)? {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         if row_file(&folder, &name).is_some_and(|part| part.check().is_ok()) {
