@@ -30,8 +30,8 @@ use crate::population::statistics::{
     Accounting, EstimateTarget, Population, Quantity, SurrogateWorth, TwoPhaseSample, pilot_places,
 };
 use crate::population::table::{
-    EstimateRow, MANIFEST, PartSink, RowSchema, RowStore, TableError, TableHeader,
-    write_atomically, write_estimate, write_sample,
+    EstimateRow, MANIFEST, PartSink, RowSchema, RowStore, TableHeader, write_atomically,
+    write_estimate, write_sample,
 };
 use crate::report::{EstimateReport, ScenarioEstimate};
 use crate::response::mistuning::PatternSource;

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::time::Duration;
 
-use blisk::population::table::{Manifest, RunState, TableError, write_estimate};
+use blisk::population::table::{Manifest, PartHeader, RunState, TableError, write_estimate};
 use blisk::response::harmonic_balance::Status;
 use blisk::study::{
     PipelineError, Progress, RunOutcome, RunRequest, Study, integrity, repair, run,
@@ -374,24 +375,21 @@ struct Damaging<'a> {
 
 impl Progress for Damaging<'_> {
     fn row(&self, _status: Status) {
-        if !self.folder.join("parts").is_dir() {
-            return;
-        }
-        let parts = files(&self.folder.join("parts"));
-        let Some(part) = parts.iter().find(|path| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            name.starts_with("part-")
-        }) else {
+        // Parts are written beside the rows that are solved meanwhile.
+        std::thread::sleep(Duration::from_millis(2));
+        let header = PartHeader::read(self.folder).expect("whole");
+        let Some(name) = header.and_then(|header| header.parts.into_iter().next()) else {
             return;
         };
+        let part = self.folder.join("parts").join(name);
         let mut seen = self.seen.lock().expect("no panic");
         if seen.is_some() {
             return;
         }
-        let content = std::fs::read(part).expect("read");
+        let content = std::fs::read(&part).expect("read");
         let mut damaged = content.clone();
         damaged[content.len() / 3] ^= 1;
-        std::fs::write(part, damaged).expect("written");
+        std::fs::write(&part, damaged).expect("written");
         let status = status_of_folder(self.folder);
         *seen = Some(matches!(
             status,
