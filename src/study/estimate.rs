@@ -30,8 +30,8 @@ use crate::population::statistics::{
     Accounting, EstimateTarget, Population, Quantity, SurrogateWorth, TwoPhaseSample, pilot_places,
 };
 use crate::population::table::{
-    EstimateRow, MANIFEST, PartSink, RowSchema, RowStore, TableError, TableHeader, digest_file,
-    write_atomically, write_estimate, write_estimate_rows,
+    EstimateRow, MANIFEST, PartSink, RowSchema, RowStore, TableHeader, write_atomically,
+    write_estimate, write_sample,
 };
 use crate::report::{EstimateReport, ScenarioEstimate};
 use crate::response::mistuning::PatternSource;
@@ -107,8 +107,7 @@ pub fn estimate(
         rows.extend(solved);
     }
     progress.stage(Stage::Tables);
-    let table = results.join("sample.parquet");
-    write_estimate_rows(&table, &rows, &work.header)?;
+    let sample_digest = write_sample(results, &rows, &work.header)?;
     let counts = RowCounts {
         solved: scenarios.iter().map(|found| found.rows.planned()).sum(),
         reused: 0,
@@ -126,11 +125,7 @@ pub fn estimate(
         inputs: digest.inputs.clone(),
         reduction: facts.reduction,
         chosen: facts.chosen,
-        sample_digest: digest_file(&table).map_err(|source| TableError::Io {
-            action: "read",
-            path: table.clone(),
-            source,
-        })?,
+        sample_digest,
         scenarios,
     };
     write_estimate(results, &report)?;

@@ -114,6 +114,7 @@ fn status_of(folder: &Path, manifest: &Manifest) -> Result<FolderStatus, Pipelin
     if manifest.state == RunState::Finished && announced.is_some() {
         // A finished study that is being extended: its new rows are in the parts.
         for part in part_files(folder)? {
+            part.check()?;
             count_rows(&part.path, &mut rows)?;
         }
     }

@@ -9,6 +9,7 @@ use super::PipelineError;
 use super::lock::holder;
 use super::merge::shard_folders;
 use super::results_folder::RESPONSES;
+use super::solved_loads::folders_of_loads;
 use crate::model::{is_whole_entry, writer_of_leftover};
 use crate::population::table::{
     ASIDE, CHECKSUMS, FOLDERS, MANIFEST, Manifest, PartHeader, RunRecord, SIDE_FILES, SideTables,
@@ -175,22 +176,31 @@ impl Work {
             }
             shards => shards?,
         };
-        for folder in shards.into_values() {
+        let loads = folders_of_loads(&self.results).into_iter();
+        for folder in shards.into_values().chain(loads.map(|(_, folder)| folder)) {
             match integrity(&folder) {
                 Err(PipelineError::NoResults { .. }) => {}
                 Err(error) => return Err(error),
-                Ok(shard) => self.files.extend(shard.files.into_iter().map(|own| {
-                    CheckedFile {
-                        file: folder
-                            .join(own.file)
-                            .strip_prefix(&self.results)
-                            .map_or_else(|_| folder.clone(), Path::to_owned),
-                        ..own
-                    }
-                })),
+                Ok(below) => self.below(&folder, below),
             }
         }
         Ok(())
+    }
+
+    /// Takes over what was found in `folder`, which lies in this one.
+    fn below(&mut self, folder: &Path, found: Integrity) {
+        self.build = self.build.take().or(found.build);
+        let of = |own: &CheckedFile| {
+            let path = folder.join(&own.file);
+            path.strip_prefix(&self.results)
+                .map_or_else(|_| folder.to_owned(), Path::to_owned)
+        };
+        let files = found.files.into_iter();
+        let named = files.map(|own| CheckedFile {
+            file: of(&own),
+            ..own
+        });
+        self.files.extend(named);
     }
 
     /// The manifest and its tables, or those that are on their way into their places.
@@ -316,15 +326,16 @@ impl Work {
     }
 
     fn model(&mut self) -> Result<(), TableError> {
+        let damaged = damaged_entries(&self.results)?;
         for path in entries(&self.results.join("model"))? {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            if is_whole_entry(&path) {
-                self.note(&path, FileState::Whole, "");
+            if damaged.contains(&path) {
+                let reason = "it is no model of its name; it is made anew";
+                self.note(&path, FileState::Damaged, reason);
             } else if writer_of_leftover(&name).is_some() {
                 self.leftover_or_foreign(&path);
             } else {
-                let reason = "it is no model of its name; it is made anew";
-                self.note(&path, FileState::Damaged, reason);
+                self.note(&path, FileState::Whole, "");
             }
         }
         Ok(())
@@ -337,10 +348,12 @@ impl Work {
             .chain(&ASIDE)
             .chain(&["shards", "slurm", ".lock"]);
         let folders: Vec<&&str> = folders.collect();
+        let loads = folders_of_loads(&self.results);
         for path in entries(&self.results)? {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let written = SIDE_FILES.iter().chain(&TABLES).chain(&["report.html"]);
-            if folders.iter().any(|own| **own == name) {
+            let is_load = loads.iter().any(|(_, folder)| *folder == path);
+            if is_load || folders.iter().any(|own| **own == name) {
                 continue;
             }
             if written.into_iter().any(|own| *own == name) {
@@ -376,6 +389,16 @@ impl Work {
             self.note(path, FileState::Foreign, "no command writes it");
         }
     }
+}
+
+/// What stands in `model/` of the folder `results` and is neither a model of its name nor left by an interrupted command.
+pub(super) fn damaged_entries(results: &Path) -> Result<Vec<PathBuf>, TableError> {
+    let mut found = entries(&results.join("model"))?;
+    found.retain(|path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        !is_whole_entry(path) && writer_of_leftover(&name).is_none()
+    });
+    Ok(found)
 }
 
 /// What stands in a folder, in order; nothing where there is no folder.

@@ -183,7 +183,10 @@ impl Search<'_> {
             // Takes away what a search that was killed left there.
             drop(ResultsFolder::open(&folder)?);
             if let Holding::Loads(loads) = solved_loads(study, &folder)? {
-                for load in loads {
+                // The name of the folder promises one load; whatever else its results hold was not asked for here.
+                let named =
+                    |load: &SolvedLoad| load.normal_load_n.total_cmp(&normal_load_n).is_eq();
+                for load in loads.into_iter().filter(named) {
                     taken.push(format!("{} N", load.normal_load_n));
                     cpu_s = cpu_s.or_else(|| cpu_s_per_row(&folder, &load.columns));
                     self.solved += 1;

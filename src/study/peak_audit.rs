@@ -30,6 +30,7 @@ pub fn audit_peaks(
     progress: &dyn Progress,
 ) -> Result<PeakAuditReport, PipelineError> {
     let folder = ResultsFolder::open(&stored.folder)?;
+    let stored = &stored.again()?;
     request.pool()?.install(|| {
         let seed = request.seed.unwrap_or(stored.manifest.seed);
         let rows = stored.row_count()?;

@@ -1,7 +1,7 @@
 //! A study from file to tables: one call per stage.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use rayon::ThreadPool;
@@ -19,7 +19,7 @@ use crate::identity;
 use crate::platform;
 use crate::population::monte_carlo::{Interruption, block_size, plan_blocks, solve_blocks};
 use crate::population::table::{
-    Manifest, PartSink, RowStore, RunRecord, Shard, is_folder, remove_leftovers,
+    Manifest, PartSink, RowStore, RunRecord, Shard, TableError, is_folder, remove_leftovers,
 };
 use crate::report::{ExpectedCost, StudySummary};
 use crate::response::harmonic_balance::Status;
@@ -120,7 +120,7 @@ pub fn run_shard(
 ) -> Result<RunOutcome, PipelineError> {
     can_be_cut(request.study)?;
     is_shard_of(request.study, shard)?;
-    let folder = request.results.join("shards").join(shard.folder_name());
+    let folder = folder_of_shard(request.results, shard)?;
     let model = request.results.join("model");
     let of_shard = RunRequest {
         results: &folder,
@@ -132,6 +132,18 @@ pub fn run_shard(
         held: 0,
     };
     run_in(of_shard, scope, source, progress)
+}
+
+/// The folder of a shard below the results folder `results`, whether it is there or not.
+///
+/// # Errors
+/// Something else stands there, such as a link, or the file system refused.
+pub(super) fn folder_of_shard(results: &Path, shard: Shard) -> Result<PathBuf, TableError> {
+    let shards = results.join("shards");
+    is_folder(&shards)?;
+    let folder = shards.join(shard.folder_name());
+    is_folder(&folder)?;
+    Ok(folder)
 }
 
 /// What a run is about beside its study and folder.

@@ -3,6 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
+
+use super::integrity::damaged_entries;
 use super::lock::FolderLock;
 use super::pipeline::{RunScope, run_in};
 use super::results_folder::{RESPONSES, changed_tables, manifest_lost};
@@ -10,9 +13,10 @@ use super::stored_study::study_of;
 use super::{EngineSource, PipelineError, Progress, RunOutcome, RunRequest, Study};
 use crate::identity;
 use crate::population::table::{
-    ASIDE, MANIFEST, Manifest, PartHeader, RunRecord, RunState, Shard, SideTables, TableError,
-    complete_publication, is_file, keep_as_part, misplacements, part_files, renew_header,
-    set_aside, unlisted_parts,
+    ASIDE, ESTIMATE, MANIFEST, Manifest, PartHeader, RunRecord, RunState, SAMPLE, Shard,
+    SideTables, TableError, complete_publication, digest_stored, holds_results, is_file,
+    keep_as_part, misplacements, part_files, read_estimate, renew_header, set_aside,
+    unlisted_parts,
 };
 
 /// What a repair came to.
@@ -42,6 +46,12 @@ pub fn repair(
     source: &dyn EngineSource,
     progress: &dyn Progress,
 ) -> Result<Repair, PipelineError> {
+    let nothing = || PipelineError::NoResults {
+        folder: results.to_owned(),
+    };
+    if !holds_results(results)? {
+        return Err(nothing());
+    }
     let (lock, _) = FolderLock::take(results)?;
     let mut repair = Repair {
         set_aside: Vec::new(),
@@ -52,7 +62,7 @@ pub fn repair(
     repair.misplaced(results)?;
     let next = results.join("next");
     repair.manifest(results, &next)?;
-    complete_publication(results)?;
+    repair.publication(results, &next)?;
     let manifest = repair.manifest(results, results)?;
     let records = RunRecord::all(results);
     let beside = study_file
@@ -67,9 +77,7 @@ pub fn repair(
         if is_file(&results.join(RESPONSES))? {
             return Err(manifest_lost(results).into());
         }
-        return Err(PipelineError::NoResults {
-            folder: results.to_owned(),
-        });
+        return Err(nothing());
     }
     refuse_other_builds(results, manifest.as_ref(), &records, &tables)?;
     let goes_on = !parts.is_empty();
@@ -89,33 +97,32 @@ pub fn repair(
     if !finished || (manifest.is_some() && tables_are_whole) {
         return Ok(repair);
     }
+    // Everything that can be refused comes before the manifest changes, which may be all that holds the study.
+    let study = match (&manifest, beside) {
+        // The study that goes on from these results is not known here, and needs its parts.
+        _ if goes_on => None,
+        (Some(manifest), beside) => {
+            let beside = beside.unwrap_or_else(|| results.join(MANIFEST));
+            Some(study_of(&manifest.study, &beside, results)?)
+        }
+        (None, Some(file)) => Some(Study::read(&file)?),
+        (None, None) => return Err(nothing()),
+    };
     // What is left of the rows is known by its digest, as a part is.
     if let Some(digest) = tables.get(RESPONSES) {
         keep_as_part(results, &results.join(RESPONSES), digest)?;
     }
-    if manifest.is_some() {
-        let path = results.join(MANIFEST);
-        std::fs::remove_file(&path).map_err(|source| TableError::Io {
-            action: "remove",
-            path,
-            source,
-        })?;
+    if let Some(manifest) = &manifest {
+        let running = Manifest {
+            state: RunState::Running,
+            stop: None,
+            tables: BTreeMap::new(),
+            ..manifest.clone()
+        };
+        running.write(results)?;
     }
-    if goes_on {
-        // The study that goes on from these results is not known here, and needs its parts.
+    let Some(study) = study else {
         return Ok(repair);
-    }
-    let study = match (&manifest, beside) {
-        (Some(manifest), beside) => {
-            let beside = beside.unwrap_or_else(|| results.join(MANIFEST));
-            study_of(&manifest.study, &beside, results)?
-        }
-        (None, Some(file)) => Study::read(&file)?,
-        (None, None) => {
-            return Err(PipelineError::NoResults {
-                folder: results.to_owned(),
-            });
-        }
     };
     drop(lock);
     let again = (&study, manifest.as_ref(), threads);
@@ -177,9 +184,14 @@ fn refuse_other_builds(
     tables: &BTreeMap<String, String>,
 ) -> Result<(), PipelineError> {
     let stored = match (manifest, records.first()) {
-        (Some(manifest), _) => &manifest.build,
-        (None, Some(record)) => &record.build,
-        (None, None) => return Ok(()),
+        (Some(manifest), _) => manifest.build.clone(),
+        (None, Some(record)) => record.build.clone(),
+        // An estimate that was interrupted has neither.
+        (None, None) => match PartHeader::read(results) {
+            Ok(Some(header)) => header.build,
+            Ok(None) | Err(TableError::Damaged { .. }) => return Ok(()),
+            Err(error) => return Err(error.into()),
+        },
     };
     let whole = || -> Result<bool, TableError> {
         Ok(manifest.is_some()
@@ -191,7 +203,7 @@ fn refuse_other_builds(
     }
     Err(PipelineError::DifferentBuild {
         folder: results.to_owned(),
-        stored: stored.clone(),
+        stored,
     })
 }
 
@@ -211,6 +223,19 @@ impl Repair {
             }
             other => other,
         }
+    }
+
+    /// Completes what an interrupted process had decided on; where a table of it is damaged, the manifest in `next`
+    /// goes aside, and the parts stay.
+    fn publication(&mut self, results: &Path, next: &Path) -> Result<(), TableError> {
+        match complete_publication(results) {
+            Err(TableError::Damaged { .. }) => {
+                self.put(results, next.join(MANIFEST))?;
+                complete_publication(results)?;
+            }
+            completed => drop(completed?),
+        }
+        Ok(())
     }
 
     /// Whether all tables are as they were written.
@@ -251,13 +276,14 @@ impl Repair {
     /// build `solved` the rows of the folder; the header lists what is left.
     fn parts(&mut self, results: &Path, solved: bool) -> Result<(), TableError> {
         let before = (self.set_aside.len(), self.missing.len());
-        let headed = match PartHeader::read(results) {
+        let build = match PartHeader::read(results) {
             Err(TableError::Damaged { path, .. }) => {
                 self.put(results, path)?;
-                false
+                None
             }
-            header => header?.is_some(),
+            header => header?.map(|header| header.build),
         };
+        let headed = build.is_some();
         for part in part_files(results)? {
             match part.check() {
                 Err(TableError::Damaged { path, .. }) => self.put_or_miss(results, path)?,
@@ -272,12 +298,12 @@ impl Repair {
             }
         }
         if without_header || before != (self.set_aside.len(), self.missing.len()) {
-            renew_header(results)?;
+            renew_header(results, build)?;
         }
         Ok(())
     }
 
-    /// Tables of commands beside `run` and records of runs that are not as written go aside.
+    /// Tables of commands beside `run`, records of runs, models and an estimate that are not as written go aside.
     fn others(&mut self, results: &Path) -> Result<(), TableError> {
         let noted = match SideTables::read(results) {
             Err(TableError::Damaged { path, .. }) => {
@@ -289,7 +315,7 @@ impl Repair {
         for (name, table) in &noted.tables {
             match table.check(&results.join(name)) {
                 Err(TableError::Damaged { path, .. }) => {
-                    noted.without(results, name)?;
+                    SideTables::without(results, name)?;
                     self.put_or_miss(results, path)?;
                 }
                 other => other?,
@@ -300,6 +326,29 @@ impl Repair {
                 Err(TableError::Damaged { path, .. }) => self.put(results, path)?,
                 other => drop(other?),
             }
+        }
+        for path in damaged_entries(results)? {
+            self.put(results, path)?;
+        }
+        self.estimate(results)
+    }
+
+    /// A damaged estimate goes aside with its sample: neither says anything without the other.
+    fn estimate(&mut self, results: &Path) -> Result<(), TableError> {
+        let whole = match read_estimate::<Value>(results) {
+            Ok(None) => return Ok(()),
+            Ok(Some(estimate)) => estimate["sample_digest"].as_str().map(str::to_owned),
+            Err(TableError::Damaged { .. }) => None,
+            Err(error) => return Err(error),
+        };
+        let sample = results.join(SAMPLE);
+        let found = match digest_stored(&sample) {
+            Err(TableError::Damaged { .. }) => None,
+            found => found?,
+        };
+        if whole.is_none() || found != whole {
+            self.put(results, results.join(ESTIMATE))?;
+            self.put_or_miss(results, sample)?;
         }
         Ok(())
     }

@@ -89,6 +89,14 @@ impl StoredStudy {
         Self::open(results, Some(study_file))
     }
 
+    /// The same folder as it stands now; for a process that has locked it since, as another one may have written there.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub(super) fn again(&self) -> Result<Self, PipelineError> {
+        Self::open(&self.folder, Some(&self.study.path))
+    }
+
     /// What to say of the builds of the program where another one solved the rows.
     #[must_use]
     pub fn other_build(&self) -> Option<String> {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::lock::FolderLock;
+use super::pipeline::folder_of_shard;
 use super::results_folder::{RESPONSES, VERSION, differences};
 use super::{PipelineError, Study, StudyDigest};
 use crate::identity;
@@ -23,7 +24,7 @@ pub fn set_other_builds_aside(
 ) -> Result<Option<PathBuf>, PipelineError> {
     let folder = match shard {
         None => results.to_owned(),
-        Some(shard) => results.join("shards").join(shard.folder_name()),
+        Some(shard) => folder_of_shard(results, shard)?,
     };
     if !folder.is_dir() {
         return Ok(None);

@@ -46,8 +46,9 @@ pub fn verify(
     progress: &dyn Progress,
 ) -> Result<VerificationReport, PipelineError> {
     let folder = ResultsFolder::open(&stored.folder)?;
+    let stored = stored.again()?;
     let pool = request.pool()?;
-    pool.install(|| verify_in(&folder, stored, source, request, progress))
+    pool.install(|| verify_in(&folder, &stored, source, request, progress))
 }
 
 impl VerifyRequest {

@@ -2,10 +2,10 @@
 //! of an undisturbed one, and nothing is left over.
 
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::Child;
 use std::time::{Duration, Instant};
 
-use crate::blisk::{Ended, GOOD, Place, ended, signal};
+use crate::blisk::{GOOD, Place, ended, signal};
 
 /// Time after a signal within which a command has to end.
 const AT_ONCE: Duration = Duration::from_secs(5);

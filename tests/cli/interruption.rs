@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::blisk::{Ended, GOOD, Place, ended, signal};
+use crate::blisk::{GOOD, Place, ended, signal};
 
 const TABLES: [&str; 5] = [
     "responses.parquet",

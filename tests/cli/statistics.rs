@@ -482,6 +482,23 @@ fn a_search_starts_from_the_loads_of_the_study_and_finds_none_worse_than_these()
         .find(|own| own["percent"] == 95.0)
         .expect("P95");
     assert_eq!(p95["value"].as_f64(), Some(of(100.0)));
+    // A folder gives the load of its name, and none that it holds besides.
+    let own = std::fs::read_dir(place.path("results/small-optimum")).expect("a folder");
+    let names = own.map(|entry| entry.expect("an entry").file_name());
+    let solved = names
+        .filter_map(|name| name.into_string().ok())
+        .find(|name| name.starts_with("load-"));
+    let solved = format!("results/small-optimum/{}", solved.expect("a load"));
+    let renamed = place.path("results/small-optimum/load-77");
+    std::fs::create_dir(&renamed).expect("made");
+    for entry in std::fs::read_dir(place.path(&solved)).expect("a folder") {
+        let entry = entry.expect("an entry");
+        if entry.file_type().expect("a type").is_file() {
+            std::fs::copy(entry.path(), renamed.join(entry.file_name())).expect("copied");
+        }
+    }
+    let (again, _) = search(&["--resolution", "0.3", "--json"]);
+    assert_eq!(again["best"]["loads"], report["best"]["loads"]);
     // Results of other patterns are left alone, and the search says why.
     place.write("study.toml", &three.replace("seed = 7", "seed = 8"));
     let (_, said) = search(&["--resolution", "1", "--out", "other", "--json"]);

@@ -9,9 +9,9 @@ use std::path::Path;
 
 use blisk::identity;
 use blisk::population::table::{Manifest, PartHeader};
-use blisk::study::{PipelineError, set_other_builds_aside};
+use blisk::study::{PipelineError, repair, set_other_builds_aside};
 
-use crate::folder::{bytes, copy, files, interrupt_in, reference, run_in};
+use crate::folder::{Silent, bytes, copy, files, interrupt_in, reference, run_in};
 use crate::mock_engine::{MockSource, study};
 
 /// The covered files of this package, in a folder of their own, with documentation and a test beside them.
@@ -149,4 +149,37 @@ fn an_interrupted_move_of_other_results_is_gone_on_with() {
     let outcome = run_in(results, &whole, 1, &MockSource::default()).expect("anew");
     assert_eq!(outcome.rows_reused, 0);
     assert!(bytes(results) == reference(40));
+}
+
+#[test]
+fn a_repair_makes_no_parts_of_another_build_its_own() {
+    let whole = study(40, |text| text);
+    for with_manifest in [false, true] {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let results = folder.path();
+        interrupt_in(results, &whole, 40);
+        if !with_manifest {
+            // As an interrupted estimate is.
+            std::fs::remove_file(results.join("manifest.json")).expect("removed");
+            std::fs::remove_dir_all(results.join("runs")).expect("removed");
+        }
+        let mut header = PartHeader::read(results).expect("whole").expect("a header");
+        header.build = "another".to_owned();
+        header.write(results).expect("written");
+        let part = header.parts.iter().next().expect("a part");
+        std::fs::write(results.join("parts").join(part), "").expect("written");
+        let repaired = repair(results, None, 1, &MockSource::default(), &Silent);
+        let after = PartHeader::read(results).expect("whole").expect("a header");
+        assert_eq!(after.build, "another");
+        if with_manifest {
+            assert_eq!(repaired.expect("repaired").set_aside.len(), 1);
+            assert!(!after.parts.contains(part));
+        } else {
+            let other = matches!(repaired, Err(PipelineError::DifferentBuild { .. }));
+            assert!(other && after == header, "{repaired:?}");
+        }
+        let refused = run_in(results, &whole, 1, &MockSource::default());
+        let other = matches!(refused, Err(PipelineError::DifferentBuild { .. }));
+        assert!(other, "{refused:?}");
+    }
 }

@@ -1,9 +1,15 @@
 //! A changed bit or a lost end of any file is found, or does no harm; never a wrong number.
 
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::time::Duration;
 
-use blisk::population::table::TableError;
-use blisk::study::{PipelineError, RunOutcome, Study, repair, status_of_folder, summarise};
+use blisk::population::table::{Manifest, PartHeader, RunState, TableError, write_estimate};
+use blisk::response::harmonic_balance::Status;
+use blisk::study::{
+    PipelineError, Progress, RunOutcome, RunRequest, Study, integrity, repair, run,
+    status_of_folder, summarise,
+};
 
 use crate::folder::{Silent, bytes, copy, files, interrupt_in, reference, run_in};
 use crate::forgery::Numbers;
@@ -269,4 +275,142 @@ fn a_lost_table_or_manifest_is_found_and_repaired() {
     );
     let whole_again = repair(folder_of(true).path(), None, 1, &source, &Silent).expect("whole");
     assert!(whole_again.outcome.is_none() && whole_again.set_aside.is_empty());
+}
+
+#[test]
+fn parts_stay_until_every_table_that_replaces_them_is_there() {
+    let expected = reference(PATTERNS);
+    let whole = study(PATTERNS, |text| text);
+    let (unfinished, finished) = (folder_of(false), folder_of(true));
+    for name in ["responses.parquet", "summary.txt"] {
+        for missing in [false, true] {
+            let folder = copy_of(unfinished.path());
+            let next = folder.path().join("next");
+            std::fs::create_dir(&next).expect("made");
+            let manifest = Manifest::read(finished.path())
+                .expect("whole")
+                .expect("there");
+            for table in manifest.tables.keys() {
+                std::fs::copy(finished.path().join(table), next.join(table)).expect("copied");
+            }
+            manifest.write(&next).expect("written");
+            let parts = files(&folder.path().join("parts"));
+            if missing {
+                std::fs::remove_file(next.join(name)).expect("removed");
+                let _ = std::fs::remove_file(folder.path().join(name));
+            } else {
+                std::fs::write(next.join(name), "half").expect("written");
+            }
+            let source = MockSource::default();
+            let words = run_in(folder.path(), &whole, 1, &source).expect_err(name);
+            assert!(words.to_string().contains(name), "{words}");
+            assert_eq!(files(&folder.path().join("parts")), parts);
+            repair(folder.path(), None, 1, &source, &Silent).expect(name);
+            for part in parts {
+                assert!(part.exists(), "{}", part.display());
+            }
+            run_in(folder.path(), &whole, 1, &source).expect(name);
+            assert!(bytes(folder.path()) == expected, "{name} {missing}");
+        }
+    }
+}
+
+#[test]
+fn a_repair_leaves_the_study_in_the_manifest() {
+    let folder = folder_of(false);
+    let before = Manifest::read(folder.path())
+        .expect("whole")
+        .expect("there");
+    assert_eq!(before.state, RunState::Finished);
+    std::fs::write(folder.path().join("responses.parquet"), "").expect("written");
+    let source = MockSource::default();
+    let repaired = repair(folder.path(), None, 1, &source, &Silent).expect("repaired");
+    assert!(repaired.outcome.is_none(), "another study goes on from it");
+    let after = Manifest::read(folder.path())
+        .expect("whole")
+        .expect("there");
+    assert_eq!(
+        (after.state, &after.study),
+        (RunState::Running, &before.study)
+    );
+    assert!(after.tables.is_empty());
+    // A study that differs is still refused.
+    let other = study(PATTERNS, |text| text.replace("seed = 7", "seed = 8"));
+    let refused = run_in(folder.path(), &other, 1, &source);
+    let different = matches!(refused, Err(PipelineError::DifferentStudy { .. }));
+    assert!(different, "{refused:?}");
+    let whole = study(PATTERNS, |text| text);
+    run_in(folder.path(), &whole, 1, &source).expect("continued");
+    assert!(bytes(folder.path()) == reference(PATTERNS));
+}
+
+#[test]
+fn damaged_models_and_estimates_go_aside() {
+    let folder = folder_of(true);
+    let place = |name: &str| folder.path().join(name);
+    std::fs::create_dir_all(place("model")).expect("made");
+    std::fs::write(place("model/abc"), "no model").expect("written");
+    std::fs::write(place("sample.parquet"), "another sample").expect("written");
+    let digest = blake3::hash(b"a sample").to_hex().to_string();
+    let estimate = serde_json::json!({ "sample_digest": digest });
+    write_estimate(folder.path(), &estimate).expect("written");
+    assert!(!integrity(folder.path()).expect("readable").is_whole());
+    let source = MockSource::default();
+    let repaired = repair(folder.path(), None, 1, &source, &Silent).expect("repaired");
+    let moved: Vec<PathBuf> = repaired
+        .set_aside
+        .into_iter()
+        .map(|(from, _)| from)
+        .collect();
+    let expected = ["model/abc", "estimate.json", "sample.parquet"].map(place);
+    assert_eq!(moved, expected);
+    assert!(integrity(folder.path()).expect("readable").is_whole());
+}
+
+/// Damages a part while the run goes on, and looks at the status.
+struct Damaging<'a> {
+    folder: &'a Path,
+    seen: Mutex<Option<bool>>,
+}
+
+impl Progress for Damaging<'_> {
+    fn row(&self, _status: Status) {
+        // Parts are written beside the rows that are solved meanwhile.
+        std::thread::sleep(Duration::from_millis(2));
+        let header = PartHeader::read(self.folder).expect("whole");
+        let Some(name) = header.and_then(|header| header.parts.into_iter().next()) else {
+            return;
+        };
+        let part = self.folder.join("parts").join(name);
+        let mut seen = self.seen.lock().expect("no panic");
+        if seen.is_some() {
+            return;
+        }
+        let content = std::fs::read(&part).expect("read");
+        let mut damaged = content.clone();
+        damaged[content.len() / 3] ^= 1;
+        std::fs::write(&part, damaged).expect("written");
+        let status = status_of_folder(self.folder);
+        *seen = Some(matches!(
+            status,
+            Err(PipelineError::Table(TableError::Damaged { .. }))
+        ));
+        std::fs::write(part, content).expect("restored");
+    }
+}
+
+#[test]
+fn a_damaged_part_of_a_study_that_is_being_extended_is_named_by_its_status() {
+    let folder = folder_of(true);
+    let damaging = Damaging {
+        folder: folder.path(),
+        seen: Mutex::new(None),
+    };
+    let request = RunRequest {
+        study: &study(4 * PATTERNS, |text| text),
+        results: folder.path(),
+        threads: 1,
+    };
+    run(request, &MockSource::default(), &damaging).expect("extended");
+    assert_eq!(*damaging.seen.lock().expect("no panic"), Some(true));
 }

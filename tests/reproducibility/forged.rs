@@ -353,3 +353,35 @@ fn a_folder_a_loop_or_a_broken_link_in_the_place_of_a_file_is_repaired() {
         }
     }
 }
+
+#[test]
+fn what_is_not_of_the_program_is_neither_moved_nor_removed() {
+    let source = MockSource::default();
+    // Files of someone who has nothing to do with the program.
+    for name in ["model", "runs", "parts", "next/notes.txt", "parts/a.csv"] {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        std::fs::write(&path, "mine").expect("written");
+        let refused = repair(folder.path(), None, 1, &source, &Silent);
+        let nothing = matches!(refused, Err(PipelineError::NoResults { .. }));
+        assert!(nothing, "{name}: {refused:?}");
+        assert_eq!(files(folder.path()), [path], "{name}");
+    }
+    // A run takes from next/ what it left there, and nothing else.
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let own = ["summary.txt", ".summary.txt.4294967294.tmp"];
+    let others = ["notes.txt", "below/summary.txt"];
+    for name in own.iter().chain(&others) {
+        let path = folder.path().join("next").join(name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        std::fs::write(&path, "mine").expect("written");
+    }
+    run_in(folder.path(), &study(PATTERNS, |text| text), 1, &source).expect("run");
+    for name in own {
+        assert!(!folder.path().join("next").join(name).exists(), "{name}");
+    }
+    for name in others {
+        assert!(folder.path().join("next").join(name).exists(), "{name}");
+    }
+}

@@ -4,10 +4,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use blisk::population::table::PartHeader;
-use blisk::study::{FileState, PipelineError, integrity};
+use blisk::population::table::{
+    Compression, PartHeader, TableHeader, remove_leftovers, write_estimate, write_sample,
+};
+use blisk::study::{
+    FileState, PipelineError, StoredStudy, VerifyRequest, audit_peaks, integrity, verify,
+};
 
-use crate::folder::{bytes, files, interrupt_in, reference, run_in};
+use crate::folder::{Silent, bytes, files, interrupt_in, reference, run_in};
 use crate::mock_engine::{MockSource, study};
 
 /// Content and time of every file.
@@ -182,5 +186,78 @@ fn what_dead_processes_left_is_removed_by_the_next_run() {
     }
     for name in kept {
         assert!(folder.path().join(&name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn folders_of_single_loads_are_read_as_those_of_shards_are() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let load = folder.path().join("load-5");
+    let study = study(20, |text| text);
+    run_in(&load, &study, 2, &MockSource::default()).expect("run");
+    assert_eq!(found(folder.path()), (true, Vec::new()));
+    let build = integrity(folder.path()).expect("readable").build;
+    assert_eq!(build.as_deref(), Some(blisk::identity::BUILD));
+    std::fs::write(load.join("responses.parquet"), "half").expect("written");
+    let expected = vec![("load-5/responses.parquet".to_owned(), FileState::Damaged)];
+    assert_eq!(found(folder.path()), (false, expected));
+}
+
+#[test]
+fn an_estimate_goes_before_its_sample_is_replaced() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let header = TableHeader {
+        study_digest: "0".repeat(64),
+        compression: Compression::default(),
+        load_cases: Vec::new(),
+    };
+    let digest = write_sample(folder.path(), &[], &header).expect("written");
+    let estimate = serde_json::json!({ "sample_digest": digest });
+    write_estimate(folder.path(), &estimate).expect("written");
+    // The same sample again.
+    write_sample(folder.path(), &[], &header).expect("written");
+    assert_eq!(found(folder.path()), (true, Vec::new()));
+    // Another one; the process is killed before it writes the estimate.
+    let other = TableHeader {
+        study_digest: "1".repeat(64),
+        ..header
+    };
+    write_sample(folder.path(), &[], &other).expect("written");
+    let expected = vec![("sample.parquet".to_owned(), FileState::Unverified)];
+    assert_eq!(found(folder.path()), (true, expected));
+}
+
+#[test]
+fn two_processes_remove_the_same_leftovers() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for number in 0..500 {
+        let name = format!("{number}.4294967294.partial");
+        std::fs::write(folder.path().join(name), "half").expect("written");
+    }
+    std::thread::scope(|scope| {
+        let both = [0; 2].map(|_| scope.spawn(|| remove_leftovers(folder.path())));
+        for one in both {
+            one.join().expect("no panic").expect("removed by either");
+        }
+    });
+    assert!(files(folder.path()).is_empty());
+}
+
+#[test]
+fn a_sample_is_drawn_from_what_stands_there_once_the_folder_is_locked() {
+    let folder = finished(20);
+    let stored = StoredStudy::open(folder.path(), None).expect("whole");
+    std::fs::remove_file(folder.path().join("manifest.json")).expect("removed");
+    let request = VerifyRequest {
+        sample: 2,
+        seed: None,
+        threads: 1,
+    };
+    let source = MockSource::default();
+    let verified = verify(&stored, &source, request, &Silent).map(drop);
+    let audited = audit_peaks(&stored, &source, request, &Silent).map(drop);
+    for refused in [verified, audited] {
+        let nothing = matches!(refused, Err(PipelineError::NoResults { .. }));
+        assert!(nothing, "{refused:?}");
     }
 }

@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use blisk::population::table::Shard;
-use blisk::study::{PipelineError, RunRequest, Study, merge, run_shard, status_of_folder};
+use blisk::study::{
+    PipelineError, RunRequest, Study, merge, run_shard, set_other_builds_aside, status_of_folder,
+};
 
-use crate::folder::{Silent, bytes, copy, reference, run_in};
+use crate::folder::{Silent, bytes, copy, files, reference, run_in};
 use crate::mock_engine::{MockSource, study};
 
 /// Solves a shard, and gives its folder.
@@ -202,4 +204,35 @@ fn a_shard_is_continued_and_belongs_to_one_cut() {
             .contains("--shard: 2/4 in the folder, all"),
         "{refused}"
     );
+}
+
+#[test]
+#[cfg(unix)]
+fn a_link_in_the_place_of_a_shard_is_not_followed() {
+    use std::os::unix::fs::symlink;
+    let small = study(20, |text| text);
+    let shard = Shard {
+        number: 1,
+        count: 2,
+    };
+    for name in ["shards", "shards/1-of-2"] {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let (results, elsewhere) = (folder.path().join("r"), folder.path().join("elsewhere"));
+        std::fs::create_dir_all(elsewhere.join("1-of-2")).expect("made");
+        let link = results.join(name);
+        std::fs::create_dir_all(link.parent().expect("a folder")).expect("made");
+        symlink(&elsewhere, &link).expect("linked");
+        let request = RunRequest {
+            study: &small,
+            results: &results,
+            threads: 1,
+        };
+        let run = run_shard(request, shard, &MockSource::default(), &Silent).map(drop);
+        let anew = set_other_builds_aside(&results, &small, Some(shard)).map(drop);
+        for refused in [run, anew] {
+            let words = refused.expect_err(name).to_string();
+            assert!(words.contains("symbolic link"), "{name}: {words}");
+        }
+        assert!(files(&elsewhere).is_empty(), "{name}");
+    }
 }

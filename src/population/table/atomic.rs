@@ -214,7 +214,11 @@ pub fn remove_leftovers(folder: &Path) -> Result<(), TableError> {
         let writer = writer_of_temporary(&name).or_else(|| writer_of_leftover(&name));
         let ended = |process: u32| platform::process_start(process).is_none();
         if writer.is_some_and(ended) && !path.is_dir() {
-            std::fs::remove_file(&path).map_err(TableError::io("remove", &path))?;
+            match std::fs::remove_file(&path) {
+                // Another process that has just begun has removed it.
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                removed => removed.map_err(TableError::io("remove", &path))?,
+            }
         }
     }
     Ok(())

@@ -55,7 +55,9 @@ pub(super) fn read_checked_json<T: DeserializeOwned>(path: &Path) -> Result<Opti
 }
 
 /// Name of what an estimate came to.
-const ESTIMATE: &str = "estimate.json";
+pub const ESTIMATE: &str = "estimate.json";
+/// Name of its table.
+pub const SAMPLE: &str = "sample.parquet";
 
 /// Writes what an estimate came to into the folder `results`.
 ///

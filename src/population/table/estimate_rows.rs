@@ -1,11 +1,16 @@
 //! `sample.parquet` of an estimate: all patterns with their surrogate, and those that were solved.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
+use super::atomic::move_file;
+use super::checked_json::{ESTIMATE, SAMPLE};
 use super::column::{ColumnKind, ColumnSpec, Values, key};
 use super::percentiles::scenario_keys;
+use super::places::digest_stored;
+use super::publication::{NEXT, discard};
 use super::writer::TableWriter;
-use super::{TableError, TableHeader};
+use super::{TableError, TableHeader, digest_file};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::population::statistics::Quantity;
 
@@ -75,6 +80,31 @@ pub struct EstimateRow {
     pub pilot: bool,
     /// Its row; none if it was not solved.
     pub row: Option<ResponseRow>,
+}
+
+/// Puts `sample.parquet` into the folder `results`, in the order of `rows`; its digest. An estimate that is about
+/// another sample is removed before, so that a process that is killed leaves none beside a sample that it is not about.
+///
+/// # Errors
+/// A file cannot be written or removed.
+pub fn write_sample(
+    results: &Path,
+    rows: &[EstimateRow],
+    header: &TableHeader,
+) -> Result<String, TableError> {
+    let (path, staged) = (results.join(SAMPLE), results.join(NEXT).join(SAMPLE));
+    write_estimate_rows(&staged, rows, header)?;
+    let digest = digest_file(&staged).map_err(TableError::io("read", &staged))?;
+    if !digest_stored(&path).is_ok_and(|found| found.as_ref() == Some(&digest)) {
+        let estimate = results.join(ESTIMATE);
+        match std::fs::remove_file(&estimate) {
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            removed => removed.map_err(TableError::io("remove", &estimate))?,
+        }
+    }
+    move_file(&staged, &path)?;
+    discard(results)?;
+    Ok(digest)
 }
 
 /// Writes `sample.parquet` in the order of `rows`.

@@ -32,15 +32,17 @@ mod writer;
 
 pub use accuracy_ladder::{AccuracyLadder, MeasuredSetting};
 pub use atomic::{abandon_unfinished, digest_file, remove_leftovers, write_atomically};
-pub use checked_json::{read_estimate, write_estimate};
+pub use checked_json::{ESTIMATE, SAMPLE, read_estimate, write_estimate};
 pub use column::{ColumnKind, ColumnSpec};
 pub use curve::{CURVE_COLUMNS, CurveFormat, CurvePoint, write_curve};
 pub use distribution::{DISTRIBUTION_COLUMNS, write_distribution};
 pub use error::TableError;
-pub use estimate_rows::{ESTIMATE_ROW_COLUMNS, EstimateRow, write_estimate_rows};
+pub use estimate_rows::{ESTIMATE_ROW_COLUMNS, EstimateRow, write_estimate_rows, write_sample};
 pub use main_effects::{EffectRows, MAIN_EFFECT_COLUMNS, write_main_effects};
 pub use manifest::{MANIFEST, Manifest, RunRecord, RunState, ScenarioEntry, Shard, StatusCounts};
-pub use part_header::{PartHeader, check_parts, part_files, renew_header, unlisted_parts};
+pub use part_header::{
+    PartHeader, check_parts, holds_results, part_files, renew_header, unlisted_parts,
+};
 pub use parts::{PartSink, RowSchema, RowStore, remove_parts};
 pub use pattern_file::{PatternParquetError, read_pattern_parquet};
 pub use patterns::{PATTERN_COLUMNS, StoredPatterns, read_patterns, write_patterns};

@@ -5,13 +5,14 @@
 //! missing, and none that is there and not listed.
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::checked_json::{read_checked_json, write_checked_json};
-use super::places::{Standing, is_digest, is_folder};
-use super::{RowFile, TableError};
+use super::places::{Standing, TABLES, is_digest, is_folder};
+use super::publication::NEXT;
+use super::{MANIFEST, RowFile, RunRecord, TableError};
 use crate::identity;
 
 /// Name of the folder of the parts.
@@ -157,7 +158,7 @@ pub fn part_files(results: &Path) -> Result<Vec<RowFile>, TableError> {
 ///
 /// # Errors
 /// The file system refused, or the header is damaged.
-pub fn unlisted_parts(results: &Path) -> Result<Vec<std::path::PathBuf>, TableError> {
+pub fn unlisted_parts(results: &Path) -> Result<Vec<PathBuf>, TableError> {
     let listed = part_files(results)?;
     let mut found = names_in_parts(results)?;
     found.retain(|path| listed.iter().all(|file| file.path != *path));
@@ -165,7 +166,7 @@ pub fn unlisted_parts(results: &Path) -> Result<Vec<std::path::PathBuf>, TableEr
 }
 
 /// What stands in the folder of the parts beside the header, hidden files left out.
-fn names_in_parts(results: &Path) -> Result<Vec<std::path::PathBuf>, TableError> {
+fn names_in_parts(results: &Path) -> Result<Vec<PathBuf>, TableError> {
     let folder = results.join(PARTS);
     if !is_folder(&folder)? {
         return Ok(Vec::new());
@@ -180,6 +181,37 @@ fn names_in_parts(results: &Path) -> Result<Vec<std::path::PathBuf>, TableError>
     }
     found.sort();
     Ok(found)
+}
+
+/// Whether something stands in the results folder `results` that a run or an estimate leaves there, whole or not: a
+/// manifest, rows, parts or a record.
+///
+/// # Errors
+/// The file system refused.
+pub fn holds_results(results: &Path) -> Result<bool, TableError> {
+    let parts = results.join(PARTS);
+    let header = parts.join(HEADER);
+    let next = results.join(NEXT);
+    for place in [
+        results.join(MANIFEST),
+        results.join(TABLES[0]),
+        next.join(MANIFEST),
+        header,
+    ] {
+        if Standing::at(&place).map_err(TableError::io("read", &place))? != Standing::Nothing {
+            return Ok(true);
+        }
+    }
+    let listed = |found: Result<Vec<PathBuf>, TableError>| match found {
+        Err(TableError::Damaged { .. }) => Ok(Vec::new()),
+        found => found,
+    };
+    let is_part = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        row_file(&parts, &name).is_some()
+    };
+    Ok(!listed(RunRecord::places(results))?.is_empty()
+        || listed(names_in_parts(results))?.iter().any(is_part))
 }
 
 /// Checks that the folder of the parts holds a header and what that lists, and nothing else.
@@ -197,13 +229,15 @@ pub fn check_parts(results: &Path) -> Result<(), TableError> {
     Err(TableError::damaged(&first, NOT_LISTED))
 }
 
-/// Makes the header of parts anew, from the names and contents of those that are there, which this build has solved.
+/// Makes the header of parts anew, from the names and contents of those that are there, which `build` has solved; none:
+/// this one.
 ///
 /// # Errors
 /// A file cannot be read or written.
-pub fn renew_header(results: &Path) -> Result<(), TableError> {
+pub fn renew_header(results: &Path, build: Option<String>) -> Result<(), TableError> {
     let folder = results.join(PARTS);
     let mut header = PartHeader::new();
+    header.build = build.unwrap_or(header.build);
     for path in names_in_parts(results)? {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         if row_file(&folder, &name).is_some_and(|part| part.check().is_ok()) {

@@ -4,12 +4,13 @@
 //! the change is decided: the files are moved into their places, the manifest last, and whoever is
 //! interrupted leaves a `next/` from which [`complete_publication`] goes on.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::atomic::move_file;
+use super::atomic::{move_file, writer_of_temporary};
 use super::part_header::{PARTS, PartHeader};
 use super::places::{DAMAGED, SIDE_FILES, SUPERSEDED, Standing, TABLES, is_file, is_folder};
-use super::{MANIFEST, Manifest, TableError, digest_file, remove_parts};
+use super::{MANIFEST, Manifest, RowFile, TableError, digest_file, remove_parts};
 
 /// The folder that finished tables wait in.
 pub(super) const NEXT: &str = "next";
@@ -62,7 +63,7 @@ impl Staging {
 /// was one to complete.
 ///
 /// # Errors
-/// A file cannot be moved, or is damaged.
+/// A file cannot be moved, or is damaged or missing; nothing is changed then.
 pub fn complete_publication(results: &Path) -> Result<bool, TableError> {
     let next = results.join(NEXT);
     is_folder(&next)?;
@@ -70,6 +71,17 @@ pub fn complete_publication(results: &Path) -> Result<bool, TableError> {
         discard(results)?;
         return Ok(false);
     };
+    // Parts are removed for these tables, so all of them have to be there before anything is changed.
+    for (name, digest) in &manifest.tables {
+        let staged = next.join(name);
+        let waits = is_file(&staged)?;
+        let table = RowFile {
+            path: if waits { staged } else { results.join(name) },
+            digest: digest.clone(),
+            from: 0,
+        };
+        table.check()?;
+    }
     // Tables that the study no longer has go first: the manifest in place may still name them.
     if let Ok(Some(before)) = Manifest::read(results) {
         for name in before.tables.keys() {
@@ -91,13 +103,26 @@ pub fn complete_publication(results: &Path) -> Result<bool, TableError> {
     Ok(true)
 }
 
-/// Removes what waits in `next/`.
+/// Removes what waits in `next/`; what no command writes there stays, and the folder with it.
 pub(super) fn discard(results: &Path) -> Result<(), TableError> {
     let next = results.join(NEXT);
-    match std::fs::remove_dir_all(&next) {
-        Ok(()) => Ok(()),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
-        Err(error) => Err(TableError::io("remove", &next)(error)),
+    if !is_folder(&next)? {
+        return Ok(());
+    }
+    for entry in std::fs::read_dir(&next).map_err(TableError::io("read", &next))? {
+        let path = entry.map_err(TableError::io("read", &next))?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let mut written = TABLES.iter().chain(&SIDE_FILES).chain(&[MANIFEST]);
+        let own = written.any(|own| *own == name) || writer_of_temporary(&name).is_some();
+        if own && stands(&path)? != Standing::Folder {
+            std::fs::remove_file(&path).map_err(TableError::io("remove", &path))?;
+        }
+    }
+    match std::fs::remove_dir(&next) {
+        Err(error) if error.kind() != ErrorKind::DirectoryNotEmpty => {
+            Err(TableError::io("remove", &next)(error))
+        }
+        _ => Ok(()),
     }
 }
 
@@ -151,9 +176,11 @@ pub fn supersede(results: &Path) -> Result<Option<PathBuf>, TableError> {
     }
     let place = aside.join(number.to_string());
     let mut moved = false;
-    // The manifest goes first: without it nothing vouches for what an interrupted move leaves.
-    let names = [MANIFEST, NEXT, PARTS, "runs"];
-    for name in names.iter().chain(&TABLES).chain(&SIDE_FILES) {
+    // The manifest goes first: without it nothing vouches for what an interrupted move leaves. Rows go last: as long as
+    // they stand, the move is gone on with.
+    let [rows, tables @ ..] = TABLES;
+    let names = [MANIFEST, NEXT, "runs"].into_iter();
+    for name in names.chain(SIDE_FILES).chain(tables).chain([rows, PARTS]) {
         let path = results.join(name);
         if stands(&path)? != Standing::Nothing {
             move_file(&path, &place.join(name))?;

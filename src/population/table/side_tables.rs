@@ -85,7 +85,7 @@ impl SideTables {
     ///
     /// # Errors
     /// A file cannot be read or written.
-    pub fn without(&self, results: &Path, name: &str) -> Result<(), TableError> {
+    pub fn without(results: &Path, name: &str) -> Result<(), TableError> {
         let mut noted = Self::read(results)?;
         noted.tables.remove(name);
         noted.write(results)
