@@ -148,7 +148,8 @@ fn what_the_friction_circle_changes_on_wheel24() {
             (coupled_tuned, coupled_row, coupled_time),
         ] = &solved;
         let cells = |one: Option<f64>, other: Option<f64>| {
-            let [one, other] = [one, other].map(|amplitude_m| 1e6 * amplitude_m.unwrap());
+            // A row without a peak has no number.
+            let [one, other] = [one, other].map(|found| 1e6 * found.unwrap_or(f64::NAN));
             let change = 100.0 * (other / one - 1.0);
             format!("{one:.2} | {other:.2} | {change:.2} %")
         };
@@ -165,7 +166,10 @@ fn what_the_friction_circle_changes_on_wheel24() {
             time / few as f64,
             coupled_time / many as f64,
         );
-        assert!(load < 100.0 || (row.status, coupled_row.status) == (Status::Ok, Status::Ok));
+        let statuses = [row.status, coupled_row.status];
+        if load > 100.0 && statuses != [Status::Ok; 2] {
+            wrong.push(format!("{load} N: {statuses:?}"));
+        }
         let found = [
             tuned.amplitude_m,
             coupled_tuned.amplitude_m,
@@ -173,8 +177,10 @@ fn what_the_friction_circle_changes_on_wheel24() {
             coupled_row.peak_amplitude_m,
         ];
         for (found, written) in found.into_iter().zip(row_of_page.peaks_um) {
-            let error = (1e6 * found.unwrap() - written).abs();
-            if error > f64::max(0.02, 1e-3 * written) {
+            let agrees = |amplitude_m: f64| {
+                (1e6 * amplitude_m - written).abs() <= f64::max(0.02, 1e-3 * written)
+            };
+            if !found.is_some_and(agrees) {
                 wrong.push(format!("{load} N: {found:?}, the page: {written}"));
             }
         }

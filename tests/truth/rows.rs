@@ -1,0 +1,268 @@
+//! Rows of the truth: each peak with fixed-interface modes doubled until it stays, and what it took.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::sync::{Mutex, OnceLock};
+use std::time::Instant;
+
+use faer::c64;
+
+use super::cases::{Condition, Wheel, folder};
+use super::contact::Period;
+use super::iteration::{Case, solve};
+use super::peak::{Peak, peak};
+use super::sector::Sector;
+
+/// Samples of a period.
+const SAMPLES: usize = 512;
+/// Harmonics of the truth, and of what it is checked with on every tenth row.
+const HIGHEST: u32 = 15;
+const HIGHEST_OF_CHECK: u32 = 25;
+/// Every so many rows are solved with more harmonics too.
+const CHECKED: usize = 10;
+/// Change of a peak with twice the modes at which they are enough.
+const CHANGE_BY_MODES: f64 = 2e-4;
+const FEWEST_MODES: usize = 40;
+const MOST_MODES: usize = 320;
+
+/// A row of `truth.csv`.
+#[derive(Clone, Debug)]
+pub struct Row {
+    pub pattern: usize,
+    pub condition: String,
+    /// None where no solution was reached.
+    pub amplitude_m: Option<f64>,
+    pub frequency_hz: f64,
+    pub blade: usize,
+    pub modes: usize,
+    /// Relative change of the peak by the last doubling of the modes.
+    pub change_by_modes: f64,
+    /// Relative change of the peak by harmonics up to 25; none where it was not looked at.
+    pub change_by_harmonics: Option<f64>,
+    pub opening_pairs: usize,
+    pub slipping_pairs: usize,
+    pub points: usize,
+    pub seconds: f64,
+}
+
+pub const HEADER: &str = "pattern,condition,amplitude_m,frequency_hz,blade,modes,change_by_modes,change_by_harmonics,\
+                          opening_pairs,slipping_pairs,points,seconds";
+
+impl Row {
+    fn line(&self) -> String {
+        let shown = |value: Option<f64>| value.map_or(String::new(), |own| format!("{own:e}"));
+        let mut line = format!("{},{}", self.pattern, self.condition);
+        let _ = write!(
+            line,
+            ",{},{},{},{},{:.2e},{},{},{},{},{:.1}",
+            shown(self.amplitude_m),
+            self.frequency_hz,
+            self.blade,
+            self.modes,
+            self.change_by_modes,
+            shown(self.change_by_harmonics),
+            self.opening_pairs,
+            self.slipping_pairs,
+            self.points,
+            self.seconds
+        );
+        line
+    }
+
+    fn of_line(line: &str) -> Self {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number = |at: usize| cells[at].parse::<f64>().expect("a number");
+        let whole = |at: usize| cells[at].parse::<usize>().expect("a whole number");
+        let known = |at: usize| (!cells[at].is_empty()).then(|| number(at));
+        Self {
+            pattern: whole(0),
+            condition: cells[1].to_owned(),
+            amplitude_m: known(2),
+            frequency_hz: number(3),
+            blade: whole(4),
+            modes: whole(5),
+            change_by_modes: number(6),
+            change_by_harmonics: known(7),
+            opening_pairs: whole(8),
+            slipping_pairs: whole(9),
+            points: whole(10),
+            seconds: number(11),
+        }
+    }
+}
+
+fn file(wheel: &str) -> PathBuf {
+    folder(wheel).join("truth.csv")
+}
+
+/// The rows that are stored.
+pub fn stored(wheel: &str) -> Vec<Row> {
+    let text = std::fs::read_to_string(file(wheel)).unwrap_or_default();
+    text.lines().skip(1).map(Row::of_line).collect()
+}
+
+/// Adds a row to those that are stored.
+pub fn store(wheel: &str, row: &Row) {
+    static WRITING: Mutex<()> = Mutex::new(());
+    let _alone = WRITING.lock().expect("no panic");
+    let path = file(wheel);
+    let is_new = !path.exists();
+    let options = &mut std::fs::OpenOptions::new();
+    let mut file = options
+        .create(true)
+        .append(true)
+        .open(path)
+        .expect("a file");
+    if is_new {
+        writeln!(file, "{HEADER}").expect("written");
+    }
+    writeln!(file, "{}", row.line()).expect("written");
+}
+
+/// Puts the rows in order.
+pub fn sort(wheel: &str) {
+    let mut rows = stored(wheel);
+    let is_linear = |row: &Row| row.condition.parse::<f64>().is_err();
+    rows.sort_by_key(|row| (is_linear(row), row.pattern));
+    let lines: Vec<String> = rows.iter().map(Row::line).collect();
+    let text = format!("{HEADER}\n{}\n", lines.join("\n"));
+    std::fs::write(file(wheel), text).expect("written");
+}
+
+/// Sectors of a wheel by their number of modes, made when first wanted.
+pub struct Sectors<'a> {
+    wheel: &'a Wheel,
+    made: BTreeMap<usize, OnceLock<Sector>>,
+}
+
+impl<'a> Sectors<'a> {
+    pub fn new(wheel: &'a Wheel) -> Self {
+        let doubled = |modes: &usize| Some(2 * modes);
+        let all = std::iter::successors(Some(FEWEST_MODES), doubled);
+        let made = all.take_while(|modes| *modes <= MOST_MODES);
+        Self {
+            wheel,
+            made: made.map(|modes| (modes, OnceLock::new())).collect(),
+        }
+    }
+
+    pub fn with(&self, modes: usize) -> &Sector {
+        self.made[&modes].get_or_init(|| Sector::new(&self.wheel.model, modes))
+    }
+}
+
+/// The harmonics of a condition up to `highest`.
+fn harmonics(condition: Condition, highest: u32) -> Vec<u32> {
+    match condition {
+        Condition::Friction(_) => (0..=highest).collect(),
+        _ => vec![1],
+    }
+}
+
+/// A motion with some harmonics as one with more of them.
+fn padded(motion: &[Vec<c64>], from: &[u32], to: &[u32]) -> Vec<Vec<c64>> {
+    let nothing = vec![c64::new(0.0, 0.0); motion[0].len()];
+    let of = |k: &u32| from.iter().position(|own| own == k);
+    let own = |k| of(k).map_or(nothing.clone(), |at| motion[at].clone());
+    to.iter().map(own).collect()
+}
+
+/// A motion to start from: harmonic 1, then a few, each from the one before.
+fn start(
+    sector: &Sector,
+    case: &Case,
+    harmonics: &[u32],
+    period: &Period,
+    hint_hz: f64,
+) -> Option<Vec<Vec<c64>>> {
+    let sets: [&[u32]; 3] = [&[1], &[0, 1, 2, 3], &[0, 1, 2, 3, 4, 5, 6, 7]];
+    let mut found: Option<(Vec<Vec<c64>>, &[u32])> = None;
+    for set in sets {
+        let before = found
+            .as_ref()
+            .map(|(motion, from)| padded(motion, from, set));
+        let solved = solve(sector, case, set, period, hint_hz, before.as_deref());
+        if let Some(point) = solved {
+            found = Some((point.motion, set));
+        }
+    }
+    found.map(|(motion, from)| padded(&motion, from, harmonics))
+}
+
+/// Solves the row of a pattern, whose peak is looked for round `hint_hz`.
+pub fn solve_row(
+    sectors: &Sectors<'_>,
+    wheel: &Wheel,
+    pattern: usize,
+    condition: Condition,
+    hint_hz: f64,
+) -> Row {
+    let began = Instant::now();
+    let period = Period::new(SAMPLES);
+    let case = wheel.case(Some(pattern), condition);
+    let set = harmonics(condition, HIGHEST);
+    let mut row = Row {
+        pattern,
+        condition: condition.to_string(),
+        amplitude_m: None,
+        frequency_hz: hint_hz,
+        blade: 0,
+        modes: FEWEST_MODES,
+        change_by_modes: f64::INFINITY,
+        change_by_harmonics: None,
+        opening_pairs: 0,
+        slipping_pairs: 0,
+        points: 0,
+        seconds: 0.0,
+    };
+    let sector = sectors.with(row.modes);
+    let begin = match condition {
+        Condition::Friction(_) => start(sector, &case, &set, &period, hint_hz),
+        _ => None,
+    };
+    let mut found = peak(sector, &case, &set, &period, hint_hz, begin.as_deref());
+    while let Some(Peak { top, points, .. }) = &found {
+        row.points += points;
+        if row.change_by_modes < CHANGE_BY_MODES || row.modes == MOST_MODES {
+            break;
+        }
+        let more = sectors.with(2 * row.modes);
+        let start = Some(top.motion.as_slice());
+        let next = peak(more, &case, &set, &period, top.frequency_hz, start);
+        if let Some(next) = &next {
+            row.modes *= 2;
+            row.change_by_modes = (next.top.amplitude_m() / top.amplitude_m() - 1.0).abs();
+        }
+        found = next;
+    }
+    if let Some(Peak { top, .. }) = &found {
+        row.amplitude_m = Some(top.amplitude_m());
+        row.frequency_hz = top.frequency_hz;
+        row.opening_pairs = top.opening_pairs;
+        row.slipping_pairs = top.slipping_pairs;
+        let height = |blade: &usize| top.amplitudes_m[*blade];
+        row.blade = (0..top.amplitudes_m.len())
+            .max_by(|a, b| height(a).total_cmp(&height(b)))
+            .expect("blades");
+        let has_friction = matches!(condition, Condition::Friction(_));
+        if has_friction && pattern.is_multiple_of(CHECKED) {
+            let more = harmonics(condition, HIGHEST_OF_CHECK);
+            let start = padded(&top.motion, &set, &more);
+            let sector = sectors.with(row.modes);
+            let checked = peak(
+                sector,
+                &case,
+                &more,
+                &period,
+                top.frequency_hz,
+                Some(&start),
+            );
+            let height = checked.map(|own| own.top.amplitude_m());
+            row.change_by_harmonics = height.map(|own| own / top.amplitude_m() - 1.0);
+        }
+    }
+    row.seconds = began.elapsed().as_secs_f64();
+    row
+}
