@@ -1,6 +1,8 @@
 //! The highest amplitude round a frequency: three frequencies beside each other with the highest in the middle, and one
 //! where the parabola through `1/A^2` has its vertex, which is exact for a single resonance of any damping.
 
+use faer::Mat;
+
 use super::contact::Period;
 use super::iteration::{Case, Point, solve};
 use super::sector::Sector;
@@ -20,10 +22,9 @@ pub struct Peak {
 pub fn peak(
     sector: &Sector,
     case: &Case,
-    harmonics: &[u32],
     period: &Period,
     hint_hz: f64,
-    start: Option<&[Vec<faer::c64>]>,
+    start: Option<&Mat<f64>>,
 ) -> Option<Peak> {
     let spacing_hz = SPACING_OF_LOSS_FACTOR * case.loss_factor * hint_hz;
     let mut points: Vec<Point> = Vec::new();
@@ -32,8 +33,8 @@ pub fn peak(
         let nearest = points
             .iter()
             .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let start = nearest.map(|own| own.motion.as_slice()).or(start);
-        let point = solve(sector, case, harmonics, period, frequency_hz, start)?;
+        let start = nearest.map(|own| &own.motion).or(start);
+        let point = solve(sector, case, period, frequency_hz, start)?;
         let amplitude_m = point.amplitude_m();
         let at = points.partition_point(|own| own.frequency_hz < frequency_hz);
         points.insert(at, point);

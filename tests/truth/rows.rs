@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, OnceLock};
 use std::time::Instant;
 
-use faer::c64;
+use faer::Mat;
 
 use super::cases::{Condition, Wheel, folder};
 use super::contact::Period;
@@ -161,34 +161,36 @@ fn harmonics(condition: Condition, highest: u32) -> Vec<u32> {
     }
 }
 
-/// A motion with some harmonics as one with more of them.
-fn padded(motion: &[Vec<c64>], from: &[u32], to: &[u32]) -> Vec<Vec<c64>> {
-    let nothing = vec![c64::new(0.0, 0.0); motion[0].len()];
-    let of = |k: &u32| from.iter().position(|own| own == k);
-    let own = |k| of(k).map_or(nothing.clone(), |at| motion[at].clone());
-    to.iter().map(own).collect()
+/// A motion with the harmonics of one period as one with those of another, which has more of them.
+fn padded(motion: &Mat<f64>, from: &Period, to: &Period) -> Mat<f64> {
+    let mut found = Mat::zeros(to.coefficients(), motion.ncols());
+    for (place, k) in to.harmonics.iter().enumerate() {
+        if let Some(before) = from.harmonics.iter().position(|own| own == k) {
+            let count = if *k == 0 { 1 } else { 2 };
+            for part in 0..count {
+                for row in 0..motion.ncols() {
+                    found[(to.first(place) + part, row)] = motion[(from.first(before) + part, row)];
+                }
+            }
+        }
+    }
+    found
 }
 
 /// A motion to start from: harmonic 1, then a few, each from the one before.
-fn start(
-    sector: &Sector,
-    case: &Case,
-    harmonics: &[u32],
-    period: &Period,
-    hint_hz: f64,
-) -> Option<Vec<Vec<c64>>> {
-    let sets: [&[u32]; 3] = [&[1], &[0, 1, 2, 3], &[0, 1, 2, 3, 4, 5, 6, 7]];
-    let mut found: Option<(Vec<Vec<c64>>, &[u32])> = None;
+fn start(sector: &Sector, case: &Case, period: &Period, hint_hz: f64) -> Option<Mat<f64>> {
+    let sets: [&[u32]; 2] = [&[1], &[0, 1, 2, 3, 4, 5]];
+    let mut found: Option<(Mat<f64>, Period)> = None;
     for set in sets {
+        let own = Period::new(set, period.samples());
         let before = found
             .as_ref()
-            .map(|(motion, from)| padded(motion, from, set));
-        let solved = solve(sector, case, set, period, hint_hz, before.as_deref());
-        if let Some(point) = solved {
-            found = Some((point.motion, set));
+            .map(|(motion, from)| padded(motion, from, &own));
+        if let Some(point) = solve(sector, case, &own, hint_hz, before.as_ref()) {
+            found = Some((point.motion, own));
         }
     }
-    found.map(|(motion, from)| padded(&motion, from, harmonics))
+    found.map(|(motion, from)| padded(&motion, &from, period))
 }
 
 /// Solves the row of a pattern, whose peak is looked for round `hint_hz`.
@@ -200,9 +202,8 @@ pub fn solve_row(
     hint_hz: f64,
 ) -> Row {
     let began = Instant::now();
-    let period = Period::new(SAMPLES);
     let case = wheel.case(Some(pattern), condition);
-    let set = harmonics(condition, HIGHEST);
+    let period = Period::new(&harmonics(condition, HIGHEST), SAMPLES);
     let mut row = Row {
         pattern,
         condition: condition.to_string(),
@@ -219,18 +220,17 @@ pub fn solve_row(
     };
     let sector = sectors.with(row.modes);
     let begin = match condition {
-        Condition::Friction(_) => start(sector, &case, &set, &period, hint_hz),
+        Condition::Friction(_) => start(sector, &case, &period, hint_hz),
         _ => None,
     };
-    let mut found = peak(sector, &case, &set, &period, hint_hz, begin.as_deref());
+    let mut found = peak(sector, &case, &period, hint_hz, begin.as_ref());
     while let Some(Peak { top, points, .. }) = &found {
         row.points += points;
         if row.change_by_modes < CHANGE_BY_MODES || row.modes == MOST_MODES {
             break;
         }
         let more = sectors.with(2 * row.modes);
-        let start = Some(top.motion.as_slice());
-        let next = peak(more, &case, &set, &period, top.frequency_hz, start);
+        let next = peak(more, &case, &period, top.frequency_hz, Some(&top.motion));
         if let Some(next) = &next {
             row.modes *= 2;
             row.change_by_modes = (next.top.amplitude_m() / top.amplitude_m() - 1.0).abs();
@@ -248,17 +248,10 @@ pub fn solve_row(
             .expect("blades");
         let has_friction = matches!(condition, Condition::Friction(_));
         if has_friction && pattern.is_multiple_of(CHECKED) {
-            let more = harmonics(condition, HIGHEST_OF_CHECK);
-            let start = padded(&top.motion, &set, &more);
+            let more = Period::new(&harmonics(condition, HIGHEST_OF_CHECK), SAMPLES);
+            let start = padded(&top.motion, &period, &more);
             let sector = sectors.with(row.modes);
-            let checked = peak(
-                sector,
-                &case,
-                &more,
-                &period,
-                top.frequency_hz,
-                Some(&start),
-            );
+            let checked = peak(sector, &case, &more, top.frequency_hz, Some(&start));
             let height = checked.map(|own| own.top.amplitude_m());
             row.change_by_harmonics = height.map(|own| own / top.amplitude_m() - 1.0);
         }

@@ -1,12 +1,9 @@
 //! Dynamic stiffness of a whole mistuned wheel at one frequency, factored sector by sector and round the wheel.
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
-use faer::{Mat, MatRef, c64};
+use faer::{Mat, c64};
 
 use super::sector::{DIRECTIONS, Sector};
-
-/// Springs of one pair between its three directions, N/m: row force by column motion.
-pub type PairStiffness = [[c64; DIRECTIONS]; DIRECTIONS];
 
 /// `K (1 + i eta) - w^2 M` of every sector with its springs at the contact, factored.
 pub struct FactoredWheel<'a> {
@@ -31,23 +28,26 @@ struct Inside {
     faces: Mat<c64>,
 }
 
-/// Motions of a wheel, sector after sector.
-pub struct Motion {
-    /// Relative motion at the contact rows, m.
-    pub contact: Vec<c64>,
-    /// Motion of the observed node, three a sector, m.
-    pub observed: Vec<c64>,
+/// Responses of a wheel to unit forces on its contact rows and to its excitation, sector after sector, m/N.
+pub struct Receptance {
+    /// Relative motion at the contact rows by forces on them.
+    pub contact: Mat<c64>,
+    /// Motion of the observed nodes by forces on the contact rows.
+    pub observed: Mat<c64>,
+    /// Both under the excitation.
+    pub contact_excited: Vec<c64>,
+    pub observed_excited: Vec<c64>,
 }
 
 impl<'a> FactoredWheel<'a> {
-    /// At `omega`, rad/s, which is harmonic times excitation; `springs` of each pair, sector after sector; `deviations`
-    /// of the blades' stiffness. Harmonic 0 has no loss factor.
+    /// At `omega`, rad/s, which is harmonic times excitation; `springs` between the bodies along normal and tangents, N/m
+    /// per sector; `deviations` of the blades' stiffness. Harmonic 0 has no loss factor.
     pub fn new(
         sector: &'a Sector,
         omega: f64,
         loss_factor: f64,
         deviations: &[f64],
-        springs: &[PairStiffness],
+        springs: [f64; DIRECTIONS],
     ) -> Self {
         let (n, f) = (sector.sectors, sector.face);
         assert!(n > 2 && deviations.len() == n);
@@ -56,19 +56,16 @@ impl<'a> FactoredWheel<'a> {
         let loss = c64::new(1.0, if omega > 0.0 { loss_factor } else { 0.0 });
         let mut inside = Vec::with_capacity(n);
         let mut condensed = Vec::with_capacity(n);
-        for (own, delta) in deviations.iter().enumerate() {
+        for delta in deviations {
             let mut dynamic = Mat::from_fn(sector.size(), sector.size(), |i, j| {
                 let stiffness = sector.stiffness[(i, j)] + delta * sector.blade[(i, j)];
                 loss * stiffness - c64::new(omega * omega * sector.mass[(i, j)], 0.0)
             });
-            let own_springs = &springs[own * sector.pairs.len()..(own + 1) * sector.pairs.len()];
-            for (pair, stiffness) in sector.pairs.iter().zip(own_springs) {
-                for (row, force) in pair.rows.iter().zip(stiffness) {
-                    for (column, &spring) in pair.rows.iter().zip(force) {
-                        for &(i, a) in row {
-                            for &(j, b) in column {
-                                dynamic[(i, j)] += spring * (a * b);
-                            }
+            for pair in &sector.pairs {
+                for (row, spring) in pair.rows.iter().zip(springs) {
+                    for &(i, a) in row {
+                        for &(j, b) in row {
+                            dynamic[(i, j)] += c64::new(pair.weight * spring * a * b, 0.0);
                         }
                     }
                 }
@@ -140,39 +137,86 @@ impl<'a> FactoredWheel<'a> {
         wheel
     }
 
-    /// The motion under `contact_forces` on the contact rows, N, which close and slide as the motion does, and under the
-    /// excitation of `engine_order`, if any.
-    pub fn solve(&self, contact_forces: &[c64], engine_order: Option<u32>) -> Motion {
+    /// Under forces that close and slide as the motion does, and under the excitation of `engine_order`.
+    pub fn receptance(&self, engine_order: u32) -> Receptance {
         let (n, f) = (self.sector.sectors, self.sector.face);
         let (size, rows) = (self.sector.size(), self.sector.contact_rows());
-        let mut on_faces = vec![Mat::<c64>::zeros(f, 1); n];
-        let mut moved = Vec::with_capacity(n);
-        for own in 0..n {
-            let mut load = Mat::<c64>::zeros(size, 1);
-            let forces = &contact_forces[own * rows..(own + 1) * rows];
-            let all_rows = self.sector.pairs.iter().flat_map(|pair| &pair.rows);
-            for (row, force) in all_rows.zip(forces) {
-                for &(at, factor) in row {
-                    load[(at, 0)] += *force * factor;
-                }
+        let (inner, watched) = (size - 2 * f, self.sector.observed.len());
+        // Rows that are asked for, those of the contact first.
+        let mut asked = Mat::<c64>::zeros(rows + watched, size);
+        let of_contact = self.sector.pairs.iter().flat_map(|pair| &pair.rows);
+        for (at, row) in of_contact.enumerate() {
+            for &(place, factor) in row {
+                asked[(at, place)] += c64::new(factor, 0.0);
             }
-            if let Some(order) = engine_order {
-                let turns = (order as usize * own % n) as f64 / n as f64;
-                let turn = c64::cis(std::f64::consts::TAU * turns);
-                for &(at, newton) in &self.sector.force {
-                    load[(at, 0)] += newton * turn;
-                }
-            }
-            let inside = &self.inside[own];
-            let alone = inside
-                .factors
-                .solve(load.as_ref().subrows(2 * f, size - 2 * f));
-            let passed_on = &inside.faces * &alone;
-            on_faces[own] += load.as_ref().subrows(0, f) - passed_on.as_ref().subrows(0, f);
-            on_faces[(own + 1) % n] +=
-                load.as_ref().subrows(f, f) - passed_on.as_ref().subrows(f, f);
-            moved.push(alone);
         }
+        for (at, &place) in self.sector.observed.iter().enumerate() {
+            asked[(rows + at, place)] = c64::new(1.0, 0.0);
+        }
+        let [on_low, on_high, on_inner] = [(0, f), (f, f), (2 * f, inner)]
+            .map(|(from, count)| asked.as_ref().subcols(from, count));
+        let excited = n * rows;
+        let mut on_faces = vec![Mat::<c64>::zeros(f, excited + 1); n];
+        let mut alone = Vec::with_capacity(n);
+        for own in 0..n {
+            let turns = (engine_order as usize * own % n) as f64 / n as f64;
+            let turn = c64::cis(std::f64::consts::TAU * turns);
+            let load = Mat::from_fn(size, rows + 1, |place, column| {
+                let newton = |&(at, newton): &(usize, c64)| (at == place).then_some(newton * turn);
+                if column < rows {
+                    asked[(column, place)]
+                } else {
+                    self.sector.force.iter().filter_map(newton).sum()
+                }
+            });
+            let inside = &self.inside[own];
+            let moved = inside.factors.solve(load.as_ref().subrows(2 * f, inner));
+            let passed_on = &inside.faces * &moved;
+            for (face, from) in [(own, 0), ((own + 1) % n, f)] {
+                let part = load.as_ref().subrows(from, f) - passed_on.as_ref().subrows(from, f);
+                let mut block = on_faces[face].as_mut().subcols_mut(own * rows, rows);
+                block += part.as_ref().subcols(0, rows);
+                let mut column = on_faces[face].as_mut().subcols_mut(excited, 1);
+                column += part.as_ref().subcols(rows, 1);
+            }
+            alone.push(moved);
+        }
+        self.solve_faces(&mut on_faces);
+        let mut all = Mat::<c64>::zeros(n * (rows + watched), excited + 1);
+        for (own, alone) in alone.iter().enumerate() {
+            let (low, high) = (&on_faces[own], &on_faces[(own + 1) % n]);
+            let follows = on_inner * &self.inside[own].follows;
+            let of_low = on_low - follows.as_ref().subcols(0, f);
+            let of_high = on_high - follows.as_ref().subcols(f, f);
+            let mut answer = of_low * low + of_high * high;
+            let by_itself = on_inner * alone;
+            let mut block = answer.as_mut().subcols_mut(own * rows, rows);
+            block += by_itself.as_ref().subcols(0, rows);
+            let mut column = answer.as_mut().subcols_mut(excited, 1);
+            column += by_itself.as_ref().subcols(rows, 1);
+            let of_contact = (0..rows).map(|row| (row, own * rows + row));
+            let of_tip = (0..watched).map(|row| (rows + row, n * rows + own * watched + row));
+            for (from, at) in of_contact.chain(of_tip) {
+                for column in 0..=excited {
+                    all[(at, column)] = answer[(from, column)];
+                }
+            }
+        }
+        let part =
+            |row: usize, count: usize| all.as_ref().submatrix(row, 0, count, excited).to_owned();
+        let column =
+            |row: usize, count: usize| (row..row + count).map(|at| all[(at, excited)]).collect();
+        Receptance {
+            contact: part(0, n * rows),
+            observed: part(n * rows, n * watched),
+            contact_excited: column(0, n * rows),
+            observed_excited: column(n * rows, n * watched),
+        }
+    }
+
+    /// Motion of the low faces in the place of the forces on them.
+    fn solve_faces(&self, on_faces: &mut [Mat<c64>]) {
+        let n = self.sector.sectors;
         for own in 0..n - 1 {
             let part = self.pivots[own].solve(&on_faces[own]);
             if own < n - 2 {
@@ -182,49 +226,13 @@ impl<'a> FactoredWheel<'a> {
             on_faces[own] = part;
         }
         let last = self.pivots[n - 1].solve(&on_faces[n - 1]);
-        on_faces[n - 1] = last.clone();
         for own in (0..n - 1).rev() {
-            let next = if own < n - 2 {
-                &self.to_next[own] * &on_faces[own + 1]
-            } else {
-                Mat::zeros(f, 1)
-            };
-            on_faces[own] -= next + &self.to_last[own] * &last;
-        }
-        let mut motion = Motion {
-            contact: Vec::with_capacity(n * rows),
-            observed: Vec::with_capacity(n * self.sector.observed.len()),
-        };
-        for (own, alone) in moved.iter().enumerate() {
-            let (low, high) = (&on_faces[own], &on_faces[(own + 1) % n]);
-            let follows = &self.inside[own].follows;
-            let inside = alone
-                - follows.as_ref().subcols(0, f) * low
-                - follows.as_ref().subcols(f, f) * high;
-            let at = |place: usize| entry(place, f, low.as_ref(), high.as_ref(), inside.as_ref());
-            for row in self.sector.pairs.iter().flat_map(|pair| &pair.rows) {
-                motion
-                    .contact
-                    .push(row.iter().map(|&(place, factor)| at(place) * factor).sum());
+            if own < n - 2 {
+                let next = &self.to_next[own] * &on_faces[own + 1];
+                on_faces[own] -= next;
             }
-            motion
-                .observed
-                .extend(self.sector.observed.iter().map(|&place| at(place)));
+            on_faces[own] -= &self.to_last[own] * &last;
         }
-        motion
-    }
-}
-
-fn entry(
-    place: usize,
-    face: usize,
-    low: MatRef<'_, c64>,
-    high: MatRef<'_, c64>,
-    inside: MatRef<'_, c64>,
-) -> c64 {
-    match place {
-        _ if place < face => low[(place, 0)],
-        _ if place < 2 * face => high[(place - face, 0)],
-        _ => inside[(place - 2 * face, 0)],
+        on_faces[n - 1] = last;
     }
 }
