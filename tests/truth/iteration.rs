@@ -40,8 +40,9 @@ pub enum Contact {
 const TOLERANCE: f64 = 1e-7;
 const MOST_NEWTON_STEPS: usize = 40;
 const MOST_HALVINGS: usize = 7;
-/// Vectors of GMRES, which begins anew after them once.
-const KRYLOV: usize = 80;
+/// Vectors of GMRES, which begins anew after them once. Where pairs open, the harmonics depend on each other and hundreds
+/// are needed.
+const KRYLOV: usize = 400;
 /// Factor of the load that the homotopy begins with, and its shortest step of the logarithm.
 const HIGHEST_LOAD: f64 = 256.0;
 const SHORTEST_STEP: f64 = 1.0 / 256.0;
@@ -327,7 +328,7 @@ impl Equation<'_> {
     }
 }
 
-/// Solves `A x = b` to a hundredth, or as far as it gets in twice [`KRYLOV`] products.
+/// Solves `A x = b` to a thousandth, or as far as it gets in twice [`KRYLOV`] products.
 fn gmres(
     times: impl Fn(&Mat<f64>) -> Mat<f64>,
     right: &Mat<f64>,

@@ -177,17 +177,28 @@ fn padded(motion: &Mat<f64>, from: &Period, to: &Period) -> Mat<f64> {
     found
 }
 
-/// A motion to start from: harmonic 1, then a few, each from the one before.
+/// A motion to start from: a few harmonics, then more, each set from the one before.
 fn start(sector: &Sector, case: &Case, period: &Period, hint_hz: f64) -> Option<Mat<f64>> {
-    let sets: [&[u32]; 2] = [&[1], &[0, 1, 2, 3, 4, 5]];
+    const HIGHEST: [u32; 6] = [1, 3, 5, 7, 9, 12];
     let mut found: Option<(Mat<f64>, Period)> = None;
-    for set in sets {
-        let own = Period::new(set, period.samples());
+    for highest in HIGHEST {
+        let set: Vec<u32> = if highest == 1 {
+            vec![1]
+        } else {
+            (0..=highest).collect()
+        };
+        let own = Period::new(&set, period.samples());
         let before = found
             .as_ref()
             .map(|(motion, from)| padded(motion, from, &own));
-        if let Some(point) = solve(sector, case, &own, hint_hz, before.as_ref()) {
+        let point = solve(sector, case, &own, hint_hz, before.as_ref());
+        let opens = point.as_ref().is_none_or(|point| point.opening_pairs > 0);
+        if let Some(point) = point {
             found = Some((point.motion, own));
+        }
+        // Where nothing opens, three harmonics are near enough.
+        if highest >= 3 && !opens {
+            break;
         }
     }
     found.map(|(motion, from)| padded(&motion, &from, period))
