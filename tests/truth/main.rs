@@ -144,7 +144,7 @@ fn the_peaks_known_for_wheel8_are_met() {
             point.slipping_pairs,
             began.elapsed().as_secs_f64()
         );
-        assert!(error.abs() < 2e-3, "{harmonics:?} {frequency_hz}: {error}");
+        assert!(error.abs() < 5e-4, "{harmonics:?} {frequency_hz}: {error}");
     }
 }
 
@@ -177,10 +177,10 @@ fn sticking_n(wheel: &Wheel) -> f64 {
     largest * law.tangential_stiffness_n_per_m / law.friction_coefficient
 }
 
-/// `cargo test --release --test truth draw -- --ignored`
+/// `cargo test --release --test truth make_the_cases -- --ignored`
 #[test]
 #[ignore = "writes the cases"]
-fn draw_the_cases() {
+fn make_the_cases() {
     for wheel in WHEELS {
         draw(wheel, sticking_n);
         println!("{wheel}: {:?}", Wheel::read(wheel).loads_n);
@@ -188,9 +188,10 @@ fn draw_the_cases() {
 }
 
 /// Solves the rows that `truth.csv` does not have; `TRUTH_WHEEL` and `TRUTH_ROWS` leave others out.
+/// `cargo test --release --test truth make_the_truth -- --ignored --nocapture`
 #[test]
-#[ignore = "hours: makes what is missing of the truth"]
-fn the_truth_is_made() {
+#[ignore = "hours: writes what is missing of the truth"]
+fn make_the_truth() {
     faer::set_global_parallelism(faer::Par::Seq);
     let wanted = std::env::var("TRUTH_WHEEL").ok();
     let most = std::env::var("TRUTH_ROWS").map_or(usize::MAX, |own| own.parse().unwrap());
