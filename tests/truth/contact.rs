@@ -48,6 +48,41 @@ impl State {
         let slips = |rows: &&[Vec<Origin>]| rows.iter().any(|row| !row.is_empty());
         self.origins.chunks(DIRECTIONS).filter(slips).count()
     }
+
+    /// What the forces of a pair follow its motion with in one harmonic, every other harmonic left out: force along a
+    /// row by motion along a column, N/m.
+    pub fn stiffness(
+        &self,
+        law: &Law,
+        pair: usize,
+        harmonic: u32,
+    ) -> [[c64; DIRECTIONS]; DIRECTIONS] {
+        let nothing = c64::new(0.0, 0.0);
+        let mut found = [[nothing; DIRECTIONS]; DIRECTIONS];
+        let samples = self.samples;
+        let share = 1.0 / samples as f64;
+        let closed = self.is_closed[pair].iter().filter(|own| **own).count() as f64;
+        found[0][0] = c64::new(law.normal_stiffness_n_per_m * closed * share, 0.0);
+        for (direction, row) in found.iter_mut().enumerate().skip(1) {
+            let spring = law.tangential_stiffness_n_per_m;
+            let origins = &self.origins[DIRECTIONS * pair + direction];
+            row[direction] = c64::new(spring, 0.0);
+            if harmonic == 0 {
+                continue;
+            }
+            for (j, origin) in origins.iter().enumerate() {
+                let Some((at, side)) = *origin else { continue };
+                let steps = harmonic as usize * ((j + samples - at) % samples) % samples;
+                let lag = c64::cis(-TAU * steps as f64 * share) * share;
+                row[direction] -= lag * spring;
+                if self.is_closed[pair][at] {
+                    let follows = side * law.friction_coefficient * law.normal_stiffness_n_per_m;
+                    row[0] += lag * follows;
+                }
+            }
+        }
+        found
+    }
 }
 
 impl Period {
@@ -192,41 +227,5 @@ impl Period {
             }
         }
         self.coefficients_of(&forces, change, law)
-    }
-
-    /// What the forces of a pair follow its motion with in one harmonic, every other harmonic left out: force along a
-    /// row by motion along a column, N/m.
-    pub fn stiffness(
-        &self,
-        law: &Law,
-        state: &State,
-        pair: usize,
-        harmonic: u32,
-    ) -> [[c64; DIRECTIONS]; DIRECTIONS] {
-        let nothing = c64::new(0.0, 0.0);
-        let mut found = [[nothing; DIRECTIONS]; DIRECTIONS];
-        let samples = state.samples;
-        let share = 1.0 / samples as f64;
-        let closed = state.is_closed[pair].iter().filter(|own| **own).count() as f64;
-        found[0][0] = c64::new(law.normal_stiffness_n_per_m * closed * share, 0.0);
-        for direction in 1..DIRECTIONS {
-            let spring = law.tangential_stiffness_n_per_m;
-            let origins = &state.origins[DIRECTIONS * pair + direction];
-            found[direction][direction] = c64::new(spring, 0.0);
-            if harmonic == 0 {
-                continue;
-            }
-            for (j, origin) in origins.iter().enumerate() {
-                let Some((at, side)) = *origin else { continue };
-                let steps = harmonic as usize * ((j + samples - at) % samples) % samples;
-                let lag = c64::cis(-TAU * steps as f64 * share) * share;
-                found[direction][direction] -= lag * spring;
-                if state.is_closed[pair][at] {
-                    let follows = side * law.friction_coefficient * law.normal_stiffness_n_per_m;
-                    found[direction][0] += lag * follows;
-                }
-            }
-        }
-        found
     }
 }

@@ -4,7 +4,7 @@
 //! r(u) = u - u_excited + R (F(u) - k_c u) = 0
 //! ```
 //!
-//! with R the receptance of the wheel whose contact sticks, k_c the springs of sticking and F the contact forces. Newton's
+//! with R the receptance of the wheel whose contact sticks, `k_c` the springs of sticking and F the contact forces. Newton's
 //! method; its linear equations by GMRES (Saad and Schultz 1986) with the contact of each harmonic alone as
 //! preconditioner. Where that fails, the normal load comes down in steps from one that nothing slips under.
 
@@ -113,7 +113,7 @@ pub fn solve(
     };
     let watched = sector.observed.len();
     let amplitudes = |observed: &[c64]| -> Vec<f64> {
-        let of = |blade: &[c64]| blade.iter().map(|u| u.norm_sqr()).sum::<f64>().sqrt();
+        let of = |blade: &[c64]| blade.iter().map(c64::norm_sqr).sum::<f64>().sqrt();
         observed.chunks(watched).map(of).collect()
     };
     let at_tips = &receptances[fundamental];
@@ -245,7 +245,7 @@ impl Equation<'_> {
             let k = self.period.harmonics[place];
             let mut matrix = Mat::<c64>::identity(self.rows(), self.rows());
             for (pair, law) in laws.iter().enumerate() {
-                let mut stiffness = self.period.stiffness(law, state, pair, k);
+                let mut stiffness = state.stiffness(law, pair, k);
                 for (direction, row) in stiffness.iter_mut().enumerate() {
                     let stuck = self.weights[pair] * self.springs[direction];
                     row[direction] -= c64::new(stuck, 0.0);

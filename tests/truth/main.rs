@@ -2,6 +2,11 @@
 //!
 //! Nothing of the program is used but sector models as data: no reduced model, no contact law, no solver.
 
+#![expect(
+    clippy::print_stdout,
+    reason = "what is measured and written is shown by `--nocapture`"
+)]
+
 mod cases;
 mod contact;
 mod hints;
@@ -31,121 +36,63 @@ fn data(name: &str) -> PathBuf {
         .join(name)
 }
 
-fn reference_case(deviations: Vec<f64>, contact: Contact) -> Case {
-    Case {
-        loss_factor: 0.002,
-        engine_order: 3,
-        deviations,
-        contact,
+/// Deviations of a pattern of a reference wheel; 0 is tuned.
+fn deviations(wheel: &str, sectors: usize, pattern: &str) -> Vec<f64> {
+    if pattern == "0" {
+        return vec![0.0; sectors];
     }
+    let path = data(wheel).join("reference/patterns.csv");
+    let text = std::fs::read_to_string(path).expect("patterns");
+    let rows = text.lines().skip(1).map(|line| line.split(',').collect());
+    let of_pattern = rows.filter(|cells: &Vec<&str>| cells[0] == pattern);
+    let deviation = |cells: Vec<&str>| cells[2].parse().expect("a number");
+    of_pattern.map(deviation).collect()
 }
 
-/// Deviations of pattern 1 of a reference wheel.
-fn pattern_1(wheel: &str) -> Vec<f64> {
-    let text = std::fs::read_to_string(data(wheel).join("reference/patterns.csv")).unwrap();
-    let rows = text
-        .lines()
-        .skip(1)
-        .map(|line| line.split(',').collect::<Vec<_>>());
-    let of_pattern = rows.filter(|cells| cells[0] == "1");
-    of_pattern.map(|cells| cells[2].parse().unwrap()).collect()
-}
-
-/// Peaks and their frequencies known for wheel8 from another implementation, at a fixed frequency.
+/// Every peak known for wheel8 from another implementation with harmonics up to 3, at its frequency. It has 25 modes of
+/// a nodal diameter in the place of ours, on which higher harmonics depend (docs/sector-bundle.md).
 #[test]
 fn the_peaks_known_for_wheel8_are_met() {
     faer::set_global_parallelism(faer::Par::Seq);
-    let model = bundle::read(&data("wheel8")).unwrap();
+    let model = bundle::read(&data("wheel8")).expect("a model");
     let sector = Sector::new(&model, 80);
-    let friction = |normal_load_n| {
-        Contact::Friction(Law {
-            normal_load_n,
-            normal_stiffness_n_per_m: 8e8,
-            tangential_stiffness_n_per_m: 4e8,
-            friction_coefficient: 0.3,
-        })
-    };
-    let tuned = vec![0.0; 8];
-    let cases: [(Vec<f64>, Contact, &[u32], f64, f64); 9] = [
-        (
-            tuned.clone(),
-            Contact::Springs(0.0, 0.0),
-            &[1],
-            611.76888,
-            4.18716429e-4,
-        ),
-        (
-            tuned.clone(),
-            Contact::Springs(8e8, 4e8),
-            &[1],
-            617.77559,
-            4.21449279e-4,
-        ),
-        (
-            pattern_1("wheel8"),
-            Contact::Springs(8e8, 0.0),
-            &[1],
-            611.27237,
-            4.77504552e-4,
-        ),
-        (
-            pattern_1("wheel8"),
-            Contact::Springs(8e8, 4e8),
-            &[1],
-            616.40759,
-            4.94962016e-4,
-        ),
-        (
-            tuned.clone(),
-            friction(400.0),
-            &[1],
-            615.06367,
-            1.35559717e-4,
-        ),
-        (
-            pattern_1("wheel8"),
-            friction(200.0),
-            &[1],
-            612.86433,
-            1.99764944e-4,
-        ),
-        (
-            pattern_1("wheel8"),
-            friction(400.0),
-            &[1, 3],
-            614.22580,
-            1.79591708e-4,
-        ),
-        (
-            pattern_1("wheel8"),
-            friction(1600.0),
-            &[1, 3],
-            616.03967,
-            2.80179361e-4,
-        ),
-        (
-            pattern_1("wheel8"),
-            friction(100.0),
-            &[0, 1, 2, 3],
-            611.80039,
-            3.05571267e-4,
-        ),
-    ];
-    for (deviations, contact, harmonics, frequency_hz, amplitude_m) in cases {
-        let case = reference_case(deviations, contact);
-        let began = std::time::Instant::now();
-        let period = Period::new(harmonics, 512);
-        let point = solve(&sector, &case, &period, frequency_hz, None).unwrap();
-        let error = point.amplitude_m() / amplitude_m - 1.0;
-        println!(
-            "{harmonics:?} {frequency_hz} Hz: {error:.2e}, {} products, {} open, {} slip, {:.1} s",
-            point.products,
-            point.opening_pairs,
-            point.slipping_pairs,
-            began.elapsed().as_secs_f64()
-        );
-        assert!(error.abs() < 5e-4, "{harmonics:?} {frequency_hz}: {error}");
+    let text = std::fs::read_to_string(data("wheel8").join("reference/peaks.csv")).expect("peaks");
+    let mut rows = 0;
+    for line in text.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number = |at: usize| cells[at].parse::<f64>().expect("a number");
+        let whole = |cell: &str| cell.parse::<u32>().expect("a harmonic");
+        let harmonics: Vec<u32> = cells[3].split('-').map(whole).collect();
+        if harmonics.iter().any(|&k| k > 3) {
+            continue;
+        }
+        let [kn, kt] = [8e8, 4e8];
+        let case = Case {
+            loss_factor: 0.002,
+            engine_order: 3,
+            deviations: deviations("wheel8", model.sectors, cells[0]),
+            contact: match cells[1] {
+                "free" => Contact::Springs(0.0, 0.0),
+                "slide" => Contact::Springs(kn, 0.0),
+                "stuck" => Contact::Springs(kn, kt),
+                _ => Contact::Friction(Law {
+                    normal_load_n: number(2),
+                    normal_stiffness_n_per_m: kn,
+                    tangential_stiffness_n_per_m: kt,
+                    friction_coefficient: 0.3,
+                }),
+            },
+        };
+        let period = Period::new(&harmonics, 512);
+        let point = solve(&sector, &case, &period, number(5), None).expect("a solution");
+        let error = point.amplitude_m() / number(4) - 1.0;
+        println!("{line}: {error:.2e}, {} products", point.products);
+        // The tolerances that the reference itself is trusted with; 1 % where pairs separate, which is not needed.
+        let accepted = if cells[1] == "full" { 1e-3 } else { 5e-4 };
+        assert!(error.abs() < accepted, "{line}: {error}");
+        rows += 1;
     }
+    assert_eq!(rows, 23);
 }
 
 /// The load under which every pair of the tuned wheel sticks at its stuck peak, N per sector.
@@ -154,8 +101,8 @@ fn sticking_n(wheel: &Wheel) -> f64 {
     let hint_hz = Hints::new(wheel).frequency_hz(None, Condition::Stuck);
     let case = wheel.case(None, Condition::Stuck);
     let period = Period::new(&[1], 64);
-    let frequency_hz = peak(&sector, &case, &period, hint_hz.unwrap(), None)
-        .unwrap()
+    let frequency_hz = peak(&sector, &case, &period, hint_hz.expect("a peak"), None)
+        .expect("a peak")
         .top
         .frequency_hz;
     let law = wheel.law();
@@ -194,7 +141,7 @@ fn make_the_cases() {
 fn make_the_truth() {
     faer::set_global_parallelism(faer::Par::Seq);
     let wanted = std::env::var("TRUTH_WHEEL").ok();
-    let most = std::env::var("TRUTH_ROWS").map_or(usize::MAX, |own| own.parse().unwrap());
+    let most = std::env::var("TRUTH_ROWS").map_or(usize::MAX, |own| own.parse().expect("a number"));
     for name in WHEELS {
         if wanted.as_ref().is_some_and(|own| own != name) {
             continue;

@@ -168,7 +168,7 @@ fn lowest_modes(stiffness: &Mat<f64>, mass: &Mat<f64>, count: usize) -> Mat<f64>
     shapes
 }
 
-/// The two tangents of a pair: e_theta projected on the plane of contact (e_z where the normal is nearly e_theta), and
+/// The two tangents of a pair: `e_theta` projected on the plane of contact (`e_z` where the normal is nearly that), and
 /// `n x t1`.
 fn tangents(normal: [f64; 3]) -> [[f64; 3]; 2] {
     let axis = if normal[1].abs() > 0.9 { 2 } else { 1 };

@@ -105,27 +105,30 @@ fn documented() -> Vec<Documented> {
     rows
 }
 
-/// The table of docs/formulation.md, section 3: peaks to 0.02 um or 0.1 %, iterations to a tenth. Each row is printed
-/// as the page has to have it.
-/// `cargo test --release --test physics what_the_friction_circle -- --ignored --nocapture`.
-#[test]
-#[ignore = "about 5 minutes: a table of docs/formulation.md"]
-fn what_the_friction_circle_changes_on_wheel24() {
-    let sector = bundle::read(&data("wheel24")).unwrap();
-    let deviations = pattern(&deviations_in("wheel24/reference/patterns.csv", 1));
+fn wheel24() -> Wheel {
     let contact = PairParameters {
         normal_load_n: 0.0,
         normal_stiffness_n_per_m: 2e8,
         tangential_stiffness_n_per_m: 1e8,
         friction_coefficient: 0.3,
     };
-    let wheel = Wheel::of(
-        &sector,
+    Wheel::of(
+        &bundle::read(&data("wheel24")).unwrap(),
         ContactLaw::Simplified3d,
         contact,
         Damping::StructuralLossFactor(0.002),
         BasisChoice::StickAttachment { stick: 4 },
-    );
+    )
+}
+
+/// The table of docs/formulation.md, section 3: peaks to 0.02 um or 0.1 %, iterations to a tenth. Each row is printed
+/// as the page has to have it.
+/// `cargo test --release --test physics what_the_friction_circle -- --ignored --nocapture`.
+#[test]
+#[ignore = "about 5 minutes: a table of docs/formulation.md"]
+fn what_the_friction_circle_changes_on_wheel24() {
+    let deviations = pattern(&deviations_in("wheel24/reference/patterns.csv", 1));
+    let wheel = wheel24();
     let options = SolverOptions {
         peak_tolerance: 1e-4,
         ..SolverOptions::default()

@@ -159,6 +159,13 @@ fn import_files_are_refused_with_key_and_value() {
             "blade_elements = \"DISK\"",
             &["element 1 of the blade", "a brick of 8 nodes", "C3D20"],
         ),
+    ];
+    assert_refused(&Small::calculix(), cases);
+}
+
+#[test]
+fn what_cannot_be_in_an_import_file_together_is_refused() {
+    let cases: &[Case] = &[
         (
             "import.toml",
             "blade_job = \"blade\"",
