@@ -29,7 +29,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 17] = [
+const NOT_RUN: [(&str, &str); 18] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -50,6 +50,10 @@ const NOT_RUN: [(&str, &str); 17] = [
     ),
     ("studies/calculix/run.sh", "needs gmsh and ccx"),
     ("apt-get install", "installs outside of the clone"),
+    (
+        "cargo build --release --locked",
+        "compiles everything from nothing",
+    ),
     (
         "python3 benches/peers/run.py",
         "needs the other programs that it measures",

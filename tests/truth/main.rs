@@ -1,6 +1,7 @@
 //! The truth that the program is held against: mistuned wheels with every contact degree of freedom, factored whole.
 //!
-//! Nothing of the program is used but sector models as data: no reduced model, no contact law, no solver.
+//! Matrices, contact law and solver are its own. Of the program it takes sector models as data, and the frequency near
+//! which a peak is looked for (`hints`).
 
 #![expect(
     clippy::print_stdout,
