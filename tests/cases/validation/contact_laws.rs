@@ -25,11 +25,11 @@ pub fn section() -> Section {
     let (laws, rings) = rayon::join(of_laws, of_rings);
     let header = [
         "pattern",
-        "load, N",
-        "coulomb_3d, um",
-        "simplified_3d, um",
+        "load per sector, N",
+        "coulomb_3d, µm",
+        "simplified_3d, µm",
         "change",
-        "macro_slip_1d, um",
+        "macro_slip_1d, µm",
         "change",
     ];
     let cells: Vec<Vec<String>> = laws
@@ -46,7 +46,13 @@ pub fn section() -> Section {
             ]
         })
         .collect();
-    let ring_header = ["wheel", "load, N", "locked, um", "creeping, um", "change"];
+    let ring_header = [
+        "wheel",
+        "load per sector, N",
+        "locked, µm",
+        "creeping, µm",
+        "change",
+    ];
     let ring_cells: Vec<Vec<String>> = rings
         .iter()
         .map(|(wheel, load, [locked, creeping])| {

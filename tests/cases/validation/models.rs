@@ -11,7 +11,7 @@ use super::report::micrometres;
 /// A peak, m, or why there is none.
 pub type Amplitude = Result<f64, Status>;
 
-/// A peak in um, or its status.
+/// A peak in µm, or its status.
 pub fn shown(found: Amplitude) -> String {
     found.map_or_else(
         |status| status.name().to_owned(),

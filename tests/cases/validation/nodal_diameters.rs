@@ -59,9 +59,9 @@ pub fn section() -> Section {
     let header = [
         "wheel",
         "nodal diameter",
-        "slide, um",
-        "stuck, um",
-        "lowest over loads, um",
+        "slide, µm",
+        "stuck, µm",
+        "lowest over loads, µm",
         "at, N",
         "slide over lowest",
         "separated there",

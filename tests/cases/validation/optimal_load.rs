@@ -129,10 +129,10 @@ impl Found {
     fn body(&self) -> String {
         let mut header = vec![
             "normal load per sector, N".to_owned(),
-            "tuned, um".to_owned(),
+            "tuned, µm".to_owned(),
         ];
         let deviations = self.population.standard_deviations;
-        header.extend(deviations.map(|deviation| format!("P95 at {} %, um", 100.0 * deviation)));
+        header.extend(deviations.map(|deviation| format!("P95 at {} %, µm", 100.0 * deviation)));
         let rows: Vec<Vec<String>> = (0..self.tuned.len())
             .map(|at| {
                 let mut row = vec![

@@ -44,7 +44,7 @@ pub fn section() -> Section {
         .collect();
     Section {
         compared: format!(
-            "`{STUDY}`, seed {}, {} patterns, harmonics {}, basis {}; {} rows, {} failed. Amplitudes in um, 95 % bounds in brackets.",
+            "`{STUDY}`, seed {}, {} patterns, harmonics {}, basis {}; {} rows, {} failed. Amplitudes in µm, 95 % bounds in brackets.",
             summary.seed,
             summary.patterns,
             stored.study.resolved()["solver"]["harmonics"],
@@ -59,7 +59,7 @@ pub fn section() -> Section {
             warnings.len(),
             warnings.concat(),
             table(
-                &["pattern", "peak, um", "full model, um", "error", "stated"],
+                &["pattern", "peak, µm", "full model, µm", "error", "stated"],
                 &hard_cells
             )
         ),
@@ -149,7 +149,7 @@ fn hard_rows(stored: &StoredStudy, summary: &StudySummary) -> Vec<HardRow> {
 
 fn of_loads(summary: &StudySummary) -> String {
     let header = [
-        "normal load, N",
+        "normal load per sector, N",
         "tuned",
         "at, Hz",
         "P50",

@@ -121,7 +121,7 @@ pub fn signed_percent(share: f64) -> String {
     format!("{:+.3} %", 100.0 * share)
 }
 
-/// A length in um, or a dash.
+/// A length in µm, or a dash.
 pub fn micrometres(metres: Option<f64>) -> String {
     metres.map_or_else(|| "-".to_owned(), |metres| format!("{:.2}", 1e6 * metres))
 }
@@ -256,7 +256,7 @@ const HOW_TO_READ: &str = "\
 Every number and every verdict is computed by that command from one build; none is typed but in the section of what is known and open. A
 verdict sets the worst number of a table against a bar that was fixed beforehand; a claim is one about ring dampers, not about this program, and may be
 refuted. The command ends with exit code 1 while a bar is not met that is not listed as open. Amplitude: largest over blades and frequency of
-the fundamental harmonic, in um for an excitation of 1 N per sector, if nothing else is said. Differences are relative. *Fast path*: the
+the fundamental harmonic, in µm for an excitation of 1 N per sector, if nothing else is said. Differences are relative. *Fast path*: the
 reduced model that a study is run on; *full model*: every contact dof of the Craig-Bampton model, 512 samples, another solver
 (docs/formulation.md, section 9). \"Default settings\" are those of a study that sets nothing under `[reduction]` and `[solver]`, but for the
 harmonics where a set is named. The bounds of a sample say what was seen in it, no more.

@@ -211,7 +211,7 @@ pub fn section() -> Section {
     let header = [
         "wheel",
         "pattern",
-        "load, N",
+        "load per sector, N",
         "frequency, Hz",
         "harmonics",
         "regime",
