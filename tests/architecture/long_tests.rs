@@ -49,7 +49,6 @@ fn record() -> serde_json::Value {
 }
 
 #[test]
-#[ignore = "until .ci/long has made its first whole record"]
 fn the_record_of_long_tests_holds_each_of_them_and_no_other() {
     let mut wanted = BTreeSet::new();
     ignored_tests(&root().join("tests"), None, &mut wanted);
@@ -70,7 +69,6 @@ fn the_record_of_long_tests_holds_each_of_them_and_no_other() {
 }
 
 #[test]
-#[ignore = "until .ci/long has made its first whole record"]
 fn a_long_test_that_failed_is_listed_as_open() {
     let bars = std::fs::read_to_string(root().join("results/validation/open_bars.toml"));
     let bars: toml::Table = bars.expect("open_bars.toml").parse().expect("TOML");

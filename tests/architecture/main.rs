@@ -180,6 +180,20 @@ fn each_heavy_crate_has_one_place() {
 }
 
 #[test]
+fn only_the_platform_asks_the_operating_system() {
+    let mut violations = Vec::new();
+    for source in source_files() {
+        let asks = source.module.first().is_some_and(|wing| wing == "platform");
+        for words in ["\"/proc", "sysinfo::"] {
+            if !asks && source.text.contains(words) {
+                violations.push(format!("{}: {words}", source.name));
+            }
+        }
+    }
+    complain("a file outside src/platform asks the system", &violations);
+}
+
+#[test]
 fn one_file_prints() {
     let macros = ["print!", "println!", "eprint!", "eprintln!", "dbg!"];
     let streams = ["stdout()", "stderr()"];

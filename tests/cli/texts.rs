@@ -185,6 +185,16 @@ fn check_says_the_study_in_words_and_remarks_on_what_is_unusual() {
     );
 }
 
+/// Patterns enough for the percentile that its report opens with, and loads of one sector.
+#[test]
+fn the_study_of_the_readme_gives_no_cause_for_remarks() {
+    let study = concat!(env!("CARGO_MANIFEST_DIR"), "/studies/quickstart.toml");
+    let report = json(&Place::with(GOOD), &["check", study, "--json"]);
+    assert_eq!(report["echo"]["remarks"], serde_json::json!([]));
+    let patterns = report["echo"]["patterns"].as_u64();
+    assert!(patterns >= Some(368), "{patterns:?}");
+}
+
 #[test]
 fn explain_finds_keys_and_terms_by_words_of_their_names_and_meanings() {
     let place = Place::new();

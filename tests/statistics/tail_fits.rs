@@ -279,9 +279,12 @@ fn a_wrong_law_is_rejected_and_its_percentile_outside_of_the_interval_marked() {
 }
 
 /// What the `p_value` of samples drawn from a law is like, where the same law is fitted.
+#[derive(Debug)]
 struct Uniformity {
     /// Over ten classes, of the samples that have one.
     chi_square: f64,
+    /// Share of those in the lowest class, which is 0.1 where all is well.
+    lowest_tenth: f64,
     /// Samples without: no maximum of the likelihood, or more than 1 % of the resamples have none.
     without: u64,
 }
@@ -300,6 +303,7 @@ fn uniformity(truth: &ExtremeValueLaw, n: usize, samples: u64, resamples: u32) -
     let squares = classes.map(|count: f64| (count - expected).powi(2) / expected);
     Uniformity {
         chi_square: squares.iter().sum(),
+        lowest_tenth: classes[0] / (samples - without) as f64,
         without,
     }
 }
@@ -396,14 +400,13 @@ fn the_fit_of_many_values_is_the_maximum_that_the_fit_of_few_is() {
 #[allow(clippy::print_stdout)]
 #[ignore = "10,000 samples of several sizes and shapes: some minutes"]
 fn goodness_of_fit_is_uniform_over_many_samples() {
+    let mut outside = Vec::new();
     for (shape, n) in [(-0.3, 50), (-0.15, 200), (0.05, 100)] {
         let found = uniformity(&law(1.7, 0.2, shape), n, 10_000, 199);
-        let Uniformity {
-            chi_square,
-            without,
-        } = found;
-        println!("xi {shape}, n {n}: chi-square {chi_square:.1}, {without} without a probability");
-        assert!(chi_square < CHI_SQUARE_9, "xi {shape}, n {n}");
-        assert!(without <= 0, "xi {shape}, n {n}");
+        println!("xi {shape}, n {n}: {found:?}");
+        if found.chi_square >= CHI_SQUARE_9 || found.without > 0 {
+            outside.push((shape, n, found));
+        }
     }
+    assert!(outside.is_empty(), "{outside:?}");
 }

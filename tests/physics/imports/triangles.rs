@@ -44,6 +44,23 @@ fn a_stiffness_without_couplings_is_refused_for_the_whole_and_for_the_blade() {
     }
 }
 
+/// Both at once: then neither has an entry where the other lacks it.
+#[test]
+fn both_matrices_without_couplings_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let small = Small::calculix();
+    small.write(folder.path());
+    for file in ["job.sti", "blade.sti"] {
+        let diagonal = entries(small.text(file), |row, column| row == column);
+        fs::write(folder.path().join(file), diagonal).unwrap();
+    }
+    let message = import(&folder.path().join("import.toml"))
+        .unwrap_err()
+        .to_string();
+    let words = "K has no entry off the diagonal that couples two nodes";
+    assert!(message.contains(words), "{message}");
+}
+
 #[test]
 fn a_lumped_mass_is_accepted_and_told() {
     let folder = tempfile::tempdir().unwrap();

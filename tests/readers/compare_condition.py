@@ -1,0 +1,34 @@
+"""Holds the table of condition numbers that the tests read to an independent computation by numpy and scipy.
+
+    python compare_condition.py
+
+`tests/data/lumped24/condition.py` makes `condition.csv`. Its last column is of modes that are dependent to rounding, and
+is not compared.
+"""
+
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+FOLDER = Path(__file__).resolve().parents[1] / "data" / "lumped24"
+COMPARED = ["ring", "contact_n_per_m", "condition", "condition_euclidean"]
+
+
+def main():
+    made = subprocess.run([sys.executable, FOLDER / "condition.py"], stdout=subprocess.PIPE, text=True, check=True)
+    rows = list(csv.DictReader(made.stdout.splitlines()))
+    stored = list(csv.DictReader((FOLDER / "condition.csv").read_text().splitlines()))
+    if len(rows) != 9 or len(stored) != 9:
+        sys.exit(f"condition numbers: {len(rows)} rows made, {len(stored)} stored, not 9")
+    worst = 0.0
+    for row, kept in zip(rows, stored):
+        for name in COMPARED:
+            worst = max(worst, abs(float(row[name]) / float(kept[name]) - 1.0))
+    # Five digits are stored.
+    if not worst < 2e-4:
+        sys.exit(f"condition numbers: those made and those stored differ by {worst:.1e}")
+    print(f"9 condition numbers are those stored, to {worst:.0e}")
+
+
+main()
