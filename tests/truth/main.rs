@@ -88,9 +88,7 @@ fn the_peaks_known_for_wheel8_are_met() {
         let point = solve(&sector, &case, &period, number(5), None).expect("a solution");
         let error = point.amplitude_m() / number(4) - 1.0;
         println!("{line}: {error:.2e}, {} products", point.products);
-        // The tolerances that the reference itself is trusted with; 1 % where pairs separate, which is not needed.
-        let accepted = if cells[1] == "full" { 1e-3 } else { 5e-4 };
-        assert!(error.abs() < accepted, "{line}: {error}");
+        assert!(error.abs() < 5e-4, "{line}: {error}");
         rows += 1;
     }
     assert_eq!(rows, 23);
