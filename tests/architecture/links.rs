@@ -142,19 +142,16 @@ fn every_page_of_docs_stands_in_its_index() {
     }
 }
 
-/// Figures of a page come from a program of the repository.
+/// Figures of a page come from a program of the repository; this holds the words by which pages owned up to others.
 #[test]
-fn no_page_has_figures_of_a_program_that_was_not_kept() {
+fn no_page_says_that_the_program_of_its_figures_was_not_kept() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = Vec::new();
     for path in pages(root) {
         let text = std::fs::read_to_string(&path).unwrap();
-        let lines = text.lines().enumerate();
-        found.extend(
-            lines
-                .filter(|(_, line)| line.contains("not kept"))
-                .map(|(number, _)| format!("{}:{}", path.display(), number + 1)),
-        );
+        let lines = (1..).zip(text.lines());
+        let owning_up = lines.filter(|(_, line)| line.contains("not kept"));
+        found.extend(owning_up.map(|(number, _)| format!("{}:{number}", path.display())));
     }
     assert!(found.is_empty(), "{found:#?}");
 }
