@@ -4,5 +4,6 @@ pub mod forced_response;
 pub mod friction;
 pub mod harmonic_balance;
 pub mod mistuning;
+pub mod receptance;
 pub mod reference;
 pub mod time_integration;

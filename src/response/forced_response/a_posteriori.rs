@@ -23,10 +23,10 @@ const FINEST: usize = 256;
 /// The enlarged set of a study with the amplitude in it.
 #[derive(Debug, Clone)]
 pub struct ErrorSettings {
-    set: EnlargedSet,
-    amplitude: ObservedAmplitude,
+    pub(super) set: EnlargedSet,
+    pub(super) amplitude: ObservedAmplitude,
     /// Law of the equations beside which solutions are held, where it is not the one that they were solved with.
-    law: Option<ContactLaw>,
+    pub(super) law: Option<ContactLaw>,
 }
 
 /// Relative changes of the largest amplitude; positive where it would grow.

@@ -15,6 +15,8 @@ mod peak_search;
 mod point;
 mod point_settings;
 mod point_solver;
+mod point_source;
+mod receptance_points;
 mod refined_peak;
 mod rivals;
 mod samples;
@@ -35,9 +37,13 @@ pub use options::{
 };
 pub use peak::{
     Peak, SearchPlan, Window, mistuned_window, peak, search_plan, slopes_lead, tuned_span,
+    tuned_span_of,
 };
 pub use peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
 pub use point::{Point, Slope, Work};
 pub use point_settings::PointSettings;
 pub use point_solver::PointSolver;
+pub use receptance_points::{
+    EngineRow, receptance_curve, receptance_errors, receptance_peak, receptance_plan,
+};
 pub use refined_peak::{Search, refined, refined_peak};

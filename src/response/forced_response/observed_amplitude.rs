@@ -51,6 +51,7 @@ impl<'a> ObservedBlock<'a> {
 }
 
 /// Complex displacement r, theta, z of the observed node, blade after blade, of one harmonic.
+#[derive(Debug, Clone)]
 pub(super) struct ObservedHarmonic {
     pub(super) harmonic: u32,
     pub(super) displacement: Vec<Complex64>,
@@ -78,18 +79,27 @@ impl ObservedAmplitude {
     /// `blocks` are harmonics and structures in the order of the unknowns `solution`.
     #[must_use]
     pub fn of(&self, blocks: &[ObservedBlock<'_>], solution: &[f64]) -> Vec<f64> {
-        let harmonics = observed(blocks, solution);
+        self.of_observed(&observed(blocks, solution))
+    }
+
+    /// [`Self::of`] from what is observed in every harmonic.
+    pub(super) fn of_observed(&self, harmonics: &[ObservedHarmonic]) -> Vec<f64> {
         let rows = harmonics[0].displacement.len();
         (0..rows / 3)
             .map(|blade| match &self.time_grid {
-                None => fundamental(&harmonics, blade)
+                None => fundamental(harmonics, blade)
                     .iter()
                     .map(Complex64::norm_sqr)
                     .sum::<f64>()
                     .sqrt(),
-                Some(grid) => time_maximum(grid, &harmonics, blade),
+                Some(grid) => time_maximum(grid, harmonics, blade),
             })
             .collect()
+    }
+
+    /// Harmonics of which the amplitude takes notice.
+    pub(super) fn counts(&self, harmonic: u32) -> bool {
+        harmonic == 1 || self.time_grid.is_some()
     }
 
     /// [`Self::of`], and the rates at which the amplitudes change where `solution` changes by `slope`.
@@ -146,13 +156,21 @@ impl ObservedAmplitude {
         before: &[f64],
         after: &[f64],
     ) -> Vec<f64> {
-        let (old, new) = (observed(blocks, before), observed(blocks, after));
-        let plain = self.of(blocks, after);
+        self.changed_observed(&observed(blocks, before), &observed(blocks, after))
+    }
+
+    /// [`Self::changed`] from what is observed in every harmonic.
+    pub(super) fn changed_observed(
+        &self,
+        old: &[ObservedHarmonic],
+        new: &[ObservedHarmonic],
+    ) -> Vec<f64> {
+        let plain = self.of_observed(new);
         plain
             .iter()
             .enumerate()
             .map(|(blade, &amplitude)| {
-                let (old, new) = (fundamental(&old, blade), fundamental(&new, blade));
+                let (old, new) = (fundamental(old, blade), fundamental(new, blade));
                 let square: f64 = old.iter().map(Complex64::norm_sqr).sum();
                 let along: f64 = old.iter().zip(new).map(|(a, b)| (a.conj() * b).re).sum();
                 let length: f64 = new.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();

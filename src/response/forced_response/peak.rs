@@ -8,6 +8,7 @@ use super::peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::point_solver::PointSolver;
+use super::point_source::PointSource;
 use super::samples::Sample;
 use super::screened::Screened;
 use crate::response::friction::Ring;
@@ -78,8 +79,13 @@ pub fn tuned_span(
     condition: ContactCondition,
     tuned_peak_hz: Option<f64>,
 ) -> Option<(f64, f64)> {
-    excited
-        .linear_peaks(condition)
+    tuned_span_of(&excited.linear_peaks(condition), tuned_peak_hz)
+}
+
+/// [`tuned_span`] from the resonances of the linear limits.
+#[must_use]
+pub fn tuned_span_of(limits: &[Vec<LinearPeak>], tuned_peak_hz: Option<f64>) -> Option<(f64, f64)> {
+    limits
         .iter()
         .flat_map(|limit| dominant(limit))
         .map(|peak| peak.frequency_hz)
@@ -140,7 +146,18 @@ pub fn search_plan(
     condition: ContactCondition,
     window: Window,
 ) -> Result<SearchPlan, Status> {
-    let limits = within(&excited.linear_peaks(condition), window);
+    search_plan_of(&excited.linear_peaks(condition), window)
+}
+
+/// [`search_plan`] from the resonances of the linear limits that bound the condition, the stuck one first.
+///
+/// # Errors
+/// As there.
+pub(super) fn search_plan_of(
+    limits: &[Vec<LinearPeak>],
+    window: Window,
+) -> Result<SearchPlan, Status> {
+    let limits = within(limits, window);
     let candidates: Vec<LinearPeak> = limits.iter().flat_map(|limit| dominant(limit)).collect();
     if candidates.iter().any(|peak| !peak.amplitude_m.is_finite()) {
         return Err(Status::NonFinite);
@@ -218,23 +235,7 @@ pub fn peak(
         rivals_from: 1.0,
     };
     let (result, mut solver, screening) = searched(excited, condition, settings, &plan, search);
-    let best = result.best.map(|best| &result.samples[best]);
-    let (point, unfinished) = match best.map(|best| solver.finish(best.frequency_hz).cloned()) {
-        Some(Ok(point)) => (Some(point), None),
-        Some(Err(status)) => (None, Some(status)),
-        None => (None, None),
-    };
-    let status = match result.end {
-        SearchEnd::Found if result.bracketed => unfinished.unwrap_or(Status::Ok),
-        SearchEnd::Found | SearchEnd::Open => {
-            failure_beyond(&solver, best).unwrap_or(Status::NotBracketed)
-        }
-        SearchEnd::Exhausted => Status::WorkBudget,
-        SearchEnd::Incomplete => solver
-            .failures()
-            .last()
-            .map_or(Status::SweepIncomplete, |&(_, status)| status),
-    };
+    let (status, point) = settled(&result, &mut solver);
     // Contacts that open can fold the curve; where they do, the samples fall off a cliff.
     let cliff = result
         .best
@@ -257,6 +258,64 @@ pub fn peak(
         bracketed: result.bracketed,
         mean_friction_n,
         work: solver.work().plus(screening),
+    }
+}
+
+/// How a search ended, and the point of its highest sample, solved to its end.
+fn settled(result: &SearchResult, solver: &mut impl PointSource) -> (Status, Option<Point>) {
+    let best = result.best.map(|best| &result.samples[best]);
+    let (point, unfinished) = match best.map(|best| solver.finished(best.frequency_hz)) {
+        Some(Ok(point)) => (Some(point), None),
+        Some(Err(status)) => (None, Some(status)),
+        None => (None, None),
+    };
+    let status = match result.end {
+        SearchEnd::Found if result.bracketed => unfinished.unwrap_or(Status::Ok),
+        SearchEnd::Found | SearchEnd::Open => {
+            failure_beyond(solver, best).unwrap_or(Status::NotBracketed)
+        }
+        SearchEnd::Exhausted => Status::WorkBudget,
+        SearchEnd::Incomplete => solver
+            .failures()
+            .last()
+            .map_or(Status::SweepIncomplete, |&(_, status)| status),
+    };
+    (status, point)
+}
+
+/// [`peak`] by `plan` with the points of `solver`, whose values alone lead the search.
+pub(super) fn peak_by(
+    plan: &SearchPlan,
+    condition: ContactCondition,
+    mut solver: impl PointSource,
+    peak_tolerance: f64,
+) -> Peak {
+    let nonlinear = matches!(condition, ContactCondition::Full { .. });
+    let tolerance = if nonlinear {
+        peak_tolerance
+    } else {
+        LINEAR_PEAK_TOLERANCE
+    };
+    let search = SearchSettings {
+        tolerance,
+        evaluations: EVALUATIONS,
+        extensions: plan.extensions,
+        rivals_from: 1.0,
+    };
+    solver.set_precision(SEARCH_PRECISION * tolerance);
+    let (band_hz, starts_hz) = (plan.band_hz, &plan.starts_hz);
+    let result = by_values(&mut solver, band_hz, starts_hz, plan.envelope, search);
+    let (status, point) = settled(&result, &mut solver);
+    let mean_friction_n = point
+        .as_ref()
+        .and_then(|point| solver.mean_friction_n(point));
+    Peak {
+        status,
+        blade: point.as_ref().map_or(0, Point::largest_blade),
+        point,
+        bracketed: result.bracketed,
+        mean_friction_n,
+        work: solver.work(),
     }
 }
 
@@ -324,7 +383,7 @@ fn beginning_with(points: &[Point], plan: &SearchPlan) -> ((f64, f64), Vec<f64>)
 }
 
 fn by_values(
-    solver: &mut PointSolver<'_>,
+    solver: &mut impl PointSource,
     band_hz: (f64, f64),
     starts_hz: &[f64],
     envelope: Envelope,
@@ -337,7 +396,7 @@ fn by_values(
 
 /// Status of the failed frequency nearest to the best point, among those with no lower amplitude
 /// known between: the curve may well have turned there. None if the search only ran out of band.
-fn failure_beyond(solver: &PointSolver<'_>, best: Option<&Sample>) -> Option<Status> {
+fn failure_beyond(solver: &impl PointSource, best: Option<&Sample>) -> Option<Status> {
     let at = best?.frequency_hz;
     let lower = |side: f64| {
         solver

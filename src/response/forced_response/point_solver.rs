@@ -31,7 +31,7 @@ pub struct PointSolver<'a> {
     fundamental: Option<Box<Self>>,
     failures: Vec<(f64, Status)>,
     /// Relative precision of the amplitudes at which a point may end before its residual is met.
-    precision: Option<f64>,
+    pub(super) precision: Option<f64>,
     /// Whether the slopes of points are asked for.
     sloped: bool,
     pub(super) work: Work,

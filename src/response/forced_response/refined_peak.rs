@@ -9,11 +9,12 @@
 
 use super::excited::Excited;
 use super::options::ContactCondition;
-use super::peak::{EVALUATIONS, Peak, SEARCH_PRECISION, Window, peak, search_plan};
+use super::peak::{EVALUATIONS, Peak, SEARCH_PRECISION, SearchPlan, Window, peak, search_plan};
 use super::peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::point_solver::PointSolver;
+use super::point_source::PointSource;
 use super::samples::{Reading, Sample, Samples};
 use super::summit;
 use crate::response::friction::Ring;
@@ -87,9 +88,21 @@ pub fn refined(
     if settings.ring == Ring::Creeping {
         return Err(Work::default());
     }
+    let coarse = PointSolver::new(search.excited, condition, search.settings);
+    refined_by(&plan, coarse, peak_tolerance, |coarse| {
+        PointSolver::new(excited, condition, settings).refining(coarse)
+    })
+}
+
+/// [`refined`] by `plan`, with `coarse` for few harmonics and what `fine` makes of it for all of them.
+pub(super) fn refined_by<C: PointSource, F: PointSource>(
+    plan: &SearchPlan,
+    mut coarse: C,
+    peak_tolerance: f64,
+    fine: impl FnOnce(&C) -> F,
+) -> Result<Peak, Work> {
     let coarse_tolerance = peak_tolerance.max(COARSE_TOLERANCE);
-    let mut coarse = PointSolver::new(search.excited, condition, search.settings)
-        .with_precision(SEARCH_PRECISION * coarse_tolerance);
+    coarse.set_precision(SEARCH_PRECISION * coarse_tolerance);
     let found = find_peak(
         plan.band_hz,
         &plan.starts_hz,
@@ -109,9 +122,8 @@ pub fn refined(
     if found.end != SearchEnd::Found || !found.bracketed || opens {
         return Err(coarse.work());
     }
-    let solver = PointSolver::new(excited, condition, settings)
-        .with_precision(REFINED_PRECISION * peak_tolerance)
-        .refining(&coarse);
+    let mut solver = fine(&coarse);
+    solver.set_precision(REFINED_PRECISION * peak_tolerance);
     let tops = tops(&found, plan.envelope);
     let refined = highest(solver, &tops, plan.envelope, peak_tolerance)
         .map_err(|wasted| coarse.work().plus(wasted))?;
@@ -167,12 +179,12 @@ fn summit_of(found: &SearchResult) -> Option<&Sample> {
 }
 
 /// The point at a frequency, solved to its end; the work done where that fails or a contact opens.
-fn finished(solver: &mut PointSolver<'_>, frequency_hz: f64) -> Result<Point, Work> {
+fn finished(solver: &mut impl PointSource, frequency_hz: f64) -> Result<Point, Work> {
     let mut points = solver.points().iter();
     if points.any(|point| point.shares.separated > 0.0) {
         return Err(solver.work());
     }
-    let finished = solver.finish(frequency_hz).cloned();
+    let finished = solver.finished(frequency_hz);
     finished.map_err(|_| solver.work())
 }
 
@@ -216,7 +228,7 @@ fn looked_into(
 
 /// The highest of the `tops` with the harmonics of `solver`; the work done where one of them that may be it is lost.
 fn highest(
-    mut solver: PointSolver<'_>,
+    mut solver: impl PointSource,
     tops: &[Top],
     envelope: Envelope,
     tolerance: f64,
@@ -259,7 +271,7 @@ fn highest(
     let (height, frequency_hz, _) = best.ok_or(solver.work())?;
     let mut point = finished(&mut solver, frequency_hz)?;
     // What was found stays as it is unless something higher is seen beside it.
-    solver = solver.with_precision(REFINED_PRECISION * tolerance);
+    solver.set_precision(REFINED_PRECISION * tolerance);
     let mut highest = (height, None);
     for found in searched {
         if summit_of(&found).is_none_or(|own| own.largest < (1.0 - HUMP) * height) {

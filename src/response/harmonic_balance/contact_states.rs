@@ -21,6 +21,11 @@ impl HarmonicSystem {
     #[must_use]
     pub fn contact_states(&self, x: &[f64], workspace: &mut SystemWorkspace) -> Vec<PairContact> {
         self.contact_displacement(x, &mut workspace.displacement);
+        self.contact_states_at(workspace)
+    }
+
+    /// [`Self::contact_states`] at the motions of the workspace.
+    pub(super) fn contact_states_at(&self, workspace: &mut SystemWorkspace) -> Vec<PairContact> {
         let drifts = self.ring_drift_m().iter().any(|drift| drift.abs() > 0.0);
         (0..workspace.active.len())
             .map(|pair| {

@@ -96,6 +96,12 @@ impl EnlargedSet {
     pub fn harmonics(&self) -> &[u32] {
         &self.harmonics
     }
+
+    /// The set itself, as finely sampled as the enlarged set is, and the enlarged set.
+    #[must_use]
+    pub fn transforms(&self) -> [&Arc<HarmonicTransform>; 2] {
+        [&self.alone, &self.enlarged]
+    }
 }
 
 /// A solution corrected, in the unknowns of the enlarged system.

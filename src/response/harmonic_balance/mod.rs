@@ -44,7 +44,9 @@ mod tuned_waves;
 mod vector_sums;
 mod wave_blocks;
 mod wave_table;
+mod wheel_contact;
 
+pub(in crate::response) use anderson::Anderson;
 pub use condensed::condensing_pays;
 pub use contact_interface::ContactInterface;
 pub use contact_states::PairContact;
@@ -64,3 +66,4 @@ pub use structure::{ContactStiffnessMatrix, Structure};
 pub use system::{ContactShares, HarmonicSystem, SystemWorkspace};
 pub use transform::{HarmonicTransform, TransformError, TransformScratch};
 pub use tuned_waves::TunedWaves;
+pub use wheel_contact::{MeanTangent, WheelContact};

@@ -354,13 +354,18 @@ impl HarmonicSystem {
     /// against rotation and axial motion hands it on to what locks it.
     #[must_use]
     pub fn mean_friction_n(&self, x: &[f64], workspace: &mut SystemWorkspace) -> [f64; 2] {
+        if workspace.active.is_empty() {
+            return [0.0; 2];
+        }
+        self.contact_displacement(x, &mut workspace.displacement);
+        self.mean_friction_at(workspace)
+    }
+
+    /// [`Self::mean_friction_n`] at the motions of the workspace.
+    pub(super) fn mean_friction_at(&self, workspace: &mut SystemWorkspace) -> [f64; 2] {
         let per_sector = self.interface.per_sector();
         let count = workspace.active.len();
         let mut sum = [0.0; 2];
-        if count == 0 {
-            return sum;
-        }
-        self.contact_displacement(x, &mut workspace.displacement);
         for pair in 0..count {
             self.gather_pair(pair, workspace);
             workspace.pairs.evaluate(
@@ -375,7 +380,7 @@ impl HarmonicSystem {
                 *sum += motion[0] * friction[0] + motion[1] * friction[1];
             }
         }
-        let sectors = (count / per_sector) as f64;
+        let sectors = (count / per_sector.max(1)) as f64;
         sum.map(|sum| sum / sectors)
     }
 

@@ -1,0 +1,345 @@
+//! Points, peaks and errors of rows on the receptances of the tuned wheel.
+
+use std::sync::Arc;
+
+use super::a_posteriori::{ErrorEstimate, ErrorSettings};
+use super::linear_peaks::LinearPeak;
+use super::observed_amplitude::{ObservedAmplitude, ObservedHarmonic};
+use super::options::ContactCondition;
+use super::peak::{Peak, SearchPlan, Window, peak_by, search_plan_of};
+use super::point::{Point, Work};
+use super::point_settings::PointSettings;
+use super::point_source::PointSource;
+use super::refined_peak::refined_by;
+use super::starts::between;
+use crate::linalg::Complex64;
+use crate::response::friction::ContactLaw;
+use crate::response::harmonic_balance::{
+    ContactInterface, ContactShares, HarmonicTransform, Status, WheelContact,
+};
+use crate::response::receptance::{
+    EngineWheel, Limit, ReceptanceEngine, WaveForce, WheelSolution, WheelSolver, embedded,
+};
+
+/// Tolerance of the solutions that tell the errors of another one.
+const ERROR_TOLERANCE: f64 = 1e-5;
+
+/// One wheel on an engine under one excitation and contact condition.
+#[derive(Debug, Clone, Copy)]
+pub struct EngineRow<'a> {
+    /// What the rows of a study share.
+    pub engine: &'a ReceptanceEngine,
+    /// The wheel.
+    pub wheel: &'a EngineWheel,
+    /// The excitation.
+    pub force: &'a WaveForce,
+    /// The contact condition.
+    pub condition: ContactCondition,
+}
+
+impl<'a> EngineRow<'a> {
+    /// Resonances of the linear limits that bound the condition, the stuck one first; none if they are not found.
+    #[must_use]
+    pub fn linear_peaks(&self) -> Option<Vec<Vec<LinearPeak>>> {
+        let limits = Limit::bounding(self.condition).into_iter();
+        limits
+            .map(|limit| self.engine.peaks(limit, self.wheel, self.force))
+            .collect()
+    }
+
+    /// Solver in the harmonics of `transform`.
+    fn solver(
+        &self,
+        settings: &PointSettings,
+        transform: &Arc<HarmonicTransform>,
+        in_place_of: Option<ContactLaw>,
+    ) -> WheelSolver<'a> {
+        let contact = match (self.condition, settings.contact) {
+            (ContactCondition::Full { normal_load_n }, Some((law, sector))) => {
+                let geometry = settings.geometry.clone();
+                let interface = ContactInterface {
+                    law: in_place_of.unwrap_or(law),
+                    pairs: sector.pairs_under(normal_load_n, &geometry, &settings.factors),
+                    geometry,
+                };
+                let springs = self.engine.springs(Limit::Stuck);
+                let transform = Arc::clone(transform);
+                let sectors = self.engine.sectors();
+                Some(WheelContact::new(interface, sectors, springs, transform))
+            }
+            _ => None,
+        };
+        let set: Vec<u32> = transform.harmonics().iter().map(|&k| k as u32).collect();
+        let limit = Limit::of(self.condition);
+        WheelSolver::new(self.engine, self.wheel, limit, self.force, &set, contact)
+    }
+}
+
+/// Solver of the points of one row; keeps the converged points as starts for others.
+struct ReceptancePoints<'a> {
+    solver: WheelSolver<'a>,
+    settings: &'a PointSettings,
+    points: Vec<Point>,
+    /// Points with fewer harmonics, in the unknowns of this solver.
+    coarse: Vec<Point>,
+    failures: Vec<(f64, Status)>,
+    precision: f64,
+    work: Work,
+}
+
+impl<'a> ReceptancePoints<'a> {
+    fn new(row: &EngineRow<'a>, settings: &'a PointSettings) -> Self {
+        Self {
+            solver: row.solver(settings, &settings.transform, None),
+            settings,
+            points: Vec::new(),
+            coarse: Vec::new(),
+            failures: Vec::new(),
+            precision: 0.0,
+            work: Work::default(),
+        }
+    }
+
+    /// The same beside the points of a solver with fewer harmonics.
+    fn refining(mut self, coarse: &Self) -> Self {
+        let (from, to) = (coarse.solver.harmonics(), self.solver.harmonics());
+        let points = coarse.points.iter().map(|point| Point {
+            solution: embedded(&point.solution, from, to),
+            ..point.clone()
+        });
+        self.coarse = points.collect();
+        self
+    }
+
+    fn solve(&mut self, frequency_hz: f64, tolerance: f64) -> Result<Point, Status> {
+        let mut starts = between(&self.points, frequency_hz);
+        starts.truncate(1);
+        starts.extend(between(&self.coarse, frequency_hz).into_iter().next());
+        let (solved, work) = self.solver.solve(frequency_hz, &starts, tolerance);
+        self.work.nonlinear_solves += u64::from(self.solver.is_nonlinear());
+        self.work.newton_iterations += work.iterations;
+        self.work.factorisations += work.tangents;
+        self.work.retries += work.retries;
+        let WheelSolution {
+            motions,
+            residual,
+            shares,
+        } = solved?;
+        let observed = observed(&mut self.solver, &self.settings.amplitude);
+        let amplitudes_m = self.settings.amplitude.of_observed(&observed);
+        if amplitudes_m.iter().any(|amplitude| !amplitude.is_finite()) {
+            return Err(Status::NonFinite);
+        }
+        Ok(Point {
+            frequency_hz,
+            solution: motions,
+            amplitudes_m,
+            residual,
+            shares,
+            ring_drift_m: [0.0; 2],
+            slope: None,
+        })
+    }
+
+    fn tolerance(&self) -> f64 {
+        self.settings.bounds.residual_tolerance.max(self.precision)
+    }
+
+    fn added(&mut self, frequency_hz: f64) -> Result<&Point, Status> {
+        match self.solve(frequency_hz, self.tolerance()) {
+            Ok(point) => {
+                self.points.push(point);
+                Ok(&self.points[self.points.len() - 1])
+            }
+            Err(status) => {
+                self.failures.push((frequency_hz, status));
+                Err(status)
+            }
+        }
+    }
+}
+
+impl PointSource for ReceptancePoints<'_> {
+    fn amplitudes_at(&mut self, frequency_hz: f64) -> Option<Vec<f64>> {
+        let known = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
+        if let Some(point) = self.points.iter().find(known) {
+            return Some(point.amplitudes_m.clone());
+        }
+        let point = self.added(frequency_hz).ok()?;
+        Some(point.amplitudes_m.clone())
+    }
+
+    fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    fn failures(&self) -> &[(f64, Status)] {
+        &self.failures
+    }
+
+    fn finished(&mut self, frequency_hz: f64) -> Result<Point, Status> {
+        let same = |point: &Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
+        let tolerance = self.settings.bounds.residual_tolerance;
+        let point = self.solve(frequency_hz, tolerance)?;
+        self.points.retain(|own| !same(own));
+        self.points.push(point.clone());
+        Ok(point)
+    }
+
+    fn set_precision(&mut self, share: f64) {
+        self.precision = share;
+    }
+
+    fn mean_friction_n(&mut self, _point: &Point) -> Option<[f64; 2]> {
+        self.solver.mean_friction_n()
+    }
+
+    fn work(&self) -> Work {
+        self.work
+    }
+}
+
+/// What is observed of the solution last solved, in every harmonic that the amplitude takes notice of.
+fn observed(solver: &mut WheelSolver<'_>, amplitude: &ObservedAmplitude) -> Vec<ObservedHarmonic> {
+    let set = solver.harmonics().to_vec();
+    let blades = solver.sectors();
+    set.into_iter()
+        .enumerate()
+        .map(|(place, harmonic)| ObservedHarmonic {
+            harmonic,
+            displacement: if amplitude.counts(harmonic) && harmonic > 0 {
+                solver.observed(place)
+            } else {
+                vec![Complex64::default(); 3 * blades]
+            },
+        })
+        .collect()
+}
+
+/// The plan of the search for the peak of a row, see [`super::search_plan`].
+///
+/// # Errors
+/// As there.
+pub fn receptance_plan(row: &EngineRow<'_>, window: Window) -> Result<SearchPlan, Status> {
+    let limits = row.linear_peaks().ok_or(Status::NonFinite)?;
+    search_plan_of(&limits, window)
+}
+
+/// Finds the peak of one row: with few harmonics over the band and with all of them at its tops, where `search` has few, or with
+/// all of them alone.
+#[must_use]
+pub fn receptance_peak(
+    row: &EngineRow<'_>,
+    settings: &PointSettings,
+    search: Option<&PointSettings>,
+    window: Window,
+    peak_tolerance: f64,
+) -> Peak {
+    let plan = match receptance_plan(row, window) {
+        Ok(plan) => plan,
+        Err(status) => {
+            return Peak {
+                status,
+                point: None,
+                blade: 0,
+                bracketed: false,
+                mean_friction_n: None,
+                work: Work::default(),
+            };
+        }
+    };
+    let nonlinear = matches!(row.condition, ContactCondition::Full { .. });
+    let mut wasted = Work::default();
+    if let Some(search) = search.filter(|_| nonlinear) {
+        let coarse = ReceptancePoints::new(row, search);
+        let refined = refined_by(&plan, coarse, peak_tolerance, |coarse| {
+            ReceptancePoints::new(row, settings).refining(coarse)
+        });
+        match refined {
+            Ok(peak) => return peak,
+            Err(work) => wasted = work,
+        }
+    }
+    let solver = ReceptancePoints::new(row, settings);
+    let found = peak_by(&plan, row.condition, solver, peak_tolerance);
+    Peak {
+        work: found.work.plus(wasted),
+        ..found
+    }
+}
+
+/// What the amplitude of `point` would change by with finer sampling, and with the harmonics up to 15 that are not in its set; on
+/// the engine of `row`, which may have more blade shapes than that of the point. None where one of these solutions is not found.
+#[must_use]
+pub fn receptance_errors(
+    row: &EngineRow<'_>,
+    settings: &PointSettings,
+    point: &Point,
+) -> Option<ErrorEstimate> {
+    let ErrorSettings {
+        set,
+        amplitude,
+        law,
+    } = settings.errors();
+    let nonlinear = matches!(row.condition, ContactCondition::Full { .. });
+    let sticks = law.is_none() && point.shares == ContactShares::default();
+    if !nonlinear || sticks {
+        return Some(ErrorEstimate::default());
+    }
+    let [alone, enlarged] = set.transforms();
+    let solved = |transform: &Arc<HarmonicTransform>, start: &[f64], from: &[u32], law| {
+        let mut solver = row.solver(settings, transform, law);
+        let start = embedded(start, from, solver.harmonics());
+        let (solved, _) = solver.solve(point.frequency_hz, &[start], ERROR_TOLERANCE);
+        let motions = solved.ok()?.motions;
+        let observed = observed(&mut solver, amplitude);
+        Some((motions, in_harmonics(observed, set.harmonics(), row.engine.sectors())))
+    };
+    let harmonics = settings.harmonics();
+    let (_, before) = solved(&settings.transform, &point.solution, harmonics, None)?;
+    let (motions, alone) = solved(alone, &point.solution, harmonics, *law)?;
+    let (_, after) = solved(enlarged, &motions, harmonics, *law)?;
+    let largest = |amplitudes: Vec<f64>| amplitudes.into_iter().fold(0.0, f64::max);
+    let height = largest(amplitude.of_observed(&before));
+    let change = |after: &[ObservedHarmonic]| {
+        largest(amplitude.changed_observed(&before, after)) / height - 1.0
+    };
+    let sampling = change(&alone);
+    Some(ErrorEstimate {
+        sampling,
+        harmonics: change(&after) - sampling,
+        unsettled: ERROR_TOLERANCE,
+    })
+}
+
+/// What is observed in the harmonics of a larger set.
+fn in_harmonics(
+    observed: Vec<ObservedHarmonic>,
+    set: &[u32],
+    blades: usize,
+) -> Vec<ObservedHarmonic> {
+    set.iter()
+        .map(|&harmonic| ObservedHarmonic {
+            harmonic,
+            displacement: observed
+                .iter()
+                .find(|own| own.harmonic == harmonic)
+                .map_or_else(
+                    || vec![Complex64::default(); 3 * blades],
+                    |own| own.displacement.clone(),
+                ),
+        })
+        .collect()
+}
+
+/// Points of a row at the given frequencies, Hz, in their order.
+#[must_use]
+pub fn receptance_curve(
+    row: &EngineRow<'_>,
+    settings: &PointSettings,
+    frequencies_hz: &[f64],
+) -> Vec<(f64, Result<Point, Status>)> {
+    let mut solver = ReceptancePoints::new(row, settings);
+    let solve = |&hz: &f64| (hz, solver.added(hz).cloned());
+    frequencies_hz.iter().map(solve).collect()
+}

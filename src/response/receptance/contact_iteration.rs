@@ -1,0 +1,460 @@
+//! The motions at the contact of a mistuned wheel at one frequency: a preconditioned, accelerated iteration.
+//!
+//! In every harmonic k of the set
+//!
+//! ```text
+//! r_k(u) = u_k - u_lin,k + A_k G_k(u)
+//! ```
+//!
+//! with the answer A of the wheel to contact forces ([`super::wheel_harmonic`]) and the correction G of the contact forces to
+//! those of stuck springs, all harmonics together. A step is `-P r` with the inverse P of `I + A G'` for the mean tangent G'
+//! of the contact; Anderson's acceleration makes up for what the mean leaves out. What is approximate stands in P alone.
+
+use std::f64::consts::TAU;
+
+use crate::linalg::Complex64;
+use crate::response::harmonic_balance::{Anderson, ContactShares, Status, WheelContact};
+
+use super::krylov;
+use super::sector_waves::{Field, SectorTransform, padded};
+use super::wheel_harmonic::{Preconditioner, WheelHarmonic};
+
+/// Earlier steps that are combined.
+const DEPTH: usize = 80;
+
+/// When tangents are renewed, and how many steps are taken at most.
+struct Plan {
+    renewals: &'static [usize],
+    iterations: usize,
+}
+
+/// Tried one after the other; the last ones follow from the best motions before.
+const PLANS: [Plan; 2] = [
+    Plan {
+        renewals: &[0, 3],
+        iterations: 80,
+    },
+    Plan {
+        renewals: &[0, 10, 25],
+        iterations: 160,
+    },
+];
+
+/// Newton steps of the last attempt at most.
+const NEWTON_STEPS: usize = 40;
+
+/// The equation of one wheel at one frequency.
+pub(super) struct ContactEquation<'a> {
+    pub(super) transform: &'a SectorTransform,
+    pub(super) contact: &'a mut WheelContact,
+    /// A harmonic of the set each, in its order.
+    pub(super) harmonics: &'a mut [WheelHarmonic],
+    /// `u_lin` of harmonic 1, at this place of the set.
+    pub(super) linear: &'a Field,
+    pub(super) fundamental: usize,
+    pub(super) buffers: &'a mut Buffers,
+}
+
+/// Vectors of the iteration.
+#[derive(Default)]
+pub(super) struct Buffers {
+    pub(super) motions: Vec<Field>,
+    residual: Vec<Field>,
+    /// Correction of the contact forces at the motions last evaluated, waves.
+    pub(super) forces: Vec<Field>,
+    sectors: Field,
+    anderson: Option<Anderson>,
+    flat: [Vec<f64>; 3],
+}
+
+/// How an iteration ended; the motions are left in the buffers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Outcome {
+    pub(super) status: Status,
+    pub(super) iterations: u64,
+    /// Tangents taken.
+    pub(super) tangents: u64,
+    /// Attempts after the first.
+    pub(super) retries: u64,
+    /// Norm of the residual over that of the motions.
+    pub(super) residual: f64,
+    pub(super) shares: ContactShares,
+}
+
+impl Buffers {
+    /// Makes room for so many harmonics and contact rows of a sector.
+    pub(super) fn resize(&mut self, harmonics: usize, rows: usize, sectors: usize) {
+        let entries = rows * padded(sectors);
+        let fits = |fields: &Vec<Field>| {
+            fields.len() == harmonics && fields.iter().all(|own| own.re.len() == entries)
+        };
+        if !fits(&self.motions) {
+            let fields = || vec![Field::zeros(rows, sectors); harmonics];
+            (self.motions, self.residual, self.forces) = (fields(), fields(), fields());
+            self.sectors = Field::zeros(rows, sectors);
+            self.anderson = Some(Anderson::new(2 * harmonics * entries, DEPTH));
+        }
+    }
+}
+
+impl ContactEquation<'_> {
+    /// Takes the one of `starts` for the motions that leaves a smaller residual than they do, if there is one.
+    pub(super) fn begin(&mut self, starts: &[Vec<f64>]) {
+        if starts.is_empty() {
+            return;
+        }
+        let mut best = self.buffers.motions.clone();
+        let mut least = self.residual(false).0;
+        for start in starts {
+            unflatten(start, &mut self.buffers.motions);
+            let (norm, _) = self.residual(false);
+            if norm < least {
+                least = norm;
+                best.clone_from(&self.buffers.motions);
+            }
+        }
+        self.buffers.motions = best;
+    }
+
+    /// Solves from the motions in the buffers until the residual is within `tolerance`.
+    pub(super) fn solve(&mut self, tolerance: f64) -> Outcome {
+        let start = self.buffers.motions.clone();
+        let mut total = Outcome {
+            status: Status::IterationLimit,
+            iterations: 0,
+            tangents: 0,
+            retries: 0,
+            residual: f64::INFINITY,
+            shares: ContactShares::default(),
+        };
+        let cold = self.linear_start();
+        for (rung, (plan, begin)) in [
+            (&PLANS[0], &start),
+            (&PLANS[0], &cold),
+            (&PLANS[1], &cold),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            if rung > 0 {
+                self.buffers.motions.clone_from(begin);
+            }
+            let outcome = self.accelerate(plan, tolerance);
+            total = total.followed_by(outcome, rung);
+            if total.status == Status::Ok {
+                return total;
+            }
+        }
+        self.contact.couple(true);
+        for begin in [&start, &cold] {
+            self.buffers.motions.clone_from(begin);
+            let outcome = self.newton(tolerance);
+            total = total.followed_by(outcome, 1);
+            if total.status == Status::Ok {
+                break;
+            }
+        }
+        self.contact.couple(false);
+        total
+    }
+
+    /// The motions of the linear response.
+    fn linear_start(&self) -> Vec<Field> {
+        let mut start = vec![Field::default(); self.harmonics.len()];
+        for (place, own) in start.iter_mut().enumerate() {
+            own.clone_from(self.linear);
+            if place != self.fundamental {
+                own.fill(0.0);
+            }
+        }
+        start
+    }
+
+    fn accelerate(&mut self, plan: &Plan, tolerance: f64) -> Outcome {
+        let mut preconditioners: Vec<Preconditioner> = Vec::new();
+        let mut outcome = Outcome {
+            status: Status::IterationLimit,
+            iterations: 0,
+            tangents: 0,
+            retries: 0,
+            residual: f64::INFINITY,
+            shares: ContactShares::default(),
+        };
+        let mut anderson = self.buffers.anderson.take();
+        let mut first = f64::INFINITY;
+        for iteration in 0..plan.iterations {
+            let renew = plan.renewals.contains(&iteration);
+            (outcome.residual, outcome.shares) = self.residual(renew);
+            if iteration == 0 {
+                first = outcome.residual;
+            }
+            if !outcome.residual.is_finite() || outcome.residual > 1e3 * first.max(1.0) {
+                outcome.status = Status::NonFinite;
+                break;
+            }
+            if renew {
+                preconditioners = self.preconditioners();
+                outcome.tangents += 1;
+                if let Some(anderson) = &mut anderson {
+                    anderson.begin();
+                }
+            }
+            for (own, residual) in preconditioners.iter_mut().zip(&mut self.buffers.residual) {
+                own.apply(self.transform, residual);
+            }
+            let step: f64 = self.buffers.residual.iter().map(norm_squared).sum();
+            let motion: f64 = self.buffers.motions.iter().map(norm_squared).sum();
+            if outcome.residual <= tolerance && step.sqrt() <= tolerance * motion.sqrt() {
+                // Forces of a pair without a periodic state prove nothing.
+                let closed = outcome.shares.unclosed == 0.0;
+                outcome.status = if closed { Status::Ok } else { Status::Stagnated };
+                break;
+            }
+            outcome.iterations += 1;
+            let [motions, step, next] = &mut self.buffers.flat;
+            flatten(&self.buffers.motions, 1.0, motions);
+            flatten(&self.buffers.residual, -1.0, step);
+            next.resize(motions.len(), 0.0);
+            if let Some(anderson) = &mut anderson {
+                anderson.next(motions, step, next);
+            }
+            unflatten(next, &mut self.buffers.motions);
+        }
+        self.buffers.anderson = anderson;
+        outcome
+    }
+
+    fn preconditioners(&self) -> Vec<Preconditioner> {
+        let pairs = self.contact.pair_rows();
+        let harmonics = self.harmonics.iter().enumerate();
+        harmonics
+            .map(|(place, harmonic)| {
+                let tangent = self.contact.mean_tangent(place);
+                let leading = place == self.fundamental;
+                Preconditioner::new(harmonic, self.transform, &tangent, pairs, leading)
+            })
+            .collect()
+    }
+
+    /// Residual at the motions, relative to them, with the derivative of the contact where that is wanted.
+    pub(super) fn residual(&mut self, derivative: bool) -> (f64, ContactShares) {
+        let sectors = self.transform.sectors();
+        let rows = self.contact.sector_rows();
+        let set = self.contact.transform().harmonics().to_vec();
+        let mut coefficient = 0;
+        for (place, &k) in set.iter().enumerate() {
+            let Buffers {
+                motions,
+                sectors: own,
+                ..
+            } = &mut *self.buffers;
+            self.transform.to_sectors(&motions[place], own);
+            let parts: &[&Vec<f64>] = if k == 0 { &[&own.re] } else { &[&own.re, &own.im] };
+            for part in parts {
+                let motion = &mut self.contact.motion_mut()[coefficient * sectors * rows..];
+                turned(part, padded(sectors), rows, &mut motion[..sectors * rows]);
+                coefficient += 1;
+            }
+        }
+        let shares = self.contact.evaluate(derivative);
+        let mut coefficient = 0;
+        let mut square = 0.0;
+        let motion: f64 = self.buffers.motions.iter().map(norm_squared).sum();
+        for (place, &k) in set.iter().enumerate() {
+            let Buffers {
+                motions,
+                residual,
+                forces,
+                sectors: own,
+                ..
+            } = &mut *self.buffers;
+            own.im.fill(0.0);
+            let parts = if k == 0 { 1 } else { 2 };
+            for part in 0..parts {
+                let correction = &self.contact.correction()[coefficient * sectors * rows..];
+                let to = if part == 0 { &mut own.re } else { &mut own.im };
+                returned(&correction[..sectors * rows], padded(sectors), rows, to);
+                coefficient += 1;
+            }
+            self.transform.to_waves(own, &mut forces[place]);
+            residual[place].clone_from(&motions[place]);
+            if place == self.fundamental {
+                residual[place].add(-1.0, self.linear);
+            }
+            self.harmonics[place].add_answer(self.transform, &forces[place], &mut residual[place]);
+            square += norm_squared(&residual[place]);
+        }
+        ((square / motion).sqrt(), shares)
+    }
+
+    /// Newton's method with steps by GMRES under the preconditioner, damped while the residual would grow.
+    fn newton(&mut self, tolerance: f64) -> Outcome {
+        let mut outcome = Outcome {
+            status: Status::IterationLimit,
+            iterations: 0,
+            tangents: 0,
+            retries: 0,
+            residual: f64::INFINITY,
+            shares: ContactShares::default(),
+        };
+        for _ in 0..NEWTON_STEPS {
+            (outcome.residual, outcome.shares) = self.residual(true);
+            if outcome.residual <= tolerance && outcome.shares.unclosed == 0.0 {
+                outcome.status = Status::Ok;
+                return outcome;
+            }
+            if !outcome.residual.is_finite() {
+                outcome.status = Status::NonFinite;
+                return outcome;
+            }
+            outcome.tangents += 1;
+            let mut preconditioners = self.preconditioners();
+            let mut precondition = |equation: &mut Self, flat: &mut Vec<f64>| {
+                unflatten(flat, &mut equation.buffers.residual);
+                let residual = equation.buffers.residual.iter_mut();
+                for (own, residual) in preconditioners.iter_mut().zip(residual) {
+                    own.apply(equation.transform, residual);
+                }
+                flatten(&equation.buffers.residual, 1.0, flat);
+            };
+            let mut right = Vec::new();
+            flatten(&self.buffers.residual, -1.0, &mut right);
+            precondition(self, &mut right);
+            let (step, products) = krylov::gmres(&right, |direction| {
+                let mut turned = self.derivative(direction);
+                precondition(self, &mut turned);
+                turned
+            });
+            outcome.iterations += products as u64;
+            let before = self.buffers.motions.clone();
+            let mut factor = 1.0;
+            let accepted = loop {
+                let mut moved = Vec::new();
+                flatten(&before, 1.0, &mut moved);
+                moved.iter_mut().zip(&step).for_each(|(u, s)| *u += factor * s);
+                unflatten(&moved, &mut self.buffers.motions);
+                let (norm, _) = self.residual(false);
+                if norm < outcome.residual {
+                    break true;
+                }
+                if factor < 1.0 / 64.0 {
+                    break false;
+                }
+                factor *= 0.5;
+            };
+            if !accepted {
+                outcome.status = Status::Stagnated;
+                return outcome;
+            }
+        }
+        outcome
+    }
+
+    /// `J v` at the motions last evaluated with derivative: `v + A G' v`.
+    fn derivative(&mut self, direction: &[f64]) -> Vec<f64> {
+        let sectors = self.transform.sectors();
+        let rows = self.contact.sector_rows();
+        let block = sectors * rows;
+        let set = self.contact.transform().harmonics().to_vec();
+        let mut fields = self.buffers.motions.clone();
+        unflatten(direction, &mut fields);
+        let mut change = vec![0.0; self.contact.transform().n_coefficients() * block];
+        let mut coefficient = 0;
+        for (field, &k) in fields.iter().zip(&set) {
+            let own = &mut self.buffers.sectors;
+            self.transform.to_sectors(field, own);
+            let parts: &[&Vec<f64>] = if k == 0 { &[&own.re] } else { &[&own.re, &own.im] };
+            for part in parts {
+                let change = &mut change[coefficient * block..][..block];
+                turned(part, padded(sectors), rows, change);
+                coefficient += 1;
+            }
+        }
+        let mut force = vec![0.0; change.len()];
+        self.contact.add_derivative(&change, &mut force);
+        let mut coefficient = 0;
+        for (place, &k) in set.iter().enumerate() {
+            let Buffers {
+                forces,
+                sectors: own,
+                ..
+            } = &mut *self.buffers;
+            own.im.fill(0.0);
+            for part in 0..if k == 0 { 1 } else { 2 } {
+                let to = if part == 0 { &mut own.re } else { &mut own.im };
+                returned(&force[coefficient * block..][..block], padded(sectors), rows, to);
+                coefficient += 1;
+            }
+            self.transform.to_waves(own, &mut forces[place]);
+            self.harmonics[place].add_answer(self.transform, &forces[place], &mut fields[place]);
+        }
+        let mut flat = Vec::new();
+        flatten(&fields, 1.0, &mut flat);
+        flat
+    }
+}
+
+impl Outcome {
+    /// The work of both, and how the second ended.
+    fn followed_by(self, next: Self, rung: usize) -> Self {
+        Self {
+            iterations: self.iterations + next.iterations,
+            tangents: self.tangents + next.tangents,
+            retries: self.retries + u64::from(rung > 0),
+            ..next
+        }
+    }
+}
+
+/// Sector after sector, in it row after row, from row after row of padded sectors.
+fn turned(from: &[f64], stride: usize, rows: usize, to: &mut [f64]) {
+    for (row, own) in from.chunks_exact(stride).enumerate() {
+        for (to, value) in to[row..].iter_mut().step_by(rows).zip(own) {
+            *to = *value;
+        }
+    }
+}
+
+/// The way back of [`turned`].
+fn returned(from: &[f64], stride: usize, rows: usize, to: &mut [f64]) {
+    for (row, own) in to.chunks_exact_mut(stride).enumerate() {
+        for (to, value) in own.iter_mut().zip(from[row..].iter().step_by(rows)) {
+            *to = *value;
+        }
+    }
+}
+
+fn norm_squared(field: &Field) -> f64 {
+    crate::linalg::dot(&field.re, &field.re) + crate::linalg::dot(&field.im, &field.im)
+}
+
+fn flatten(fields: &[Field], factor: f64, flat: &mut Vec<f64>) {
+    flat.clear();
+    for field in fields {
+        let both = field.re.iter().chain(&field.im);
+        flat.extend(both.map(|value| factor * value));
+    }
+}
+
+pub(super) fn unflatten(flat: &[f64], fields: &mut [Field]) {
+    let mut from = 0;
+    for field in fields {
+        for part in [&mut field.re, &mut field.im] {
+            let count = part.len();
+            part.copy_from_slice(&flat[from..from + count]);
+            from += count;
+        }
+    }
+}
+
+/// Angular frequency of a harmonic.
+pub(super) fn angular(harmonic: u32, frequency_hz: f64) -> f64 {
+    f64::from(harmonic) * TAU * frequency_hz
+}
+
+/// A deviation as it enters the dynamic stiffness of a harmonic: with the structural loss factor, of which the static
+/// harmonic 0 has none.
+pub(super) fn damped(deviation: f64, loss_factor: f64, harmonic: u32) -> Complex64 {
+    let loss = if harmonic == 0 { 0.0 } else { loss_factor };
+    Complex64::new(deviation, deviation * loss)
+}

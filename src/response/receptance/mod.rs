@@ -1,0 +1,20 @@
+//! Mistuned wheels on the receptances of the tuned one: no basis and no eigenproblem of a pattern in its solution.
+//!
+//! The tuned wheel with stuck contact is one small matrix a wave and frequency ([`tables`]). Blade deviations are eliminated
+//! exactly in few strain coordinates ([`wheel_harmonic`], [`blade_shapes`]), and the motions at the contact are the only
+//! unknowns of the nonlinear equation ([`contact_iteration`]).
+
+mod blade_shapes;
+mod contact_iteration;
+mod engine;
+mod krylov;
+mod resonances;
+mod sector_waves;
+mod tables;
+mod tuned_wheel;
+mod wheel_harmonic;
+mod wheel_solver;
+
+pub use engine::{EngineModel, EngineOptions, EngineWheel, Limit, ReceptanceEngine};
+pub use tuned_wheel::WaveForce;
+pub use wheel_solver::{SolutionWork, WheelSolution, WheelSolver, embedded};

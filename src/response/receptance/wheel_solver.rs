@@ -1,0 +1,233 @@
+//! One wheel under one excitation and contact condition, solved at any frequency.
+
+use std::f64::consts::TAU;
+
+use crate::linalg::Complex64;
+use crate::response::harmonic_balance::{ContactShares, PairContact, Status, WheelContact};
+
+use super::contact_iteration::{Buffers, ContactEquation, angular, damped};
+use super::engine::{EngineWheel, Limit, ReceptanceEngine};
+use super::sector_waves::Field;
+use super::tuned_wheel::WaveForce;
+use super::wheel_harmonic::WheelHarmonic;
+
+/// Solves one wheel at one frequency after the other; buffers are kept.
+pub struct WheelSolver<'a> {
+    engine: &'a ReceptanceEngine,
+    wheel: &'a EngineWheel,
+    limit: Limit,
+    force: &'a WaveForce,
+    set: Vec<u32>,
+    contact: Option<WheelContact>,
+    harmonics: Vec<WheelHarmonic>,
+    linear: Field,
+    buffers: Buffers,
+    /// Tuned response to the excitation of the motions [contact, strain, observed].
+    excited: Vec<Complex64>,
+}
+
+/// A solution at one frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WheelSolution {
+    /// Motions at the contact of every harmonic, in the waves.
+    pub motions: Vec<f64>,
+    /// Norm of the residual over that of the linear motion; 0 for a linear limit.
+    pub residual: f64,
+    /// Shares of slipping and separated pairs.
+    pub shares: ContactShares,
+}
+
+/// What a solution took.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SolutionWork {
+    /// Steps of the iteration.
+    pub iterations: u64,
+    /// Tangents taken.
+    pub tangents: u64,
+    /// Attempts after the first.
+    pub retries: u64,
+}
+
+impl<'a> WheelSolver<'a> {
+    /// A solver in the harmonics `set`, ascending and with 1; `contact` is none for a linear limit.
+    #[must_use]
+    pub fn new(
+        engine: &'a ReceptanceEngine,
+        wheel: &'a EngineWheel,
+        limit: Limit,
+        force: &'a WaveForce,
+        set: &[u32],
+        contact: Option<WheelContact>,
+    ) -> Self {
+        let set = if contact.is_some() { set.to_vec() } else { vec![1] };
+        Self {
+            engine,
+            wheel,
+            limit,
+            force,
+            set,
+            contact,
+            harmonics: Vec::new(),
+            linear: Field::default(),
+            buffers: Buffers::default(),
+            excited: Vec::new(),
+        }
+    }
+
+    /// Solves at a frequency, Hz, from the one of `starts` (as [`WheelSolution::motions`]) and the linear response that has the
+    /// smallest residual.
+    ///
+    /// # Errors
+    /// How the last attempt ended.
+    pub fn solve(
+        &mut self,
+        frequency_hz: f64,
+        starts: &[Vec<f64>],
+        tolerance: f64,
+    ) -> (Result<WheelSolution, Status>, SolutionWork) {
+        let mut work = SolutionWork::default();
+        if !self.prepare(frequency_hz) {
+            return (Err(Status::SingularJacobian), work);
+        }
+        let Some(contact) = &mut self.contact else {
+            let shares = ContactShares::default();
+            let solution = WheelSolution {
+                motions: Vec::new(),
+                residual: 0.0,
+                shares,
+            };
+            return (Ok(solution), work);
+        };
+        let sectors = self.engine.sectors();
+        let fundamental = self.set.iter().position(|&k| k == 1).unwrap_or(0);
+        self.buffers.resize(self.set.len(), contact.sector_rows(), sectors);
+        let motions = self.buffers.motions.iter_mut();
+        motions.for_each(|own| own.fill(0.0));
+        self.buffers.motions[fundamental].clone_from(&self.linear);
+        let mut equation = ContactEquation {
+            transform: &self.engine.transform,
+            contact,
+            harmonics: &mut self.harmonics,
+            linear: &self.linear,
+            fundamental,
+            buffers: &mut self.buffers,
+        };
+        equation.begin(starts);
+        let outcome = equation.solve(tolerance);
+        work.iterations = outcome.iterations;
+        work.tangents = outcome.tangents;
+        work.retries = outcome.retries;
+        let solved = (outcome.status == Status::Ok).then(|| {
+            let fields = self.buffers.motions.iter();
+            let parts = fields.flat_map(|field| field.re.iter().chain(&field.im));
+            WheelSolution {
+                motions: parts.copied().collect(),
+                residual: outcome.residual,
+                shares: outcome.shares,
+            }
+        });
+        (solved.ok_or(outcome.status), work)
+    }
+
+    /// Receptances, deviations and linear response at a frequency; false where one is singular.
+    fn prepare(&mut self, frequency_hz: f64) -> bool {
+        let pencil = self.engine.pencil(self.limit);
+        let transform = &self.engine.transform;
+        let sectors = self.engine.sectors();
+        let contact_rows = pencil.diameters[0].spring_count();
+        for (place, &harmonic) in self.set.iter().enumerate() {
+            let Some(tables) = pencil.tables(harmonic) else {
+                return false;
+            };
+            if self.harmonics.len() == place {
+                let own = WheelHarmonic::new(sectors, contact_rows, tables.shapes);
+                self.harmonics.push(own);
+            }
+            let own = &mut self.harmonics[place];
+            let s = angular(harmonic, frequency_hz);
+            let filled = tables.receptances.at(&pencil.diameters, s, &mut own.receptance);
+            let deviations = self.wheel.deviations(tables.shapes).into_iter();
+            let loss = self.engine.loss_factor;
+            let deviations = deviations.map(|delta| damped(delta, loss, harmonic));
+            if filled.is_none() || !own.mistune(transform, deviations) {
+                return false;
+            }
+            if harmonic == 1 {
+                let diameter = &pencil.diameters[self.force.diameter.index];
+                let motions = tables.receptances.motions(self.force.diameter.index);
+                let conjugate = self.force.diameter.conjugate;
+                let Some(excited) =
+                    diameter.response(TAU * frequency_hz, motions, &self.force.modal, conjugate)
+                else {
+                    return false;
+                };
+                self.excited = excited;
+                self.linear = Field::zeros(contact_rows, sectors);
+                let wave = self.force.wave(sectors);
+                own.excite(transform, wave, &self.excited, &mut self.linear);
+            }
+        }
+        true
+    }
+
+    /// Complex displacement r, theta, z of the observed node, blade after blade, of the harmonic at a place of the set, at the
+    /// frequency and solution last solved.
+    pub fn observed(&mut self, place: usize) -> Vec<Complex64> {
+        let sectors = self.engine.sectors();
+        let wave = self.force.wave(sectors);
+        let rows = self.engine.pencil(self.limit).diameters[0].spring_count();
+        let none = Field::zeros(rows, sectors);
+        let force = if self.contact.is_some() {
+            &self.buffers.forces[place]
+        } else {
+            &none
+        };
+        let excited = (self.set[place] == 1).then_some((wave, &*self.excited));
+        let field = self.harmonics[place].observed(&self.engine.transform, force, excited);
+        let stride = field.re.len() / 3;
+        (0..sectors)
+            .flat_map(|n| [0, 1, 2].map(|row| field.at(row * stride + n)))
+            .collect()
+    }
+
+    /// Mean friction force on the ring at the solution last solved, N per sector; none for a linear limit.
+    pub fn mean_friction_n(&mut self) -> Option<[f64; 2]> {
+        Some(self.contact.as_mut()?.mean_friction_n())
+    }
+
+    /// State of every contact pair at the solution last solved; none for a linear limit.
+    pub fn contact_states(&mut self) -> Option<Vec<PairContact>> {
+        Some(self.contact.as_mut()?.contact_states())
+    }
+
+    /// Number of sectors.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.engine.sectors()
+    }
+
+    /// Whether the contact is solved for; else the solution is a linear limit.
+    #[must_use]
+    pub fn is_nonlinear(&self) -> bool {
+        self.contact.is_some()
+    }
+
+    /// The harmonics, ascending.
+    #[must_use]
+    pub fn harmonics(&self) -> &[u32] {
+        &self.set
+    }
+}
+
+/// Motions in the harmonics `from` as a start in those of `to`; harmonics that `from` does not have do not move.
+#[must_use]
+pub fn embedded(motions: &[f64], from: &[u32], to: &[u32]) -> Vec<f64> {
+    let size = motions.len() / from.len().max(1);
+    let mut all = vec![0.0; size * to.len()];
+    for (own, part) in from.iter().zip(motions.chunks_exact(size.max(1))) {
+        if let Some(place) = to.iter().position(|k| k == own) {
+            all[place * size..][..size].copy_from_slice(part);
+        }
+    }
+    all
+}
