@@ -214,7 +214,7 @@ fn candidates(reduction: &Reduction<'_>, options: &ReductionOptions) -> Vec<Basi
             stick: modes,
             slide: modes,
         }],
-        (Basis::StickSlide, None, None) => ladder.to_vec(),
+        (Basis::StickSlide | Basis::TunedReceptances, None, None) => ladder.to_vec(),
         (Basis::Auto, None, None) if reduction.contact_rows() == 0 => ladder.to_vec(),
         (Basis::Auto, None, None) => {
             // Of two of one size the attachment vectors, which also hold where contacts separate.

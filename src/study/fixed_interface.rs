@@ -350,8 +350,8 @@ fn sought(plan: &SearchPlan, expected_hz: Option<f64>) -> ((f64, f64), Vec<f64>)
     (band, vec![band.0, expected, band.1])
 }
 
-/// Sensitivity vectors to blade stiffness per nodal diameter: as the study says, or by the size of its mistuning.
-pub(super) fn sensitivity_vectors(study: &Study) -> usize {
+/// Largest standard deviation of the blades' stiffness in a study.
+pub(super) fn expected_deviation(study: &Study) -> f64 {
     let largest = study
         .standard_deviations
         .iter()
@@ -362,8 +362,13 @@ pub(super) fn sensitivity_vectors(study: &Study) -> usize {
         MistuningSource::Law(_) => 0.0,
         MistuningSource::File { records, .. } => records.root_mean_square(),
     };
+    f64::max(largest, of_file)
+}
+
+/// Sensitivity vectors to blade stiffness per nodal diameter: as the study says, or by the size of its mistuning.
+pub(super) fn sensitivity_vectors(study: &Study) -> usize {
     study.reduction.sensitivity_vectors.unwrap_or(
-        if f64::max(largest, of_file) >= LARGE_MISTUNING {
+        if expected_deviation(study) >= LARGE_MISTUNING {
             SENSITIVITY_VECTORS
         } else {
             0

@@ -64,6 +64,7 @@ mod template;
 mod time_domain;
 mod traced_curve;
 mod tradeoff;
+mod tuned_receptances;
 mod validate;
 mod validate_accuracy;
 mod validate_contact;

@@ -117,7 +117,7 @@ impl Engine for ReducedEngine {
         let basis = if self.evidence.whole_space {
             "whole space".to_owned()
         } else {
-            model.basis.to_string()
+            self.solver.rows_on()
         };
         let taken = self.evidence.tried.last();
         let error = taken.and_then(|taken| taken.error);
@@ -169,7 +169,7 @@ impl Engine for ReducedEngine {
         let model = self.solver.basis().model();
         json!({
             "digest": self.digest,
-            "basis": model.basis.to_string(),
+            "basis": self.solver.rows_on(),
             "whole_space": self.evidence.whole_space,
             "reduced_coordinates": self.solver.basis().size(),
             "tuned_peak_errors": self.evidence.tried,
@@ -199,7 +199,7 @@ impl Engine for ReducedEngine {
             choices.collect()
         };
         json!({
-            "basis": self.solver.basis().model().basis.to_string(),
+            "basis": self.solver.rows_on(),
             "harmonics": sets(&choices),
             "beyond": self.solver.beyond().map(|beyond| json!({
                 "basis": beyond.basis().model().basis_name(),

@@ -11,13 +11,16 @@ use super::fixed_interface::FixedInterface;
 use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::load_cases::{Excitation, solver_under};
 use super::reduced_engine::row_settings;
+use super::tuned_receptances::{
+    COMPANION_MODES, engine_of, engine_options, no_modes, shape_evidence,
+};
 use super::{PipelineError, Study};
 use crate::model::ReducedModel;
 use crate::model::reduction::{Basis, BasisChoice, Reduction, ReductionOptions};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
 use crate::response::forced_response::{Harmonics, HigherHarmonics, RowsBeyondTolerance};
-use crate::response::harmonic_balance::TransformError;
+use crate::response::receptance::EngineModel;
 
 /// Share of the harmonic tolerance by which the set for rows beyond it is chosen.
 const BEYOND_TOLERANCE: f64 = 0.25;
@@ -32,6 +35,8 @@ pub(super) struct Stored {
     beyond: Option<StoredBeyond>,
     /// The tuned wheel that harmonics other than 1 are taken in, where the study asks for it.
     tuned_harmonics: Option<ReducedModel>,
+    /// What rows are solved on in the place of a basis, where the study asks for it.
+    engine: Option<EngineModel>,
 }
 
 impl Stored {
@@ -139,14 +144,56 @@ pub(super) fn reduced(
     };
     let modes = study.mistuning.cantilever_mode_count;
     let harmonics = sets(tolerance)?;
-    let (choice, evidence) = basis(&study.reduction, &harmonics)?;
-    let follows = study.reduction.basis == Basis::Auto && study.reduction.stick_modes.is_none();
-    let by_modes = matches!(choice, BasisChoice::StickSlide { .. }) && follows;
     let resolves = automatic && study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
     let separates = study
         .contact
         .as_ref()
         .is_some_and(|contact| contact.law.has_variable_load());
+    if study.reduction.basis == Basis::TunedReceptances {
+        let own = reduction.reduce(BasisChoice::CraigBampton, modes)?;
+        let options = engine_options(study, &excitations, &own);
+        let engine = EngineModel::new(&own, &options).ok_or_else(no_modes)?;
+        let evidence = shape_evidence(study, &engine, &options)?;
+        let companion = if reduction.is_whole_space() {
+            own
+        } else {
+            let choice = BasisChoice::StickSlide {
+                stick: COMPANION_MODES,
+                slide: COMPANION_MODES,
+            };
+            reduction.reduce(choice, modes)?
+        };
+        let beyond = if study.has_friction() && (resolves || automatic && separates) {
+            let larger = tolerance.map(|tolerance| BEYOND_TOLERANCE * tolerance);
+            let mut further = if resolves { sets(larger)? } else { harmonics.clone() };
+            if separates {
+                further = cases
+                    .iter()
+                    .zip(further)
+                    .map(|(case, sets)| with_separation(&case.full, &case.settings, sets))
+                    .collect::<Result<_, _>>()?;
+            }
+            Some(StoredBeyond {
+                model: companion.clone(),
+                basis_error: basis_error(&evidence),
+                harmonics: further.concat(),
+            })
+        } else {
+            None
+        };
+        return Ok(Stored {
+            model: companion,
+            evidence,
+            fixed_interface,
+            harmonics: harmonics.concat(),
+            beyond,
+            tuned_harmonics: None,
+            engine: Some(engine),
+        });
+    }
+    let (choice, evidence) = basis(&study.reduction, &harmonics)?;
+    let follows = study.reduction.basis == Basis::Auto && study.reduction.stick_modes.is_none();
+    let by_modes = matches!(choice, BasisChoice::StickSlide { .. }) && follows;
     let on_separation = separates && (by_modes || automatic);
     let beyond = if study.has_friction() && (on_separation || resolves) {
         let mut harmonics = if resolves {
@@ -188,6 +235,7 @@ pub(super) fn reduced(
         tuned_harmonics: tuned_harmonics
             .then(|| reduction.tuned(BasisChoice::CraigBampton))
             .transpose()?,
+        engine: None,
     })
 }
 
@@ -200,7 +248,10 @@ fn basis_error(evidence: &BasisEvidence) -> f64 {
 }
 
 /// The solver of the study; with load cases that of the first, which knows those of the others.
-pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, TransformError> {
+///
+/// # Errors
+/// If the samples per period cannot tell the harmonics apart, or an engine is not found.
+pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, PipelineError> {
     // Either part is measured on its own: what the basis leaves out of the Craig-Bampton model, and
     // what that model leaves out of the sector.
     let truncation = stored.fixed_interface.error.unwrap_or(f64::INFINITY);
@@ -213,7 +264,13 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Tra
         .filter(|own| own.normal_load_n().is_some());
     let loads = nonlinear.count();
     let mut first = 0;
-    solver_under(&study.excitations(), |case| {
+    let excitations = study.excitations();
+    let engine = stored.engine.as_ref().map(|own| {
+        let options = engine_options(study, &excitations, &own.model);
+        Ok::<_, PipelineError>((own, engine_of(own, &options)?))
+    });
+    let engine = engine.transpose()?;
+    solver_under(&excitations, |case| {
         // The sets of a case stand together.
         let sets = first..first + loads * case.study.engine_orders.len();
         first = sets.end;
@@ -221,6 +278,14 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Tra
         let solver = RowSolver::new(Arc::new(case.of(&stored.model)), settings.clone())?
             .with_choices(stored.harmonics[sets.clone()].to_vec(), error)?
             .with_tuned_harmonics(tuned_harmonics.clone());
+        let on_engine = |solver: RowSolver| match &engine {
+            Some((own, engine)) => {
+                let orders = &case.study.engine_orders;
+                solver.with_engine(Arc::clone(engine), &case.of(&own.model), orders)
+            }
+            None => solver,
+        };
+        let solver = on_engine(solver);
         let Some(beyond) = &stored.beyond else {
             return Ok(solver);
         };
@@ -230,7 +295,7 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Tra
                 beyond.basis_error + truncation,
             )?
             .with_tuned_harmonics(tuned_harmonics.clone());
-        Ok(solver.with_beyond(finer, inexact))
+        Ok(solver.with_beyond(on_engine(finer), inexact))
     })
 }
 
@@ -249,6 +314,9 @@ pub(super) fn models_digest(stored: &Stored) -> String {
     }
     if let Some(model) = &stored.tuned_harmonics {
         add(model, 0.0);
+    }
+    if let Some(engine) = &stored.engine {
+        hasher.update(&postcard::to_stdvec(engine).unwrap_or_default());
     }
     hasher.finalize().to_hex().to_string()
 }

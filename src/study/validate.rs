@@ -345,6 +345,20 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
     }
     match options.basis {
         Basis::StickPartialSlide => {}
+        Basis::TunedReceptances => {
+            for (key, given) in [
+                ("reduction.stick_modes", options.stick_modes.is_some()),
+                ("reduction.slide_modes", options.slide_modes.is_some()),
+            ] {
+                if given {
+                    check.conflict(
+                        key,
+                        "basis = \"tuned_receptances\" has no modes to choose; accepted: neither stick_modes nor \
+                         slide_modes",
+                    );
+                }
+            }
+        }
         Basis::Auto => {
             for (key, given) in [
                 ("reduction.stick_modes", options.stick_modes.is_some()),

@@ -84,7 +84,6 @@ impl Case {
 
     fn engine(&self, more_shapes: usize) -> (ReceptanceEngine, WaveForce) {
         let force = WaveForce::new(&self.model, ENGINE_ORDER, 1.0);
-        let own = EngineModel::new(&self.model, self.damping, (550.0, 700.0), 9).unwrap();
         let options = EngineOptions {
             damping: self.damping,
             projection: Projection::Exact,
@@ -93,6 +92,7 @@ impl Case {
             band: FrequencyBand::Auto,
             more_shapes,
         };
+        let own = EngineModel::new(&self.model, &options).unwrap();
         (ReceptanceEngine::new(&own, &options).unwrap(), force)
     }
 

@@ -14,6 +14,8 @@ pub enum Basis {
     StickPartialSlide,
     /// Stick modes and one attachment vector per contact direction.
     StickAttachment,
+    /// No basis: rows are solved on the receptances of the tuned wheel with every contact degree of freedom.
+    TunedReceptances,
 }
 
 /// Settings of the reduction, with their defaults.

@@ -53,7 +53,7 @@ impl RowSolver {
             choice.engine_order == scenario.engine_order && choice.contact == scenario.contact
         })?;
         let same_set = harmonics_name(&beyond.solver.chosen[place].0.harmonics) == row.harmonics;
-        if same_set && beyond.solver.basis().model().basis == self.basis().model().basis {
+        if same_set && beyond.solver.basis_name() == self.basis_name() {
             return None;
         }
         let tuned = beyond.tuned[place].get_or_init(|| beyond.solver.tuned(scenario));

@@ -23,6 +23,12 @@ impl RowSolver {
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
     ) -> Result<Vec<CurveResult>, Status> {
+        if pattern.is_some_and(|pattern| !Self::is_possible(pattern)) {
+            return Err(Status::InvalidPattern);
+        }
+        if let Some(curve) = self.curve_on_engine(engine_order, contact, pattern, frequencies_hz) {
+            return Ok(curve);
+        }
         let excited = match pattern {
             None => self.tuned_excited(engine_order, contact),
             Some(pattern) => {
@@ -102,6 +108,9 @@ impl RowSolver {
         tuned_hz: Option<f64>,
     ) -> Result<SearchPlan, Status> {
         let solver = self.under(scenario);
+        if let Some(plan) = solver.plan_on_engine(scenario, pattern, tuned_hz) {
+            return plan;
+        }
         let (excited, window) = match pattern {
             None => {
                 let window = Window {

@@ -32,17 +32,10 @@ impl RowSolver {
                 let span = tuned_span(&waves, scenario.contact, tuned_hz);
                 let mut span = span.ok_or(Status::NotBracketed)?;
                 if let Some(means) = pattern.contact.means() {
-                    // Other contact springs move the resonances of all blades alike.
                     let pairs = self.basis().model().contact.weights.len();
-                    let varied = self.tuned_waves_with(
-                        &ContactFactors::new(vec![means; pairs]),
-                        scenario.engine_order,
-                        scenario.contact,
-                        &[1],
-                    );
-                    let own = tuned_span(&varied, scenario.contact, None);
-                    let own = own.ok_or(Status::NotBracketed)?;
-                    span = (span.0.min(own.0), span.1.max(own.1));
+                    let factors = ContactFactors::new(vec![means; pairs]);
+                    let (order, contact) = (scenario.engine_order, scenario.contact);
+                    span = self.widened_by(&factors, span, order, contact)?;
                 }
                 mistuned_window(span, pattern.largest_deviation(), band)
             }
@@ -51,6 +44,19 @@ impl RowSolver {
                 band,
             },
         })
+    }
+
+    /// The span with the resonances that count under other contact springs, which move those of all blades alike.
+    pub(super) fn widened_by(
+        &self,
+        factors: &ContactFactors,
+        span: (f64, f64),
+        engine_order: u32,
+        contact: ContactCondition,
+    ) -> Result<(f64, f64), Status> {
+        let varied = self.tuned_waves_with(factors, engine_order, contact, &[1]);
+        let own = tuned_span(&varied, contact, None).ok_or(Status::NotBracketed)?;
+        Ok((span.0.min(own.0), span.1.max(own.1)))
     }
 
     /// Settings of a search with fewer harmonics, where rows with `points` have one.

@@ -3,6 +3,7 @@
 mod beyond;
 mod blocks;
 mod curves;
+mod engine_rows;
 mod harmonic_choice;
 mod load_cases;
 mod mistuned_peak;

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::beyond::Beyond;
+use super::engine_rows::RowEngine;
 use super::mistuned_peak::MistunedPeak;
 use super::tuned_harmonics::TunedHarmonics;
 use super::{
@@ -83,6 +84,8 @@ pub struct RowSolver {
     basis_error: f64,
     pub(super) beyond: Option<Beyond>,
     pub(super) tuned_harmonics: Option<TunedHarmonics>,
+    /// What rows are solved on in the place of the basis.
+    pub(super) engine: Option<RowEngine>,
     /// Solvers of the further load cases of the study.
     pub(super) load_cases: Vec<(LoadCaseName, RowSolver)>,
 }
@@ -102,6 +105,7 @@ impl RowSolver {
             basis_error: 0.0,
             beyond: None,
             tuned_harmonics: None,
+            engine: None,
             load_cases: Vec::new(),
         })
     }
@@ -183,6 +187,9 @@ impl RowSolver {
     /// Tuned reference of a scenario.
     #[must_use]
     pub fn tuned(&self, scenario: &Scenario) -> TunedReference {
+        if let Some(tuned) = self.tuned_on_engine(scenario) {
+            return tuned;
+        }
         let solver = self.under(scenario);
         let (found, screening) = solver.tuned_screening(scenario.engine_order, scenario.contact);
         let points = solver.points(scenario.engine_order, scenario.contact);
@@ -207,6 +214,9 @@ impl RowSolver {
         pattern: &Pattern,
         scenarios: &[(&Scenario, &TunedReference)],
     ) -> Vec<ResponseRow> {
+        if let Some(rows) = self.rows_on_engine(pattern, scenarios) {
+            return rows;
+        }
         let conditions: Vec<ContactCondition> = scenarios
             .iter()
             .map(|(scenario, _)| scenario.contact)
@@ -334,14 +344,18 @@ impl RowSolver {
         Ok((modes, wheel))
     }
 
+    /// Whether stiffnesses and contact parameters of a pattern are above zero.
+    pub(super) fn is_possible(pattern: &Pattern) -> bool {
+        let entries = pattern.entries();
+        let mut deviations = entries.iter().map(|&(_, _, deviation)| deviation);
+        let physical = deviations.all(|deviation| deviation > -1.0 && deviation.is_finite());
+        physical && pattern.contact.are_possible()
+    }
+
     /// What the pattern adds to the stiffness of the wheel, in its coordinates; none if it cannot
     /// be applied.
     pub(super) fn stiffness_change(&self, pattern: &Pattern) -> Option<Matrix<f64>> {
-        let physical = pattern
-            .entries()
-            .iter()
-            .all(|&(_, _, deviation)| deviation > -1.0 && deviation.is_finite());
-        if !(physical && pattern.contact.are_possible()) {
+        if !Self::is_possible(pattern) {
             return None;
         }
         match (&pattern.deviations, self.settings.projection) {
@@ -360,7 +374,7 @@ impl RowSolver {
         }
     }
 
-    fn row(
+    pub(super) fn row(
         &self,
         pattern: &Pattern,
         scenario: &Scenario,
@@ -418,7 +432,7 @@ impl RowSolver {
             // An error that cannot be estimated is within no tolerance.
             error_within_tolerance: good
                 .map(|_| errors.is_some_and(|errors| self.tolerance().holds(&errors))),
-            basis: self.basis.model().basis_name(),
+            basis: self.basis_name(),
             shortcut: shortcut(
                 scenario.contact,
                 good.map(|(_, point)| point),

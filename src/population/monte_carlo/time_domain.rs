@@ -56,7 +56,7 @@ impl RowSolver {
     pub(super) fn solver_of(&self, scenario: &Scenario, row: &ResponseRow) -> &Self {
         let points = self.points(scenario.engine_order, scenario.contact);
         let own = row.harmonics == harmonics_name(points.harmonics())
-            && row.basis == self.basis().model().basis_name();
+            && row.basis == self.basis_name();
         match self.beyond() {
             Some(beyond) if !own => beyond,
             _ => self,

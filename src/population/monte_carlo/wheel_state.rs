@@ -30,6 +30,9 @@ impl RowSolver {
     ) -> Result<WheelState, Status> {
         let solver = self.under(scenario).solver_of(scenario, row);
         let frequency_hz = row.peak_frequency_hz.ok_or(row.status)?;
+        if let Some(state) = solver.state_on_engine(pattern, scenario, frequency_hz) {
+            return state;
+        }
         let (engine_order, contact) = (scenario.engine_order, scenario.contact);
         let (modes, wheel) = solver.mistuned(pattern, LimitsWanted::of(&[contact]))?;
         let points = solver.points_of(pattern, engine_order, contact);

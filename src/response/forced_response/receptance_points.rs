@@ -15,7 +15,7 @@ use super::starts::between;
 use crate::linalg::Complex64;
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{
-    ContactInterface, ContactShares, HarmonicTransform, Status, WheelContact,
+    ContactInterface, ContactShares, HarmonicTransform, PairContact, Status, WheelContact,
 };
 use crate::response::receptance::{
     EngineWheel, Limit, ReceptanceEngine, WaveForce, WheelSolution, WheelSolver, embedded,
@@ -54,23 +54,28 @@ impl<'a> EngineRow<'a> {
         transform: &Arc<HarmonicTransform>,
         in_place_of: Option<ContactLaw>,
     ) -> WheelSolver<'a> {
-        let contact = match (self.condition, settings.contact) {
-            (ContactCondition::Full { normal_load_n }, Some((law, sector))) => {
-                let geometry = settings.geometry.clone();
-                let interface = ContactInterface {
-                    law: in_place_of.unwrap_or(law),
-                    pairs: sector.pairs_under(normal_load_n, &geometry, &settings.factors),
-                    geometry,
-                };
-                let springs = self.engine.springs(Limit::Stuck);
-                let transform = Arc::clone(transform);
-                let sectors = self.engine.sectors();
-                Some(WheelContact::new(interface, sectors, springs, transform))
-            }
-            _ => None,
-        };
-        let set: Vec<u32> = transform.harmonics().iter().map(|&k| k as u32).collect();
         let limit = Limit::of(self.condition);
+        let springs = self.engine.springs(limit);
+        let varied = !settings.factors.is_nominal() && !springs.is_empty();
+        let load_n = self.condition.normal_load_n();
+        let contact = settings.contact.filter(|_| load_n.is_some() || varied);
+        let contact = contact.map(|(law, sector)| {
+            let geometry = settings.geometry.clone();
+            let own = settings.factors.springs(springs, &geometry.rows);
+            let interface = ContactInterface {
+                law: in_place_of.unwrap_or(law),
+                pairs: sector.pairs_under(load_n.unwrap_or(0.0), &geometry, &settings.factors),
+                geometry,
+            };
+            let sectors = self.engine.sectors();
+            let contact = WheelContact::new(interface, sectors, springs, Arc::clone(transform));
+            if load_n.is_some() {
+                contact
+            } else {
+                contact.linear(&own, springs)
+            }
+        });
+        let set: Vec<u32> = transform.harmonics().iter().map(|&k| k as u32).collect();
         WheelSolver::new(self.engine, self.wheel, limit, self.force, &set, contact)
     }
 }
@@ -84,6 +89,7 @@ struct ReceptancePoints<'a> {
     coarse: Vec<Point>,
     failures: Vec<(f64, Status)>,
     precision: f64,
+    is_nonlinear: bool,
     work: Work,
 }
 
@@ -96,6 +102,7 @@ impl<'a> ReceptancePoints<'a> {
             coarse: Vec::new(),
             failures: Vec::new(),
             precision: 0.0,
+            is_nonlinear: row.condition.normal_load_n().is_some(),
             work: Work::default(),
         }
     }
@@ -116,7 +123,7 @@ impl<'a> ReceptancePoints<'a> {
         starts.truncate(1);
         starts.extend(between(&self.coarse, frequency_hz).into_iter().next());
         let (solved, work) = self.solver.solve(frequency_hz, &starts, tolerance);
-        self.work.nonlinear_solves += u64::from(self.solver.is_nonlinear());
+        self.work.nonlinear_solves += u64::from(self.is_nonlinear);
         self.work.newton_iterations += work.iterations;
         self.work.factorisations += work.tangents;
         self.work.retries += work.retries;
@@ -191,7 +198,7 @@ impl PointSource for ReceptancePoints<'_> {
     }
 
     fn mean_friction_n(&mut self, _point: &Point) -> Option<[f64; 2]> {
-        self.solver.mean_friction_n()
+        self.solver.mean_friction_n().filter(|_| self.is_nonlinear)
     }
 
     fn work(&self) -> Work {
@@ -248,7 +255,7 @@ pub fn receptance_peak(
             };
         }
     };
-    let nonlinear = matches!(row.condition, ContactCondition::Full { .. });
+    let nonlinear = row.condition.normal_load_n().is_some();
     let mut wasted = Work::default();
     if let Some(search) = search.filter(|_| nonlinear) {
         let coarse = ReceptancePoints::new(row, search);
@@ -281,7 +288,7 @@ pub fn receptance_errors(
         amplitude,
         law,
     } = settings.errors();
-    let nonlinear = matches!(row.condition, ContactCondition::Full { .. });
+    let nonlinear = row.condition.normal_load_n().is_some();
     let sticks = law.is_none() && point.shares == ContactShares::default();
     if !nonlinear || sticks {
         return Some(ErrorEstimate::default());
@@ -330,6 +337,21 @@ fn in_harmonics(
                 ),
         })
         .collect()
+}
+
+/// The point of a row at a frequency, Hz, with the state of every contact pair; none for a linear limit.
+///
+/// # Errors
+/// The status of the last attempt, if none converged.
+pub fn receptance_state(
+    row: &EngineRow<'_>,
+    settings: &PointSettings,
+    frequency_hz: f64,
+) -> Result<(Point, Option<Vec<PairContact>>), Status> {
+    let mut solver = ReceptancePoints::new(row, settings);
+    let point = solver.finished(frequency_hz)?;
+    let states = solver.solver.contact_states();
+    Ok((point, states.filter(|_| solver.is_nonlinear)))
 }
 
 /// Points of a row at the given frequencies, Hz, in their order.

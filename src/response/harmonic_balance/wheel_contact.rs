@@ -20,6 +20,8 @@ pub struct WheelContact {
     sectors: usize,
     /// Springs of the wheel's own contact rows less those of the tuned wheel, N/m; empty where they are the same.
     springs: Vec<f64>,
+    /// Whether the springs are all there is: a linear limit.
+    linear: bool,
 }
 
 /// Complex-linear part of the derivative of the contact forces of one harmonic, the mean over the sectors, N/m: of every pair
@@ -66,6 +68,18 @@ impl WheelContact {
             springs: if own.len() > springs.len() { varied } else { Vec::new() },
             system,
             sectors,
+            linear: false,
+        }
+    }
+
+    /// The contact of a linear limit whose springs, N/m, `own` of all rows of the wheel, differ from those of the tuned wheel.
+    #[must_use]
+    pub fn linear(self, own: &[f64], tuned: &[f64]) -> Self {
+        let varied = own.iter().zip(tuned.iter().cycle());
+        Self {
+            springs: varied.map(|(own, tuned)| own - tuned).collect(),
+            linear: true,
+            ..self
         }
     }
 
@@ -82,7 +96,12 @@ impl WheelContact {
 
     /// Evaluates the correction at the motions given; with its derivative where that is wanted.
     pub fn evaluate(&mut self, derivative: bool) -> ContactShares {
-        let shares = self.system.contact_correction(derivative, &mut self.workspace);
+        let shares = if self.linear {
+            self.workspace.correction.fill(0.0);
+            ContactShares::default()
+        } else {
+            self.system.contact_correction(derivative, &mut self.workspace)
+        };
         if !self.springs.is_empty() {
             let rows = self.springs.len();
             let motions = self.workspace.displacement.chunks_exact(rows);

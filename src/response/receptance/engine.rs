@@ -38,19 +38,19 @@ pub struct EngineModel {
 }
 
 impl EngineModel {
-    /// From a Craig-Bampton model, for harmonics up to `highest` of frequencies within `band_hz`; none if its modes are not
+    /// From a Craig-Bampton model, for the harmonics of the resonances that the excitations meet; none if its modes are not
     /// found.
     #[must_use]
-    pub fn new(
-        model: &ReducedModel,
-        damping: Damping,
-        band_hz: (f64, f64),
-        highest: u32,
-    ) -> Option<Self> {
-        let diameters = tuned_diameters(model, &model.springs.stick, damping)?;
-        let band = |k: u32| (f64::from(k) * TAU * band_hz.0, f64::from(k) * TAU * band_hz.1);
-        let bands: Vec<(f64, f64)> = (1..=highest).map(band).collect();
-        let strain = strain_coordinates(model, &diameters, &bands);
+    pub fn new(model: &ReducedModel, options: &EngineOptions) -> Option<Self> {
+        let diameters = under_limits(model, options.damping)?;
+        let band = band(&diameters, model.sectors, options);
+        let of_harmonic = |k: u32| (f64::from(k) * band.0, f64::from(k) * band.1);
+        let bands: Vec<(f64, f64)> = (1..=HIGHEST_OF_SHAPES).map(of_harmonic).collect();
+        let strain = if model.blade_gram.rows() == 0 {
+            Vec::new()
+        } else {
+            strain_coordinates(model, &diameters[0], &bands)
+        };
         let model = ReducedModel {
             blade_gram: Matrix::zeros(0, 0),
             ..model.clone()
@@ -145,18 +145,15 @@ impl Limit {
 }
 
 /// Highest harmonic of a solution that an engine has tables for.
-pub const HIGHEST_HARMONIC: u32 = 63;
+const HIGHEST_HARMONIC: u32 = 63;
+/// Highest harmonic by whose motions strain coordinates are chosen.
+const HIGHEST_OF_SHAPES: u32 = 15;
 
 impl ReceptanceEngine {
     /// An engine on `model`; none where modes are not found.
     #[must_use]
     pub fn new(own: &EngineModel, options: &EngineOptions) -> Option<Self> {
         let model = &own.model;
-        let springs = [
-            model.springs.stick.clone(),
-            model.springs.slide.clone(),
-            Vec::new(),
-        ];
         let loss_factor = match options.damping {
             Damping::StructuralLossFactor(eta) => eta,
             Damping::ModalRatio(_) | Damping::Rayleigh { .. } => 0.0,
@@ -166,18 +163,8 @@ impl ReceptanceEngine {
             Projection::CantileverModes => Some(in_cantilever_modes(model)?),
         };
         let strain = exact.as_ref().unwrap_or(&own.strain);
-        let diameters = springs.map(|springs| tuned_diameters(model, &springs, options.damping));
-        let [stuck, slide, free] = diameters;
-        let diameters = [stuck?, slide?, free?];
-        let span = tuned_span(&diameters, strain, model.sectors, &options.forces);
-        let band = match (options.band, span) {
-            (FrequencyBand::Fixed { start_hz, stop_hz }, _) => (TAU * start_hz, TAU * stop_hz),
-            (FrequencyBand::Auto, Some((low, high))) => {
-                let share = 0.6 * options.deviation + 0.05;
-                (low * (1.0 - share), high * (1.0 + share))
-            }
-            (FrequencyBand::Auto, None) => (0.0, 0.0),
-        };
+        let diameters = under_limits(model, options.damping)?;
+        let band = band(&diameters, model.sectors, options);
         let pencils = diameters.map(|diameters| Pencil {
             strain: strain.clone(),
             exact: exact.is_some(),
@@ -210,6 +197,12 @@ impl ReceptanceEngine {
     #[must_use]
     pub fn sectors(&self) -> usize {
         self.transform.sectors()
+    }
+
+    /// Whether deviations act on exactly the cantilever modes, so that no shape is left out.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.pencils.iter().all(|pencil| pencil.exact)
     }
 
     /// Largest relative error of the interpolated receptances so far.
@@ -345,16 +338,40 @@ impl Pencil {
     }
 }
 
+/// The tuned wheel under stuck springs, under sliding ones, and without.
+fn under_limits(model: &ReducedModel, damping: Damping) -> Option<[Vec<TunedDiameter>; 3]> {
+    Some([
+        tuned_diameters(model, &model.springs.stick, damping)?,
+        tuned_diameters(model, &model.springs.slide, damping)?,
+        tuned_diameters(model, &[], damping)?,
+    ])
+}
+
+/// Angular frequencies, rad/s, of harmonic 1 in which peaks of mistuned wheels lie.
+fn band(diameters: &[Vec<TunedDiameter>; 3], sectors: usize, options: &EngineOptions) -> (f64, f64) {
+    match (options.band, tuned_span(diameters, sectors, &options.forces)) {
+        (FrequencyBand::Fixed { start_hz, stop_hz }, _) => (TAU * start_hz, TAU * stop_hz),
+        (FrequencyBand::Auto, Some((low, high))) => {
+            let share = 0.6 * options.deviation + 0.05;
+            (low * (1.0 - share), high * (1.0 + share))
+        }
+        (FrequencyBand::Auto, None) => (0.0, 0.0),
+    }
+}
+
 /// Lowest and highest angular frequency of the resonances that count, over all excitations and linear conditions.
 fn tuned_span(
     diameters: &[Vec<TunedDiameter>; 3],
-    strain: &Participation,
     sectors: usize,
     forces: &[WaveForce],
 ) -> Option<(f64, f64)> {
     let mut span: Option<(f64, f64)> = None;
     for diameters in diameters {
-        let all = BandModes::new(diameters, strain, sectors, 0.0, (f64::MIN_POSITIVE, f64::MAX));
+        let none: Participation = diameters
+            .iter()
+            .map(|own| Matrix::zeros(0, own.size()))
+            .collect();
+        let all = BandModes::new(diameters, &none, sectors, 0.0, (f64::MIN_POSITIVE, f64::MAX));
         for force in forces {
             let peaks = all.tuned_peaks(diameters, force);
             let highest = peaks.iter().map(|peak| peak.amplitude_m).fold(0.0, f64::max);

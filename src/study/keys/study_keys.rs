@@ -51,6 +51,7 @@ pub(super) const REDUCTION_KEYS: &[Entry] = &[
             "stick_slide",
             "stick_partial_slide",
             "stick_attachment",
+            "tuned_receptances",
         ]),
         "`\"auto\"`",
         "family of the basis ([formulation.md](formulation.md))",
