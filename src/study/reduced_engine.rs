@@ -166,7 +166,6 @@ impl Engine for ReducedEngine {
     }
 
     fn reduction_facts(&self) -> Value {
-        let model = self.solver.basis().model();
         json!({
             "digest": self.digest,
             "basis": self.solver.rows_on(),

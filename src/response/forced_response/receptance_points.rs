@@ -22,7 +22,7 @@ use crate::response::receptance::{
 };
 
 /// Tolerance of the solutions that tell the errors of another one.
-const ERROR_TOLERANCE: f64 = 1e-5;
+const ERROR_TOLERANCE: f64 = 1e-4;
 
 /// One wheel on an engine under one excitation and contact condition.
 #[derive(Debug, Clone, Copy)]

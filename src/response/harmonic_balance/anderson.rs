@@ -8,7 +8,7 @@ use crate::linalg::{dot, vectorized};
 const DEPENDENT: f64 = 1e-8;
 
 /// Anderson's acceleration of `x <- x + f(x)`; allocates for as many iterates as it ever combined.
-pub(in crate::response) struct Anderson {
+pub(super) struct Anderson {
     unknowns: usize,
     depth: usize,
     /// Last iterate and its step, once there is one.
@@ -32,7 +32,7 @@ pub(in crate::response) struct Anderson {
 impl Anderson {
     /// An acceleration that combines at most `depth` earlier iterates of `unknowns` entries; it begins
     /// anew when they are full.
-    pub(in crate::response) fn new(unknowns: usize, depth: usize) -> Self {
+    pub(super) fn new(unknowns: usize, depth: usize) -> Self {
         Self {
             unknowns,
             depth,
@@ -49,18 +49,18 @@ impl Anderson {
     }
 
     /// The same where the length of a step is that of its entries times `weights`.
-    pub(in crate::response) fn weighted(self, weights: Vec<f64>) -> Self {
+    pub(super) fn weighted(self, weights: Vec<f64>) -> Self {
         Self { weights, ..self }
     }
 
     /// Forgets the iterates: another function follows.
-    pub(in crate::response) fn begin(&mut self) {
+    pub(super) fn begin(&mut self) {
         self.begun = false;
         self.columns = 0;
     }
 
     /// The next iterate from `x` and `step = f(x)`, into `next`.
-    pub(in crate::response) fn next(&mut self, x: &[f64], step: &[f64], next: &mut [f64]) {
+    pub(super) fn next(&mut self, x: &[f64], step: &[f64], next: &mut [f64]) {
         if self.begun {
             self.learn(x, step);
         }

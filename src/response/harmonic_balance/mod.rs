@@ -46,7 +46,6 @@ mod wave_blocks;
 mod wave_table;
 mod wheel_contact;
 
-pub(in crate::response) use anderson::Anderson;
 pub use condensed::condensing_pays;
 pub use contact_interface::ContactInterface;
 pub use contact_states::PairContact;

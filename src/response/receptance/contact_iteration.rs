@@ -13,8 +13,9 @@
 use std::f64::consts::TAU;
 
 use crate::linalg::Complex64;
-use crate::response::harmonic_balance::{Anderson, ContactShares, Status, WheelContact};
+use crate::response::harmonic_balance::{ContactShares, Status, WheelContact};
 
+use super::acceleration::Acceleration;
 use super::krylov;
 use super::sector_waves::{Field, SectorTransform, padded};
 use super::wheel_harmonic::{Preconditioner, WheelHarmonic};
@@ -28,17 +29,21 @@ struct Plan {
     iterations: usize,
 }
 
-/// Tried one after the other; the last ones follow from the best motions before.
-const PLANS: [Plan; 2] = [
-    Plan {
-        renewals: &[0, 3],
-        iterations: 80,
-    },
-    Plan {
-        renewals: &[0, 10, 25],
-        iterations: 160,
-    },
-];
+/// From motions that are known beside the frequency or with other harmonics.
+const WARM: Plan = Plan {
+    renewals: &[0],
+    iterations: 60,
+};
+/// From the linear response, whose tangent says little.
+const COLD: Plan = Plan {
+    renewals: &[0, 3],
+    iterations: 80,
+};
+/// Where both fail.
+const SLOW: Plan = Plan {
+    renewals: &[0, 10, 25],
+    iterations: 160,
+};
 
 /// Newton steps of the last attempt at most.
 const NEWTON_STEPS: usize = 40;
@@ -63,7 +68,7 @@ pub(super) struct Buffers {
     /// Correction of the contact forces at the motions last evaluated, waves.
     pub(super) forces: Vec<Field>,
     sectors: Field,
-    anderson: Option<Anderson>,
+    acceleration: Acceleration,
     flat: [Vec<f64>; 3],
 }
 
@@ -92,32 +97,34 @@ impl Buffers {
             let fields = || vec![Field::zeros(rows, sectors); harmonics];
             (self.motions, self.residual, self.forces) = (fields(), fields(), fields());
             self.sectors = Field::zeros(rows, sectors);
-            self.anderson = Some(Anderson::new(2 * harmonics * entries, DEPTH));
+            self.acceleration.resize(2 * harmonics * entries);
         }
     }
 }
 
 impl ContactEquation<'_> {
-    /// Takes the one of `starts` for the motions that leaves a smaller residual than they do, if there is one.
-    pub(super) fn begin(&mut self, starts: &[Vec<f64>]) {
-        if starts.is_empty() {
-            return;
-        }
-        let mut best = self.buffers.motions.clone();
-        let mut least = self.residual(false).0;
-        for start in starts {
+    /// Takes the one of several `starts` for the motions that leaves the smallest residual.
+    fn begin(&mut self, starts: &[Vec<f64>]) {
+        let mut least = f64::INFINITY;
+        let mut best = 0;
+        for (place, start) in starts.iter().enumerate().filter(|_| starts.len() > 1) {
             unflatten(start, &mut self.buffers.motions);
             let (norm, _) = self.residual(false);
             if norm < least {
-                least = norm;
-                best.clone_from(&self.buffers.motions);
+                (least, best) = (norm, place);
             }
         }
-        self.buffers.motions = best;
+        unflatten(&starts[best], &mut self.buffers.motions);
     }
 
-    /// Solves from the motions in the buffers until the residual is within `tolerance`.
-    pub(super) fn solve(&mut self, tolerance: f64) -> Outcome {
+    /// Solves from the best of `starts`, or from the linear response without any, until the residual is within `tolerance`.
+    pub(super) fn solve(&mut self, starts: &[Vec<f64>], tolerance: f64) -> Outcome {
+        let cold = self.linear_start();
+        if starts.is_empty() {
+            self.buffers.motions.clone_from(&cold);
+        } else {
+            self.begin(starts);
+        }
         let start = self.buffers.motions.clone();
         let mut total = Outcome {
             status: Status::IterationLimit,
@@ -127,15 +134,9 @@ impl ContactEquation<'_> {
             residual: f64::INFINITY,
             shares: ContactShares::default(),
         };
-        let cold = self.linear_start();
-        for (rung, (plan, begin)) in [
-            (&PLANS[0], &start),
-            (&PLANS[0], &cold),
-            (&PLANS[1], &cold),
-        ]
-        .into_iter()
-        .enumerate()
-        {
+        let warm = (!starts.is_empty()).then_some((&WARM, &start));
+        let plans = [(&COLD, &cold), (&SLOW, &cold), (&SLOW, &start)];
+        for (rung, (plan, begin)) in warm.into_iter().chain(plans).enumerate() {
             if rung > 0 {
                 self.buffers.motions.clone_from(begin);
             }
@@ -180,7 +181,7 @@ impl ContactEquation<'_> {
             residual: f64::INFINITY,
             shares: ContactShares::default(),
         };
-        let mut anderson = self.buffers.anderson.take();
+        self.buffers.acceleration.begin();
         let mut first = f64::INFINITY;
         for iteration in 0..plan.iterations {
             let renew = plan.renewals.contains(&iteration);
@@ -195,9 +196,7 @@ impl ContactEquation<'_> {
             if renew {
                 preconditioners = self.preconditioners();
                 outcome.tangents += 1;
-                if let Some(anderson) = &mut anderson {
-                    anderson.begin();
-                }
+                self.buffers.acceleration.begin();
             }
             for (own, residual) in preconditioners.iter_mut().zip(&mut self.buffers.residual) {
                 own.apply(self.transform, residual);
@@ -211,16 +210,19 @@ impl ContactEquation<'_> {
                 break;
             }
             outcome.iterations += 1;
-            let [motions, step, next] = &mut self.buffers.flat;
-            flatten(&self.buffers.motions, 1.0, motions);
-            flatten(&self.buffers.residual, -1.0, step);
-            next.resize(motions.len(), 0.0);
-            if let Some(anderson) = &mut anderson {
-                anderson.next(motions, step, next);
-            }
-            unflatten(next, &mut self.buffers.motions);
+            let Buffers {
+                motions,
+                residual,
+                acceleration,
+                flat: [x, step, next],
+                ..
+            } = &mut *self.buffers;
+            flatten(motions, 1.0, x);
+            flatten(residual, -1.0, step);
+            next.resize(x.len(), 0.0);
+            acceleration.next(x, step, DEPTH, next);
+            unflatten(next, motions);
         }
-        self.buffers.anderson = anderson;
         outcome
     }
 

@@ -4,6 +4,7 @@
 //! exactly in few strain coordinates ([`wheel_harmonic`], [`blade_shapes`]), and the motions at the contact are the only
 //! unknowns of the nonlinear equation ([`contact_iteration`]).
 
+mod acceleration;
 mod blade_shapes;
 mod contact_iteration;
 mod engine;

@@ -224,20 +224,78 @@ impl WaveMatrix {
         });
     }
 
-    /// Adds `factor` times a column of `other` to a column, over the rows of this matrix.
-    pub(super) fn add_column(&mut self, other: &Self, from: usize, to: usize, factor: Complex64) {
-        let chunks = self.re.len() / (self.rows * self.columns * LANES).max(1);
-        for chunk in 0..chunks {
+    /// Adds R G, for the rows of R that this matrix has and a block diagonal G: of every pair a `3 x 3` matrix over its `rows`,
+    /// row after row.
+    pub(super) fn add_times_pairs(
+        &mut self,
+        receptance: &Self,
+        rows: &[[Option<usize>; 3]],
+        pairs: &[[Complex64; 9]],
+    ) {
+        vectorized(AddTimesPairs {
+            sum: self,
+            receptance,
+            rows,
+            pairs,
+        });
+    }
+
+    /// The first rows.
+    pub(super) fn leading_rows(&self, rows: usize) -> Self {
+        let of = |part: &[f64]| -> Vec<f64> {
+            let chunks = part.chunks_exact(self.rows * self.columns * LANES);
+            let leading = chunks.flat_map(|chunk| &chunk[..rows * self.columns * LANES]);
+            leading.copied().collect()
+        };
+        Self {
+            rows,
+            columns: self.columns,
+            re: of(&self.re),
+            im: of(&self.im),
+        }
+    }
+
+    /// Adds 1 to the diagonal of every wave.
+    pub(super) fn add_identity(&mut self) {
+        let own = self.rows * self.columns * LANES;
+        for chunk in self.re.chunks_exact_mut(own) {
             for row in 0..self.rows {
-                let source = ((chunk * other.rows + row) * other.columns + from) * LANES;
-                let place = ((chunk * self.rows + row) * self.columns + to) * LANES;
-                for lane in 0..LANES {
-                    let (x, y) = (other.re[source + lane], other.im[source + lane]);
-                    self.re[place + lane] += x * factor.re - y * factor.im;
-                    self.im[place + lane] += x * factor.im + y * factor.re;
-                }
+                let place = (row * self.columns + row) * LANES;
+                chunk[place..place + LANES].iter_mut().for_each(|entry| *entry += 1.0);
             }
         }
+    }
+
+    /// Some entries of a column as a field, a channel per row.
+    pub(super) fn column(&self, column: usize, rows: std::ops::Range<usize>) -> Field {
+        self.entries(rows.map(|row| (row, column)))
+    }
+
+    /// A row as a field, a channel per column.
+    pub(super) fn row(&self, row: usize) -> Field {
+        self.entries((0..self.columns).map(|column| (row, column)))
+    }
+
+    fn entries(&self, places: impl Iterator<Item = (usize, usize)>) -> Field {
+        let mut field = Field::default();
+        let chunks = self.re.len() / (self.rows * self.columns * LANES).max(1);
+        for (row, column) in places {
+            for chunk in 0..chunks {
+                let from = self.place(chunk * LANES, row, column);
+                field.re.extend_from_slice(&self.re[from..from + LANES]);
+                field.im.extend_from_slice(&self.im[from..from + LANES]);
+            }
+        }
+        field
+    }
+
+    /// `to += A^T from` of every wave.
+    pub(super) fn add_transposed_product(&self, from: &Field, to: &mut Field) {
+        vectorized(AddTransposed {
+            matrix: self,
+            from,
+            to,
+        });
     }
 
     /// The inverse of every wave in the place of the matrix, without pivoting.
@@ -286,6 +344,87 @@ impl Loops for AddProduct<'_> {
                 for lane in 0..LANES {
                     to_re[lane] += self.factor * sum_re[lane];
                     to_im[lane] += self.factor * sum_im[lane];
+                }
+            }
+        }
+    }
+}
+
+struct AddTimesPairs<'a> {
+    sum: &'a mut WaveMatrix,
+    receptance: &'a WaveMatrix,
+    rows: &'a [[Option<usize>; 3]],
+    pairs: &'a [[Complex64; 9]],
+}
+
+impl Loops for AddTimesPairs<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let (rows, columns) = (self.sum.rows, self.sum.columns);
+        let width = self.receptance.columns;
+        let (from_re, _) = self.receptance.re.as_chunks::<LANES>();
+        let (from_im, _) = self.receptance.im.as_chunks::<LANES>();
+        let (to_re, _) = self.sum.re.as_chunks_mut::<LANES>();
+        let (to_im, _) = self.sum.im.as_chunks_mut::<LANES>();
+        let chunks = to_re.len() / (rows * columns).max(1);
+        for (places, pair) in self.rows.iter().zip(self.pairs) {
+            for (place, g) in pair.iter().enumerate() {
+                let (Some(from), Some(to)) = (places[place / 3], places[place % 3]) else {
+                    continue;
+                };
+                if g.norm_sqr() == 0.0 {
+                    continue;
+                }
+                for chunk in 0..chunks {
+                    for row in 0..rows {
+                        let source = (chunk * self.receptance.rows + row) * width + from;
+                        let (x, y) = (&from_re[source], &from_im[source]);
+                        let place = (chunk * rows + row) * columns + to;
+                        let (to_re, to_im) = (&mut to_re[place], &mut to_im[place]);
+                        for lane in 0..LANES {
+                            to_re[lane] += x[lane] * g.re - y[lane] * g.im;
+                            to_im[lane] += x[lane] * g.im + y[lane] * g.re;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+struct AddTransposed<'a> {
+    matrix: &'a WaveMatrix,
+    from: &'a Field,
+    to: &'a mut Field,
+}
+
+impl Loops for AddTransposed<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let (rows, columns) = (self.matrix.rows, self.matrix.columns);
+        let (re, _) = self.matrix.re.as_chunks::<LANES>();
+        let (im, _) = self.matrix.im.as_chunks::<LANES>();
+        let chunks = re.len() / (rows * columns).max(1);
+        let (from_re, _) = self.from.re.as_chunks::<LANES>();
+        let (from_im, _) = self.from.im.as_chunks::<LANES>();
+        let (to_re, _) = self.to.re.as_chunks_mut::<LANES>();
+        let (to_im, _) = self.to.im.as_chunks_mut::<LANES>();
+        for chunk in 0..chunks {
+            for row in 0..rows {
+                let (x, y) = (&from_re[row * chunks + chunk], &from_im[row * chunks + chunk]);
+                for column in 0..columns {
+                    let place = (chunk * rows + row) * columns + column;
+                    let (a, b) = (&re[place], &im[place]);
+                    let to_re = &mut to_re[column * chunks + chunk];
+                    let to_im = &mut to_im[column * chunks + chunk];
+                    for lane in 0..LANES {
+                        to_re[lane] += a[lane] * x[lane] - b[lane] * y[lane];
+                        to_im[lane] += a[lane] * y[lane] + b[lane] * x[lane];
+                    }
                 }
             }
         }

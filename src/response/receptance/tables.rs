@@ -48,12 +48,20 @@ struct Panel {
     ends: (f64, f64),
     nodes: Vec<f64>,
     weights: Vec<f64>,
-    /// The smooth rest at the nodes.
-    smooth: Vec<WaveMatrix>,
+    /// The smooth rest at the nodes, those of every group of lanes side by side.
+    smooth: Smooth,
     /// The poles, those of all waves side by side; a wave with fewer has zeros.
     poles: Vec<WavePole>,
     /// Relative error of the interpolation, seen between its points.
     error: f64,
+}
+
+#[derive(Debug, Default)]
+struct Smooth {
+    rows: usize,
+    columns: usize,
+    re: Vec<f64>,
+    im: Vec<f64>,
 }
 
 #[derive(Debug)]
@@ -150,11 +158,13 @@ impl Receptances {
         let mut best: Option<Panel> = None;
         for points in POINTS {
             let mut panel = Panel::through(points, ends, poles.iter().map(WavePole::copy).collect());
+            let mut smooth = Vec::new();
             for &node in &panel.nodes {
                 let mut rest = self.summed(diameters, node)?;
                 add_poles(&panel.poles, node, -1.0, &mut rest);
-                panel.smooth.push(rest);
+                smooth.push(rest);
             }
+            panel.smooth = Smooth::new(&smooth);
             panel.error = self.error_of(diameters, &panel)?;
             let better = best.as_ref().is_none_or(|best| panel.error < best.error);
             if better {
@@ -246,6 +256,24 @@ impl Receptances {
     }
 }
 
+impl Smooth {
+    fn new(nodes: &[WaveMatrix]) -> Self {
+        let first = &nodes[0];
+        let interleaved = |part: fn(&WaveMatrix) -> &[f64]| -> Vec<f64> {
+            (0..first.re.len() / LANES)
+                .flat_map(|at| nodes.iter().map(move |node| (at, node)))
+                .flat_map(|(at, node)| part(node)[at * LANES..][..LANES].iter().copied())
+                .collect()
+        };
+        Self {
+            rows: first.rows,
+            columns: first.columns,
+            re: interleaved(|node| &node.re),
+            im: interleaved(|node| &node.im),
+        }
+    }
+}
+
 impl WavePole {
     fn copy(&self) -> Self {
         Self {
@@ -267,7 +295,7 @@ impl Panel {
             weights: (0..points)
                 .map(|i| if i % 2 == 0 { angle(i).sin() } else { -angle(i).sin() })
                 .collect(),
-            smooth: Vec::new(),
+            smooth: Smooth::default(),
             poles,
             error: f64::INFINITY,
         }
@@ -275,10 +303,10 @@ impl Panel {
 
     fn evaluate(&self, s: f64, into: &mut WaveMatrix) {
         debug_assert!(s >= self.ends.0 && s <= self.ends.1);
-        let first = &self.smooth[0];
-        (into.rows, into.columns) = (first.rows, first.columns);
-        into.re.resize(first.re.len(), 0.0);
-        into.im.resize(first.im.len(), 0.0);
+        let entries = self.smooth.re.len() / self.nodes.len();
+        (into.rows, into.columns) = (self.smooth.rows, self.smooth.columns);
+        into.re.resize(entries, 0.0);
+        into.im.resize(entries, 0.0);
         let exact = self.nodes.iter().position(|node| (node - s).abs() < 1e-14 * s);
         let mut shares: Vec<f64> = match exact {
             Some(at) => (0..self.nodes.len()).map(|i| f64::from(u8::from(i == at))).collect(),
@@ -299,7 +327,7 @@ impl Panel {
 }
 
 struct Interpolated<'a> {
-    smooth: &'a [WaveMatrix],
+    smooth: &'a Smooth,
     shares: &'a [f64],
     into: &'a mut WaveMatrix,
 }
@@ -310,23 +338,23 @@ impl Loops for Interpolated<'_> {
     #[expect(clippy::inline_always, reason = "only what is inlined is compiled for vectors")]
     #[inline(always)]
     fn call(self) {
-        interpolate(&mut self.into.re, self.shares, |at| &self.smooth[at].re);
-        interpolate(&mut self.into.im, self.shares, |at| &self.smooth[at].im);
+        interpolate(&mut self.into.re, self.shares, &self.smooth.re);
+        interpolate(&mut self.into.im, self.shares, &self.smooth.im);
     }
 }
 
 #[expect(clippy::inline_always, reason = "only what is inlined is compiled for vectors")]
 #[inline(always)]
-fn interpolate<'a>(sum: &mut [f64], shares: &[f64], part: impl Fn(usize) -> &'a Vec<f64>) {
-    for (at, lanes) in sum.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
-        let mut sums = [0.0; LANES];
-        for (node, share) in shares.iter().enumerate() {
-            let own = &part(node).as_chunks::<LANES>().0[at];
+fn interpolate(sum: &mut [f64], shares: &[f64], nodes: &[f64]) {
+    let nodes = nodes.as_chunks::<LANES>().0.chunks_exact(shares.len());
+    for (sum, nodes) in sum.as_chunks_mut::<LANES>().0.iter_mut().zip(nodes) {
+        let mut lanes = [0.0; LANES];
+        for (own, share) in nodes.iter().zip(shares) {
             for lane in 0..LANES {
-                sums[lane] += share * own[lane];
+                lanes[lane] += share * own[lane];
             }
         }
-        *lanes = sums;
+        *sum = lanes;
     }
 }
 

@@ -245,30 +245,12 @@ impl Preconditioner {
     ) -> Self {
         let (sectors, contact) = (harmonic.sectors, harmonic.contact);
         let receptance = &harmonic.receptance;
-        // R G of the rows of every motion [contact, strain].
+        // R G of the motions of the contact, and of the leading shape.
         let rows = contact + usize::from(with_leading && harmonic.shapes > 0);
         let mut product = WaveMatrix::zeros(rows, contact, sectors);
-        for (pair, own) in pairs.iter().zip(tangent) {
-            for (along, from) in pair.iter().enumerate() {
-                for (by, to) in pair.iter().enumerate() {
-                    let (Some(from), Some(to), g) = (from, to, own[3 * along + by]) else {
-                        continue;
-                    };
-                    if g.norm_sqr() > 0.0 {
-                        product.add_column(receptance, *from, *to, g);
-                    }
-                }
-            }
-        }
-        let mut inverse = WaveMatrix::zeros(contact, contact, sectors);
-        for h in 0..sectors {
-            for j in 0..contact {
-                for i in 0..contact {
-                    let one = if i == j { 1.0 } else { 0.0 };
-                    inverse.set(h, i, j, product.at(h, i, j) + one);
-                }
-            }
-        }
+        product.add_times_pairs(receptance, pairs, tangent);
+        let mut inverse = product.leading_rows(contact);
+        inverse.add_identity();
         inverse.invert();
         let leading = (with_leading && harmonic.elimination.is_some())
             .then(|| Leading::new(harmonic, transform, &product, &inverse))
@@ -304,25 +286,17 @@ impl Leading {
         let stride = padded(sectors);
         let receptance = &harmonic.receptance;
         let mut motion = Field::zeros(contact, sectors);
+        let own = receptance.column(contact, 0..contact);
+        inverse.add_product(0..contact, 0..contact, 1.0, &own, &mut motion);
         let mut strain = Field::zeros(contact, sectors);
-        let mut own = vec![Complex64::default(); sectors];
-        for (h, own) in own.iter_mut().enumerate() {
-            for i in 0..contact {
-                let (mut along, mut by) = (Complex64::default(), Complex64::default());
-                for j in 0..contact {
-                    along += inverse.at(h, i, j) * receptance.at(h, j, contact);
-                    by += product.at(h, contact, j) * inverse.at(h, j, i);
-                }
-                motion.set(i * stride + h, along);
-                strain.set(i * stride + h, by);
-                *own -= by * receptance.at(h, i, contact);
-            }
-            *own += receptance.at(h, contact, contact);
-        }
+        inverse.add_transposed_product(&product.row(contact), &mut strain);
+        let mut taken = Field::zeros(1, sectors);
+        add_channels(&strain, &own, &mut taken, stride);
+        let left = |h: usize| receptance.at(h, contact, contact) - taken.at(h);
         let deviations = harmonic.deviations[..sectors].to_vec();
         let mut factors = LuWorkspace::new(sectors);
         let matrix = factors.matrix_mut();
-        fill_circulant(transform, 1, |_, _, h| own[h], &deviations, matrix);
+        fill_circulant(transform, 1, |_, _, h| left(h), &deviations, matrix);
         factors.factor().then_some(Self {
             motion,
             strain,

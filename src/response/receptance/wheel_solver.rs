@@ -74,8 +74,8 @@ impl<'a> WheelSolver<'a> {
         }
     }
 
-    /// Solves at a frequency, Hz, from the one of `starts` (as [`WheelSolution::motions`]) and the linear response that has the
-    /// smallest residual.
+    /// Solves at a frequency, Hz, from the one of `starts` (as [`WheelSolution::motions`]) that has the smallest residual, or from
+    /// the linear response without any.
     ///
     /// # Errors
     /// How the last attempt ended.
@@ -101,9 +101,6 @@ impl<'a> WheelSolver<'a> {
         let sectors = self.engine.sectors();
         let fundamental = self.set.iter().position(|&k| k == 1).unwrap_or(0);
         self.buffers.resize(self.set.len(), contact.sector_rows(), sectors);
-        let motions = self.buffers.motions.iter_mut();
-        motions.for_each(|own| own.fill(0.0));
-        self.buffers.motions[fundamental].clone_from(&self.linear);
         let mut equation = ContactEquation {
             transform: &self.engine.transform,
             contact,
@@ -112,8 +109,7 @@ impl<'a> WheelSolver<'a> {
             fundamental,
             buffers: &mut self.buffers,
         };
-        equation.begin(starts);
-        let outcome = equation.solve(tolerance);
+        let outcome = equation.solve(starts, tolerance);
         work.iterations = outcome.iterations;
         work.tangents = outcome.tangents;
         work.retries = outcome.retries;
