@@ -283,9 +283,9 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Pip
                 let orders = &case.study.engine_orders;
                 solver.with_engine(Arc::clone(engine), &case.of(&own.model), orders)
             }
-            None => solver,
+            None => Ok(solver),
         };
-        let solver = on_engine(solver);
+        let solver = on_engine(solver)?;
         let Some(beyond) = &stored.beyond else {
             return Ok(solver);
         };
@@ -295,7 +295,7 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Pip
                 beyond.basis_error + truncation,
             )?
             .with_tuned_harmonics(tuned_harmonics.clone());
-        Ok(solver.with_beyond(on_engine(finer), inexact))
+        Ok(solver.with_beyond(on_engine(finer)?, inexact))
     })
 }
 

@@ -10,7 +10,7 @@ use crate::response::forced_response::{
     Window, mistuned_window, receptance_curve, receptance_errors, receptance_peak, receptance_plan,
     receptance_state, tuned_span_of,
 };
-use crate::response::harmonic_balance::{PairContact, Status};
+use crate::response::harmonic_balance::{PairContact, Status, TransformError};
 use crate::response::mistuning::{ContactFactors, Pattern};
 use crate::response::receptance::{EngineWheel, Limit, ReceptanceEngine, WaveForce};
 
@@ -19,6 +19,9 @@ use super::wheel_state::WheelState;
 
 /// In the column `basis`.
 pub(super) const NAME: &str = "tuned_receptances";
+
+/// Samples per period of a search with few harmonics: what it finds is only where to look.
+const SEARCH_SAMPLES: usize = 32;
 
 /// The engine of a study with the excitations of one of its force vectors.
 #[derive(Debug)]
@@ -39,13 +42,19 @@ impl RowEngine {
 
 impl RowSolver {
     /// The same solver whose rows are solved on `engine`, under the force vector of `model`.
-    #[must_use]
+    ///
+    /// # Errors
+    /// If the harmonics of a search cannot be told apart.
     pub fn with_engine(
         mut self,
         engine: Arc<ReceptanceEngine>,
         model: &ReducedModel,
         engine_orders: &[u32],
-    ) -> Self {
+    ) -> Result<Self, TransformError> {
+        self.full = self.full.with_search_samples(SEARCH_SAMPLES)?;
+        for (_, points) in &mut self.chosen {
+            *points = points.clone().with_search_samples(SEARCH_SAMPLES)?;
+        }
         let amplitude_n = self.settings.amplitude_n;
         let force = |&order: &u32| (order, WaveForce::new(model, order, amplitude_n));
         self.engine = Some(RowEngine {
@@ -53,7 +62,7 @@ impl RowSolver {
             forces: engine_orders.iter().map(force).collect(),
             engine,
         });
-        self
+        Ok(self)
     }
 
     /// What rows are solved on: a basis, or the receptances of the tuned wheel.

@@ -77,7 +77,7 @@ impl RowSettings {
 pub struct RowSolver {
     basis: WheelBasis,
     pub(super) settings: RowSettings,
-    full: PointSettings,
+    pub(super) full: PointSettings,
     linear: PointSettings,
     /// Sets that differ from scenario to scenario; the others have that of the settings.
     pub(super) chosen: Vec<(HarmonicChoice, PointSettings)>,

@@ -114,6 +114,24 @@ impl PointSettings {
         })
     }
 
+    /// The same with as few samples in the search with fewer harmonics as these need, but not fewer than `least`.
+    ///
+    /// # Errors
+    /// If the harmonics cannot be told apart with them.
+    pub fn with_search_samples(self, least: usize) -> Result<Self, TransformError> {
+        let Some(mut search) = self.search else {
+            return Ok(self);
+        };
+        let set = search.transform.harmonics().to_vec();
+        let highest = set.last().copied().unwrap_or(1);
+        let samples = least.max(8 * highest).min(search.transform.n_samples());
+        search.transform = Arc::new(HarmonicTransform::new(&set, samples)?);
+        Ok(Self {
+            search: Some(search),
+            ..self
+        })
+    }
+
     /// Harmonic set of the nonlinear solution.
     #[must_use]
     pub fn harmonics(&self) -> &[u32] {

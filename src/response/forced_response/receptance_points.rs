@@ -54,12 +54,25 @@ impl<'a> EngineRow<'a> {
         transform: &Arc<HarmonicTransform>,
         in_place_of: Option<ContactLaw>,
     ) -> WheelSolver<'a> {
+        let contact = self.contact(settings, transform, in_place_of);
+        let set: Vec<u32> = transform.harmonics().iter().map(|&k| k as u32).collect();
+        let limit = Limit::of(self.condition);
+        WheelSolver::new(self.engine, self.wheel, limit, self.force, &set, contact)
+    }
+
+    /// The contact in the harmonics of `transform`; none for a linear limit of a wheel whose contact is nominal.
+    fn contact(
+        &self,
+        settings: &PointSettings,
+        transform: &Arc<HarmonicTransform>,
+        in_place_of: Option<ContactLaw>,
+    ) -> Option<WheelContact> {
         let limit = Limit::of(self.condition);
         let springs = self.engine.springs(limit);
         let varied = !settings.factors.is_nominal() && !springs.is_empty();
         let load_n = self.condition.normal_load_n();
         let contact = settings.contact.filter(|_| load_n.is_some() || varied);
-        let contact = contact.map(|(law, sector)| {
+        contact.map(|(law, sector)| {
             let geometry = settings.geometry.clone();
             let own = settings.factors.springs(springs, &geometry.rows);
             let interface = ContactInterface {
@@ -74,9 +87,7 @@ impl<'a> EngineRow<'a> {
             } else {
                 contact.linear(&own, springs)
             }
-        });
-        let set: Vec<u32> = transform.harmonics().iter().map(|&k| k as u32).collect();
-        WheelSolver::new(self.engine, self.wheel, limit, self.force, &set, contact)
+        })
     }
 }
 
@@ -293,19 +304,24 @@ pub fn receptance_errors(
     if !nonlinear || sticks {
         return Some(ErrorEstimate::default());
     }
-    let [alone, enlarged] = set.transforms();
-    let solved = |transform: &Arc<HarmonicTransform>, start: &[f64], from: &[u32], law| {
-        let mut solver = row.solver(settings, transform, law);
+    let [alone, enlarged, tangents] = set.transforms();
+    let settled = |mut solver: WheelSolver<'_>, start: &[f64], from: &[u32]| {
         let start = embedded(start, from, solver.harmonics());
-        let (solved, _) = solver.solve(point.frequency_hz, &[start], ERROR_TOLERANCE);
-        let motions = solved.ok()?.motions;
+        let (motions, unsettled) =
+            solver.settle(point.frequency_hz, &start, ERROR_TOLERANCE)?;
         let observed = observed(&mut solver, amplitude);
-        Some((motions, in_harmonics(observed, set.harmonics(), row.engine.sectors())))
+        let observed = in_harmonics(observed, set.harmonics(), row.engine.sectors());
+        Some((motions, observed, unsettled))
     };
     let harmonics = settings.harmonics();
-    let (_, before) = solved(&settings.transform, &point.solution, harmonics, None)?;
-    let (motions, alone) = solved(alone, &point.solution, harmonics, *law)?;
-    let (_, after) = solved(enlarged, &motions, harmonics, *law)?;
+    let solver = row.solver(settings, &settings.transform, None);
+    let (_, before, _) = settled(solver, &point.solution, harmonics)?;
+    let solver = row.solver(settings, alone, *law);
+    let (motions, alone, own_unsettled) = settled(solver, &point.solution, harmonics)?;
+    let solver = row
+        .solver(settings, enlarged, *law)
+        .with_tangents(row.contact(settings, tangents, *law));
+    let (_, after, unsettled) = settled(solver, &motions, harmonics)?;
     let largest = |amplitudes: Vec<f64>| amplitudes.into_iter().fold(0.0, f64::max);
     let height = largest(amplitude.of_observed(&before));
     let change = |after: &[ObservedHarmonic]| {
@@ -315,7 +331,7 @@ pub fn receptance_errors(
     Some(ErrorEstimate {
         sampling,
         harmonics: change(&after) - sampling,
-        unsettled: ERROR_TOLERANCE,
+        unsettled: own_unsettled + unsettled,
     })
 }
 

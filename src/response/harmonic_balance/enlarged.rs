@@ -57,6 +57,8 @@ pub struct EnlargedSet {
     alone: Arc<HarmonicTransform>,
     enlarged: Arc<HarmonicTransform>,
     linearised: Arc<HarmonicTransform>,
+    /// The enlarged set with as few samples as tell its harmonics apart.
+    tangents: Arc<HarmonicTransform>,
 }
 
 impl EnlargedSet {
@@ -87,6 +89,7 @@ impl EnlargedSet {
                 &harmonics,
                 of_highest(LINEARISED_SAMPLES, LINEARISED_SAMPLES_OF_HIGHEST),
             )?,
+            tangents: transform(&harmonics, (4 * highest + 1).next_multiple_of(4))?,
             harmonics,
         })
     }
@@ -97,10 +100,10 @@ impl EnlargedSet {
         &self.harmonics
     }
 
-    /// The set itself, as finely sampled as the enlarged set is, and the enlarged set.
+    /// The set itself, as finely sampled as the enlarged set is, the enlarged set, and the same with few samples.
     #[must_use]
-    pub fn transforms(&self) -> [&Arc<HarmonicTransform>; 2] {
-        [&self.alone, &self.enlarged]
+    pub fn transforms(&self) -> [&Arc<HarmonicTransform>; 3] {
+        [&self.alone, &self.enlarged, &self.tangents]
     }
 }
 

@@ -31,6 +31,7 @@ mod other_contact;
 mod pair_harmonics;
 mod pair_jacobian;
 mod pivoted_factors;
+mod quarter_waves;
 mod response_slope;
 mod ring_drift;
 mod serves;

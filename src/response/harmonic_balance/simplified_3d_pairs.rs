@@ -1,8 +1,9 @@
 //! The pairs of a wheel under `simplified_3d` side by side, a vector lane each.
 //!
 //! As in [`super::macro_slip_pairs`], with a normal load that varies and two elements per pair: histories of all
-//! directions by one matrix product, the chains of clips of [`crate::response::friction::PeriodicSlider`] marched
-//! together, one product back. From wherever it starts, a slider that slips is in its periodic state after one period.
+//! directions of a block of pairs by [`QuarterWaves`], the chains of clips of
+//! [`crate::response::friction::PeriodicSlider`] marched together, and the way back. From wherever it starts, a slider that
+//! slips is in its periodic state after one period.
 
 #![expect(
     clippy::inline_always,
@@ -12,17 +13,19 @@
 use std::sync::Arc;
 
 use super::lanes::{LANES, clip, larger, smaller};
+use super::quarter_waves::QuarterWaves;
 use super::{ContactShares, HarmonicSystem, HarmonicTransform, SystemWorkspace};
-use crate::linalg::{Loops, set_times, vectorized};
+use crate::linalg::{Loops, vectorized};
 use crate::response::friction::ContactLaw;
 
-/// Buffers for the pairs of one wheel. Matrices are column-major; a column has the lanes of n, then those of t1, then t2.
+/// Rows of the matrices of a block: the lanes of n, then those of t1, then t2.
+const HEIGHT: usize = 3 * LANES;
+
+/// Buffers for the pairs of one wheel. Matrices are column-major with [`HEIGHT`] rows, block after block.
 #[derive(Debug)]
 pub(super) struct Simplified3dPairs {
     transform: Arc<HarmonicTransform>,
-    /// `phi_c(tau_j)`, a column per sample, and `psi_c(tau_j)`, a column per coefficient.
-    basis: Vec<f64>,
-    projection: Vec<f64>,
+    waves: QuarterWaves,
     /// Pairs that may slip or separate, each in its lane; lanes beyond are idle.
     pairs: Vec<usize>,
     /// Sum of the amplitudes of the harmonics of every contact row, m.
@@ -32,11 +35,11 @@ pub(super) struct Simplified3dPairs {
     friction: Vec<f64>,
     /// Coefficients of `kn g`, `kt x1`, `kt x2`, N, then of the corrections.
     coefficients: Vec<f64>,
-    /// Samples of the same.
+    /// Samples of the same, of the block that is marched.
     histories: Vec<f64>,
     /// Whether the lane separates, slips along t1, along t2.
     states: Vec<[bool; 3]>,
-    /// Where a direction is at a bound, a row per lane and direction as in the histories: see [`Bound`].
+    /// Where a direction is at a bound, as the histories of all blocks: see [`Bound`].
     bounds: Vec<f64>,
     clips: Clips,
 }
@@ -65,25 +68,14 @@ struct Clips {
 impl Simplified3dPairs {
     fn new(pairs: usize, transform: &Arc<HarmonicTransform>) -> Self {
         let lanes = pairs.next_multiple_of(LANES);
-        let (coefficients, samples) = (transform.n_coefficients(), transform.n_samples());
-        let basis = (0..samples)
-            .flat_map(|j| (0..coefficients).map(move |c| transform.basis(c)[j]))
-            .collect();
-        let projection = (0..coefficients)
-            .flat_map(|c| {
-                let scale = transform.projection_scale(c);
-                transform.basis(c).iter().map(move |phi| scale * phi)
-            })
-            .collect();
         Self {
-            basis,
-            projection,
+            waves: QuarterWaves::new(transform),
             pairs: Vec::with_capacity(pairs),
             excursions: Vec::new(),
             normal_load: vec![0.0; lanes],
             friction: vec![0.0; lanes],
-            coefficients: vec![0.0; 3 * lanes * coefficients],
-            histories: vec![0.0; 3 * lanes * samples],
+            coefficients: vec![0.0; 3 * lanes * transform.n_coefficients()],
+            histories: vec![0.0; HEIGHT * transform.n_samples()],
             states: vec![[false; 3]; lanes],
             bounds: Vec::new(),
             clips: Clips::default(),
@@ -98,32 +90,42 @@ impl Simplified3dPairs {
 
     /// The corrections in the place of the displacements; with the bounds where the `derivative` is wanted.
     fn respond(&mut self, derivative: bool) {
-        let height = 3 * self.lanes();
-        let (count, samples) = (self.transform.n_coefficients(), self.transform.n_samples());
-        let coefficients = &mut self.coefficients[..height * count];
-        let histories = &mut self.histories[..height * samples];
-        let size = (height, samples, count);
-        set_times(histories, coefficients, &self.basis, size);
-        let bounds = if derivative { height * samples } else { 0 };
+        let blocks = self.lanes() / LANES;
+        let own = HEIGHT * self.transform.n_samples();
+        let bounds = if derivative { blocks * own } else { 0 };
         self.bounds.resize(bounds, 0.0);
-        vectorized(March {
-            histories,
-            height,
-            normal_load: &self.normal_load,
-            friction: &self.friction,
-            states: &mut self.states,
-            bounds: &mut self.bounds,
-        });
-        let size = (height, count, samples);
-        set_times(coefficients, histories, &self.projection, size);
+        let mut bounds = self.bounds.chunks_exact_mut(own);
+        let of_block = HEIGHT * self.transform.n_coefficients();
+        let coefficients = self.coefficients.chunks_exact_mut(of_block);
+        for (block, coefficients) in coefficients.take(blocks).enumerate() {
+            self.waves.synthesize(coefficients, &mut self.histories);
+            let lanes = block * LANES..(block + 1) * LANES;
+            vectorized(March {
+                histories: &mut self.histories,
+                normal_load: &self.normal_load[lanes.clone()],
+                friction: &self.friction[lanes.clone()],
+                states: &mut self.states[lanes],
+                bounds: bounds.next().unwrap_or_default(),
+            });
+            self.waves.project(&self.histories, coefficients);
+        }
+    }
+
+    /// Place of a coefficient of a lane.
+    fn place(&self, lane: usize, coefficient: usize, direction: usize) -> usize {
+        let block = lane / LANES * self.transform.n_coefficients();
+        (block + coefficient) * HEIGHT + direction * LANES + lane % LANES
     }
 }
 
 impl Clips {
     /// Those of a lane.
-    fn gather(&mut self, bounds: &[f64], height: usize, lane: usize, state: [bool; 3]) {
-        let lanes = height / 3;
-        let of = |direction: usize| bounds[direction * lanes + lane..].iter().step_by(height);
+    fn gather(&mut self, bounds: &[f64], samples: usize, lane: usize, state: [bool; 3]) {
+        let bounds = &bounds[lane / LANES * HEIGHT * samples..][..HEIGHT * samples];
+        let of = |direction: usize| {
+            let own = bounds[direction * LANES + lane % LANES..].iter();
+            own.step_by(HEIGHT)
+        };
         self.normal_load.clear();
         if state[0] {
             let load = |open: &f64| if *open == Bound::OPEN { 0.0 } else { 1.0 };
@@ -166,10 +168,9 @@ impl Loops for Excursions<'_> {
     }
 }
 
-/// Through one period to the periodic state, and through another one that is kept.
+/// Through one period to the periodic state, and through another one that is kept; of one block.
 struct March<'a> {
     histories: &'a mut [f64],
-    height: usize,
     normal_load: &'a [f64],
     friction: &'a [f64],
     states: &'a mut [[bool; 3]],
@@ -182,66 +183,56 @@ impl Loops for March<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let blocks = self.height / (3 * LANES);
-        let (load, _) = self.normal_load.as_chunks::<LANES>();
-        let (friction, _) = self.friction.as_chunks::<LANES>();
-        let (states, _) = self.states.as_chunks_mut::<LANES>();
-        for block in 0..blocks {
-            let (load, friction) = (&load[block], &friction[block]);
-            let mut lowest = [f64::INFINITY; LANES];
-            let mut bounds = [[[f64::NEG_INFINITY; LANES], [f64::INFINITY; LANES]]; 2];
-            let mut y = [[0.0; LANES]; 2];
-            for column in self.histories.chunks_exact(self.height) {
-                let (column, _) = column.as_chunks::<LANES>();
-                let bilateral = sum(load, &column[block]);
-                let limit = std::array::from_fn(|i| friction[i] * larger(bilateral[i], 0.0));
+        let load: [f64; LANES] = std::array::from_fn(|i| self.normal_load[i]);
+        let friction: [f64; LANES] = std::array::from_fn(|i| self.friction[i]);
+        let mut lowest = [f64::INFINITY; LANES];
+        let mut bounds = [[[f64::NEG_INFINITY; LANES], [f64::INFINITY; LANES]]; 2];
+        let mut y = [[0.0; LANES]; 2];
+        let histories = self.histories.as_chunks_mut::<LANES>().0;
+        for column in histories.chunks_exact(3) {
+            let bilateral = sum(&load, &column[0]);
+            let limit = std::array::from_fn(|i| friction[i] * larger(bilateral[i], 0.0));
+            for i in 0..LANES {
+                lowest[i] = smaller(bilateral[i], lowest[i]);
+            }
+            for direction in 0..2 {
+                let elastic = &column[1 + direction];
+                let [highest_lower, lowest_upper] = &mut bounds[direction];
                 for i in 0..LANES {
-                    lowest[i] = smaller(bilateral[i], lowest[i]);
+                    let (lower, upper) = (-limit[i] - elastic[i], limit[i] - elastic[i]);
+                    highest_lower[i] = larger(lower, highest_lower[i]);
+                    lowest_upper[i] = smaller(upper, lowest_upper[i]);
                 }
-                for direction in 0..2 {
-                    let elastic = &column[(1 + direction) * blocks + block];
-                    let [highest_lower, lowest_upper] = &mut bounds[direction];
-                    for i in 0..LANES {
-                        let (lower, upper) = (-limit[i] - elastic[i], limit[i] - elastic[i]);
-                        highest_lower[i] = larger(lower, highest_lower[i]);
-                        lowest_upper[i] = smaller(upper, lowest_upper[i]);
-                    }
-                    march(&mut y[direction], &limit, elastic);
-                }
+                march(&mut y[direction], &limit, elastic);
             }
-            let mut slips = [[0.0; LANES]; 2];
-            for (i, state) in states[block].iter_mut().enumerate() {
-                state[0] = lowest[i] <= 0.0;
-                for direction in 0..2 {
-                    let [highest_lower, lowest_upper] = &bounds[direction];
-                    state[1 + direction] = highest_lower[i] > lowest_upper[i];
-                    slips[direction][i] = f64::from(u8::from(state[1 + direction]));
-                }
+        }
+        let mut slips = [[0.0; LANES]; 2];
+        for (i, state) in self.states.iter_mut().enumerate() {
+            state[0] = lowest[i] <= 0.0;
+            for direction in 0..2 {
+                let [highest_lower, lowest_upper] = &bounds[direction];
+                state[1 + direction] = highest_lower[i] > lowest_upper[i];
+                slips[direction][i] = f64::from(u8::from(state[1 + direction]));
             }
-            let mut bounds = self.bounds.chunks_exact_mut(self.height);
-            for column in self.histories.chunks_exact_mut(self.height) {
-                let (column, _) = column.as_chunks_mut::<LANES>();
-                let bilateral = sum(load, &column[block]);
-                let limit = std::array::from_fn(|i| friction[i] * larger(bilateral[i], 0.0));
-                column[block] = bilateral.map(|bilateral| larger(0.0 - bilateral, 0.0));
-                let mut bounds = bounds
-                    .next()
-                    .map(|bounds| bounds.as_chunks_mut::<LANES>().0);
+        }
+        let mut bounds = self.bounds.as_chunks_mut::<LANES>().0.chunks_exact_mut(3);
+        for column in histories.chunks_exact_mut(3) {
+            let bilateral = sum(&load, &column[0]);
+            let limit = std::array::from_fn(|i| friction[i] * larger(bilateral[i], 0.0));
+            column[0] = bilateral.map(|bilateral| larger(0.0 - bilateral, 0.0));
+            let mut bounds = bounds.next();
+            if let Some(bounds) = &mut bounds {
+                bounds[0] = bilateral.map(|load| if load > 0.0 { 0.0 } else { Bound::OPEN });
+            }
+            for direction in 0..2 {
+                let elastic = &mut column[1 + direction];
+                march(&mut y[direction], &limit, elastic);
                 if let Some(bounds) = &mut bounds {
-                    bounds[block] =
-                        bilateral.map(|load| if load > 0.0 { 0.0 } else { Bound::OPEN });
+                    bounds[1 + direction] = attained(&y[direction], &limit, elastic);
                 }
-                for direction in 0..2 {
-                    let elastic = &mut column[(1 + direction) * blocks + block];
-                    march(&mut y[direction], &limit, elastic);
-                    if let Some(bounds) = &mut bounds {
-                        bounds[(1 + direction) * blocks + block] =
-                            attained(&y[direction], &limit, elastic);
-                    }
-                    // A slider that sticks has a constant offset, whose harmonics are zero.
-                    for i in 0..LANES {
-                        elastic[i] = slips[direction][i] * y[direction][i];
-                    }
+                // A slider that sticks has a constant offset, whose harmonics are zero.
+                for i in 0..LANES {
+                    elastic[i] = slips[direction][i] * y[direction][i];
                 }
             }
         }
@@ -342,8 +333,8 @@ impl HarmonicSystem {
                     (parameters.tangential_stiffness_n_per_m, mean)
                 };
                 for (c, column) in columns().enumerate().skip(first) {
-                    together.coefficients[(3 * c + direction) * lanes + lane] =
-                        stiffness * column[row];
+                    let place = together.place(lane, c, direction);
+                    together.coefficients[place] = stiffness * column[row];
                 }
             }
         }
@@ -358,7 +349,8 @@ impl HarmonicSystem {
             workspace.active[pair] = state.contains(&true);
             if derivative && workspace.active[pair] {
                 let clips = &mut together.clips;
-                clips.gather(&together.bounds, 3 * lanes, lane, state);
+                let samples = self.transform.n_samples();
+                clips.gather(&together.bounds, samples, lane, state);
                 let sliders = [0, 1].map(|tangent| {
                     let clips = (&*clips.samples[tangent], &*clips.signs[tangent]);
                     state[1 + tangent].then_some(clips)
@@ -376,8 +368,8 @@ impl HarmonicSystem {
                 };
                 let first = if direction == 0 { 0 } else { mean };
                 for c in first..coefficients {
-                    workspace.correction[c * self.rows + row] =
-                        together.coefficients[(3 * c + direction) * lanes + lane];
+                    let place = together.place(lane, c, direction);
+                    workspace.correction[c * self.rows + row] = together.coefficients[place];
                 }
             }
         }

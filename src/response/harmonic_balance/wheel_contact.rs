@@ -88,6 +88,12 @@ impl WheelContact {
         &mut self.workspace.displacement
     }
 
+    /// The motions last given.
+    #[must_use]
+    pub fn motion(&self) -> &[f64] {
+        &self.workspace.displacement
+    }
+
     /// The correction last evaluated.
     #[must_use]
     pub fn correction(&self) -> &[f64] {

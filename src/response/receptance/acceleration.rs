@@ -2,7 +2,8 @@
 //!
 //! With steps `f = f(x)`, the next iterate is `x + f - sum_j c_j (dx_j + df_j)`, where the shares c bring the sum of the
 //! differences `df_j` nearest to f. They come from the scalar products of these differences, of which every step adds one
-//! row: the differences are read twice a step, whatever their number.
+//! row: the differences are read twice a step, whatever their number. They are kept in single precision: what that takes from
+//! a step is a share of it, and the next one sees it.
 
 #![expect(
     clippy::inline_always,
@@ -25,9 +26,11 @@ pub(super) struct Acceleration {
     last: Option<(Vec<f64>, Vec<f64>)>,
     begun: bool,
     /// `dx_j + df_j`, column after column, and `df_j`, each over its length.
-    moves: Vec<f64>,
-    changes: Vec<f64>,
+    moves: Vec<f32>,
+    changes: Vec<f32>,
     columns: usize,
+    /// The last change over its length.
+    latest: Vec<f64>,
     /// Scalar products of the changes, a row of growing length each.
     products: Vec<Vec<f64>>,
     shares: Vec<f64>,
@@ -85,24 +88,27 @@ impl Acceleration {
             self.changes.resize(used, 0.0);
         }
         let (known, change) = self.changes[..used].split_at_mut(n * column);
-        for ((d, f), last) in change.iter_mut().zip(step).zip(last_step) {
-            *d = f - last;
-        }
-        let length = dot(change, change).sqrt();
+        self.latest.clear();
+        let differences = step.iter().zip(last_step).map(|(f, last)| f - last);
+        self.latest.extend(differences);
+        let length = crate::linalg::dot(&self.latest, &self.latest).sqrt();
         if !(length > 0.0 && length.is_finite()) {
             return;
         }
         let scale = 1.0 / length;
-        change.iter_mut().for_each(|d| *d *= scale);
+        for (change, latest) in change.iter_mut().zip(&mut self.latest) {
+            *latest *= scale;
+            *change = *latest as f32;
+        }
         let moved = self.moves[n * column..][..n].iter_mut();
         let (x, step) = (x.iter().zip(last_x), step.iter().zip(last_step));
         for (moved, ((x, last_x), (f, last_f))) in moved.zip(x.zip(step)) {
-            *moved = ((x - last_x) + (f - last_f)) * scale;
+            *moved = (((x - last_x) + (f - last_f)) * scale) as f32;
         }
         let mut row = vec![0.0; column];
         vectorized(Products {
             columns: known,
-            vector: change,
+            vector: &self.latest,
             products: &mut row,
         });
         row.push(1.0);
@@ -156,19 +162,9 @@ impl Acceleration {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut product = [0.0];
-    vectorized(Products {
-        columns: a,
-        vector: b,
-        products: &mut product,
-    });
-    product[0]
-}
-
 /// Scalar products of columns with a vector.
 struct Products<'a> {
-    columns: &'a [f64],
+    columns: &'a [f32],
     vector: &'a [f64],
     products: &'a mut [f64],
 }
@@ -195,7 +191,7 @@ impl Loops for Products<'_> {
 }
 
 #[inline(always)]
-fn products_of<const COUNT: usize>(columns: [&[f64]; COUNT], vector: &[f64]) -> [f64; COUNT] {
+fn products_of<const COUNT: usize>(columns: [&[f32]; COUNT], vector: &[f64]) -> [f64; COUNT] {
     let (vector, vector_rest) = vector.as_chunks::<LANES>();
     let columns = columns.map(|column| column.as_chunks::<LANES>());
     let mut sums = [[0.0; LANES]; COUNT];
@@ -203,19 +199,19 @@ fn products_of<const COUNT: usize>(columns: [&[f64]; COUNT], vector: &[f64]) -> 
         for (sums, (column, _)) in sums.iter_mut().zip(columns) {
             let c = &column[at];
             for lane in 0..LANES {
-                sums[lane] += c[lane] * v[lane];
+                sums[lane] += f64::from(c[lane]) * v[lane];
             }
         }
     }
     std::array::from_fn(|k| {
-        let rest = columns[k].1.iter().zip(vector_rest).map(|(c, v)| c * v);
+        let rest = columns[k].1.iter().zip(vector_rest).map(|(c, v)| f64::from(*c) * v);
         sums[k].into_iter().sum::<f64>() + rest.sum::<f64>()
     })
 }
 
 /// A vector less shares of columns.
 struct Combined<'a> {
-    columns: &'a [f64],
+    columns: &'a [f32],
     shares: &'a [f64],
     sum: &'a mut [f64],
 }
@@ -232,12 +228,13 @@ impl Loops for Combined<'_> {
                 let column = |k: usize| columns[k * n..][..n].iter();
                 let four = column(0).zip(column(1)).zip(column(2).zip(column(3)));
                 for (sum, ((a, b), (c, d))) in self.sum.iter_mut().zip(four) {
+                    let [a, b, c, d] = [a, b, c, d].map(|entry| f64::from(*entry));
                     *sum -= (p * a + q * b) + (r * c + s * d);
                 }
             } else {
                 for (column, share) in columns.chunks_exact(n).zip(shares) {
                     for (sum, entry) in self.sum.iter_mut().zip(column) {
-                        *sum -= share * entry;
+                        *sum -= share * f64::from(*entry);
                     }
                 }
             }

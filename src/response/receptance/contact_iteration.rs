@@ -45,6 +45,12 @@ const SLOW: Plan = Plan {
     iterations: 160,
 };
 
+/// For the errors of a solution, from that solution.
+const BESIDE: Plan = Plan {
+    renewals: &[0],
+    iterations: 120,
+};
+
 /// Newton steps of the last attempt at most.
 const NEWTON_STEPS: usize = 40;
 
@@ -52,6 +58,8 @@ const NEWTON_STEPS: usize = 40;
 pub(super) struct ContactEquation<'a> {
     pub(super) transform: &'a SectorTransform,
     pub(super) contact: &'a mut WheelContact,
+    /// The same contact with fewer samples, from which tangents are taken, where there is one.
+    pub(super) tangents: Option<&'a mut WheelContact>,
     /// A harmonic of the set each, in its order.
     pub(super) harmonics: &'a mut [WheelHarmonic],
     /// `u_lin` of harmonic 1, at this place of the set.
@@ -83,6 +91,8 @@ pub(super) struct Outcome {
     pub(super) retries: u64,
     /// Norm of the residual over that of the motions.
     pub(super) residual: f64,
+    /// Norm of the step that was left over that of the motions.
+    pub(super) step: f64,
     pub(super) shares: ContactShares,
 }
 
@@ -132,6 +142,7 @@ impl ContactEquation<'_> {
             tangents: 0,
             retries: 0,
             residual: f64::INFINITY,
+            step: f64::INFINITY,
             shares: ContactShares::default(),
         };
         let warm = (!starts.is_empty()).then_some((&WARM, &start));
@@ -159,6 +170,12 @@ impl ContactEquation<'_> {
         total
     }
 
+    /// One attempt beside `start`, which may end before the residual is within `tolerance`.
+    pub(super) fn settle(&mut self, start: &[f64], tolerance: f64) -> Outcome {
+        unflatten(start, &mut self.buffers.motions);
+        self.accelerate(&BESIDE, tolerance)
+    }
+
     /// The motions of the linear response.
     fn linear_start(&self) -> Vec<Field> {
         let mut start = vec![Field::default(); self.harmonics.len()];
@@ -179,13 +196,19 @@ impl ContactEquation<'_> {
             tangents: 0,
             retries: 0,
             residual: f64::INFINITY,
+            step: f64::INFINITY,
             shares: ContactShares::default(),
         };
         self.buffers.acceleration.begin();
         let mut first = f64::INFINITY;
         for iteration in 0..plan.iterations {
             let renew = plan.renewals.contains(&iteration);
-            (outcome.residual, outcome.shares) = self.residual(renew);
+            let apart = renew && self.tangents.is_some();
+            (outcome.residual, outcome.shares) = self.residual(renew && !apart);
+            if let Some(tangents) = self.tangents.as_mut().filter(|_| apart) {
+                tangents.motion_mut().copy_from_slice(self.contact.motion());
+                tangents.evaluate(true);
+            }
             if iteration == 0 {
                 first = outcome.residual;
             }
@@ -203,7 +226,8 @@ impl ContactEquation<'_> {
             }
             let step: f64 = self.buffers.residual.iter().map(norm_squared).sum();
             let motion: f64 = self.buffers.motions.iter().map(norm_squared).sum();
-            if outcome.residual <= tolerance && step.sqrt() <= tolerance * motion.sqrt() {
+            outcome.step = (step / motion).sqrt();
+            if outcome.residual.max(outcome.step) <= tolerance {
                 // Forces of a pair without a periodic state prove nothing.
                 let closed = outcome.shares.unclosed == 0.0;
                 outcome.status = if closed { Status::Ok } else { Status::Stagnated };
@@ -229,9 +253,10 @@ impl ContactEquation<'_> {
     fn preconditioners(&self) -> Vec<Preconditioner> {
         let pairs = self.contact.pair_rows();
         let harmonics = self.harmonics.iter().enumerate();
+        let contact: &WheelContact = self.tangents.as_deref().unwrap_or(self.contact);
         harmonics
             .map(|(place, harmonic)| {
-                let tangent = self.contact.mean_tangent(place);
+                let tangent = contact.mean_tangent(place);
                 let leading = place == self.fundamental;
                 Preconditioner::new(harmonic, self.transform, &tangent, pairs, leading)
             })
@@ -297,6 +322,7 @@ impl ContactEquation<'_> {
             tangents: 0,
             retries: 0,
             residual: f64::INFINITY,
+            step: f64::INFINITY,
             shares: ContactShares::default(),
         };
         for _ in 0..NEWTON_STEPS {

@@ -19,6 +19,7 @@ pub struct WheelSolver<'a> {
     force: &'a WaveForce,
     set: Vec<u32>,
     contact: Option<WheelContact>,
+    tangents: Option<WheelContact>,
     harmonics: Vec<WheelHarmonic>,
     linear: Field,
     buffers: Buffers,
@@ -67,11 +68,55 @@ impl<'a> WheelSolver<'a> {
             force,
             set,
             contact,
+            tangents: None,
             harmonics: Vec::new(),
             linear: Field::default(),
             buffers: Buffers::default(),
             excited: Vec::new(),
         }
+    }
+
+    /// The same with tangents from `contact`, the same one with fewer samples.
+    #[must_use]
+    pub fn with_tangents(self, contact: Option<WheelContact>) -> Self {
+        Self {
+            tangents: contact,
+            ..self
+        }
+    }
+
+    /// One attempt beside `start`, of the same harmonics: motions, and the share of them that the next step would still move;
+    /// none where it failed, or for a linear limit.
+    pub fn settle(&mut self, frequency_hz: f64, start: &[f64], tolerance: f64) -> Option<(Vec<f64>, f64)> {
+        if !self.prepare(frequency_hz) {
+            return None;
+        }
+        let outcome = self.equation()?.settle(start, tolerance);
+        let settled = matches!(outcome.status, Status::Ok | Status::IterationLimit);
+        (settled && outcome.step < 1.0).then(|| (self.motions(), outcome.step))
+    }
+
+    /// The equation at the frequency prepared; none for a linear limit.
+    fn equation(&mut self) -> Option<ContactEquation<'_>> {
+        let contact = self.contact.as_mut()?;
+        let sectors = self.engine.sectors();
+        let fundamental = self.set.iter().position(|&k| k == 1).unwrap_or(0);
+        self.buffers.resize(self.set.len(), contact.sector_rows(), sectors);
+        Some(ContactEquation {
+            transform: &self.engine.transform,
+            contact,
+            tangents: self.tangents.as_mut(),
+            harmonics: &mut self.harmonics,
+            linear: &self.linear,
+            fundamental,
+            buffers: &mut self.buffers,
+        })
+    }
+
+    fn motions(&self) -> Vec<f64> {
+        let fields = self.buffers.motions.iter();
+        let parts = fields.flat_map(|field| field.re.iter().chain(&field.im));
+        parts.copied().collect()
     }
 
     /// Solves at a frequency, Hz, from the one of `starts` (as [`WheelSolution::motions`]) that has the smallest residual, or from
@@ -89,38 +134,22 @@ impl<'a> WheelSolver<'a> {
         if !self.prepare(frequency_hz) {
             return (Err(Status::SingularJacobian), work);
         }
-        let Some(contact) = &mut self.contact else {
-            let shares = ContactShares::default();
+        let Some(mut equation) = self.equation() else {
             let solution = WheelSolution {
                 motions: Vec::new(),
                 residual: 0.0,
-                shares,
+                shares: ContactShares::default(),
             };
             return (Ok(solution), work);
-        };
-        let sectors = self.engine.sectors();
-        let fundamental = self.set.iter().position(|&k| k == 1).unwrap_or(0);
-        self.buffers.resize(self.set.len(), contact.sector_rows(), sectors);
-        let mut equation = ContactEquation {
-            transform: &self.engine.transform,
-            contact,
-            harmonics: &mut self.harmonics,
-            linear: &self.linear,
-            fundamental,
-            buffers: &mut self.buffers,
         };
         let outcome = equation.solve(starts, tolerance);
         work.iterations = outcome.iterations;
         work.tangents = outcome.tangents;
         work.retries = outcome.retries;
-        let solved = (outcome.status == Status::Ok).then(|| {
-            let fields = self.buffers.motions.iter();
-            let parts = fields.flat_map(|field| field.re.iter().chain(&field.im));
-            WheelSolution {
-                motions: parts.copied().collect(),
-                residual: outcome.residual,
-                shares: outcome.shares,
-            }
+        let solved = (outcome.status == Status::Ok).then(|| WheelSolution {
+            motions: self.motions(),
+            residual: outcome.residual,
+            shares: outcome.shares,
         });
         (solved.ok_or(outcome.status), work)
     }
