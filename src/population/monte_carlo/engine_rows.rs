@@ -151,7 +151,7 @@ impl RowSolver {
             separated_fraction: point.map(|point| point.shares.separated),
             slipping_fraction: point.map(|point| point.shares.slipping),
             harmonics: harmonics_name(points.harmonics()),
-            errors: point.and_then(|point| receptance_errors(&row, points, point)),
+            errors: point.and_then(|point| receptance_errors(&row, points, point, solver.settings.solver.peak_tolerance)),
         })
     }
 
@@ -195,7 +195,7 @@ impl RowSolver {
         let peak: Peak = receptance_peak(&row, &points, points.search(), window, tolerance);
         let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok);
         Ok(MistunedPeak {
-            errors: point.and_then(|point| receptance_errors(&row, &points, point)),
+            errors: point.and_then(|point| receptance_errors(&row, &points, point, tolerance)),
             peak,
             tuned_harmonics: false,
         })

@@ -21,8 +21,9 @@ use crate::response::receptance::{
     EngineWheel, Limit, ReceptanceEngine, WaveForce, WheelSolution, WheelSolver, embedded,
 };
 
-/// Tolerance of the solutions that tell the errors of another one.
-const ERROR_TOLERANCE: f64 = 1e-4;
+/// Tolerance of the solutions that tell the errors of another one, over that of the peak, and its bounds.
+const ERROR_SHARE: f64 = 0.1;
+const ERROR_TOLERANCES: (f64, f64) = (1e-6, 3e-4);
 
 /// One wheel on an engine under one excitation and contact condition.
 #[derive(Debug, Clone, Copy)]
@@ -293,7 +294,10 @@ pub fn receptance_errors(
     row: &EngineRow<'_>,
     settings: &PointSettings,
     point: &Point,
+    peak_tolerance: f64,
 ) -> Option<ErrorEstimate> {
+    let tolerance = ERROR_SHARE * peak_tolerance;
+    let tolerance = tolerance.clamp(ERROR_TOLERANCES.0, ERROR_TOLERANCES.1);
     let ErrorSettings {
         set,
         amplitude,
@@ -307,8 +311,7 @@ pub fn receptance_errors(
     let [alone, enlarged, tangents] = set.transforms();
     let settled = |mut solver: WheelSolver<'_>, start: &[f64], from: &[u32]| {
         let start = embedded(start, from, solver.harmonics());
-        let (motions, unsettled) =
-            solver.settle(point.frequency_hz, &start, ERROR_TOLERANCE)?;
+        let (motions, unsettled) = solver.settle(point.frequency_hz, &start, tolerance)?;
         let observed = observed(&mut solver, amplitude);
         let observed = in_harmonics(observed, set.harmonics(), row.engine.sectors());
         Some((motions, observed, unsettled))

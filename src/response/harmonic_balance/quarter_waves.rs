@@ -1,4 +1,4 @@
-//! The harmonic transform of several rows at once, by a quarter of the period where that pays.
+//! The harmonic transform of several rows at once, by a quarter of the period where the samples allow it.
 //!
 //! A signal falls into four parts: its even and odd harmonics, of either the cosines and the sines. Each of them has the
 //! same size at `tau`, `-tau`, `pi - tau` and `pi + tau`:
@@ -8,38 +8,40 @@
 //! x(pi + tau) =  CE - CO + SE - SO        x(pi - tau) =  CE - CO - SE + SO
 //! ```
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined is compiled for vectors"
+)]
+
 use std::sync::Arc;
 
 use super::HarmonicTransform;
-use crate::linalg::set_times;
+use super::lanes::LANES;
+use crate::linalg::{Loops, vectorized};
 
-/// Coefficients from which on quarters are taken.
-const FROM: usize = 6;
-
-/// The transform of matrices with a row per signal, column-major: a column per coefficient or per sample.
+/// The transform of matrices of [`LANES`] signals or a multiple of them, column-major: a column per coefficient or sample.
 #[derive(Debug)]
 pub(super) struct QuarterWaves {
     transform: Arc<HarmonicTransform>,
-    /// The parts of a quarter of the period, or all coefficients over the whole period.
-    parts: Vec<Part>,
+    /// Cosines of even and of odd harmonics, then sines of even and odd ones; all coefficients stand in the first of them where
+    /// the samples are no multiple of four.
+    parts: [Part; 4],
     quarters: bool,
-    coefficients: Vec<f64>,
-    samples: [Vec<f64>; 4],
 }
 
 /// Some coefficients over some samples.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Part {
     coefficients: Vec<usize>,
-    /// `phi_c(tau_j)`, a column per sample; `psi_c(tau_j)`, a column per coefficient.
+    /// `phi_c(tau_j)` and `psi_c(tau_j)`, those of every sample side by side.
     basis: Vec<f64>,
     projection: Vec<f64>,
 }
 
 impl QuarterWaves {
     pub(super) fn new(transform: &Arc<HarmonicTransform>) -> Self {
-        let (count, samples) = (transform.n_coefficients(), transform.n_samples());
-        let quarters = count >= FROM && samples.is_multiple_of(4);
+        let samples = transform.n_samples();
+        let quarters = samples.is_multiple_of(4);
         let parts = if quarters {
             let mut parts: [Vec<usize>; 4] = Default::default();
             let mut coefficient = 0;
@@ -51,107 +53,152 @@ impl QuarterWaves {
                     coefficient += 1;
                 }
             }
-            parts.map(|own| Part::new(transform, own, samples / 4)).into()
+            parts.map(|own| Part::quarter(transform, own))
         } else {
-            vec![Part::whole(transform, (0..count).collect())]
+            let mut parts: [Part; 4] = Default::default();
+            parts[0] = Part::whole(transform);
+            parts
         };
         Self {
             transform: Arc::clone(transform),
             parts,
             quarters,
-            coefficients: Vec::new(),
-            samples: Default::default(),
         }
     }
 
     /// Samples of the signals with these coefficients.
-    pub(super) fn synthesize(&mut self, coefficients: &[f64], samples: &mut [f64]) {
-        let rows = coefficients.len() / self.transform.n_coefficients();
-        let count = self.transform.n_samples();
-        if !self.quarters {
-            let size = (rows, count, self.transform.n_coefficients());
-            set_times(samples, coefficients, &self.parts[0].basis, size);
-            return;
-        }
-        let points = count / 4 + 1;
-        for (part, samples) in self.parts.iter().zip(&mut self.samples) {
-            self.coefficients.clear();
-            for &c in &part.coefficients {
-                self.coefficients.extend_from_slice(&coefficients[c * rows..][..rows]);
-            }
-            samples.resize(rows * points, 0.0);
-            let size = (rows, points, part.coefficients.len());
-            set_times(samples, &self.coefficients, &part.basis, size);
-        }
-        let [even_cosine, odd_cosine, even_sine, odd_sine] = &self.samples;
-        for j in 0..points {
-            let place = j * rows..(j + 1) * rows;
-            let (ce, co) = (&even_cosine[place.clone()], &odd_cosine[place.clone()]);
-            let (se, so) = (&even_sine[place.clone()], &odd_sine[place]);
-            let [plus, minus, mirrored, turned] = self::points(count, j).map(|at| at * rows);
-            for row in 0..rows {
-                let (same, other) = (ce[row] + co[row], ce[row] - co[row]);
-                let (sum, difference) = (se[row] + so[row], se[row] - so[row]);
-                samples[plus + row] = same + sum;
-                samples[minus + row] = same - sum;
-                samples[mirrored + row] = other - difference;
-                samples[turned + row] = other + difference;
-            }
-        }
+    pub(super) fn synthesize(&self, coefficients: &[f64], samples: &mut [f64]) {
+        vectorized(Synthesized {
+            waves: self,
+            coefficients,
+            samples,
+        });
     }
 
     /// Coefficients of the signals with these samples.
-    pub(super) fn project(&mut self, samples: &[f64], coefficients: &mut [f64]) {
-        let count = self.transform.n_samples();
-        let rows = samples.len() / count;
-        if !self.quarters {
-            let size = (rows, self.transform.n_coefficients(), count);
-            set_times(coefficients, samples, &self.parts[0].projection, size);
-            return;
-        }
-        let points = count / 4 + 1;
-        let [even_cosine, odd_cosine, even_sine, odd_sine] = &mut self.samples;
-        for own in [&mut *even_cosine, odd_cosine, even_sine, odd_sine] {
-            own.resize(rows * points, 0.0);
-        }
+    pub(super) fn project(&self, samples: &[f64], coefficients: &mut [f64]) {
+        vectorized(Projected {
+            waves: self,
+            coefficients,
+            samples,
+        });
+    }
+}
+
+struct Synthesized<'a> {
+    waves: &'a QuarterWaves,
+    coefficients: &'a [f64],
+    samples: &'a mut [f64],
+}
+
+impl Loops for Synthesized<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let count = self.waves.transform.n_samples();
+        let (coefficients, _) = self.coefficients.as_chunks::<LANES>();
+        let (samples, _) = self.samples.as_chunks_mut::<LANES>();
+        let width = samples.len() / count;
+        let points = if self.waves.quarters { count / 4 + 1 } else { count };
         for j in 0..points {
-            let [plus, minus, mirrored, turned] = self::points(count, j).map(|at| at * rows);
-            for row in 0..rows {
-                let (x, y) = (samples[plus + row], samples[minus + row]);
-                let (z, w) = (samples[mirrored + row], samples[turned + row]);
-                let place = j * rows + row;
-                even_cosine[place] = (x + y) + (z + w);
-                odd_cosine[place] = (x + y) - (z + w);
-                even_sine[place] = (x - y) - (z - w);
-                odd_sine[place] = (x - y) + (z - w);
+            for group in 0..width {
+                let [ce, co, se, so] = [0, 1, 2, 3].map(|part| {
+                    let own = &self.waves.parts[part];
+                    let own_count = own.coefficients.len();
+                    let mut sum = [0.0; LANES];
+                    let basis = &own.basis[j * own_count..(j + 1) * own_count];
+                    for (&c, phi) in own.coefficients.iter().zip(basis) {
+                        let own = &coefficients[c * width + group];
+                        for lane in 0..LANES {
+                            sum[lane] += phi * own[lane];
+                        }
+                    }
+                    sum
+                });
+                if !self.waves.quarters {
+                    samples[j * width + group] = ce;
+                    continue;
+                }
+                let [plus, minus, mirrored, turned] =
+                    points_of(count, j).map(|at| at * width + group);
+                for lane in 0..LANES {
+                    let (same, other) = (ce[lane] + co[lane], ce[lane] - co[lane]);
+                    let (sum, difference) = (se[lane] + so[lane], se[lane] - so[lane]);
+                    samples[plus][lane] = same + sum;
+                    samples[minus][lane] = same - sum;
+                    samples[mirrored][lane] = other - difference;
+                    samples[turned][lane] = other + difference;
+                }
             }
         }
-        for (part, samples) in self.parts.iter().zip(&self.samples) {
-            self.coefficients.resize(rows * part.coefficients.len(), 0.0);
-            let size = (rows, part.coefficients.len(), points);
-            set_times(&mut self.coefficients, samples, &part.projection, size);
-            let own = self.coefficients.chunks_exact(rows);
-            for (&c, own) in part.coefficients.iter().zip(own) {
-                coefficients[c * rows..][..rows].copy_from_slice(own);
+    }
+}
+
+struct Projected<'a> {
+    waves: &'a QuarterWaves,
+    coefficients: &'a mut [f64],
+    samples: &'a [f64],
+}
+
+impl Loops for Projected<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let count = self.waves.transform.n_samples();
+        let (coefficients, _) = self.coefficients.as_chunks_mut::<LANES>();
+        let (samples, _) = self.samples.as_chunks::<LANES>();
+        let width = samples.len() / count;
+        coefficients.fill([0.0; LANES]);
+        let points = if self.waves.quarters { count / 4 + 1 } else { count };
+        for j in 0..points {
+            for group in 0..width {
+                let mut parts = [samples[j * width + group]; 4];
+                if self.waves.quarters {
+                    let [plus, minus, mirrored, turned] =
+                        points_of(count, j).map(|at| &samples[at * width + group]);
+                    for lane in 0..LANES {
+                        let (x, y) = (plus[lane], minus[lane]);
+                        let (z, w) = (mirrored[lane], turned[lane]);
+                        parts[0][lane] = (x + y) + (z + w);
+                        parts[1][lane] = (x + y) - (z + w);
+                        parts[2][lane] = (x - y) - (z - w);
+                        parts[3][lane] = (x - y) + (z - w);
+                    }
+                }
+                for (own, part) in self.waves.parts.iter().zip(&parts) {
+                    let own_count = own.coefficients.len();
+                    let projection = &own.projection[j * own_count..(j + 1) * own_count];
+                    for (&c, psi) in own.coefficients.iter().zip(projection) {
+                        let sum = &mut coefficients[c * width + group];
+                        for lane in 0..LANES {
+                            sum[lane] += psi * part[lane];
+                        }
+                    }
+                }
             }
         }
     }
 }
 
 /// Places of `tau_j`, `-tau_j`, `pi - tau_j` and `pi + tau_j` among so many samples.
-fn points(count: usize, j: usize) -> [usize; 4] {
+#[inline(always)]
+fn points_of(count: usize, j: usize) -> [usize; 4] {
     [j, (count - j) % count, count / 2 - j, (count / 2 + j) % count]
 }
 
 impl Part {
-    fn whole(transform: &HarmonicTransform, coefficients: Vec<usize>) -> Self {
-        let last = transform.n_samples() - 1;
-        Self::over(transform, coefficients, last, |_| 1.0)
+    /// All coefficients over the whole period.
+    fn whole(transform: &HarmonicTransform) -> Self {
+        let coefficients = (0..transform.n_coefficients()).collect();
+        Self::over(transform, coefficients, transform.n_samples() - 1, |_| 1.0)
     }
 
-    /// Over the samples 0 to `last`, of which the ends of a quarter stand for two points, the others for four.
-    fn new(transform: &HarmonicTransform, coefficients: Vec<usize>, last: usize) -> Self {
-        let weight = move |j: usize| if j == 0 || j == last { 0.5 } else { 1.0 };
+    /// Over a quarter of the period, whose ends stand for two points each and the others for four.
+    fn quarter(transform: &HarmonicTransform, coefficients: Vec<usize>) -> Self {
+        let last = transform.n_samples() / 4;
+        let weight = |j: usize| if j == 0 || j == last { 0.5 } else { 1.0 };
         Self::over(transform, coefficients, last, weight)
     }
 
@@ -161,13 +208,13 @@ impl Part {
         last: usize,
         weight: impl Fn(usize) -> f64,
     ) -> Self {
-        let basis = (0..=last).flat_map(|j| coefficients.iter().map(move |&c| transform.basis(c)[j]));
-        let basis: Vec<f64> = basis.collect();
-        let mut projection = Vec::new();
-        for &c in &coefficients {
-            let scale = transform.projection_scale(c);
-            let own = transform.basis(c)[..=last].iter().enumerate();
-            projection.extend(own.map(|(j, phi)| scale * weight(j) * phi));
+        let (mut basis, mut projection) = (Vec::new(), Vec::new());
+        for j in 0..=last {
+            for &c in &coefficients {
+                let phi = transform.basis(c)[j];
+                basis.push(phi);
+                projection.push(transform.projection_scale(c) * weight(j) * phi);
+            }
         }
         Self {
             basis,
@@ -192,10 +239,10 @@ mod tests {
             (&[0, 1, 2, 3], 18),
         ] {
             let transform = Arc::new(HarmonicTransform::new(harmonics, samples).expect("a set"));
-            let (rows, count) = (3, transform.n_coefficients());
+            let (rows, count) = (16, transform.n_coefficients());
             let number = |at: usize| (0.3 + 1.7 * at as f64).sin();
             let coefficients: Vec<f64> = (0..rows * count).map(number).collect();
-            let mut waves = QuarterWaves::new(&transform);
+            let waves = QuarterWaves::new(&transform);
             let mut histories = vec![0.0; rows * samples];
             waves.synthesize(&coefficients, &mut histories);
             for j in 0..samples {
