@@ -19,7 +19,13 @@ use super::HarmonicTransform;
 use super::lanes::LANES;
 use crate::linalg::{Loops, vectorized};
 
-/// The transform of matrices of [`LANES`] signals or a multiple of them, column-major: a column per coefficient or sample.
+/// Groups of [`LANES`] signals that are transformed at once.
+pub(super) const WIDTH: usize = 3;
+
+/// One coefficient or sample of all signals.
+type Column = [[f64; LANES]; WIDTH];
+
+/// The transform of [`WIDTH`] groups of [`LANES`] signals each: a column of them per coefficient or sample.
 #[derive(Debug)]
 pub(super) struct QuarterWaves {
     transform: Arc<HarmonicTransform>,
@@ -97,38 +103,28 @@ impl Loops for Synthesized<'_> {
     #[inline(always)]
     fn call(self) {
         let count = self.waves.transform.n_samples();
-        let (coefficients, _) = self.coefficients.as_chunks::<LANES>();
-        let (samples, _) = self.samples.as_chunks_mut::<LANES>();
-        let width = samples.len() / count;
-        let points = if self.waves.quarters { count / 4 + 1 } else { count };
-        for j in 0..points {
-            for group in 0..width {
-                let [ce, co, se, so] = [0, 1, 2, 3].map(|part| {
-                    let own = &self.waves.parts[part];
-                    let own_count = own.coefficients.len();
-                    let mut sum = [0.0; LANES];
-                    let basis = &own.basis[j * own_count..(j + 1) * own_count];
-                    for (&c, phi) in own.coefficients.iter().zip(basis) {
-                        let own = &coefficients[c * width + group];
-                        for lane in 0..LANES {
-                            sum[lane] += phi * own[lane];
-                        }
-                    }
-                    sum
-                });
-                if !self.waves.quarters {
-                    samples[j * width + group] = ce;
-                    continue;
-                }
-                let [plus, minus, mirrored, turned] =
-                    points_of(count, j).map(|at| at * width + group);
+        let coefficients = columns(self.coefficients);
+        let samples = self.samples.as_chunks_mut::<LANES>().0;
+        let samples = samples.as_chunks_mut::<WIDTH>().0;
+        let [ce, co, se, so] = &self.waves.parts;
+        if !self.waves.quarters {
+            for (j, sample) in samples.iter_mut().enumerate() {
+                *sample = ce.sum(j, coefficients);
+            }
+            return;
+        }
+        for j in 0..=count / 4 {
+            let (ce, co) = (ce.sum(j, coefficients), co.sum(j, coefficients));
+            let (se, so) = (se.sum(j, coefficients), so.sum(j, coefficients));
+            let [plus, minus, mirrored, turned] = points_of(count, j);
+            for group in 0..WIDTH {
                 for lane in 0..LANES {
-                    let (same, other) = (ce[lane] + co[lane], ce[lane] - co[lane]);
-                    let (sum, difference) = (se[lane] + so[lane], se[lane] - so[lane]);
-                    samples[plus][lane] = same + sum;
-                    samples[minus][lane] = same - sum;
-                    samples[mirrored][lane] = other - difference;
-                    samples[turned][lane] = other + difference;
+                    let (a, b) = (ce[group][lane], co[group][lane]);
+                    let (c, d) = (se[group][lane], so[group][lane]);
+                    samples[plus][group][lane] = (a + b) + (c + d);
+                    samples[minus][group][lane] = (a + b) - (c + d);
+                    samples[mirrored][group][lane] = (a - b) - (c - d);
+                    samples[turned][group][lane] = (a - b) + (c - d);
                 }
             }
         }
@@ -147,39 +143,43 @@ impl Loops for Projected<'_> {
     #[inline(always)]
     fn call(self) {
         let count = self.waves.transform.n_samples();
-        let (coefficients, _) = self.coefficients.as_chunks_mut::<LANES>();
-        let (samples, _) = self.samples.as_chunks::<LANES>();
-        let width = samples.len() / count;
-        coefficients.fill([0.0; LANES]);
-        let points = if self.waves.quarters { count / 4 + 1 } else { count };
-        for j in 0..points {
-            for group in 0..width {
-                let mut parts = [samples[j * width + group]; 4];
-                if self.waves.quarters {
-                    let [plus, minus, mirrored, turned] =
-                        points_of(count, j).map(|at| &samples[at * width + group]);
-                    for lane in 0..LANES {
-                        let (x, y) = (plus[lane], minus[lane]);
-                        let (z, w) = (mirrored[lane], turned[lane]);
-                        parts[0][lane] = (x + y) + (z + w);
-                        parts[1][lane] = (x + y) - (z + w);
-                        parts[2][lane] = (x - y) - (z - w);
-                        parts[3][lane] = (x - y) + (z - w);
-                    }
-                }
-                for (own, part) in self.waves.parts.iter().zip(&parts) {
-                    let own_count = own.coefficients.len();
-                    let projection = &own.projection[j * own_count..(j + 1) * own_count];
-                    for (&c, psi) in own.coefficients.iter().zip(projection) {
-                        let sum = &mut coefficients[c * width + group];
-                        for lane in 0..LANES {
-                            sum[lane] += psi * part[lane];
-                        }
-                    }
+        let samples = columns(self.samples);
+        let coefficients = self.coefficients.as_chunks_mut::<LANES>().0;
+        let coefficients = coefficients.as_chunks_mut::<WIDTH>().0;
+        coefficients.fill([[0.0; LANES]; WIDTH]);
+        let [ce, co, se, so] = &self.waves.parts;
+        if !self.waves.quarters {
+            for (j, sample) in samples.iter().enumerate() {
+                ce.add(j, sample, coefficients);
+            }
+            return;
+        }
+        for j in 0..=count / 4 {
+            let [plus, minus, mirrored, turned] = points_of(count, j);
+            let (x, y) = (&samples[plus], &samples[minus]);
+            let (z, w) = (&samples[mirrored], &samples[turned]);
+            let mut parts = [[[0.0; LANES]; WIDTH]; 4];
+            for group in 0..WIDTH {
+                for lane in 0..LANES {
+                    let (x, y) = (x[group][lane], y[group][lane]);
+                    let (z, w) = (z[group][lane], w[group][lane]);
+                    parts[0][group][lane] = (x + y) + (z + w);
+                    parts[1][group][lane] = (x + y) - (z + w);
+                    parts[2][group][lane] = (x - y) - (z - w);
+                    parts[3][group][lane] = (x - y) + (z - w);
                 }
             }
+            ce.add(j, &parts[0], coefficients);
+            co.add(j, &parts[1], coefficients);
+            se.add(j, &parts[2], coefficients);
+            so.add(j, &parts[3], coefficients);
         }
     }
+}
+
+#[inline(always)]
+fn columns(numbers: &[f64]) -> &[Column] {
+    numbers.as_chunks::<LANES>().0.as_chunks::<WIDTH>().0
 }
 
 /// Places of `tau_j`, `-tau_j`, `pi - tau_j` and `pi + tau_j` among so many samples.
@@ -189,6 +189,38 @@ fn points_of(count: usize, j: usize) -> [usize; 4] {
 }
 
 impl Part {
+    /// The signals of these coefficients at sample j.
+    #[inline(always)]
+    fn sum(&self, j: usize, coefficients: &[Column]) -> Column {
+        let count = self.coefficients.len();
+        let mut sums = [[0.0; LANES]; WIDTH];
+        let basis = &self.basis[j * count..(j + 1) * count];
+        for (&c, &phi) in self.coefficients.iter().zip(basis) {
+            let own = &coefficients[c];
+            for group in 0..WIDTH {
+                for lane in 0..LANES {
+                    sums[group][lane] += phi * own[group][lane];
+                }
+            }
+        }
+        sums
+    }
+
+    /// Adds what sample j of the signals is of these coefficients.
+    #[inline(always)]
+    fn add(&self, j: usize, sample: &Column, coefficients: &mut [Column]) {
+        let count = self.coefficients.len();
+        let projection = &self.projection[j * count..(j + 1) * count];
+        for (&c, &psi) in self.coefficients.iter().zip(projection) {
+            let sums = &mut coefficients[c];
+            for group in 0..WIDTH {
+                for lane in 0..LANES {
+                    sums[group][lane] += psi * sample[group][lane];
+                }
+            }
+        }
+    }
+
     /// All coefficients over the whole period.
     fn whole(transform: &HarmonicTransform) -> Self {
         let coefficients = (0..transform.n_coefficients()).collect();
@@ -228,7 +260,7 @@ impl Part {
 mod tests {
     use std::sync::Arc;
 
-    use super::{HarmonicTransform, QuarterWaves};
+    use super::{HarmonicTransform, LANES, QuarterWaves, WIDTH};
 
     #[test]
     fn quarters_are_the_whole_period() {
@@ -239,7 +271,7 @@ mod tests {
             (&[0, 1, 2, 3], 18),
         ] {
             let transform = Arc::new(HarmonicTransform::new(harmonics, samples).expect("a set"));
-            let (rows, count) = (16, transform.n_coefficients());
+            let (rows, count) = (WIDTH * LANES, transform.n_coefficients());
             let number = |at: usize| (0.3 + 1.7 * at as f64).sin();
             let coefficients: Vec<f64> = (0..rows * count).map(number).collect();
             let waves = QuarterWaves::new(&transform);

@@ -13,13 +13,13 @@
 use std::sync::Arc;
 
 use super::lanes::{LANES, clip, larger, smaller};
-use super::quarter_waves::QuarterWaves;
+use super::quarter_waves::{QuarterWaves, WIDTH};
 use super::{ContactShares, HarmonicSystem, HarmonicTransform, SystemWorkspace};
 use crate::linalg::{Loops, vectorized};
 use crate::response::friction::ContactLaw;
 
 /// Rows of the matrices of a block: the lanes of n, then those of t1, then t2.
-const HEIGHT: usize = 3 * LANES;
+const HEIGHT: usize = WIDTH * LANES;
 
 /// Buffers for the pairs of one wheel. Matrices are column-major with [`HEIGHT`] rows, block after block.
 #[derive(Debug)]
