@@ -367,11 +367,12 @@ pub(super) fn expected_deviation(study: &Study) -> f64 {
 
 /// Sensitivity vectors to blade stiffness per nodal diameter: as the study says, or by the size of its mistuning.
 pub(super) fn sensitivity_vectors(study: &Study) -> usize {
-    study.reduction.sensitivity_vectors.unwrap_or(
-        if expected_deviation(study) >= LARGE_MISTUNING {
+    study
+        .reduction
+        .sensitivity_vectors
+        .unwrap_or(if expected_deviation(study) >= LARGE_MISTUNING {
             SENSITIVITY_VECTORS
         } else {
             0
-        },
-    )
+        })
 }

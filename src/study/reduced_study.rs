@@ -150,46 +150,17 @@ pub(super) fn reduced(
         .as_ref()
         .is_some_and(|contact| contact.law.has_variable_load());
     if study.reduction.basis == Basis::TunedReceptances {
-        let own = reduction.reduce(BasisChoice::CraigBampton, modes)?;
-        let options = engine_options(study, &excitations, &own);
-        let engine = EngineModel::new(&own, &options).ok_or_else(no_modes)?;
-        let evidence = shape_evidence(study, &engine, &options)?;
-        let companion = if reduction.is_whole_space() {
-            own
-        } else {
-            let choice = BasisChoice::StickSlide {
-                stick: COMPANION_MODES,
-                slide: COMPANION_MODES,
-            };
-            reduction.reduce(choice, modes)?
+        let further = match (resolves, automatic && separates) {
+            (true, _) => Some(sets(tolerance.map(|own| BEYOND_TOLERANCE * own))?),
+            (false, true) => Some(harmonics.clone()),
+            (false, false) => None,
         };
-        let beyond = if study.has_friction() && (resolves || automatic && separates) {
-            let larger = tolerance.map(|tolerance| BEYOND_TOLERANCE * tolerance);
-            let mut further = if resolves { sets(larger)? } else { harmonics.clone() };
-            if separates {
-                further = cases
-                    .iter()
-                    .zip(further)
-                    .map(|(case, sets)| with_separation(&case.full, &case.settings, sets))
-                    .collect::<Result<_, _>>()?;
-            }
-            Some(StoredBeyond {
-                model: companion.clone(),
-                basis_error: basis_error(&evidence),
-                harmonics: further.concat(),
-            })
-        } else {
-            None
+        let further = match further.filter(|_| study.has_friction()) {
+            Some(sets) if separates => Some(admitting_separation(&cases, sets)?),
+            further => further,
         };
-        return Ok(Stored {
-            model: companion,
-            evidence,
-            fixed_interface,
-            harmonics: harmonics.concat(),
-            beyond,
-            tuned_harmonics: None,
-            engine: Some(engine),
-        });
+        let sets = [Some(harmonics), further].map(|sets| sets.map(|sets| sets.concat()));
+        return on_receptances(study, reduction, fixed_interface, &excitations, sets);
     }
     let (choice, evidence) = basis(&study.reduction, &harmonics)?;
     let follows = study.reduction.basis == Basis::Auto && study.reduction.stick_modes.is_none();
@@ -203,11 +174,7 @@ pub(super) fn reduced(
             harmonics.clone()
         };
         if automatic && separates {
-            harmonics = cases
-                .iter()
-                .zip(harmonics)
-                .map(|(case, sets)| with_separation(&case.full, &case.settings, sets))
-                .collect::<Result<_, _>>()?;
+            harmonics = admitting_separation(&cases, harmonics)?;
         }
         let options = ReductionOptions {
             basis: if by_modes {
@@ -236,6 +203,52 @@ pub(super) fn reduced(
             .then(|| reduction.tuned(BasisChoice::CraigBampton))
             .transpose()?,
         engine: None,
+    })
+}
+
+/// The sets with the harmonics that separation needs.
+fn admitting_separation(cases: &[Case<'_>], sets: Vec<Sets>) -> Result<Vec<Sets>, PipelineError> {
+    let sets = cases.iter().zip(sets);
+    sets.map(|(case, sets)| with_separation(&case.full, &case.settings, sets))
+        .collect()
+}
+
+/// What rows on tuned receptances are solved on, with the harmonic sets of the rows and those of rows beyond them; a small companion
+/// model besides, for what is not solved there.
+fn on_receptances(
+    study: &Study,
+    reduction: &Reduction<'_>,
+    fixed_interface: FixedInterface,
+    excitations: &[Excitation],
+    [harmonics, further]: [Option<Sets>; 2],
+) -> Result<Stored, PipelineError> {
+    let modes = study.mistuning.cantilever_mode_count;
+    let own = reduction.reduce(BasisChoice::CraigBampton, modes)?;
+    let options = engine_options(study, excitations, &own);
+    let engine = EngineModel::new(&own, &options).ok_or_else(no_modes)?;
+    let evidence = shape_evidence(study, &engine, &options)?;
+    let model = if reduction.is_whole_space() {
+        own
+    } else {
+        let choice = BasisChoice::StickSlide {
+            stick: COMPANION_MODES,
+            slide: COMPANION_MODES,
+        };
+        reduction.reduce(choice, modes)?
+    };
+    let beyond = further.map(|harmonics| StoredBeyond {
+        model: model.clone(),
+        basis_error: basis_error(&evidence),
+        harmonics,
+    });
+    Ok(Stored {
+        model,
+        evidence,
+        fixed_interface,
+        harmonics: harmonics.unwrap_or_default(),
+        beyond,
+        tuned_harmonics: None,
+        engine: Some(engine),
     })
 }
 

@@ -23,7 +23,7 @@ const LARGEST: f64 = 3.0;
 /// Wheels by which the shapes are judged.
 const WHEELS: u32 = 4;
 /// Seed of their deviations.
-const SEED: u64 = 0x626c_6973_6b;
+const SEED: u64 = 0x0062_6c69_736b;
 /// Relative tolerance of their peaks.
 const PEAK_TOLERANCE: f64 = 1e-5;
 /// Modes of the companion model of each kind.

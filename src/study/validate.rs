@@ -14,6 +14,7 @@ use super::validate_stop::stop;
 use super::{Finding, ModelSource, OutputOptions, Problem, RotationOptions, Study, StudyError};
 use crate::input::SourceMap;
 use crate::model::reduction::{Basis, ReductionOptions};
+use crate::response::forced_response::{HigherHarmonics, SolverOptions};
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
 
 /// Version of the study file.
@@ -190,6 +191,7 @@ fn resolve(
     };
     let creeping = contact.as_ref().is_some_and(|c| c.ring == Ring::Creeping);
     tuned_harmonics(check, &solver, creeping, !contact_variations.is_empty());
+    tuned_receptances(check, &raw.reduction, &solver, creeping);
     let mistuning = mistuning(check, path, raw.mistuning, &sweep, head.patterns)?;
     let (Some(model), Some(damping), Some(mistuning)) = (model, damping, mistuning) else {
         return Ok(None);
@@ -395,6 +397,31 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
                 );
             }
         }
+    }
+}
+
+/// What rows on tuned receptances leave no choice of, or cannot do.
+fn tuned_receptances(
+    check: &mut Check,
+    reduction: &ReductionOptions,
+    solver: &SolverOptions,
+    creeping: bool,
+) {
+    if reduction.basis != Basis::TunedReceptances {
+        return;
+    }
+    if creeping {
+        check.conflict(
+            "contact.ring",
+            "basis = \"tuned_receptances\" is solved with a locked ring only; accepted: \"locked\", or another basis",
+        );
+    }
+    if solver.higher_harmonics == HigherHarmonics::Tuned {
+        check.conflict(
+            "solver.higher_harmonics",
+            "basis = \"tuned_receptances\" takes every harmonic in the mistuned wheel; accepted: \"mistuned\", or another \
+             basis",
+        );
     }
 }
 

@@ -7,7 +7,7 @@ use blisk::study::{ReducedEngineSource, RunRequest, Study, run};
 use crate::folder::{Silent, bytes};
 
 /// The built-in wheel, coarse and of six blades, under friction and stuck.
-fn study(patterns: u32) -> Study {
+fn study(patterns: u32, reduction: &str) -> Study {
     let text = format!(
         r#"schema = 1
 study = {{ name = "solid", seed = 11, patterns = {patterns} }}
@@ -21,9 +21,7 @@ source = "parametric"
 parametric = {{ sectors = 6, disk_radial_elements = 1, passage_elements = 1, blade_radial_elements = 2 }}
 
 [reduction]
-basis = "stick_slide"
-stick_modes = 2
-slide_modes = 2
+{reduction}
 
 [contact]
 law = "simplified_3d"
@@ -53,8 +51,11 @@ fn results(study: &Study, threads: usize) -> Vec<Vec<u8>> {
     bytes(folder.path())
 }
 
-fn same_for_any_threads(patterns: u32, numbers: &[usize]) {
-    let study = study(patterns);
+const STICK_SLIDE: &str = "basis = \"stick_slide\"\nstick_modes = 2\nslide_modes = 2";
+const TUNED_RECEPTANCES: &str = "basis = \"tuned_receptances\"";
+
+fn same_for_any_threads(patterns: u32, reduction: &str, numbers: &[usize]) {
+    let study = study(patterns, reduction);
     let expected = results(&study, 1);
     for &threads in numbers {
         assert!(results(&study, threads) == expected, "{threads} threads");
@@ -63,11 +64,12 @@ fn same_for_any_threads(patterns: u32, numbers: &[usize]) {
 
 #[test]
 fn a_wheel_of_solid_elements_has_the_same_bytes_for_any_number_of_threads() {
-    same_for_any_threads(12, &[3]);
+    same_for_any_threads(12, STICK_SLIDE, &[3]);
+    same_for_any_threads(12, TUNED_RECEPTANCES, &[3]);
 }
 
 #[test]
 #[ignore = "500 patterns under 3 scenarios, eight times: about 8 minutes"]
 fn a_wheel_of_solid_elements_has_the_same_bytes_for_any_number_of_threads_long() {
-    same_for_any_threads(500, &[2, 3, 4, 7, 8, 16, 64]);
+    same_for_any_threads(500, STICK_SLIDE, &[2, 3, 4, 7, 8, 16, 64]);
 }

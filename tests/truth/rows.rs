@@ -51,6 +51,11 @@ pub const HEADER: &str = "pattern,condition,amplitude_m,frequency_hz,blade,modes
                           opening_pairs,slipping_pairs,points,seconds";
 
 impl Row {
+    /// Normal load, N; none for a linear limit.
+    pub fn load_n(&self) -> Option<f64> {
+        self.condition.parse().ok()
+    }
+
     fn line(&self) -> String {
         let shown = |value: Option<f64>| value.map_or(String::new(), |own| format!("{own:e}"));
         let mut line = format!("{},{}", self.pattern, self.condition);

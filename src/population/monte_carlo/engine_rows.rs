@@ -6,8 +6,8 @@ use super::mistuned_peak::MistunedPeak;
 use super::{ResponseRow, RowSolver, Scenario, TunedReference, harmonics_name};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
-    ContactCondition, EngineRow, FrequencyBand, LinearPeak, Peak, SearchPlan,
-    Window, mistuned_window, receptance_curve, receptance_errors, receptance_peak, receptance_plan,
+    ContactCondition, EngineRow, FrequencyBand, LinearPeak, Peak, SearchPlan, Window,
+    mistuned_window, receptance_curve, receptance_errors, receptance_peak, receptance_plan,
     receptance_state, tuned_span_of,
 };
 use crate::response::harmonic_balance::{PairContact, Status, TransformError};
@@ -151,7 +151,9 @@ impl RowSolver {
             separated_fraction: point.map(|point| point.shares.separated),
             slipping_fraction: point.map(|point| point.shares.slipping),
             harmonics: harmonics_name(points.harmonics()),
-            errors: point.and_then(|point| receptance_errors(&row, points, point, solver.settings.solver.peak_tolerance)),
+            errors: point.and_then(|point| {
+                receptance_errors(&row, points, point, solver.settings.solver.peak_tolerance)
+            }),
         })
     }
 
@@ -230,11 +232,13 @@ impl RowSolver {
         let row = self.on_engine(Some(&wheel), scenario.engine_order, scenario.contact)?;
         let points = self.points_of(pattern, scenario.engine_order, scenario.contact);
         let state = receptance_state(&row, &points, frequency_hz);
-        Some(state.map(|(point, contact): (_, Option<Vec<PairContact>>)| WheelState {
-            frequency_hz,
-            contact,
-            amplitudes_m: point.amplitudes_m,
-        }))
+        Some(state.map(
+            |(point, contact): (_, Option<Vec<PairContact>>)| WheelState {
+                frequency_hz,
+                contact,
+                amplitudes_m: point.amplitudes_m,
+            },
+        ))
     }
 
     /// [`RowSolver::search_plan`] on the engine; none without one.

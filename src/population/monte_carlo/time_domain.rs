@@ -55,8 +55,8 @@ impl RowSolver {
     /// The solver that a row came from: this one, or that for rows beyond it.
     pub(super) fn solver_of(&self, scenario: &Scenario, row: &ResponseRow) -> &Self {
         let points = self.points(scenario.engine_order, scenario.contact);
-        let own = row.harmonics == harmonics_name(points.harmonics())
-            && row.basis == self.basis_name();
+        let own =
+            row.harmonics == harmonics_name(points.harmonics()) && row.basis == self.basis_name();
         match self.beyond() {
             Some(beyond) if !own => beyond,
             _ => self,

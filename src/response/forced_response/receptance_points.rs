@@ -313,7 +313,7 @@ pub fn receptance_errors(
         let start = embedded(start, from, solver.harmonics());
         let (motions, unsettled) = solver.settle(point.frequency_hz, &start, tolerance)?;
         let observed = observed(&mut solver, amplitude);
-        let observed = in_harmonics(observed, set.harmonics(), row.engine.sectors());
+        let observed = in_harmonics(&observed, set.harmonics(), row.engine.sectors());
         Some((motions, observed, unsettled))
     };
     let harmonics = settings.harmonics();
@@ -340,7 +340,7 @@ pub fn receptance_errors(
 
 /// What is observed in the harmonics of a larger set.
 fn in_harmonics(
-    observed: Vec<ObservedHarmonic>,
+    observed: &[ObservedHarmonic],
     set: &[u32],
     blades: usize,
 ) -> Vec<ObservedHarmonic> {

@@ -185,7 +185,12 @@ fn columns(numbers: &[f64]) -> &[Column] {
 /// Places of `tau_j`, `-tau_j`, `pi - tau_j` and `pi + tau_j` among so many samples.
 #[inline(always)]
 fn points_of(count: usize, j: usize) -> [usize; 4] {
-    [j, (count - j) % count, count / 2 - j, (count / 2 + j) % count]
+    [
+        j,
+        (count - j) % count,
+        count / 2 - j,
+        (count / 2 + j) % count,
+    ]
 }
 
 impl Part {
@@ -249,9 +254,9 @@ impl Part {
             }
         }
         Self {
+            coefficients,
             basis,
             projection,
-            coefficients,
         }
     }
 }

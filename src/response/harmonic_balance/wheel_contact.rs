@@ -60,12 +60,19 @@ impl WheelContact {
             waves: None,
         });
         let own = interface.stuck_springs(1.0);
-        let varied = own.iter().zip(springs.iter().cycle()).map(|(own, tuned)| own - tuned);
+        let varied = own
+            .iter()
+            .zip(springs.iter().cycle())
+            .map(|(own, tuned)| own - tuned);
         let varied: Vec<f64> = varied.collect();
         let system = HarmonicSystem::new(blocks.collect(), Vec::new(), interface, transform);
         Self {
             workspace: system.decoupled_workspace(),
-            springs: if own.len() > springs.len() { varied } else { Vec::new() },
+            springs: if own.len() > springs.len() {
+                varied
+            } else {
+                Vec::new()
+            },
             system,
             sectors,
             linear: false,
@@ -106,7 +113,8 @@ impl WheelContact {
             self.workspace.correction.fill(0.0);
             ContactShares::default()
         } else {
-            self.system.contact_correction(derivative, &mut self.workspace)
+            self.system
+                .contact_correction(derivative, &mut self.workspace)
         };
         if !self.springs.is_empty() {
             let rows = self.springs.len();
@@ -208,7 +216,9 @@ impl WheelContact {
 
     /// From now on derivatives are of every harmonic by every other one, or each by itself.
     pub fn couple(&mut self, all: bool) {
-        self.workspace.pairs.couple_first(if all { usize::MAX } else { 0 });
+        self.workspace
+            .pairs
+            .couple_first(if all { usize::MAX } else { 0 });
     }
 
     /// The harmonic transform.

@@ -109,7 +109,7 @@ impl Acceleration {
         vectorized(Products {
             columns: known,
             vector: &self.latest,
-            products: &mut row,
+            into: &mut row,
         });
         row.push(1.0);
         self.products.push(row);
@@ -124,7 +124,7 @@ impl Acceleration {
         vectorized(Products {
             columns: &self.changes[..count * self.unknowns],
             vector: step,
-            products: &mut self.shares,
+            into: &mut self.shares,
         });
         // The latest change first: it is the one that must not be dropped.
         let at = |i: usize, j: usize| {
@@ -135,7 +135,9 @@ impl Acceleration {
         let mut left = vec![0.0; count];
         for j in 0..count {
             for i in 0..=j {
-                let known: f64 = (0..i).map(|k| factor[i * count + k] * factor[j * count + k]).sum();
+                let known: f64 = (0..i)
+                    .map(|k| factor[i * count + k] * factor[j * count + k])
+                    .sum();
                 let rest = at(i, j) - known;
                 factor[j * count + i] = if i < j {
                     let pivot = factor[i * count + i];
@@ -153,8 +155,14 @@ impl Acceleration {
         }
         for j in (0..count).rev() {
             let pivot = factor[j * count + j];
-            let known: f64 = (j + 1..count).map(|k| factor[k * count + j] * left[k]).sum();
-            left[j] = if pivot > 0.0 { (left[j] - known) / pivot } else { 0.0 };
+            let known: f64 = (j + 1..count)
+                .map(|k| factor[k * count + j] * left[k])
+                .sum();
+            left[j] = if pivot > 0.0 {
+                (left[j] - known) / pivot
+            } else {
+                0.0
+            };
         }
         for (share, own) in self.shares.iter_mut().rev().zip(&left) {
             *share = *own;
@@ -166,7 +174,7 @@ impl Acceleration {
 struct Products<'a> {
     columns: &'a [f32],
     vector: &'a [f64],
-    products: &'a mut [f64],
+    into: &'a mut [f64],
 }
 
 impl Loops for Products<'_> {
@@ -176,7 +184,7 @@ impl Loops for Products<'_> {
     fn call(self) {
         let n = self.vector.len().max(1);
         let groups = self.columns.chunks(TOGETHER * n);
-        for (columns, products) in groups.zip(self.products.chunks_mut(TOGETHER)) {
+        for (columns, products) in groups.zip(self.into.chunks_mut(TOGETHER)) {
             if columns.len() == TOGETHER * n {
                 let column = |k: usize| &columns[k * n..][..n];
                 let sums = products_of([column(0), column(1), column(2), column(3)], self.vector);
@@ -204,7 +212,11 @@ fn products_of<const COUNT: usize>(columns: [&[f32]; COUNT], vector: &[f64]) -> 
         }
     }
     std::array::from_fn(|k| {
-        let rest = columns[k].1.iter().zip(vector_rest).map(|(c, v)| f64::from(*c) * v);
+        let rest = columns[k]
+            .1
+            .iter()
+            .zip(vector_rest)
+            .map(|(c, v)| f64::from(*c) * v);
         sums[k].into_iter().sum::<f64>() + rest.sum::<f64>()
     })
 }

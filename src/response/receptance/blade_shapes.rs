@@ -54,10 +54,11 @@ pub(super) fn strain_coordinates(
     // Rows of the factor over the unscaled motions.
     let mut coordinates: Vec<Vec<f64>> = Vec::new();
     while coordinates.len() < COORDINATES {
-        let (pivot, &largest) = left
-            .iter()
-            .enumerate()
-            .fold((0, &0.0), |best, own| if own.1 > best.1 { own } else { best });
+        let (pivot, &largest) =
+            left.iter().enumerate().fold(
+                (0, &0.0),
+                |best, own| if own.1 > best.1 { own } else { best },
+            );
         if largest <= DROPPED * whole {
             break;
         }
@@ -72,7 +73,9 @@ pub(super) fn strain_coordinates(
             continue;
         }
         let scale = 1.0 / energy.sqrt();
-        row.iter_mut().for_each(|a| *a *= scale);
+        for a in &mut row {
+            *a *= scale;
+        }
         for ((left, weight), a) in left.iter_mut().zip(&weights).zip(&row) {
             *left = (*left - (weight * a).powi(2)).max(0.0);
         }

@@ -230,7 +230,11 @@ impl ContactEquation<'_> {
             if outcome.residual.max(outcome.step) <= tolerance {
                 // Forces of a pair without a periodic state prove nothing.
                 let closed = outcome.shares.unclosed == 0.0;
-                outcome.status = if closed { Status::Ok } else { Status::Stagnated };
+                outcome.status = if closed {
+                    Status::Ok
+                } else {
+                    Status::Stagnated
+                };
                 break;
             }
             outcome.iterations += 1;
@@ -276,7 +280,11 @@ impl ContactEquation<'_> {
                 ..
             } = &mut *self.buffers;
             self.transform.to_sectors(&motions[place], own);
-            let parts: &[&Vec<f64>] = if k == 0 { &[&own.re] } else { &[&own.re, &own.im] };
+            let parts: &[&Vec<f64>] = if k == 0 {
+                &[&own.re]
+            } else {
+                &[&own.re, &own.im]
+            };
             for part in parts {
                 let motion = &mut self.contact.motion_mut()[coefficient * sectors * rows..];
                 turned(part, padded(sectors), rows, &mut motion[..sectors * rows]);
@@ -359,7 +367,10 @@ impl ContactEquation<'_> {
             let accepted = loop {
                 let mut moved = Vec::new();
                 flatten(&before, 1.0, &mut moved);
-                moved.iter_mut().zip(&step).for_each(|(u, s)| *u += factor * s);
+                moved
+                    .iter_mut()
+                    .zip(&step)
+                    .for_each(|(u, s)| *u += factor * s);
                 unflatten(&moved, &mut self.buffers.motions);
                 let (norm, _) = self.residual(false);
                 if norm < outcome.residual {
@@ -391,7 +402,11 @@ impl ContactEquation<'_> {
         for (field, &k) in fields.iter().zip(&set) {
             let own = &mut self.buffers.sectors;
             self.transform.to_sectors(field, own);
-            let parts: &[&Vec<f64>] = if k == 0 { &[&own.re] } else { &[&own.re, &own.im] };
+            let parts: &[&Vec<f64>] = if k == 0 {
+                &[&own.re]
+            } else {
+                &[&own.re, &own.im]
+            };
             for part in parts {
                 let change = &mut change[coefficient * block..][..block];
                 turned(part, padded(sectors), rows, change);
@@ -410,7 +425,12 @@ impl ContactEquation<'_> {
             own.im.fill(0.0);
             for part in 0..if k == 0 { 1 } else { 2 } {
                 let to = if part == 0 { &mut own.re } else { &mut own.im };
-                returned(&force[coefficient * block..][..block], padded(sectors), rows, to);
+                returned(
+                    &force[coefficient * block..][..block],
+                    padded(sectors),
+                    rows,
+                    to,
+                );
                 coefficient += 1;
             }
             self.transform.to_waves(own, &mut forces[place]);

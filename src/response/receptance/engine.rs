@@ -210,13 +210,17 @@ impl ReceptanceEngine {
     pub fn table_error(&self) -> f64 {
         let tables = self.pencils.iter().flat_map(|pencil| &pencil.tables);
         let tables = tables.filter_map(|own| own.get()?.as_ref());
-        tables.map(|own| own.receptances.error()).fold(0.0, f64::max)
+        tables
+            .map(|own| own.receptances.error())
+            .fold(0.0, f64::max)
     }
 
     /// Strain coordinates of the blades in a harmonic under a limit.
     #[must_use]
     pub fn shape_count(&self, limit: Limit, harmonic: u32) -> usize {
-        self.pencil(limit).tables(harmonic).map_or(0, |own| own.shapes)
+        self.pencil(limit)
+            .tables(harmonic)
+            .map_or(0, |own| own.shapes)
     }
 
     /// Springs of the contact rows of a sector under a limit, N/m; empty where there are none.
@@ -239,12 +243,19 @@ impl ReceptanceEngine {
     pub fn tuned_peaks(&self, limit: Limit, force: &WaveForce) -> Vec<LinearPeak> {
         let pencil = self.pencil(limit);
         let modes = pencil.modes.as_ref();
-        modes.map_or_else(Vec::new, |modes| modes.tuned_peaks(&pencil.diameters, force))
+        modes.map_or_else(Vec::new, |modes| {
+            modes.tuned_peaks(&pencil.diameters, force)
+        })
     }
 
     /// Resonances of a mistuned wheel under a limit and an excitation, ascending; none if they are not found.
     #[must_use]
-    pub fn peaks(&self, limit: Limit, wheel: &EngineWheel, force: &WaveForce) -> Option<Vec<LinearPeak>> {
+    pub fn peaks(
+        &self,
+        limit: Limit,
+        wheel: &EngineWheel,
+        force: &WaveForce,
+    ) -> Option<Vec<LinearPeak>> {
         let pencil = self.pencil(limit);
         let modes = pencil.modes.as_ref()?;
         let place = match limit {
@@ -348,8 +359,15 @@ fn under_limits(model: &ReducedModel, damping: Damping) -> Option<[Vec<TunedDiam
 }
 
 /// Angular frequencies, rad/s, of harmonic 1 in which peaks of mistuned wheels lie.
-fn band(diameters: &[Vec<TunedDiameter>; 3], sectors: usize, options: &EngineOptions) -> (f64, f64) {
-    match (options.band, tuned_span(diameters, sectors, &options.forces)) {
+fn band(
+    diameters: &[Vec<TunedDiameter>; 3],
+    sectors: usize,
+    options: &EngineOptions,
+) -> (f64, f64) {
+    match (
+        options.band,
+        tuned_span(diameters, sectors, &options.forces),
+    ) {
         (FrequencyBand::Fixed { start_hz, stop_hz }, _) => (TAU * start_hz, TAU * stop_hz),
         (FrequencyBand::Auto, Some((low, high))) => {
             let share = 0.6 * options.deviation + 0.05;
@@ -371,12 +389,25 @@ fn tuned_span(
             .iter()
             .map(|own| Matrix::zeros(0, own.size()))
             .collect();
-        let all = BandModes::new(diameters, &none, sectors, 0.0, (f64::MIN_POSITIVE, f64::MAX));
+        let all = BandModes::new(
+            diameters,
+            &none,
+            sectors,
+            0.0,
+            (f64::MIN_POSITIVE, f64::MAX),
+        );
         for force in forces {
             let peaks = all.tuned_peaks(diameters, force);
-            let highest = peaks.iter().map(|peak| peak.amplitude_m).fold(0.0, f64::max);
+            let highest = peaks
+                .iter()
+                .map(|peak| peak.amplitude_m)
+                .fold(0.0, f64::max);
             let count = |peak: &&LinearPeak| peak.amplitude_m > COUNTS * highest;
-            for omega in peaks.iter().filter(count).map(|peak| TAU * peak.frequency_hz) {
+            for omega in peaks
+                .iter()
+                .filter(count)
+                .map(|peak| TAU * peak.frequency_hz)
+            {
                 let (low, high) = span.unwrap_or((omega, omega));
                 span = Some((low.min(omega), high.max(omega)));
             }
@@ -396,7 +427,8 @@ fn contact_forces(diameters: &[TunedDiameter], band: (f64, f64), forces: &[WaveF
         let inside = diameter.natural.0.iter().copied();
         let inside = inside.filter(|omega| *omega > band.0 && *omega < band.1);
         for s in inside.chain([band.0, band.1]).filter(|&s| s > 0.0) {
-            let motion = diameter.response(s, &diameter.contact, &force.modal, force.diameter.conjugate);
+            let motion =
+                diameter.response(s, &diameter.contact, &force.modal, force.diameter.conjugate);
             for (largest, own) in largest.iter_mut().zip(motion.into_iter().flatten()) {
                 *largest = largest.max(own.norm());
             }

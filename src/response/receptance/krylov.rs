@@ -8,7 +8,10 @@ const PRODUCTS: usize = 120;
 const ENOUGH: f64 = 1e-3;
 
 /// `x` with `A x` near `right`, and the number of products with A that it took.
-pub(super) fn gmres(right: &[f64], mut product: impl FnMut(&[f64]) -> Vec<f64>) -> (Vec<f64>, usize) {
+pub(super) fn gmres(
+    right: &[f64],
+    mut product: impl FnMut(&[f64]) -> Vec<f64>,
+) -> (Vec<f64>, usize) {
     let size = dot(right, right).sqrt();
     if size == 0.0 || !size.is_finite() {
         return (vec![0.0; right.len()], 0);

@@ -123,35 +123,53 @@ impl BandModes {
             let drive: Complex64 = shares.iter().zip(&drives).map(|(v, f)| v.conj() * f).sum();
             let weights = shares.iter().zip(&self.modes);
             let of_modes = |of: fn(&BandMode) -> f64| -> f64 {
-                weights.clone().map(|(v, mode)| v.norm_sqr() * of(mode)).sum()
+                weights
+                    .clone()
+                    .map(|(v, mode)| v.norm_sqr() * of(mode))
+                    .sum()
             };
             let tuned = of_modes(|mode| mode.omega * mode.omega);
             let damping = of_modes(|mode| mode.damping) + self.loss_factor * (eigenvalue - tuned);
-            self.peak(eigenvalue, drive.norm(), damping, self.reach(shares))
+            Self::peak(eigenvalue, drive.norm(), damping, self.reach(shares))
         };
         let all = wheel.eigenvalues.iter().enumerate();
-        all.filter(|(_, eigenvalue)| **eigenvalue > 0.0).map(peak).collect()
+        all.filter(|(_, eigenvalue)| **eigenvalue > 0.0)
+            .map(peak)
+            .collect()
     }
 
     /// Resonances of the tuned wheel under an excitation, ascending.
-    pub(super) fn tuned_peaks(&self, diameters: &[TunedDiameter], force: &WaveForce) -> Vec<LinearPeak> {
+    pub(super) fn tuned_peaks(
+        &self,
+        diameters: &[TunedDiameter],
+        force: &WaveForce,
+    ) -> Vec<LinearPeak> {
         let wave = force.wave(self.sectors);
         let modes = self.modes.iter().filter(|mode| mode.wave == wave);
         modes
             .map(|mode| {
-                let reach = mode.observed.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+                let reach = mode
+                    .observed
+                    .iter()
+                    .map(Complex64::norm_sqr)
+                    .sum::<f64>()
+                    .sqrt();
                 let drive = self.drive(diameters, mode, force).norm();
                 let reach = reach / (self.sectors as f64).sqrt();
-                self.peak(mode.omega * mode.omega, drive, mode.damping, reach)
+                Self::peak(mode.omega * mode.omega, drive, mode.damping, reach)
             })
             .collect()
     }
 
-    fn peak(&self, eigenvalue: f64, drive: f64, damping: f64, reach: f64) -> LinearPeak {
+    fn peak(eigenvalue: f64, drive: f64, damping: f64, reach: f64) -> LinearPeak {
         let omega = eigenvalue.sqrt();
         LinearPeak {
             frequency_hz: omega / TAU,
-            amplitude_m: if damping > 0.0 { reach * drive / damping } else { 0.0 },
+            amplitude_m: if damping > 0.0 {
+                reach * drive / damping
+            } else {
+                0.0
+            },
             half_bandwidth_hz: damping / (2.0 * omega) / TAU,
         }
     }
@@ -162,8 +180,18 @@ impl BandModes {
             return Complex64::default();
         }
         let shape = diameters[force.diameter.index].natural.1.column(mode.place);
-        let turned = |v: &Complex64| if force.diameter.conjugate { *v } else { v.conj() };
-        shape.iter().zip(&force.modal).map(|(v, f)| turned(v) * f).sum()
+        let turned = |v: &Complex64| {
+            if force.diameter.conjugate {
+                *v
+            } else {
+                v.conj()
+            }
+        };
+        shape
+            .iter()
+            .zip(&force.modal)
+            .map(|(v, f)| turned(v) * f)
+            .sum()
     }
 
     /// Largest displacement over the blades of a mode with these shares of the tuned ones.

@@ -261,7 +261,9 @@ impl WaveMatrix {
         for chunk in self.re.chunks_exact_mut(own) {
             for row in 0..self.rows {
                 let place = (row * self.columns + row) * LANES;
-                chunk[place..place + LANES].iter_mut().for_each(|entry| *entry += 1.0);
+                chunk[place..place + LANES]
+                    .iter_mut()
+                    .for_each(|entry| *entry += 1.0);
             }
         }
     }
@@ -415,7 +417,10 @@ impl Loops for AddTransposed<'_> {
         let (to_im, _) = self.to.im.as_chunks_mut::<LANES>();
         for chunk in 0..chunks {
             for row in 0..rows {
-                let (x, y) = (&from_re[row * chunks + chunk], &from_im[row * chunks + chunk]);
+                let (x, y) = (
+                    &from_re[row * chunks + chunk],
+                    &from_im[row * chunks + chunk],
+                );
                 for column in 0..columns {
                     let place = (chunk * rows + row) * columns + column;
                     let (a, b) = (&re[place], &im[place]);
@@ -518,7 +523,10 @@ mod tests {
             let mut back = Field::zeros(3, sectors);
             transform.to_sectors(&waves, &mut back);
             for place in 0..3 * stride {
-                assert!((back.at(place) - field.at(place)).norm() < 1e-13, "{sectors}");
+                assert!(
+                    (back.at(place) - field.at(place)).norm() < 1e-13,
+                    "{sectors}"
+                );
             }
         }
     }

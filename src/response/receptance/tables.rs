@@ -6,12 +6,12 @@
 //! R(s) = sum_j E x_j (E y_j)^H / (s - s_j) + smooth(s)
 //! ```
 //!
-//! with the damped modes s_j near the panel and a rest that a polynomial through Chebyshev points follows (Trefethen 2013,
+//! with the damped modes `s_j` near the panel and a rest that a polynomial through Chebyshev points follows (Trefethen 2013,
 //! Approximation Theory and Approximation Practice). Panels lie on one fixed grid of frequencies, so that what a panel
 //! holds depends on the wheel alone.
 
 use std::collections::HashMap;
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
 use crate::linalg::{Complex64, Loops, Matrix, vectorized};
 
@@ -27,6 +27,8 @@ const NEAR: f64 = 0.1;
 const POINTS: [usize; 3] = [7, 11, 17];
 /// Relative error of the interpolation that is accepted.
 const ACCEPTED: f64 = 1e-7;
+/// The same from which on receptances are summed in the place of it.
+const REFUSED: f64 = 1e-5;
 /// Modes of a nodal diameter up to which receptances are summed and not interpolated.
 const LARGEST_SUMMED: usize = 40;
 
@@ -39,6 +41,8 @@ pub(super) struct Receptances {
     /// Number of inputs, the first motions.
     inputs: usize,
     panels: RwLock<HashMap<i32, Arc<Panel>>>,
+    /// R of harmonic 0.
+    static_ones: OnceLock<Option<WaveMatrix>>,
 }
 
 /// What stands for R between two frequencies.
@@ -74,11 +78,7 @@ struct WavePole {
 }
 
 impl Receptances {
-    pub(super) fn new(
-        diameters: &[TunedDiameter],
-        strain: &Participation,
-        sectors: usize,
-    ) -> Self {
+    pub(super) fn new(diameters: &[TunedDiameter], strain: &Participation, sectors: usize) -> Self {
         let motions: Vec<Matrix<Complex64>> = diameters
             .iter()
             .zip(strain)
@@ -89,6 +89,7 @@ impl Receptances {
             inputs: motions.first().map_or(0, |own| own.rows() - 3),
             motions,
             panels: RwLock::new(HashMap::new()),
+            static_ones: OnceLock::new(),
         }
     }
 
@@ -121,22 +122,35 @@ impl Receptances {
     }
 
     /// R at `s`, from the panel that it lies in; none where Z is singular.
-    pub(super) fn at(&self, diameters: &[TunedDiameter], s: f64, into: &mut WaveMatrix) -> Option<()> {
+    pub(super) fn at(
+        &self,
+        diameters: &[TunedDiameter],
+        s: f64,
+        into: &mut WaveMatrix,
+    ) -> Option<()> {
         let small = diameters.iter().all(|own| own.size() <= LARGEST_SUMMED);
-        if small || s <= 0.0 {
+        if s <= 0.0 {
+            let known = self.static_ones.get_or_init(|| self.summed(diameters, 0.0));
+            into.clone_from(known.as_ref()?);
+            return Some(());
+        }
+        if small {
             *into = self.summed(diameters, s)?;
             return Some(());
         }
         let place = (PANELS * s.log2()).floor() as i32;
-        let panel = match self.known(place) {
-            Some(panel) => panel,
-            None => {
-                let panel = Arc::new(self.panel(diameters, place)?);
-                let mut panels = self.panels.write().unwrap_or_else(PoisonError::into_inner);
-                Arc::clone(panels.entry(place).or_insert(panel))
-            }
+        let panel = if let Some(panel) = self.known(place) {
+            panel
+        } else {
+            let panel = Arc::new(self.panel(diameters, place)?);
+            let mut panels = self.panels.write().unwrap_or_else(PoisonError::into_inner);
+            Arc::clone(panels.entry(place).or_insert(panel))
         };
-        panel.evaluate(s, into);
+        if panel.error > REFUSED {
+            *into = self.summed(diameters, s)?;
+        } else {
+            panel.evaluate(s, into);
+        }
         Some(())
     }
 
@@ -145,10 +159,11 @@ impl Receptances {
         panels.get(&place).cloned()
     }
 
-    /// Largest relative error of the interpolation in the panels made so far.
+    /// Largest relative error of the interpolation in the panels made so far and used.
     pub(super) fn error(&self) -> f64 {
         let panels = self.panels.read().unwrap_or_else(PoisonError::into_inner);
-        panels.values().map(|panel| panel.error).fold(0.0, f64::max)
+        let errors = panels.values().map(|panel| panel.error);
+        errors.filter(|&error| error <= REFUSED).fold(0.0, f64::max)
     }
 
     fn panel(&self, diameters: &[TunedDiameter], place: i32) -> Option<Panel> {
@@ -157,7 +172,8 @@ impl Receptances {
         let poles = self.poles(diameters, ends);
         let mut best: Option<Panel> = None;
         for points in POINTS {
-            let mut panel = Panel::through(points, ends, poles.iter().map(WavePole::copy).collect());
+            let mut panel =
+                Panel::through(points, ends, poles.iter().map(WavePole::copy).collect());
             let mut smooth = Vec::new();
             for &node in &panel.nodes {
                 let mut rest = self.summed(diameters, node)?;
@@ -187,7 +203,8 @@ impl Receptances {
             panel.evaluate(s, &mut found);
             let of_row = |row: usize| {
                 let own = (0..self.sectors).flat_map(|h| (0..self.inputs).map(move |j| (h, j)));
-                own.map(|(h, j)| exact.at(h, row, j).norm()).fold(0.0, f64::max)
+                own.map(|(h, j)| exact.at(h, row, j).norm())
+                    .fold(0.0, f64::max)
             };
             for row in 0..self.inputs + 3 {
                 let largest = of_row(row);
@@ -291,9 +308,17 @@ impl Panel {
         let (middle, half) = (0.5 * (ends.0 + ends.1), 0.5 * (ends.1 - ends.0));
         Self {
             ends,
-            nodes: (0..points).map(|i| middle - half * angle(i).cos()).collect(),
+            nodes: (0..points)
+                .map(|i| middle - half * angle(i).cos())
+                .collect(),
             weights: (0..points)
-                .map(|i| if i % 2 == 0 { angle(i).sin() } else { -angle(i).sin() })
+                .map(|i| {
+                    if i % 2 == 0 {
+                        angle(i).sin()
+                    } else {
+                        -angle(i).sin()
+                    }
+                })
                 .collect(),
             smooth: Smooth::default(),
             poles,
@@ -307,16 +332,21 @@ impl Panel {
         (into.rows, into.columns) = (self.smooth.rows, self.smooth.columns);
         into.re.resize(entries, 0.0);
         into.im.resize(entries, 0.0);
-        let exact = self.nodes.iter().position(|node| (node - s).abs() < 1e-14 * s);
-        let mut shares: Vec<f64> = match exact {
-            Some(at) => (0..self.nodes.len()).map(|i| f64::from(u8::from(i == at))).collect(),
-            None => {
-                let both = self.weights.iter().zip(&self.nodes);
-                both.map(|(weight, node)| weight / (s - node)).collect()
-            }
+        let exact = self
+            .nodes
+            .iter()
+            .position(|node| (node - s).abs() < 1e-14 * s);
+        let mut shares: Vec<f64> = if let Some(at) = exact {
+            let own = |i| f64::from(u8::from(i == at));
+            (0..self.nodes.len()).map(own).collect()
+        } else {
+            let both = self.weights.iter().zip(&self.nodes);
+            both.map(|(weight, node)| weight / (s - node)).collect()
         };
         let sum: f64 = shares.iter().sum();
-        shares.iter_mut().for_each(|share| *share /= sum);
+        for share in &mut shares {
+            *share /= sum;
+        }
         vectorized(Interpolated {
             smooth: &self.smooth,
             shares: &shares,
@@ -335,7 +365,10 @@ struct Interpolated<'a> {
 impl Loops for Interpolated<'_> {
     type Output = ();
 
-    #[expect(clippy::inline_always, reason = "only what is inlined is compiled for vectors")]
+    #[expect(
+        clippy::inline_always,
+        reason = "only what is inlined is compiled for vectors"
+    )]
     #[inline(always)]
     fn call(self) {
         interpolate(&mut self.into.re, self.shares, &self.smooth.re);
@@ -343,7 +376,10 @@ impl Loops for Interpolated<'_> {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for vectors")]
+#[expect(
+    clippy::inline_always,
+    reason = "only what is inlined is compiled for vectors"
+)]
 #[inline(always)]
 fn interpolate(sum: &mut [f64], shares: &[f64], nodes: &[f64]) {
     let nodes = nodes.as_chunks::<LANES>().0.chunks_exact(shares.len());
@@ -361,7 +397,12 @@ fn interpolate(sum: &mut [f64], shares: &[f64], nodes: &[f64]) {
 /// Adds `factor` times what the poles are at `s`.
 fn add_poles(poles: &[WavePole], s: f64, factor: f64, to: &mut WaveMatrix) {
     for pole in poles {
-        vectorized(AddPole { pole, s, factor, to });
+        vectorized(AddPole {
+            pole,
+            s,
+            factor,
+            to,
+        });
     }
 }
 
@@ -375,17 +416,29 @@ struct AddPole<'a> {
 impl Loops for AddPole<'_> {
     type Output = ();
 
-    #[expect(clippy::inline_always, reason = "only what is inlined is compiled for vectors")]
+    #[expect(
+        clippy::inline_always,
+        reason = "only what is inlined is compiled for vectors"
+    )]
     #[inline(always)]
     fn call(self) {
         let (rows, columns) = (self.to.rows, self.to.columns);
         let (to_re, _) = self.to.re.as_chunks_mut::<LANES>();
         let (to_im, _) = self.to.im.as_chunks_mut::<LANES>();
-        let (s_re, s_im) = (self.pole.s.re.as_chunks::<LANES>().0, self.pole.s.im.as_chunks::<LANES>().0);
+        let (s_re, s_im) = (
+            self.pole.s.re.as_chunks::<LANES>().0,
+            self.pole.s.im.as_chunks::<LANES>().0,
+        );
         let motion = &self.pole.motion;
-        let (u_re, u_im) = (motion.re.as_chunks::<LANES>().0, motion.im.as_chunks::<LANES>().0);
+        let (u_re, u_im) = (
+            motion.re.as_chunks::<LANES>().0,
+            motion.im.as_chunks::<LANES>().0,
+        );
         let force = &self.pole.force;
-        let (v_re, v_im) = (force.re.as_chunks::<LANES>().0, force.im.as_chunks::<LANES>().0);
+        let (v_re, v_im) = (
+            force.re.as_chunks::<LANES>().0,
+            force.im.as_chunks::<LANES>().0,
+        );
         for chunk in 0..s_re.len() {
             let (mut p, mut q) = ([0.0; LANES], [0.0; LANES]);
             for lane in 0..LANES {
@@ -402,7 +455,10 @@ impl Loops for AddPole<'_> {
                 }
                 let start = (chunk * rows + row) * columns;
                 for column in 0..columns {
-                    let (v, z) = (&v_re[chunk * columns + column], &v_im[chunk * columns + column]);
+                    let (v, z) = (
+                        &v_re[chunk * columns + column],
+                        &v_im[chunk * columns + column],
+                    );
                     let to_re = &mut to_re[start + column];
                     let to_im = &mut to_im[start + column];
                     for lane in 0..LANES {

@@ -6,7 +6,7 @@
 //! Z_h(s) = D_h(s) + C_h^H k_c C_h,    D_h(s) = diag(lambda (1 + i eta) + i s c - s^2)
 //! ```
 //!
-//! with the contact rows C and the springs k_c of the contact, which are not damped. Harmonic 0 is static and has no
+//! with the contact rows C and the springs `k_c` of the contact, which are not damped. Harmonic 0 is static and has no
 //! damping. D is diagonal under every damping model, so that systems with Z are as small as the contact:
 //!
 //! ```text
@@ -20,8 +20,9 @@ use crate::response::harmonic_balance::Damping;
 
 /// Steps of the iteration for a pole at most.
 const POLE_STEPS: usize = 12;
-/// Relative step at which a pole is known.
+/// Relative step at which a pole is known, and at which it is near enough to divide by zero there.
 const POLE_TOLERANCE: f64 = 1e-13;
+const NEARLY: f64 = 1e-6;
 
 /// One nodal diameter, 0..=N/2, in its contact-free modes.
 #[derive(Debug)]
@@ -85,7 +86,9 @@ impl TunedDiameter {
         let (eigenvalues, modes) = hermitian_eigen(&stiffness).ok()?;
         let natural = eigenvalues.iter().map(|lambda| lambda.max(0.0).sqrt());
         Some(Self {
-            viscous: viscous.map(|(&lambda, added)| of_mode(lambda) + added).collect(),
+            viscous: viscous
+                .map(|(&lambda, added)| of_mode(lambda) + added)
+                .collect(),
             loss_factor: match damping {
                 Damping::StructuralLossFactor(eta) => eta,
                 Damping::ModalRatio(_) | Damping::Rayleigh { .. } => 0.0,
@@ -132,10 +135,18 @@ impl TunedDiameter {
     /// How far every mode answers a force at the contact, or at the observed node of a wheel without springs, at most in a band
     /// of angular frequencies.
     pub(super) fn free_answers(&self, band: (f64, f64)) -> Vec<f64> {
-        let rows = if self.springs.is_empty() { &self.observed } else { &self.contact };
+        let rows = if self.springs.is_empty() {
+            &self.observed
+        } else {
+            &self.contact
+        };
         (0..self.size())
             .map(|mode| {
-                let force = rows.column(mode).iter().map(Complex64::norm_sqr).sum::<f64>();
+                let force = rows
+                    .column(mode)
+                    .iter()
+                    .map(Complex64::norm_sqr)
+                    .sum::<f64>();
                 let nearest = self.eigenvalues[mode].max(0.0).sqrt().clamp(band.0, band.1);
                 let stiffness = self.free(Complex64::from(nearest))[mode].norm();
                 force.sqrt() / stiffness.max(f64::MIN_POSITIVE)
@@ -179,7 +190,9 @@ impl TunedDiameter {
         let rows = motions.rows().max(1);
         for (column, d) in weighted.as_mut_slice().chunks_exact_mut(rows).zip(free) {
             let inverse = d.inv();
-            column.iter_mut().for_each(|entry| *entry *= inverse);
+            for entry in column {
+                *entry *= inverse;
+            }
         }
         let mut receptance = weighted.times(&motions.adjoint());
         let count = self.springs.len();
@@ -283,34 +296,49 @@ impl TunedDiameter {
         let mut right: Vec<Complex64> = self.natural.1.column(mode).to_vec();
         let mut left = right.clone();
         let mut s = Complex64::new(omega, 0.5 * self.damping_of(mode) / omega);
+        let mut last = f64::INFINITY;
         for _ in 0..POLE_STEPS {
             let slope = self.free_slope(s);
             let moved: Vec<Complex64> = right.iter().zip(&slope).map(|(x, d)| x * d).collect();
             let left_moved = left.iter().zip(&slope).map(|(y, d)| y * d.conj());
-            let new_right = self.solve(s, false, &moved)?;
-            left = self.solve(s, true, &left_moved.collect::<Vec<_>>())?;
-            // y^H Z(s) x', of which Z(s) x' is known.
+            let new_right = self.solve(s, false, &moved);
+            let new_left = self.solve(s, true, &left_moved.collect::<Vec<_>>());
+            let finite = |vector: &Vec<Complex64>| vector.iter().all(|x| x.is_finite());
+            let (Some(new_right), Some(new_left)) =
+                (new_right.filter(finite), new_left.filter(finite))
+            else {
+                // At the pole itself nothing can be solved for.
+                return (last <= NEARLY * s.norm()).then(|| self.pole_of(s, right, left));
+            };
+            (right, left) = (new_right, new_left);
+            // y^H Z(s) x, of which Z(s) x is known.
             let residual = product(&left, &moved);
-            right = new_right;
             let curved: Vec<Complex64> = right.iter().zip(&slope).map(|(x, d)| x * d).collect();
             let step = residual / product(&left, &curved);
             for vector in [&mut right, &mut left] {
                 let norm = vector.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
-                vector.iter_mut().for_each(|entry| *entry /= norm);
+                for entry in vector.iter_mut() {
+                    *entry /= norm;
+                }
             }
             s -= step;
             if !s.is_finite() {
                 return None;
             }
-            if step.norm() <= POLE_TOLERANCE * s.norm() {
-                let slope = self.free_slope(s);
-                let curved: Vec<Complex64> = right.iter().zip(&slope).map(|(x, d)| x * d).collect();
-                let scale = product(&left, &curved);
-                right.iter_mut().for_each(|entry| *entry /= scale);
-                return Some(Pole { s, right, left });
+            last = step.norm();
+            if last <= POLE_TOLERANCE * s.norm() {
+                return Some(self.pole_of(s, right, left));
             }
         }
         None
+    }
+
+    fn pole_of(&self, s: Complex64, right: Vec<Complex64>, left: Vec<Complex64>) -> Pole {
+        let slope = self.free_slope(s);
+        let curved: Vec<Complex64> = right.iter().zip(&slope).map(|(x, d)| x * d).collect();
+        let scale = product(&left, &curved);
+        let right = right.into_iter().map(|entry| entry / scale).collect();
+        Pole { s, right, left }
     }
 
     /// `E Z(s)^-1 f` of the motions E; of the conjugate wave `N - h`, whose matrices are the conjugate ones of a reciprocal
@@ -393,6 +421,10 @@ mod tests {
     use super::*;
 
     fn diameter(damping: Damping) -> TunedDiameter {
+        with_springs(damping, &[0.7, 0.2, 0.0])
+    }
+
+    fn with_springs(damping: Damping, springs: &[f64]) -> TunedDiameter {
         let number = |place: usize| {
             let turn = 0.3 + 1.7 * place as f64 + 0.01 * (place * place) as f64;
             Complex64::new(turn.sin(), (1.3 * turn).cos())
@@ -406,7 +438,7 @@ mod tests {
             force: Matrix::zeros(modes, 1),
             conjugate_force: Matrix::zeros(modes, 1),
         };
-        TunedDiameter::new(&wave, &[0.7, 0.2, 0.0], damping, 2).expect("modes")
+        TunedDiameter::new(&wave, springs, damping, 2).expect("modes")
     }
 
     fn dampings() -> [Damping; 3] {
@@ -422,7 +454,9 @@ mod tests {
 
     /// `Z(s)`.
     fn stiffness(own: &TunedDiameter, s: Complex64) -> Matrix<Complex64> {
-        let sprung = Matrix::from_fn(3, own.size(), |i, j| own.contact[(i, j)] * own.springs[i]);
+        let sprung = Matrix::from_fn(own.springs.len(), own.size(), |i, j| {
+            own.contact[(i, j)] * own.springs[i]
+        });
         let mut z = own.contact.adjoint_times(&sprung);
         for (mode, d) in own.free(s).into_iter().enumerate() {
             z[(mode, mode)] += d;
@@ -464,8 +498,9 @@ mod tests {
 
     #[test]
     fn poles_are_zeros_of_the_matrix_and_their_residues_those_of_its_inverse() {
-        for damping in dampings() {
-            let own = diameter(damping);
+        let with = dampings().map(diameter);
+        let without = dampings().map(|damping| with_springs(damping, &[]));
+        for own in with.into_iter().chain(without) {
             for mode in 0..7 {
                 let pole = own.pole(mode).expect("a pole");
                 assert!(pole.s.im > 0.0, "{}", pole.s);
@@ -476,7 +511,8 @@ mod tests {
                 // The inverse near the pole, less the pole, stays bounded.
                 let near = pole.s + Complex64::new(1e-5, 0.0);
                 let mut lu = LuWorkspace::<Complex64>::new(7);
-                lu.matrix_mut().copy_from_slice(stiffness(&own, near).as_slice());
+                lu.matrix_mut()
+                    .copy_from_slice(stiffness(&own, near).as_slice());
                 assert!(lu.factor());
                 for j in 0..7 {
                     let mut column = vec![Complex64::default(); 7];
@@ -484,7 +520,10 @@ mod tests {
                     lu.solve(&mut column);
                     for (i, whole) in column.iter().enumerate() {
                         let part = pole.right[i] * pole.left[j].conj() / (near - pole.s);
-                        assert!((whole - part).norm() < 1e-2 * part.norm() + 30.0, "{whole} {part}");
+                        assert!(
+                            (whole - part).norm() < 1e-2 * part.norm() + 30.0,
+                            "{whole} {part}"
+                        );
                     }
                 }
             }

@@ -59,7 +59,11 @@ impl WheelHarmonic {
         self.deviations.clear();
         self.deviations.extend(deviations);
         self.excited.fill(0.0);
-        if self.deviations.iter().all(|deviation| deviation.norm_sqr() == 0.0) {
+        if self
+            .deviations
+            .iter()
+            .all(|deviation| deviation.norm_sqr() == 0.0)
+        {
             self.elimination = None;
             return true;
         }
@@ -74,7 +78,13 @@ impl WheelHarmonic {
             let (row, column) = place(row, column);
             self.receptance.at(h, row, column)
         };
-        fill_circulant(transform, shapes, block, &self.deviations, factors.matrix_mut());
+        fill_circulant(
+            transform,
+            shapes,
+            block,
+            &self.deviations,
+            factors.matrix_mut(),
+        );
         let regular = factors.factor();
         self.elimination = Some(factors);
         regular
@@ -112,13 +122,13 @@ impl WheelHarmonic {
     ) {
         let stride = padded(self.sectors);
         motion.fill(0.0);
-        for row in 0..self.contact {
-            motion.set(row * stride + wave, response[row]);
+        let (own, rest) = response.split_at(self.contact);
+        for (row, u) in own.iter().enumerate() {
+            motion.set(row * stride + wave, *u);
         }
         self.strain.fill(0.0);
-        for shape in 0..self.shapes {
-            let own = response[self.contact + shape];
-            self.strain.set(shape * stride + wave, own);
+        for (shape, z) in rest.iter().take(self.shapes).enumerate() {
+            self.strain.set(shape * stride + wave, *z);
         }
         self.blade_forces(transform);
         let (contact, shapes) = (self.contact, self.shapes);
@@ -129,9 +139,15 @@ impl WheelHarmonic {
     }
 
     /// Adds the motion that contact forces `g` take off: `R_cc g - R_cz D (I + R_zz D)^-1 R_zc g`.
-    pub(super) fn add_answer(&mut self, transform: &SectorTransform, g: &Field, answer: &mut Field) {
+    pub(super) fn add_answer(
+        &mut self,
+        transform: &SectorTransform,
+        g: &Field,
+        answer: &mut Field,
+    ) {
         let (contact, shapes) = (self.contact, self.shapes);
-        self.receptance.add_product(0..contact, 0..contact, 1.0, g, answer);
+        self.receptance
+            .add_product(0..contact, 0..contact, 1.0, g, answer);
         if self.elimination.is_none() {
             return;
         }
@@ -161,10 +177,16 @@ impl WheelHarmonic {
             for row in 0..3 {
                 waves.set(row * stride + wave, response[contact + shapes + row]);
             }
-            self.receptance
-                .add_product(rows.clone(), strained.clone(), -1.0, &self.excited, &mut waves);
+            self.receptance.add_product(
+                rows.clone(),
+                strained.clone(),
+                -1.0,
+                &self.excited,
+                &mut waves,
+            );
         }
-        self.receptance.add_product(rows.clone(), 0..contact, -1.0, g, &mut waves);
+        self.receptance
+            .add_product(rows.clone(), 0..contact, -1.0, g, &mut waves);
         if self.elimination.is_some() {
             self.strain.fill(0.0);
             self.receptance
@@ -329,8 +351,14 @@ impl Leading {
 
 /// Adds the sum over the channels of `left right`, wave by wave.
 fn add_channels(left: &Field, right: &Field, sum: &mut Field, stride: usize) {
-    let left = left.re.chunks_exact(stride).zip(left.im.chunks_exact(stride));
-    let right = right.re.chunks_exact(stride).zip(right.im.chunks_exact(stride));
+    let left = left
+        .re
+        .chunks_exact(stride)
+        .zip(left.im.chunks_exact(stride));
+    let right = right
+        .re
+        .chunks_exact(stride)
+        .zip(right.im.chunks_exact(stride));
     for ((x, y), (a, b)) in left.zip(right) {
         for h in 0..stride {
             sum.re[h] += x[h] * a[h] - y[h] * b[h];

@@ -60,7 +60,11 @@ impl<'a> WheelSolver<'a> {
         set: &[u32],
         contact: Option<WheelContact>,
     ) -> Self {
-        let set = if contact.is_some() { set.to_vec() } else { vec![1] };
+        let set = if contact.is_some() {
+            set.to_vec()
+        } else {
+            vec![1]
+        };
         Self {
             engine,
             wheel,
@@ -87,7 +91,12 @@ impl<'a> WheelSolver<'a> {
 
     /// One attempt beside `start`, of the same harmonics: motions, and the share of them that the next step would still move;
     /// none where it failed, or for a linear limit.
-    pub fn settle(&mut self, frequency_hz: f64, start: &[f64], tolerance: f64) -> Option<(Vec<f64>, f64)> {
+    pub fn settle(
+        &mut self,
+        frequency_hz: f64,
+        start: &[f64],
+        tolerance: f64,
+    ) -> Option<(Vec<f64>, f64)> {
         if !self.prepare(frequency_hz) {
             return None;
         }
@@ -101,7 +110,8 @@ impl<'a> WheelSolver<'a> {
         let contact = self.contact.as_mut()?;
         let sectors = self.engine.sectors();
         let fundamental = self.set.iter().position(|&k| k == 1).unwrap_or(0);
-        self.buffers.resize(self.set.len(), contact.sector_rows(), sectors);
+        self.buffers
+            .resize(self.set.len(), contact.sector_rows(), sectors);
         Some(ContactEquation {
             transform: &self.engine.transform,
             contact,
@@ -170,7 +180,9 @@ impl<'a> WheelSolver<'a> {
             }
             let own = &mut self.harmonics[place];
             let s = angular(harmonic, frequency_hz);
-            let filled = tables.receptances.at(&pencil.diameters, s, &mut own.receptance);
+            let filled = tables
+                .receptances
+                .at(&pencil.diameters, s, &mut own.receptance);
             let deviations = self.wheel.deviations(tables.shapes).into_iter();
             let loss = self.engine.loss_factor;
             let deviations = deviations.map(|delta| damped(delta, loss, harmonic));

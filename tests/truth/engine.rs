@@ -1,0 +1,69 @@
+//! Rows of the program on tuned receptances against the truth.
+
+use blisk::model::sector::SectorModel;
+use blisk::population::monte_carlo::{ResponseRow, Scenario};
+use blisk::response::mistuning::{Pattern, PatternSource};
+use blisk::study::{EngineSource, ReducedEngineSource, Study, load_sector_model, pattern_source};
+
+use super::cases::folder;
+use super::rows::{Row, stored};
+
+/// Loads below which pairs of these wheels separate at their peaks, and rows take a second each, N.
+const LEAST_LOAD_N: f64 = 150.0;
+
+/// The rows of a wheel that the truth has, each with its true one.
+pub fn solved(wheel: &str) -> Vec<(Row, ResponseRow)> {
+    let truth: Vec<Row> = stored(wheel)
+        .into_iter()
+        .filter(|row| row.load_n().is_none_or(|load| load >= LEAST_LOAD_N))
+        .collect();
+    let study = study_of(wheel, &truth);
+    let model: SectorModel = load_sector_model(&study).expect("a model");
+    let patterns: PatternSource = pattern_source(&study, &model).expect("patterns");
+    let engine = ReducedEngineSource
+        .build(&study, &model, None)
+        .expect("an engine");
+    let scenarios: Vec<Scenario> = study.scenarios();
+    let tuned: Vec<_> = scenarios.iter().map(|own| engine.tuned(own)).collect();
+    let row = |truth: Row| {
+        let of = |own: &Scenario| own.contact.normal_load_n() == truth.load_n();
+        let named = |own: &Scenario| {
+            own.contact.normal_load_n().is_some() || own.contact.name() == truth.condition
+        };
+        let place = scenarios.iter().position(|own| of(own) && named(own));
+        let place = place.expect("the condition of the row");
+        let pattern: Pattern = patterns
+            .pattern(truth.pattern as u32, None)
+            .expect("the pattern of the row");
+        let mut rows = engine.rows(&pattern, &[(&scenarios[place], &tuned[place])]);
+        (truth, rows.pop().expect("a row"))
+    };
+    truth.into_iter().map(row).collect()
+}
+
+/// The study of a wheel on tuned receptances, with the conditions of these rows alone. Harmonics and fixed-interface modes are
+/// those of the truth as far as a row should cost no second.
+fn study_of(wheel: &str, rows: &[Row]) -> Study {
+    let path = folder(wheel).join("study.toml");
+    let text = std::fs::read_to_string(&path).expect("a study");
+    let mut conditions: Vec<String> = rows
+        .iter()
+        .map(|row| match row.load_n() {
+            Some(_) => row.condition.clone(),
+            None => format!("\"{}\"", row.condition),
+        })
+        .collect();
+    conditions.sort();
+    conditions.dedup();
+    let physics: Vec<&str> = text
+        .lines()
+        .filter(|line| !line.starts_with("normal_load_n"))
+        .collect();
+    let text = format!(
+        "{}\nnormal_load_n = [{}]\n\n[reduction]\nbasis = \"tuned_receptances\"\ncraig_bampton_modes = 80\n\n\
+         [solver]\nharmonics = [0, 1, 2, 3, 4, 5, 6, 7]\n",
+        physics.join("\n"),
+        conditions.join(", ")
+    );
+    Study::parse(&path, &text).expect("a good study")
+}
