@@ -441,6 +441,16 @@ pub const CASES: &[Case] = &[
         "[1]\n[reduction]\nbasis = \"rigid\"",
         &["reduction.basis = \"rigid\"", "\"auto\""],
     ),
+    (
+        "[1, 3]",
+        "[1, 3]\nhigher_harmonics = \"tuned\"\n[reduction]\nbasis = \"tuned_receptances\"",
+        &["solver.higher_harmonics", "tuned_receptances"],
+    ),
+    (
+        "[1, 3]",
+        "[1]\n[reduction]\nbasis = \"tuned_receptances\"\nstick_modes = 4",
+        &["reduction.stick_modes", "neither stick_modes nor"],
+    ),
     // Normal loads by rotation, damping by nodal diameter, stress.
     (
         "0.3\n",
