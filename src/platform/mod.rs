@@ -1,7 +1,7 @@
 //! What the operating system says of this machine and its processes.
 //!
-//! Linux answers through `/proc` (`linux`); every other system, and a Linux without `/proc`, through
-//! the crate `sysinfo` (`portable`). Only this folder knows which.
+//! Linux answers through `/proc` (`linux`), every other system through the crate `sysinfo` (`portable`). Only this folder knows
+//! which.
 
 mod linux;
 mod portable;

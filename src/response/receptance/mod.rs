@@ -1,8 +1,8 @@
 //! Mistuned wheels on the receptances of the tuned one: no basis and no eigenproblem of a pattern in its solution.
 //!
-//! The tuned wheel with stuck contact is one small matrix a wave and frequency ([`tables`]). Blade deviations are eliminated
-//! exactly in few strain coordinates ([`wheel_harmonic`], [`blade_shapes`]), and the motions at the contact are the only
-//! unknowns of the nonlinear equation ([`contact_iteration`]).
+//! The tuned wheel with stuck contact is one small matrix a wave and frequency (`tables.rs`). Blade deviations are eliminated
+//! exactly in few strain coordinates (`wheel_harmonic.rs`, `blade_shapes.rs`), and the motions at the contact are the only
+//! unknowns of the nonlinear equation (`contact_iteration.rs`).
 
 mod acceleration;
 mod blade_shapes;
