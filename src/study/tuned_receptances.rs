@@ -10,7 +10,7 @@ use super::load_cases::Excitation;
 use crate::model::ReducedModel;
 use crate::model::sector::{ModelError, StiffnessKind};
 use crate::response::forced_response::{
-    ContactCondition, EngineRow, PointSettings, Window, receptance_peak,
+    ContactCondition, EngineRow, FrequencyBand, PointSettings, Window, receptance_peak,
 };
 use crate::response::harmonic_balance::TransformError;
 use crate::response::mistuning::{Distribution, Pattern, PatternSource};
@@ -46,7 +46,10 @@ pub(super) fn engine_options(
         projection: study.mistuning.projection,
         forces: forces.collect(),
         deviation: LARGEST * expected_deviation(study),
-        band: study.solver.frequency_band,
+        band_hz: match study.solver.frequency_band {
+            FrequencyBand::Auto => None,
+            FrequencyBand::Fixed { start_hz, stop_hz } => Some((start_hz, stop_hz)),
+        },
         more_shapes: 1,
     }
 }

@@ -29,6 +29,7 @@ const WINGS: &[(&str, &[&str])] = &[
             "mistuning",
             "friction",
             "harmonic_balance",
+            "receptance",
             "forced_response",
             "reference",
             "time_integration",

@@ -13,7 +13,7 @@ use blisk::linalg::Complex64;
 use blisk::model::ReducedModel;
 use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction};
 use blisk::model::sector::bundle;
-use blisk::response::forced_response::{AmplitudeMeasure, ContactCondition, FrequencyBand};
+use blisk::response::forced_response::{AmplitudeMeasure, ContactCondition};
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{
     ContactInterface, Damping, HarmonicTransform, WheelContact,
@@ -118,7 +118,7 @@ impl Case {
             projection: self.projection,
             forces: vec![force.clone()],
             deviation: 0.1,
-            band: FrequencyBand::Auto,
+            band_hz: None,
             more_shapes: 1,
         };
         let own = EngineModel::new(&self.model, &options).unwrap();
@@ -137,7 +137,7 @@ impl Case {
         condition: ContactCondition,
     ) -> Option<WheelContact> {
         let geometry = self.model.contact.clone();
-        let springs = match Limit::of(condition) {
+        let springs = match condition.limit() {
             Limit::Stuck => &self.model.springs.stick,
             Limit::Slide => &self.model.springs.slide,
             Limit::Free => return None,
@@ -187,7 +187,7 @@ impl Case {
         let (engine, force) = self.engine();
         let wheel = EngineWheel::new(Some(&self.pattern), self.model.sectors);
         let own = self.wheel_contact(harmonics, contact);
-        let limit = Limit::of(contact);
+        let limit = contact.limit();
         let mut solver = WheelSolver::new(&engine, &wheel, limit, &force, harmonics, own);
         let mut reference = self.reference(harmonics, contact);
         let mut worst = 0.0_f64;

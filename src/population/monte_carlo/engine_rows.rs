@@ -7,12 +7,12 @@ use super::{ResponseRow, RowSolver, Scenario, TunedReference, harmonics_name};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
     ContactCondition, EngineRow, FrequencyBand, LinearPeak, Peak, SearchPlan, Window,
-    mistuned_window, receptance_curve, receptance_errors, receptance_peak, receptance_plan,
-    receptance_state, tuned_span_of,
+    linear_peaks_of, mistuned_window, receptance_curve, receptance_errors, receptance_peak,
+    receptance_plan, receptance_state, tuned_span_of,
 };
 use crate::response::harmonic_balance::{PairContact, Status, TransformError};
 use crate::response::mistuning::{ContactFactors, Pattern};
-use crate::response::receptance::{EngineWheel, Limit, ReceptanceEngine, WaveForce};
+use crate::response::receptance::{EngineWheel, ReceptanceEngine, WaveForce};
 
 use super::curves::CurveResult;
 use super::wheel_state::WheelState;
@@ -103,9 +103,9 @@ impl RowSolver {
         let Some(row) = self.on_engine(None, engine_order, condition) else {
             return Vec::new();
         };
-        let limits = Limit::bounding(condition).into_iter();
+        let limits = condition.bounding_limits().into_iter();
         limits
-            .map(|limit| row.engine.tuned_peaks(limit, row.force))
+            .map(|limit| linear_peaks_of(row.engine.tuned_peaks(limit, row.force)))
             .collect()
     }
 

@@ -18,7 +18,8 @@ use crate::response::harmonic_balance::{
     ContactInterface, ContactShares, HarmonicTransform, PairContact, Status, WheelContact,
 };
 use crate::response::receptance::{
-    EngineWheel, Limit, ReceptanceEngine, WaveForce, WheelSolution, WheelSolver, embedded,
+    EngineWheel, Limit, ReceptanceEngine, Resonance, WaveForce, WheelSolution, WheelSolver,
+    embedded,
 };
 
 /// Tolerance of the solutions that tell the errors of another one, over that of the peak, and its bounds.
@@ -38,13 +39,53 @@ pub struct EngineRow<'a> {
     pub condition: ContactCondition,
 }
 
+impl ContactCondition {
+    /// The linear limit whose springs a solution under the condition is built on.
+    #[must_use]
+    pub fn limit(self) -> Limit {
+        match self {
+            Self::Full { .. } | Self::Stuck => Limit::Stuck,
+            Self::Slide => Limit::Slide,
+            Self::Free => Limit::Free,
+        }
+    }
+
+    /// The linear limits that bound a solution under the condition, the stuck one first.
+    #[must_use]
+    pub fn bounding_limits(self) -> Vec<Limit> {
+        match self {
+            Self::Full { .. } => vec![Limit::Stuck, Limit::Slide],
+            other => vec![other.limit()],
+        }
+    }
+}
+
+impl From<Resonance> for LinearPeak {
+    fn from(resonance: Resonance) -> Self {
+        Self {
+            frequency_hz: resonance.frequency_hz,
+            amplitude_m: resonance.amplitude_m,
+            half_bandwidth_hz: resonance.half_bandwidth_hz,
+        }
+    }
+}
+
+/// Resonances as a search takes them.
+#[must_use]
+pub fn linear_peaks_of(resonances: Vec<Resonance>) -> Vec<LinearPeak> {
+    resonances.into_iter().map(LinearPeak::from).collect()
+}
+
 impl<'a> EngineRow<'a> {
     /// Resonances of the linear limits that bound the condition, the stuck one first; none if they are not found.
     #[must_use]
     pub fn linear_peaks(&self) -> Option<Vec<Vec<LinearPeak>>> {
-        let limits = Limit::bounding(self.condition).into_iter();
+        let limits = self.condition.bounding_limits().into_iter();
         limits
-            .map(|limit| self.engine.peaks(limit, self.wheel, self.force))
+            .map(|limit| {
+                let peaks = self.engine.peaks(limit, self.wheel, self.force)?;
+                Some(linear_peaks_of(peaks))
+            })
             .collect()
     }
 
@@ -57,7 +98,7 @@ impl<'a> EngineRow<'a> {
     ) -> WheelSolver<'a> {
         let contact = self.contact(settings, transform, in_place_of);
         let set: Vec<u32> = transform.harmonics().iter().map(|&k| k as u32).collect();
-        let limit = Limit::of(self.condition);
+        let limit = self.condition.limit();
         WheelSolver::new(self.engine, self.wheel, limit, self.force, &set, contact)
     }
 
@@ -68,7 +109,7 @@ impl<'a> EngineRow<'a> {
         transform: &Arc<HarmonicTransform>,
         in_place_of: Option<ContactLaw>,
     ) -> Option<WheelContact> {
-        let limit = Limit::of(self.condition);
+        let limit = self.condition.limit();
         let springs = self.engine.springs(limit);
         let varied = !settings.factors.is_nominal() && !springs.is_empty();
         let load_n = self.condition.normal_load_n();

@@ -1,4 +1,4 @@
-//! What every contact pair does over the period of a solution: stick, slip, separate, and how long.
+//! What every contact pair does over the period of a solution: stick, slip, separate, how long, and its mean friction.
 
 use super::{HarmonicSystem, SystemWorkspace};
 
@@ -56,5 +56,43 @@ impl HarmonicSystem {
                 }
             })
             .collect()
+    }
+
+    /// Mean friction force on the ring at `x` per sector, N, averaged over the sectors: along theta
+    /// (the torque over the mean contact radius) and along z, see
+    /// [`crate::model::cyclic::ContactGeometry::ring_motion`].
+    ///
+    /// It is caused by the displacements without their tangential means; a ring that is locked
+    /// against rotation and axial motion hands it on to what locks it.
+    #[must_use]
+    pub fn mean_friction_n(&self, x: &[f64], workspace: &mut SystemWorkspace) -> [f64; 2] {
+        if workspace.active.is_empty() {
+            return [0.0; 2];
+        }
+        self.contact_displacement(x, &mut workspace.displacement);
+        self.mean_friction_at(workspace)
+    }
+
+    /// [`Self::mean_friction_n`] at the motions of the workspace.
+    pub(super) fn mean_friction_at(&self, workspace: &mut SystemWorkspace) -> [f64; 2] {
+        let per_sector = self.interface.per_sector();
+        let count = workspace.active.len();
+        let mut sum = [0.0; 2];
+        for pair in 0..count {
+            self.gather_pair(pair, workspace);
+            workspace.pairs.evaluate(
+                self.interface.pair(pair),
+                &workspace.pair_input,
+                &mut workspace.pair_output,
+                None,
+            );
+            let friction = workspace.pairs.history().mean_friction_n();
+            let motions = &self.interface.geometry.ring_motion[pair % per_sector];
+            for (sum, motion) in sum.iter_mut().zip(motions) {
+                *sum += motion[0] * friction[0] + motion[1] * friction[1];
+            }
+        }
+        let sectors = (count / per_sector.max(1)) as f64;
+        sum.map(|sum| sum / sectors)
     }
 }

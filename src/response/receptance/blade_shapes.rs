@@ -8,7 +8,8 @@
 use crate::linalg::{Complex64, Matrix, hermitian_eigen};
 use crate::model::ReducedModel;
 
-use super::tuned_wheel::{TunedDiameter, WaveForce};
+use super::tuned_wheel::TunedDiameter;
+use super::wave_force::WaveForce;
 
 /// Strain coordinates kept at most.
 const COORDINATES: usize = 64;

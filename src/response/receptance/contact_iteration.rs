@@ -16,8 +16,10 @@ use crate::linalg::Complex64;
 use crate::response::harmonic_balance::{ContactShares, Status, WheelContact};
 
 use super::acceleration::Acceleration;
+use super::fields::{
+    Field, SectorTransform, flatten, norm_squared, padded, returned, turned, unflatten,
+};
 use super::krylov;
-use super::sector_waves::{Field, SectorTransform, padded};
 use super::wheel_harmonic::{Preconditioner, WheelHarmonic};
 
 /// Earlier steps that are combined.
@@ -450,47 +452,6 @@ impl Outcome {
             tangents: self.tangents + next.tangents,
             retries: self.retries + u64::from(rung > 0),
             ..next
-        }
-    }
-}
-
-/// Sector after sector, in it row after row, from row after row of padded sectors.
-fn turned(from: &[f64], stride: usize, rows: usize, to: &mut [f64]) {
-    for (row, own) in from.chunks_exact(stride).enumerate() {
-        for (to, value) in to[row..].iter_mut().step_by(rows).zip(own) {
-            *to = *value;
-        }
-    }
-}
-
-/// The way back of [`turned`].
-fn returned(from: &[f64], stride: usize, rows: usize, to: &mut [f64]) {
-    for (row, own) in to.chunks_exact_mut(stride).enumerate() {
-        for (to, value) in own.iter_mut().zip(from[row..].iter().step_by(rows)) {
-            *to = *value;
-        }
-    }
-}
-
-fn norm_squared(field: &Field) -> f64 {
-    crate::linalg::dot(&field.re, &field.re) + crate::linalg::dot(&field.im, &field.im)
-}
-
-fn flatten(fields: &[Field], factor: f64, flat: &mut Vec<f64>) {
-    flat.clear();
-    for field in fields {
-        let both = field.re.iter().chain(&field.im);
-        flat.extend(both.map(|value| factor * value));
-    }
-}
-
-pub(super) fn unflatten(flat: &[f64], fields: &mut [Field]) {
-    let mut from = 0;
-    for field in fields {
-        for part in [&mut field.re, &mut field.im] {
-            let count = part.len();
-            part.copy_from_slice(&flat[from..from + count]);
-            from += count;
         }
     }
 }

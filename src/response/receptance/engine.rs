@@ -7,17 +7,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::linalg::{Complex64, Matrix};
 use crate::model::ReducedModel;
-use crate::response::forced_response::{ContactCondition, FrequencyBand, LinearPeak};
+use crate::model::cyclic::NodalDiameter;
 use crate::response::harmonic_balance::Damping;
 use crate::response::mistuning::{Deviations, Pattern, Projection};
 
 use super::blade_shapes::{
     Participation, ShapesWanted, blade_shapes, in_cantilever_modes, in_shapes, strain_coordinates,
 };
-use super::resonances::{BandModes, MistunedModes};
-use super::sector_waves::SectorTransform;
+use super::fields::SectorTransform;
+use super::resonances::{BandModes, MistunedModes, Resonance};
 use super::tables::Receptances;
-use super::tuned_wheel::{TunedDiameter, WaveForce, tuned_diameters};
+use super::tuned_wheel::TunedDiameter;
+use super::wave_force::WaveForce;
 
 /// Blade shapes of harmonic 1, and of every other one.
 const SHAPES: [usize; 2] = [3, 2];
@@ -70,8 +71,8 @@ pub struct EngineOptions {
     pub forces: Vec<WaveForce>,
     /// Largest deviation of a blade that is expected.
     pub deviation: f64,
-    /// The band that the study asks for.
-    pub band: FrequencyBand,
+    /// The band that is asked for, Hz; none for that of the resonances.
+    pub band_hz: Option<(f64, f64)>,
     /// Factor on the number of blade shapes, 1 for rows.
     pub more_shapes: usize,
 }
@@ -121,27 +122,6 @@ pub enum Limit {
     Slide,
     /// No springs.
     Free,
-}
-
-impl Limit {
-    /// The condition whose springs a solution is built on.
-    #[must_use]
-    pub fn of(condition: ContactCondition) -> Self {
-        match condition {
-            ContactCondition::Full { .. } | ContactCondition::Stuck => Self::Stuck,
-            ContactCondition::Slide => Self::Slide,
-            ContactCondition::Free => Self::Free,
-        }
-    }
-
-    /// The conditions that bound a solution under `condition`.
-    #[must_use]
-    pub fn bounding(condition: ContactCondition) -> Vec<Self> {
-        match condition {
-            ContactCondition::Full { .. } => vec![Self::Stuck, Self::Slide],
-            _ => vec![Self::of(condition)],
-        }
-    }
 }
 
 /// Highest harmonic of a solution that an engine has tables for.
@@ -240,7 +220,7 @@ impl ReceptanceEngine {
 
     /// Resonances of the tuned wheel under a limit and an excitation, ascending.
     #[must_use]
-    pub fn tuned_peaks(&self, limit: Limit, force: &WaveForce) -> Vec<LinearPeak> {
+    pub fn tuned_peaks(&self, limit: Limit, force: &WaveForce) -> Vec<Resonance> {
         let pencil = self.pencil(limit);
         let modes = pencil.modes.as_ref();
         modes.map_or_else(Vec::new, |modes| {
@@ -255,7 +235,7 @@ impl ReceptanceEngine {
         limit: Limit,
         wheel: &EngineWheel,
         force: &WaveForce,
-    ) -> Option<Vec<LinearPeak>> {
+    ) -> Option<Vec<Resonance>> {
         let pencil = self.pencil(limit);
         let modes = pencil.modes.as_ref()?;
         let place = match limit {
@@ -349,6 +329,26 @@ impl Pencil {
     }
 }
 
+/// The nodal diameters of a wheel, 0..=N/2, with springs at the contact; none if their modes are not found.
+fn tuned_diameters(
+    model: &ReducedModel,
+    springs: &[f64],
+    damping: Damping,
+) -> Option<Vec<TunedDiameter>> {
+    let acts = springs.iter().any(|&spring| spring != 0.0);
+    let springs = if acts { springs } else { &[] };
+    (0..=model.sectors / 2)
+        .map(|index| {
+            let wave = model.wave(NodalDiameter {
+                index,
+                conjugate: false,
+            });
+            let waves = if model.is_standing(index) { 1 } else { 2 };
+            TunedDiameter::new(&wave, springs, damping, waves)
+        })
+        .collect()
+}
+
 /// The tuned wheel under stuck springs, under sliding ones, and without.
 fn under_limits(model: &ReducedModel, damping: Damping) -> Option<[Vec<TunedDiameter>; 3]> {
     Some([
@@ -364,17 +364,14 @@ fn band(
     sectors: usize,
     options: &EngineOptions,
 ) -> (f64, f64) {
-    match (
-        options.band,
-        tuned_span(diameters, sectors, &options.forces),
-    ) {
-        (FrequencyBand::Fixed { start_hz, stop_hz }, _) => (TAU * start_hz, TAU * stop_hz),
-        (FrequencyBand::Auto, Some((low, high))) => {
-            let share = 0.6 * options.deviation + 0.05;
-            (low * (1.0 - share), high * (1.0 + share))
-        }
-        (FrequencyBand::Auto, None) => (0.0, 0.0),
+    if let Some((start_hz, stop_hz)) = options.band_hz {
+        return (TAU * start_hz, TAU * stop_hz);
     }
+    let span = tuned_span(diameters, sectors, &options.forces);
+    span.map_or((0.0, 0.0), |(low, high)| {
+        let share = 0.6 * options.deviation + 0.05;
+        (low * (1.0 - share), high * (1.0 + share))
+    })
 }
 
 /// Lowest and highest angular frequency of the resonances that count, over all excitations and linear conditions.
@@ -402,7 +399,7 @@ fn tuned_span(
                 .iter()
                 .map(|peak| peak.amplitude_m)
                 .fold(0.0, f64::max);
-            let count = |peak: &&LinearPeak| peak.amplitude_m > COUNTS * highest;
+            let count = |peak: &&Resonance| peak.amplitude_m > COUNTS * highest;
             for omega in peaks
                 .iter()
                 .filter(count)

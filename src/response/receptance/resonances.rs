@@ -6,10 +6,21 @@ use std::f64::consts::TAU;
 
 use crate::linalg::{Complex64, Matrix, hermitian_eigen};
 use crate::model::cyclic::phase;
-use crate::response::forced_response::LinearPeak;
 
 use super::blade_shapes::Participation;
-use super::tuned_wheel::{TunedDiameter, WaveForce};
+use super::tuned_wheel::TunedDiameter;
+use super::wave_force::WaveForce;
+
+/// One resonance under one excitation, by its own mode alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resonance {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Largest amplitude over the blades, m.
+    pub amplitude_m: f64,
+    /// Half of the bandwidth at -3 dB, Hz.
+    pub half_bandwidth_hz: f64,
+}
 
 /// The modes of a tuned wheel with linear springs in a band, those of all waves.
 #[derive(Debug)]
@@ -112,7 +123,7 @@ impl BandModes {
         diameters: &[TunedDiameter],
         wheel: &MistunedModes,
         force: &WaveForce,
-    ) -> Vec<LinearPeak> {
+    ) -> Vec<Resonance> {
         let drives: Vec<Complex64> = self
             .modes
             .iter()
@@ -143,7 +154,7 @@ impl BandModes {
         &self,
         diameters: &[TunedDiameter],
         force: &WaveForce,
-    ) -> Vec<LinearPeak> {
+    ) -> Vec<Resonance> {
         let wave = force.wave(self.sectors);
         let modes = self.modes.iter().filter(|mode| mode.wave == wave);
         modes
@@ -161,9 +172,9 @@ impl BandModes {
             .collect()
     }
 
-    fn peak(eigenvalue: f64, drive: f64, damping: f64, reach: f64) -> LinearPeak {
+    fn peak(eigenvalue: f64, drive: f64, damping: f64, reach: f64) -> Resonance {
         let omega = eigenvalue.sqrt();
-        LinearPeak {
+        Resonance {
             frequency_hz: omega / TAU,
             amplitude_m: if damping > 0.0 {
                 reach * drive / damping

@@ -16,8 +16,9 @@ use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 use crate::linalg::{Complex64, Loops, Matrix, vectorized};
 
 use super::blade_shapes::Participation;
-use super::sector_waves::{LANES, WaveMatrix};
+use super::fields::LANES;
 use super::tuned_wheel::{Pole, TunedDiameter};
+use super::wave_matrix::WaveMatrix;
 
 /// Panels of an octave.
 const PANELS: f64 = 16.0;

@@ -14,8 +14,7 @@
 //! ```
 
 use crate::linalg::{Complex64, LuWorkspace, Matrix, hermitian_eigen};
-use crate::model::cyclic::{NodalDiameter, nodal_diameter_of};
-use crate::model::{ReducedModel, ReducedNodalDiameter};
+use crate::model::ReducedNodalDiameter;
 use crate::response::harmonic_balance::Damping;
 
 /// Steps of the iteration for a pole at most.
@@ -360,60 +359,9 @@ impl TunedDiameter {
     }
 }
 
-/// A travelling excitation of the wheel, in the contact-free modes of its wave.
-#[derive(Debug, Clone)]
-pub struct WaveForce {
-    pub(super) diameter: NodalDiameter,
-    /// Amplitude of the wave, `sqrt(N)` times the modal force of a sector.
-    pub(super) modal: Vec<Complex64>,
-}
-
-impl WaveForce {
-    /// The excitation of an engine order on `model`, its force vector times `amplitude_n`.
-    #[must_use]
-    pub fn new(model: &ReducedModel, engine_order: u32, amplitude_n: f64) -> Self {
-        let diameter = nodal_diameter_of(1, engine_order, model.sectors);
-        let scale = amplitude_n * model.force_factor(engine_order) * (model.sectors as f64).sqrt();
-        let force = model.wave(diameter).force;
-        Self {
-            diameter,
-            modal: force.column(0).iter().map(|f| f * scale).collect(),
-        }
-    }
-
-    /// Place of the wave among the N of the wheel.
-    pub(super) fn wave(&self, sectors: usize) -> usize {
-        if self.diameter.conjugate {
-            sectors - self.diameter.index
-        } else {
-            self.diameter.index
-        }
-    }
-}
-
 /// `y^H x`.
 fn product(left: &[Complex64], right: &[Complex64]) -> Complex64 {
     left.iter().zip(right).map(|(y, x)| y.conj() * x).sum()
-}
-
-/// The nodal diameters of a wheel, 0..=N/2, with springs at the contact; none if their modes are not found.
-pub(super) fn tuned_diameters(
-    model: &ReducedModel,
-    springs: &[f64],
-    damping: Damping,
-) -> Option<Vec<TunedDiameter>> {
-    let acts = springs.iter().any(|&spring| spring != 0.0);
-    let springs = if acts { springs } else { &[] };
-    (0..=model.sectors / 2)
-        .map(|index| {
-            let wave = model.wave(NodalDiameter {
-                index,
-                conjugate: false,
-            });
-            let waves = if model.is_standing(index) { 1 } else { 2 };
-            TunedDiameter::new(&wave, springs, damping, waves)
-        })
-        .collect()
 }
 
 #[cfg(test)]

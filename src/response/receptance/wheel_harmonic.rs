@@ -11,7 +11,8 @@
 use crate::linalg::{Complex64, LuWorkspace};
 use crate::response::harmonic_balance::MeanTangent;
 
-use super::sector_waves::{Field, SectorTransform, WaveMatrix, padded};
+use super::fields::{Field, SectorTransform, padded};
+use super::wave_matrix::WaveMatrix;
 
 /// One harmonic of a mistuned wheel; fields are over the waves unless said otherwise.
 pub(super) struct WheelHarmonic {

@@ -7,8 +7,8 @@ use crate::response::harmonic_balance::{ContactShares, PairContact, Status, Whee
 
 use super::contact_iteration::{Buffers, ContactEquation, angular, damped};
 use super::engine::{EngineWheel, Limit, ReceptanceEngine};
-use super::sector_waves::Field;
-use super::tuned_wheel::WaveForce;
+use super::fields::Field;
+use super::wave_force::WaveForce;
 use super::wheel_harmonic::WheelHarmonic;
 
 /// Solves one wheel at one frequency after the other; buffers are kept.
