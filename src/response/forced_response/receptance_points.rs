@@ -250,8 +250,9 @@ impl PointSource for ReceptancePoints<'_> {
         self.precision = share;
     }
 
-    fn mean_friction_n(&mut self, _point: &Point) -> Option<[f64; 2]> {
-        self.solver.mean_friction_n().filter(|_| self.is_nonlinear)
+    fn mean_friction_n(&mut self, point: &Point) -> Option<[f64; 2]> {
+        let force = self.solver.mean_friction_n(&point.solution);
+        force.filter(|_| self.is_nonlinear)
     }
 
     fn work(&self) -> Work {

@@ -269,8 +269,14 @@ impl ContactEquation<'_> {
             .collect()
     }
 
-    /// Residual at the motions, relative to them, with the derivative of the contact where that is wanted.
-    pub(super) fn residual(&mut self, derivative: bool) -> (f64, ContactShares) {
+    /// Gives the contact the motions, which may be those of an earlier solution.
+    pub(super) fn place(&mut self, motions: &[f64]) {
+        unflatten(motions, &mut self.buffers.motions);
+        self.give_motions();
+    }
+
+    /// Gives the contact the motions of every sector.
+    fn give_motions(&mut self) {
         let sectors = self.transform.sectors();
         let rows = self.contact.sector_rows();
         let set = self.contact.transform().harmonics().to_vec();
@@ -293,6 +299,14 @@ impl ContactEquation<'_> {
                 coefficient += 1;
             }
         }
+    }
+
+    /// Residual at the motions, relative to them, with the derivative of the contact where that is wanted.
+    fn residual(&mut self, derivative: bool) -> (f64, ContactShares) {
+        let sectors = self.transform.sectors();
+        let rows = self.contact.sector_rows();
+        let set = self.contact.transform().harmonics().to_vec();
+        self.give_motions();
         let shares = self.contact.evaluate(derivative);
         let mut coefficient = 0;
         let mut square = 0.0;

@@ -227,8 +227,9 @@ impl<'a> WheelSolver<'a> {
             .collect()
     }
 
-    /// Mean friction force on the ring at the solution last solved, N per sector; none for a linear limit.
-    pub fn mean_friction_n(&mut self) -> Option<[f64; 2]> {
+    /// Mean friction force on the ring at the motions of a solution, N per sector; none for a linear limit.
+    pub fn mean_friction_n(&mut self, motions: &[f64]) -> Option<[f64; 2]> {
+        self.equation()?.place(motions);
         Some(self.contact.as_mut()?.mean_friction_n())
     }
 
