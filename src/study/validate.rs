@@ -14,8 +14,9 @@ use super::validate_stop::stop;
 use super::{Finding, ModelSource, OutputOptions, Problem, RotationOptions, Study, StudyError};
 use crate::input::SourceMap;
 use crate::model::reduction::{Basis, ReductionOptions};
-use crate::response::forced_response::{HigherHarmonics, SolverOptions};
+use crate::response::forced_response::{Harmonics, HigherHarmonics, SolverOptions};
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
+use crate::response::receptance::HIGHEST_HARMONIC;
 
 /// Version of the study file.
 pub(super) const SCHEMA: u64 = 1;
@@ -415,6 +416,16 @@ fn tuned_receptances(
             "contact.ring",
             "basis = \"tuned_receptances\" is solved with a locked ring only; accepted: \"locked\", or another basis",
         );
+    }
+    if let Harmonics::Set(set) = &solver.harmonics
+        && set
+            .last()
+            .is_some_and(|&highest| highest > HIGHEST_HARMONIC)
+    {
+        let reason = format!(
+            "basis = \"tuned_receptances\" has harmonics up to {HIGHEST_HARMONIC}; accepted: these, or another basis"
+        );
+        check.conflict("solver.harmonics", &reason);
     }
     if solver.higher_harmonics == HigherHarmonics::Tuned {
         check.conflict(

@@ -448,6 +448,11 @@ pub const CASES: &[Case] = &[
     ),
     (
         "[1, 3]",
+        "[1, 65]\nsamples_per_period = 512\n[reduction]\nbasis = \"tuned_receptances\"",
+        &["solver.harmonics", "harmonics up to 63"],
+    ),
+    (
+        "[1, 3]",
         "[1]\n[reduction]\nbasis = \"tuned_receptances\"\nstick_modes = 4",
         &["reduction.stick_modes", "neither stick_modes nor"],
     ),

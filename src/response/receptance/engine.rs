@@ -125,7 +125,7 @@ pub enum Limit {
 }
 
 /// Highest harmonic of a solution that an engine has tables for.
-const HIGHEST_HARMONIC: u32 = 63;
+pub const HIGHEST_HARMONIC: u32 = 63;
 /// Highest harmonic by whose motions strain coordinates are chosen.
 const HIGHEST_OF_SHAPES: u32 = 15;
 

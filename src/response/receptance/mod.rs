@@ -18,7 +18,9 @@ mod wave_matrix;
 mod wheel_harmonic;
 mod wheel_solver;
 
-pub use engine::{EngineModel, EngineOptions, EngineWheel, Limit, ReceptanceEngine};
+pub use engine::{
+    EngineModel, EngineOptions, EngineWheel, HIGHEST_HARMONIC, Limit, ReceptanceEngine,
+};
 pub use resonances::Resonance;
 pub use wave_force::WaveForce;
 pub use wheel_solver::{SolutionWork, WheelSolution, WheelSolver, embedded};
