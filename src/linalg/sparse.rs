@@ -91,12 +91,21 @@ impl HermitianSparse {
     /// Product with a dense matrix.
     #[must_use]
     pub fn times(&self, x: &Matrix<Complex64>) -> Matrix<Complex64> {
+        let mut y = Matrix::zeros(self.dimension(), x.columns());
+        if x.columns() <= 4 {
+            self.product_by::<4>(x, &mut y);
+        } else {
+            self.product_by::<8>(x, &mut y);
+        }
+        y
+    }
+
+    /// `y = self x`, so many columns at once, side by side, so that every entry of the matrix is read once for all of them.
+    fn product_by<const LANES: usize>(&self, x: &Matrix<Complex64>, y: &mut Matrix<Complex64>) {
         let n = self.dimension();
-        let mut y = Matrix::zeros(n, x.columns());
         let pattern = self.matrix.as_ref();
-        // Several columns at once, side by side, so that every entry of the matrix is read once for all of them.
-        let mut source = vec![Lanes::default(); n];
-        let mut target = vec![Lanes::default(); n];
+        let mut source = vec![Lanes::<LANES>::default(); n];
+        let mut target = vec![Lanes::<LANES>::default(); n];
         for first in (0..x.columns()).step_by(LANES) {
             let lanes = LANES.min(x.columns() - first);
             for lane in 0..lanes {
@@ -118,7 +127,6 @@ impl HermitianSparse {
                 }
             }
         }
-        y
     }
 
     /// Cholesky factorisation.
@@ -135,17 +143,23 @@ impl HermitianSparse {
     }
 }
 
-/// Columns of a dense matrix that a product takes at once.
-const LANES: usize = 8;
-
-/// One row of that many columns.
-#[derive(Clone, Copy, Default)]
-struct Lanes {
+/// One row of the columns of a dense matrix that a product takes at once.
+#[derive(Clone, Copy)]
+struct Lanes<const LANES: usize> {
     re: [f64; LANES],
     im: [f64; LANES],
 }
 
-impl Lanes {
+impl<const LANES: usize> Default for Lanes<LANES> {
+    fn default() -> Self {
+        Self {
+            re: [0.0; LANES],
+            im: [0.0; LANES],
+        }
+    }
+}
+
+impl<const LANES: usize> Lanes<LANES> {
     fn add_product(&mut self, factor: Complex64, x: &Self) {
         // Only what couples a sector to its neighbour is complex.
         if factor.im == 0.0 {
@@ -267,48 +281,60 @@ fn orthonormalise_against(
 ) -> Matrix<Complex64> {
     let mut block = block.clone();
     for _ in 0..2 {
-        if q.columns() > 0 {
-            let correction = q.times(&mq.adjoint_times(&block));
-            for (entry, &part) in block.as_mut_slice().iter_mut().zip(correction.as_slice()) {
-                *entry -= part;
-            }
-        }
+        let parts = mq.adjoint_times(&block);
+        subtract(&mut block, q, &parts);
     }
+    // A candidate and its product with M are changed alike, so that M is multiplied once for the whole block, and again only for
+    // a candidate of which little is left.
+    let m_block = m.times(&block);
     let mut kept = Matrix::zeros(block.rows(), 0);
     let mut m_kept = Matrix::zeros(block.rows(), 0);
     for column in 0..block.columns() {
         let mut candidate = block.column_range(column, column + 1);
-        let before = m_norm(&candidate, m);
+        let mut m_candidate = m_block.column_range(column, column + 1);
+        let before = norm(&candidate, &m_candidate);
         for _ in 0..2 {
             let inside = m_kept.adjoint_times(&candidate);
             let outside = mq.adjoint_times(&candidate);
-            for (basis, part) in [(&kept, &inside), (q, &outside)] {
-                if basis.columns() > 0 {
-                    let correction = basis.times(part);
-                    for (entry, &c) in candidate
-                        .as_mut_slice()
-                        .iter_mut()
-                        .zip(correction.as_slice())
-                    {
-                        *entry -= c;
-                    }
+            subtract(&mut candidate, &kept, &inside);
+            subtract(&mut candidate, q, &outside);
+            subtract(&mut m_candidate, &m_kept, &inside);
+            subtract(&mut m_candidate, mq, &outside);
+        }
+        if norm(&candidate, &m_candidate) < LITTLE * before {
+            m_candidate = m.times(&candidate);
+        }
+        let norm = norm(&candidate, &m_candidate);
+        if norm > 1e-10 * before && norm > 0.0 {
+            for vector in [&mut candidate, &mut m_candidate] {
+                for entry in vector.as_mut_slice() {
+                    *entry /= norm;
                 }
             }
-        }
-        let norm = m_norm(&candidate, m);
-        if norm > 1e-10 * before && norm > 0.0 {
-            for entry in candidate.as_mut_slice() {
-                *entry /= norm;
-            }
-            m_kept = m_kept.beside(&m.times(&candidate));
+            m_kept = m_kept.beside(&m_candidate);
             kept = kept.beside(&candidate);
         }
     }
     kept
 }
 
-fn m_norm(x: &Matrix<Complex64>, m: &HermitianSparse) -> f64 {
-    x.adjoint_times(&m.times(x))[(0, 0)].re.max(0.0).sqrt()
+/// Share of a vector's norm below which its product with M is made anew.
+const LITTLE: f64 = 1e-3;
+
+/// `x -= basis parts`.
+fn subtract(x: &mut Matrix<Complex64>, basis: &Matrix<Complex64>, parts: &Matrix<Complex64>) {
+    if basis.columns() == 0 {
+        return;
+    }
+    let part = basis.times(parts);
+    for (entry, &part) in x.as_mut_slice().iter_mut().zip(part.as_slice()) {
+        *entry -= part;
+    }
+}
+
+/// Norm of a vector in the inner product of M, given its product with M.
+fn norm(x: &Matrix<Complex64>, mx: &Matrix<Complex64>) -> f64 {
+    x.adjoint_times(mx)[(0, 0)].re.max(0.0).sqrt()
 }
 
 #[cfg(test)]

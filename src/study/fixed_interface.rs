@@ -121,6 +121,22 @@ pub fn reduction_of<'a>(
     }
 }
 
+/// The Craig-Bampton models of a study with so many fixed-interface modes; no nodal diameter is reduced yet.
+pub(super) fn reduction_with<'a>(
+    study: &Study,
+    sector: &'a SectorModel,
+    modes: usize,
+) -> Reduction<'a> {
+    Reduction::on_demand(
+        sector,
+        contact_stiffness(study.contact.as_ref()),
+        modes,
+        sensitivity_vectors(study),
+    )
+    .with_damping(study.added_damping())
+    .with_force_factors(study.force_factors())
+}
+
 /// One number of fixed-interface modes.
 struct Rung<'a> {
     modes: usize,
@@ -130,15 +146,10 @@ struct Rung<'a> {
 impl<'a> Rung<'a> {
     /// No nodal diameter is reduced yet.
     fn new(study: &Study, sector: &'a SectorModel, modes: usize) -> Self {
-        let reduction = Reduction::on_demand(
-            sector,
-            contact_stiffness(study.contact.as_ref()),
+        Self {
             modes,
-            sensitivity_vectors(study),
-        )
-        .with_damping(study.added_damping())
-        .with_force_factors(study.force_factors());
-        Self { modes, reduction }
+            reduction: reduction_with(study, sector, modes),
+        }
     }
 
     fn more_modes(&self) -> usize {

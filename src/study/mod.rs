@@ -43,6 +43,7 @@ mod pipeline_rows;
 mod pipeline_tables;
 mod plan;
 mod raw;
+mod receptance_choice;
 mod reduced_engine;
 mod reduced_study;
 mod repair;

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::accurate_engine::accurate_engine;
 use super::basis_choice::BasisEvidence;
 use super::fixed_interface::{FixedInterface, reduce_sector, sensitivity_vectors};
-use super::reduced_study::{Stored, models_digest, reduced, solver_of};
+use super::reduced_study::{Stored, models_digest, reduced, reduced_on_receptances, solver_of};
 use super::{Engine, EngineSource, PipelineError, Study, SurrogateOf};
 use crate::model::reduction::ContactStiffness;
 use crate::model::sector::SectorModel;
@@ -81,8 +81,12 @@ impl EngineSource for ReducedEngineSource {
         let stored = if let Some(stored) = cached.filter(|stored| stored.fits(study, model)) {
             stored
         } else {
-            let (reduction, fixed_interface) = reduce_sector(study, model)?;
-            let stored = reduced(study, &reduction, fixed_interface)?;
+            let stored = if study.is_on_receptances(model) {
+                reduced_on_receptances(study, model)?
+            } else {
+                let (reduction, fixed_interface) = reduce_sector(study, model)?;
+                reduced(study, &reduction, fixed_interface)?
+            };
             if let Some(folder) = cache {
                 write_cached(folder, &digest, &stored)?;
             }

@@ -10,9 +10,11 @@ use super::basis_choice::{
 use super::fixed_interface::FixedInterface;
 use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::load_cases::{Excitation, solver_under};
+use super::receptance_choice::Judges;
 use super::reduced_engine::row_settings;
+use super::sector_model::judging_patterns;
 use super::tuned_receptances::{
-    COMPANION_MODES, engine_of, engine_options, no_modes, shape_evidence,
+    COMPANION_MODES, Refined, engine_of, engine_options, refined, shape_evidence,
 };
 use super::{PipelineError, Study};
 use crate::model::ReducedModel;
@@ -20,7 +22,7 @@ use crate::model::reduction::{Basis, BasisChoice, Reduction, ReductionOptions};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
 use crate::response::forced_response::{Harmonics, HigherHarmonics, RowsBeyondTolerance};
-use crate::response::receptance::EngineModel;
+use crate::response::receptance::{EngineModel, ReceptanceEngine};
 
 /// Share of the harmonic tolerance by which the set for rows beyond it is chosen.
 const BEYOND_TOLERANCE: f64 = 0.25;
@@ -37,6 +39,9 @@ pub(super) struct Stored {
     tuned_harmonics: Option<ReducedModel>,
     /// What rows are solved on in the place of a basis, where the study asks for it.
     engine: Option<EngineModel>,
+    /// The engine itself, where it was made a moment ago.
+    #[serde(skip)]
+    receptances: Option<Arc<ReceptanceEngine>>,
 }
 
 impl Stored {
@@ -149,19 +154,6 @@ pub(super) fn reduced(
         .contact
         .as_ref()
         .is_some_and(|contact| contact.law.has_variable_load());
-    if study.reduction.basis == Basis::TunedReceptances {
-        let further = match (resolves, automatic && separates) {
-            (true, _) => Some(sets(tolerance.map(|own| BEYOND_TOLERANCE * own))?),
-            (false, true) => Some(harmonics.clone()),
-            (false, false) => None,
-        };
-        let further = match further.filter(|_| study.has_friction()) {
-            Some(sets) if separates => Some(admitting_separation(&cases, sets)?),
-            further => further,
-        };
-        let sets = [Some(harmonics), further].map(|sets| sets.map(|sets| sets.concat()));
-        return on_receptances(study, reduction, fixed_interface, &excitations, sets);
-    }
     let (choice, evidence) = basis(&study.reduction, &harmonics)?;
     let follows = study.reduction.basis == Basis::Auto && study.reduction.stick_modes.is_none();
     let by_modes = matches!(choice, BasisChoice::StickSlide { .. }) && follows;
@@ -203,6 +195,7 @@ pub(super) fn reduced(
             .then(|| reduction.tuned(BasisChoice::CraigBampton))
             .transpose()?,
         engine: None,
+        receptances: None,
     })
 }
 
@@ -213,22 +206,53 @@ fn admitting_separation(cases: &[Case<'_>], sets: Vec<Sets>) -> Result<Vec<Sets>
         .collect()
 }
 
-/// What rows on tuned receptances are solved on, with the harmonic sets of the rows and those of rows beyond them; a small companion
-/// model besides, for what is not solved there.
-fn on_receptances(
+/// What rows on tuned receptances are solved on: fixed-interface modes and harmonics by the tuned wheel and some mistuned ones, and a
+/// small companion model besides, for what is not solved there.
+pub(super) fn reduced_on_receptances(
     study: &Study,
-    reduction: &Reduction<'_>,
-    fixed_interface: FixedInterface,
-    excitations: &[Excitation],
-    [harmonics, further]: [Option<Sets>; 2],
+    sector: &SectorModel,
 ) -> Result<Stored, PipelineError> {
+    let excitations = study.excitations();
+    let patterns = judging_patterns(study, sector)?;
+    let automatic = study.solver.harmonics == Harmonics::Auto;
+    let tolerance = automatic.then_some(study.solver.harmonic_tolerance);
+    let first = row_settings(study).harmonics;
+    let Refined {
+        reduction,
+        engine,
+        fixed_interface,
+        harmonics,
+    } = refined(study, sector, &excitations, &patterns, |judges| {
+        judges.harmonics(&study.contacts, &first, tolerance)
+    })?;
+    let resolves = automatic && study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
+    let separates = automatic
+        && study
+            .contact
+            .as_ref()
+            .is_some_and(|contact| contact.law.has_variable_load());
+    let judges = engine.judges(&excitations, &patterns);
+    let further = |(judges, own): (&Judges<'_>, &Sets)| {
+        let sets = if resolves {
+            let larger = tolerance.map(|own| BEYOND_TOLERANCE * own);
+            judges.harmonics(&study.contacts, &first, larger)?
+        } else {
+            own.clone()
+        };
+        if separates {
+            judges.admitting_separation(sets)
+        } else {
+            Ok(sets)
+        }
+    };
+    let beyond = (study.has_friction() && (resolves || separates))
+        .then(|| judges.iter().zip(&harmonics).map(further).collect());
+    let beyond: Option<Vec<Sets>> = beyond.transpose()?;
+    drop(judges);
+    let evidence = shape_evidence(study, &engine, &excitations)?;
     let modes = study.mistuning.cantilever_mode_count;
-    let own = reduction.reduce(BasisChoice::CraigBampton, modes)?;
-    let options = engine_options(study, excitations, &own);
-    let engine = EngineModel::new(&own, &options).ok_or_else(no_modes)?;
-    let evidence = shape_evidence(study, &engine, &options)?;
     let model = if reduction.is_whole_space() {
-        own
+        engine.own.model.clone()
     } else {
         let choice = BasisChoice::StickSlide {
             stick: COMPANION_MODES,
@@ -236,19 +260,19 @@ fn on_receptances(
         };
         reduction.reduce(choice, modes)?
     };
-    let beyond = further.map(|harmonics| StoredBeyond {
-        model: model.clone(),
-        basis_error: basis_error(&evidence),
-        harmonics,
-    });
     Ok(Stored {
+        beyond: beyond.map(|harmonics| StoredBeyond {
+            model: model.clone(),
+            basis_error: basis_error(&evidence),
+            harmonics: harmonics.concat(),
+        }),
         model,
         evidence,
         fixed_interface,
-        harmonics: harmonics.unwrap_or_default(),
-        beyond,
+        harmonics: harmonics.concat(),
         tuned_harmonics: None,
-        engine: Some(engine),
+        engine: Some(engine.own),
+        receptances: Some(engine.receptances),
     })
 }
 
@@ -279,8 +303,11 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Pip
     let mut first = 0;
     let excitations = study.excitations();
     let engine = stored.engine.as_ref().map(|own| {
-        let options = engine_options(study, &excitations, &own.model);
-        Ok::<_, PipelineError>((own, engine_of(own, &options)?))
+        let made = stored.receptances.clone().map(Ok);
+        let engine = made.unwrap_or_else(|| {
+            engine_of(own, &engine_options(study, &excitations, &own.model))
+        });
+        Ok::<_, PipelineError>((own, engine?))
     });
     let engine = engine.transpose()?;
     solver_under(&excitations, |case| {

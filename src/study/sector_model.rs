@@ -5,7 +5,7 @@ use crate::model::cyclic::ring_free;
 use crate::model::sector::{ModelError, SectorModel, bundle, lumped, parametric};
 use crate::response::forced_response::ContactCondition;
 use crate::response::friction::{ContactOptions, Ring};
-use crate::response::mistuning::{ContactSource, PatternSource};
+use crate::response::mistuning::{ContactSource, Pattern, PatternSource};
 
 /// Loads and validates the sector model of `study`.
 ///
@@ -67,6 +67,36 @@ pub fn pattern_source(study: &Study, model: &SectorModel) -> Result<PatternSourc
     })
 }
 
+/// Mistuned wheels by which the settings of `study` are chosen: of its law, but none of its population, or the first of its file.
+///
+/// # Errors
+/// The file of patterns does not fit to the wheel.
+pub(super) fn judging_patterns(
+    study: &Study,
+    model: &SectorModel,
+) -> Result<Vec<Pattern>, StudyError> {
+    let (source, ids): (PatternSource, Vec<u32>) = match &study.mistuning.source {
+        MistuningSource::Law(_) => {
+            let all = Study {
+                patterns: u32::MAX,
+                ..study.clone()
+            };
+            let last = u32::MAX - JUDGING_PATTERNS;
+            (pattern_source(&all, model)?, (last..u32::MAX).collect())
+        }
+        MistuningSource::File { .. } => {
+            let source = pattern_source(study, model)?;
+            let mut ids = source.ids();
+            ids.truncate(JUDGING_PATTERNS as usize);
+            (source, ids)
+        }
+    };
+    let sigma = study.standard_deviations.iter().flatten().copied();
+    let sigma = sigma.reduce(f64::max);
+    let patterns = ids.into_iter().filter_map(|id| source.pattern(id, sigma));
+    Ok(patterns.collect())
+}
+
 /// A refused option is a mistake of the study file, which has its line.
 fn refused(study: &Study, error: ModelError) -> StudyError {
     match error {
@@ -84,6 +114,9 @@ fn refused(study: &Study, error: ModelError) -> StudyError {
         error => StudyError::Model(Box::new(error)),
     }
 }
+
+/// Mistuned wheels by which settings are chosen.
+const JUDGING_PATTERNS: u32 = 3;
 
 fn check_contact(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
     let finding = |key: &str, problem: Problem| {

@@ -4,18 +4,23 @@ use std::sync::Arc;
 
 use super::PipelineError;
 use super::Study;
-use super::basis_choice::{BasisError, BasisEvidence};
-use super::fixed_interface::expected_deviation;
+use super::basis_choice::{BasisError, BasisEvidence, judged_conditions};
+use super::fixed_interface::{FixedInterface, ModesTried, expected_deviation, reduction_with};
 use super::load_cases::Excitation;
+use super::receptance_choice::Judges;
 use crate::model::ReducedModel;
-use crate::model::sector::{ModelError, StiffnessKind};
+use crate::model::reduction::{Basis, BasisChoice, Reduction};
+use crate::model::sector::{ModelError, SectorModel, StiffnessKind};
+use crate::population::monte_carlo::HarmonicChoice;
 use crate::response::forced_response::{
-    ContactCondition, EngineRow, FrequencyBand, PointSettings, Window, receptance_peak,
+    ContactCondition, EngineRow, FrequencyBand, Harmonics, HigherHarmonics, PointSettings, Window,
+    receptance_peak,
 };
+use crate::response::friction::Ring;
 use crate::response::harmonic_balance::TransformError;
 use crate::response::mistuning::{Distribution, Pattern, PatternSource};
 use crate::response::receptance::{
-    EngineModel, EngineOptions, EngineWheel, Limit, ReceptanceEngine, WaveForce,
+    EngineModel, EngineOptions, EngineWheel, HIGHEST_HARMONIC, Limit, ReceptanceEngine, WaveForce,
 };
 
 /// Standard deviations that a blade deviates by at most, for the choice of its shapes.
@@ -26,8 +31,44 @@ const WHEELS: u32 = 4;
 const SEED: u64 = 0x0062_6c69_736b;
 /// Relative tolerance of their peaks.
 const PEAK_TOLERANCE: f64 = 1e-5;
+/// Sectors of so many dofs are solved in all of them.
+const WHOLE_SPACE: usize = 40;
+/// Fixed-interface modes per nodal diameter that are tried first.
+const FIRST_MODES: usize = 80;
+/// Modes from which on none are added without being asked for.
+const MOST_MODES: usize = 320;
+/// Error of as many modes as the study says, over what twice as many change.
+const FIXED_MARGIN: f64 = 1.5;
 /// Modes of the companion model of each kind.
 pub(super) const COMPANION_MODES: usize = 4;
+
+impl Study {
+    /// Whether rows are solved on tuned receptances: where the study says so, and by default wherever that is possible and a sector is
+    /// not so small that its whole space is cheaper.
+    #[must_use]
+    pub(super) fn is_on_receptances(&self, sector: &SectorModel) -> bool {
+        let possible = || {
+            let creeps = self
+                .contact
+                .as_ref()
+                .is_some_and(|contact| contact.ring == Ring::Creeping);
+            let beyond = match &self.solver.harmonics {
+                Harmonics::Set(set) => set.iter().any(|&k| k > HIGHEST_HARMONIC),
+                Harmonics::Auto => false,
+            };
+            !creeps
+                && !beyond
+                && self.solver.higher_harmonics == HigherHarmonics::Mistuned
+                && !sector.contact_pairs.is_empty()
+                && sector.dofs.len() > WHOLE_SPACE
+        };
+        match self.reduction.basis {
+            Basis::TunedReceptances => true,
+            Basis::Auto => possible(),
+            Basis::StickSlide | Basis::StickPartialSlide | Basis::StickAttachment => false,
+        }
+    }
+}
 
 /// What the engine of a study is made for.
 pub(super) fn engine_options(
@@ -74,21 +115,125 @@ pub(super) fn no_modes() -> ModelError {
     }
 }
 
+/// An engine with what it was made of.
+pub(super) struct Made {
+    pub(super) own: EngineModel,
+    pub(super) receptances: Arc<ReceptanceEngine>,
+}
+
+impl Made {
+    fn new(
+        study: &Study,
+        reduction: &Reduction<'_>,
+        excitations: &[Excitation],
+    ) -> Result<Self, PipelineError> {
+        let modes = study.mistuning.cantilever_mode_count;
+        let model = reduction.reduce(BasisChoice::CraigBampton, modes)?;
+        let options = engine_options(study, excitations, &model);
+        let own = EngineModel::new(&model, &options).ok_or_else(no_modes)?;
+        let receptances = engine_of(&own, &options)?;
+        Ok(Self { own, receptances })
+    }
+
+    /// The wheels that judge, under each force vector.
+    pub(super) fn judges(&self, excitations: &[Excitation], patterns: &[Pattern]) -> Vec<Judges<'_>> {
+        let under = |case| Judges::new(&self.receptances, &self.own.model, case, patterns);
+        excitations.iter().map(under).collect()
+    }
+}
+
+/// Fixed-interface modes and harmonics of a study on tuned receptances.
+pub(super) struct Refined<'a> {
+    pub(super) reduction: Reduction<'a>,
+    pub(super) engine: Made,
+    pub(super) fixed_interface: FixedInterface,
+    /// Under each force vector.
+    pub(super) harmonics: Vec<Vec<HarmonicChoice>>,
+}
+
+/// As many fixed-interface modes as the study says, or the first of 80, 160, ... that half as many change no judged peak by more than
+/// `reduction.error`; their error is that change, which is larger than what is left of it, or a half more than what twice as many as the
+/// study says change. Harmonics by `chosen`, once.
+///
+/// # Errors
+/// The model cannot be reduced, or samples cannot tell harmonics apart.
+pub(super) fn refined<'a>(
+    study: &Study,
+    sector: &'a SectorModel,
+    excitations: &[Excitation],
+    patterns: &[Pattern],
+    chosen: impl Fn(&Judges<'_>) -> Result<Vec<HarmonicChoice>, TransformError>,
+) -> Result<Refined<'a>, PipelineError> {
+    let fixed = study.reduction.craig_bampton_modes;
+    let mut modes = fixed.map_or(FIRST_MODES, |own| 2 * own);
+    let conditions = judged_conditions(&study.contacts);
+    let mut harmonics: Option<Vec<Vec<HarmonicChoice>>> = None;
+    let mut tried = Vec::new();
+    loop {
+        let fine = reduction_with(study, sector, modes).completed()?;
+        let coarse = fine.with_fewer_modes(modes / 2);
+        let whole = fine.is_whole_space();
+        let (taken, other) = match fixed {
+            Some(_) if !whole => (coarse, Some(fine)),
+            _ => (fine, (!whole).then_some(coarse)),
+        };
+        let engine = Made::new(study, &taken, excitations)?;
+        let own = engine.judges(excitations, patterns);
+        let sets = match harmonics.take() {
+            Some(sets) => sets,
+            None => own.iter().map(&chosen).collect::<Result<_, _>>()?,
+        };
+        let change = match &other {
+            None => Some(0.0),
+            Some(other) => {
+                let other = Made::new(study, other, excitations)?;
+                let mut changes = Vec::new();
+                for ((own, other), sets) in own.iter().zip(other.judges(excitations, patterns)).zip(&sets) {
+                    changes.extend(own.change(&other, &conditions, sets)?);
+                }
+                changes.into_iter().reduce(f64::max)
+            }
+        };
+        tried.push(ModesTried {
+            modes: taken.fixed_interface_modes(),
+            change,
+        });
+        let enough = change.is_none_or(|change| change <= study.reduction.error);
+        if enough || fixed.is_some() || modes >= MOST_MODES {
+            let margin = if fixed.is_some() { FIXED_MARGIN } else { 1.0 };
+            drop(own);
+            return Ok(Refined {
+                fixed_interface: FixedInterface {
+                    modes: taken.fixed_interface_modes(),
+                    error: change.map(|change| margin * change),
+                    tried,
+                },
+                reduction: taken,
+                engine,
+                harmonics: sets,
+            });
+        }
+        harmonics = Some(sets);
+        modes *= 2;
+    }
+}
+
 /// Evidence for an engine: largest relative change of the stuck and sliding peaks of some mistuned wheels by twice the shapes.
 ///
 /// # Errors
 /// The modes of a nodal diameter are not found.
 pub(super) fn shape_evidence(
     study: &Study,
-    own: &EngineModel,
-    options: &EngineOptions,
+    made: &Made,
+    excitations: &[Excitation],
 ) -> Result<BasisEvidence, PipelineError> {
-    let engine = engine_of(own, options)?;
+    let (own, engine) = (&made.own, &made.receptances);
+    let options = &engine_options(study, excitations, &own.model);
     let more = EngineOptions {
         more_shapes: 2,
         ..options.clone()
     };
-    let finer = engine_of(own, &more)?;
+    let finer = &engine_of(own, &more)?;
     let source = PatternSource::Random {
         seed: SEED,
         count: WHEELS,
@@ -107,7 +252,7 @@ pub(super) fn shape_evidence(
     for force in &options.forces {
         for condition in [ContactCondition::Stuck, ContactCondition::Slide] {
             for pattern in &patterns {
-                let peaks = [&engine, &finer].map(|engine| {
+                let peaks = [engine, finer].map(|engine| {
                     let wheel = EngineWheel::new(Some(pattern), engine.sectors());
                     let row = EngineRow {
                         engine,

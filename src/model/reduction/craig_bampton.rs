@@ -25,6 +25,8 @@ pub struct CraigBampton {
     pub whole_space: bool,
     /// Highest natural frequency of the fixed-interface modes, Hz; none where none is left out.
     pub highest_fixed_interface_hz: Option<f64>,
+    /// Columns of T that are constraint modes, and then those that are fixed-interface modes.
+    columns: [usize; 2],
     /// Enrichment vectors in the columns of T, `size x n_enrichment`: what every basis keeps besides its modes.
     pub enrichment: Matrix<Complex64>,
     /// T, `n_dofs x size`.
@@ -83,6 +85,7 @@ impl CraigBampton {
         }
         let whole_space = columns == n;
         let mut model = Self::project(sector, h, &stiffness, &mass, recovery, whole_space);
+        model.columns = [boundary.len(), fixed.columns()];
         model.highest_fixed_interface_hz = eigenvalues
             .last()
             .filter(|_| !whole_space)
@@ -137,8 +140,38 @@ impl CraigBampton {
         let (_, phi) = pencil(&model.stiffness, &model.mass, h)?;
         let loaded = model.recovery.adjoint_times(&mass.times(&sensitivity));
         model.highest_fixed_interface_hz = self.highest_fixed_interface_hz;
+        model.columns = self.columns;
         model.enrichment = phi.times(&phi.adjoint_times(&loaded));
         Ok(model)
+    }
+
+    /// The same with the first `modes` fixed-interface modes alone: its matrices are parts of these.
+    #[must_use]
+    pub fn with_fewer_modes(&self, modes: usize) -> Self {
+        let [constraint, fixed] = self.columns;
+        if modes >= fixed {
+            return self.clone();
+        }
+        let kept: Vec<usize> = (0..constraint + modes)
+            .chain(constraint + fixed..self.size())
+            .collect();
+        let columns = |a: &Matrix<Complex64>| {
+            Matrix::from_fn(a.rows(), kept.len(), |i, j| a[(i, kept[j])])
+        };
+        let both = |a: &Matrix<Complex64>| {
+            Matrix::from_fn(kept.len(), kept.len(), |i, j| a[(kept[i], kept[j])])
+        };
+        Self {
+            nodal_diameter: self.nodal_diameter,
+            whole_space: false,
+            highest_fixed_interface_hz: None,
+            columns: [constraint, modes],
+            enrichment: Matrix::zeros(kept.len(), 0),
+            recovery: columns(&self.recovery),
+            stiffness: both(&self.stiffness),
+            mass: both(&self.mass),
+            contact: columns(&self.contact),
+        }
     }
 
     /// Eigenvalues (rad/s)^2, ascending, and M-orthonormal modes of the model with contact
@@ -227,6 +260,7 @@ impl CraigBampton {
             nodal_diameter,
             whole_space,
             highest_fixed_interface_hz: None,
+            columns: [recovery.columns(), 0],
             enrichment: Matrix::zeros(recovery.columns(), 0),
             recovery,
             stiffness: reduced_stiffness,

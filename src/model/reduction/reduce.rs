@@ -122,6 +122,28 @@ impl<'a> Reduction<'a> {
         Ok(self)
     }
 
+    /// The same with the first `modes` fixed-interface modes of every model made so far alone, for the basis of all of them.
+    #[must_use]
+    pub fn with_fewer_modes(&self, modes: usize) -> Self {
+        let fewer = |model: &OnceLock<CraigBampton>| {
+            let own = OnceLock::new();
+            if let Some(model) = model.get() {
+                own.get_or_init(|| model.with_fewer_modes(modes));
+            }
+            own
+        };
+        Self {
+            name: self.name,
+            sector: self.sector.clone(),
+            springs: self.springs.clone(),
+            craig_bampton_modes: modes,
+            sensitivity_vectors: self.sensitivity_vectors,
+            damping: self.damping.clone(),
+            force_factors: self.force_factors.clone(),
+            models: self.models.iter().map(fewer).collect(),
+        }
+    }
+
     fn model(&self, h: usize) -> Result<&CraigBampton, ModelError> {
         if let Some(model) = self.models[h].get() {
             return Ok(model);
@@ -140,6 +162,12 @@ impl<'a> Reduction<'a> {
     #[must_use]
     pub fn is_whole_space(&self) -> bool {
         self.models().next().is_some() && self.models().all(|model| model.whole_space)
+    }
+
+    /// Fixed-interface modes of a nodal diameter, where it has so many.
+    #[must_use]
+    pub fn fixed_interface_modes(&self) -> usize {
+        self.craig_bampton_modes
     }
 
     /// Number of contact rows of a sector.
@@ -248,12 +276,20 @@ impl<'a> Reduction<'a> {
         choice: BasisChoice,
     ) -> Result<(ReducedNodalDiameter, Matrix<Complex64>, NodalDiameterReport), ModelError> {
         let model = self.model(h)?;
-        let basis = basis_of(model, &self.springs, choice)?;
-        let v = &basis.vectors;
-        let mass = v.adjoint_times(&model.mass.times(v));
-        let stiffness = v.adjoint_times(&model.stiffness.times(v));
-        let (eigenvalues, rotation) = pencil(&stiffness, &mass, h)?;
-        let v = v.times(&rotation);
+        // All coordinates of Craig-Bampton are a basis as they stand, and are nobody's to report.
+        let is_basis = model.whole_space || choice != BasisChoice::CraigBampton;
+        let basis = is_basis.then(|| basis_of(model, &self.springs, choice));
+        let basis = basis.transpose()?;
+        let (eigenvalues, v) = match &basis {
+            Some(basis) => {
+                let v = &basis.vectors;
+                let mass = v.adjoint_times(&model.mass.times(v));
+                let stiffness = v.adjoint_times(&model.stiffness.times(v));
+                let (eigenvalues, rotation) = pencil(&stiffness, &mass, h)?;
+                (eigenvalues, v.times(&rotation))
+            }
+            None => pencil(&model.stiffness, &model.mass, h)?,
+        };
         let full = model.recovery.times(&v);
         let observed = self.sector.observed_dofs();
         let observed = Matrix::from_fn(3, full.columns(), |i, j| {
@@ -275,15 +311,18 @@ impl<'a> Reduction<'a> {
             conjugate_force: projected(&full.conjugate()).unwrap_or_else(none),
             eigenvalues,
         };
-        let report = NodalDiameterReport {
-            nodal_diameter: h,
-            craig_bampton_size: model.size(),
-            candidates: basis.singular_values.len(),
-            rank: basis.rank(),
-            condition: basis.condition(),
-            stick_frequencies_hz: frequencies_hz(&model.modes(&self.springs.stick)?.0),
-            slide_frequencies_hz: frequencies_hz(&model.modes(&self.springs.slide)?.0),
-            free_frequencies_hz: frequencies_hz(&pencil(&model.stiffness, &model.mass, h)?.0),
+        let report = match &basis {
+            Some(basis) => NodalDiameterReport {
+                nodal_diameter: h,
+                craig_bampton_size: model.size(),
+                candidates: basis.singular_values.len(),
+                rank: basis.rank(),
+                condition: basis.condition(),
+                stick_frequencies_hz: frequencies_hz(&model.modes(&self.springs.stick)?.0),
+                slide_frequencies_hz: frequencies_hz(&model.modes(&self.springs.slide)?.0),
+                free_frequencies_hz: frequencies_hz(&pencil(&model.stiffness, &model.mass, h)?.0),
+            },
+            None => unreported(h, model.size()),
         };
         Ok((reduced, full, report))
     }
@@ -303,17 +342,22 @@ impl Reduction<'_> {
             added_damping_per_s: Vec::new(),
             eigenvalues: Vec::new(),
         };
-        let report = NodalDiameterReport {
-            nodal_diameter: h,
-            craig_bampton_size: 0,
-            candidates: 0,
-            rank: 0,
-            condition: 1.0,
-            stick_frequencies_hz: Vec::new(),
-            slide_frequencies_hz: Vec::new(),
-            free_frequencies_hz: Vec::new(),
-        };
-        (reduced, Matrix::zeros(self.sector.dimension(), 0), report)
+        let basis = Matrix::zeros(self.sector.dimension(), 0);
+        (reduced, basis, unreported(h, 0))
+    }
+}
+
+/// The line of a nodal diameter without a basis of its own.
+fn unreported(nodal_diameter: usize, craig_bampton_size: usize) -> NodalDiameterReport {
+    NodalDiameterReport {
+        nodal_diameter,
+        craig_bampton_size,
+        candidates: craig_bampton_size,
+        rank: craig_bampton_size,
+        condition: 1.0,
+        stick_frequencies_hz: Vec::new(),
+        slide_frequencies_hz: Vec::new(),
+        free_frequencies_hz: Vec::new(),
     }
 }
 

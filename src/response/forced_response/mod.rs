@@ -44,7 +44,7 @@ pub use point::{Point, Slope, Work};
 pub use point_settings::PointSettings;
 pub use point_solver::PointSolver;
 pub use receptance_points::{
-    EngineRow, linear_peaks_of, receptance_curve, receptance_errors, receptance_peak,
+    EngineRow, linear_peaks_of, receptance_curve, receptance_effects, receptance_errors, receptance_peak,
     receptance_plan, receptance_state,
 };
 pub use refined_peak::{Search, refined, refined_peak};

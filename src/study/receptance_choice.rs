@@ -1,0 +1,308 @@
+//! Harmonics and fixed-interface modes of a study on tuned receptances, judged by the tuned wheel and by mistuned ones.
+
+use rayon::prelude::*;
+
+use super::load_cases::Excitation;
+use super::reduced_engine::row_settings;
+use crate::model::ReducedModel;
+use crate::model::cyclic::ContactGeometry;
+use crate::population::monte_carlo::{HarmonicChoice, RowSettings};
+use crate::response::forced_response::{
+    ContactCondition, EngineRow, ErrorEstimate, Peak, PointSettings, SolverOptions, Window,
+    receptance_effects, receptance_errors, receptance_peak,
+};
+use crate::response::harmonic_balance::{Status, TransformError};
+use crate::response::mistuning::{ContactFactors, Pattern};
+use crate::response::receptance::{EngineWheel, ReceptanceEngine, WaveForce};
+
+/// Relative tolerance of the peaks by which harmonics are judged, at most.
+const PEAK_TOLERANCE: f64 = 1e-3;
+/// The same of peaks that are compared on two engines.
+const COMPARED_TOLERANCE: f64 = 1e-4;
+/// Relative tolerance of the solutions that tell the effects of harmonics.
+const EFFECT_TOLERANCE: f64 = 1e-4;
+/// Share of the wanted tolerance that the judged wheels keep to: those of the population are more, and some of them worse.
+const JUDGED_SHARE: f64 = 0.25;
+/// Times that a set is judged, each time with one harmonic more.
+const ROUNDS: usize = 8;
+/// Harmonics up to this one are taken where no wheel says which are needed.
+const FIRST_HARMONICS: u32 = 5;
+
+/// The wheels that judge under one force vector, on one engine.
+pub(super) struct Judges<'a> {
+    engine: &'a ReceptanceEngine,
+    settings: RowSettings,
+    forces: Vec<(u32, WaveForce)>,
+    geometry: ContactGeometry,
+    /// The tuned wheel first.
+    wheels: Vec<(EngineWheel, ContactFactors)>,
+}
+
+/// What the peaks of a set say of it.
+struct Verdict {
+    /// Whether every wheel has a peak.
+    found: bool,
+    /// Whether contacts separate at one of them.
+    separates: bool,
+    /// Largest change by harmonics outside of the set; none where it is not known of a wheel.
+    remainder: Option<f64>,
+}
+
+impl<'a> Judges<'a> {
+    /// The tuned wheel and those of `patterns` under `excitation` on an engine made of `model`.
+    pub(super) fn new(
+        engine: &'a ReceptanceEngine,
+        model: &ReducedModel,
+        excitation: &Excitation,
+        patterns: &[Pattern],
+    ) -> Self {
+        let study = &excitation.study;
+        let own = excitation.of(model);
+        let force = |&order: &u32| (order, WaveForce::new(&own, order, study.amplitude_n));
+        let tuned = (EngineWheel::new(None, model.sectors), ContactFactors::default());
+        let mistuned = patterns.iter().map(|pattern| {
+            let wheel = EngineWheel::new(Some(pattern), model.sectors);
+            (wheel, pattern.contact.clone())
+        });
+        Self {
+            engine,
+            settings: row_settings(study),
+            forces: study.engine_orders.iter().map(force).collect(),
+            geometry: model.contact.clone(),
+            wheels: std::iter::once(tuned).chain(mistuned).collect(),
+        }
+    }
+
+    /// Harmonic set of every engine order and nonlinear condition: `first`, enlarged until harmonics outside of it change no judged
+    /// peak by more than a share of `tolerance`; without a tolerance the set stays, and its remainder is measured.
+    ///
+    /// # Errors
+    /// If the samples per period cannot tell the harmonics apart.
+    pub(super) fn harmonics(
+        &self,
+        conditions: &[ContactCondition],
+        first: &[u32],
+        tolerance: Option<f64>,
+    ) -> Result<Vec<HarmonicChoice>, TransformError> {
+        let nonlinear = |own: &&ContactCondition| own.normal_load_n().is_some();
+        let cases: Vec<(u32, ContactCondition)> = self
+            .forces
+            .iter()
+            .flat_map(|(order, _)| {
+                let conditions = conditions.iter().filter(nonlinear);
+                conditions.map(|&condition| (*order, condition))
+            })
+            .collect();
+        let choices = cases.into_par_iter().map(|case| {
+            let choice = choice_of(case, first);
+            match tolerance {
+                None => Ok(self.judged(choice)?.0),
+                Some(tolerance) => self.chosen(choice, JUDGED_SHARE * tolerance),
+            }
+        });
+        choices.collect()
+    }
+
+    /// The choices with the harmonics that separation needs.
+    ///
+    /// # Errors
+    /// If the samples per period cannot tell the harmonics apart.
+    pub(super) fn admitting_separation(
+        &self,
+        choices: Vec<HarmonicChoice>,
+    ) -> Result<Vec<HarmonicChoice>, TransformError> {
+        let admitted = choices.into_par_iter().map(|mut choice| {
+            if choice.admits_separation() {
+                return Ok(choice);
+            }
+            choice.admit_separation();
+            Ok(self.judged(choice)?.0)
+        });
+        admitted.collect()
+    }
+
+    /// Largest relative change of a peak, with all harmonics that its errors look at, from these wheels to the same ones of
+    /// another engine; none where no peak is found on both.
+    ///
+    /// # Errors
+    /// If the samples per period cannot tell the harmonics apart.
+    pub(super) fn change(
+        &self,
+        finer: &Self,
+        conditions: &[ContactCondition],
+        sets: &[HarmonicChoice],
+    ) -> Result<Option<f64>, TransformError> {
+        let options = SolverOptions {
+            peak_tolerance: COMPARED_TOLERANCE,
+            ..self.settings.solver.clone()
+        };
+        let mut jobs = Vec::new();
+        for &(order, _) in &self.forces {
+            for &condition in conditions {
+                let own = |set: &&HarmonicChoice| {
+                    set.engine_order == order && set.contact == condition
+                };
+                let set = sets.iter().find(own).map_or(&[1][..], |set| &set.harmonics);
+                let points = self.points(&options, set)?;
+                jobs.extend((0..self.wheels.len()).map(|wheel| (order, condition, wheel, points.clone())));
+            }
+        }
+        let changes = jobs.par_iter().map(|(order, condition, wheel, points)| {
+            let [own, other] = [self, finer].map(|judges| {
+                let row = judges.row(*wheel, *order, *condition)?;
+                let points = points.with_factors(&judges.wheels[*wheel].1);
+                let peak = judges.peak(&row, &points, COMPARED_TOLERANCE);
+                let amplitude_m = peak.amplitude_m()?;
+                let errors = receptance_errors(&row, &points, peak.point.as_ref()?, COMPARED_TOLERANCE);
+                Some(amplitude_m * (1.0 + errors.map_or(0.0, |errors| errors.harmonics)))
+            });
+            Some((other? / own? - 1.0).abs())
+        });
+        let changes: Vec<Option<f64>> = changes.collect();
+        Ok(changes.into_iter().flatten().reduce(f64::max))
+    }
+
+    fn row(
+        &self,
+        wheel: usize,
+        engine_order: u32,
+        condition: ContactCondition,
+    ) -> Option<EngineRow<'_>> {
+        let force = self.forces.iter().find(|(order, _)| *order == engine_order)?;
+        Some(EngineRow {
+            engine: self.engine,
+            wheel: &self.wheels[wheel].0,
+            force: &force.1,
+            condition,
+        })
+    }
+
+    /// Settings of the points of rows with the harmonics `set`.
+    fn points(&self, options: &SolverOptions, set: &[u32]) -> Result<PointSettings, TransformError> {
+        PointSettings::new(options, set, self.settings.contact, self.geometry.clone())
+    }
+
+    fn peak(&self, row: &EngineRow<'_>, points: &PointSettings, tolerance: f64) -> Peak {
+        let window = Window {
+            resonances_hz: None,
+            band: self.settings.solver.frequency_band,
+        };
+        receptance_peak(row, points, points.search(), window, tolerance)
+    }
+
+    /// The peak of every wheel with the harmonics of `choice`, beside the settings of its points.
+    fn peaks(
+        &self,
+        choice: &HarmonicChoice,
+    ) -> Result<Vec<(EngineRow<'_>, PointSettings, Peak)>, TransformError> {
+        let tolerance = self.settings.solver.peak_tolerance.min(PEAK_TOLERANCE);
+        let options = SolverOptions {
+            peak_tolerance: tolerance,
+            ..self.settings.solver.clone()
+        };
+        let points = self.points(&options, &choice.harmonics)?;
+        let peaks = (0..self.wheels.len()).filter_map(|wheel| {
+            let row = self.row(wheel, choice.engine_order, choice.contact)?;
+            let points = points.with_factors(&self.wheels[wheel].1);
+            let peak = self.peak(&row, &points, tolerance);
+            Some((row, points, peak))
+        });
+        Ok(peaks.collect())
+    }
+
+    /// The set with its remainder, and what else the peaks say.
+    fn judged(&self, mut choice: HarmonicChoice) -> Result<(HarmonicChoice, Verdict), TransformError> {
+        let mut verdict = Verdict {
+            found: true,
+            separates: false,
+            remainder: Some(0.0),
+        };
+        for (row, points, peak) in self.peaks(&choice)? {
+            let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok);
+            let errors = point.and_then(|point| receptance_errors(&row, &points, point, PEAK_TOLERANCE));
+            verdict.found &= point.is_some();
+            verdict.separates |= point.is_some_and(|point| point.shares.separated > 0.0);
+            let own = errors.map(|errors: ErrorEstimate| errors.harmonics.abs() + errors.unsettled);
+            verdict.remainder = verdict.remainder.zip(own).map(|(a, b)| a.max(b));
+        }
+        choice.remainder = verdict.remainder;
+        Ok((choice, verdict))
+    }
+
+    /// The harmonics outside of `choice` with the largest effect that each has on one of the wheels, the largest first.
+    fn effects(&self, choice: &HarmonicChoice) -> Result<Vec<(u32, f64)>, TransformError> {
+        let mut effects: Vec<(u32, f64)> = Vec::new();
+        let mut outside = Vec::new();
+        for (row, points, peak) in self.peaks(choice)? {
+            let all = points.errors().harmonics().iter().copied();
+            outside = all.filter(|k| !choice.harmonics.contains(k)).collect();
+            let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok);
+            let own = point
+                .and_then(|point| receptance_effects(&row, &points, point, EFFECT_TOLERANCE));
+            for (k, effect) in own.into_iter().flatten() {
+                match effects.iter_mut().find(|known| known.0 == k) {
+                    Some(known) => known.1 = known.1.max(effect),
+                    None => effects.push((k, effect)),
+                }
+            }
+        }
+        if effects.is_empty() {
+            let first = outside.into_iter().filter(|&k| k <= FIRST_HARMONICS);
+            effects = first.map(|k| (k, f64::INFINITY)).collect();
+        }
+        effects.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        Ok(effects)
+    }
+
+    /// `choice`, enlarged by the harmonics of the largest effects until what is left is within `tolerance`.
+    fn chosen(&self, choice: HarmonicChoice, tolerance: f64) -> Result<HarmonicChoice, TransformError> {
+        let (mut choice, mut verdict) = self.judged(choice)?;
+        if verdict.is_within(tolerance, &choice) {
+            return Ok(choice);
+        }
+        let mut effects = self.effects(&choice)?;
+        let left = |effects: &[(u32, f64)]| effects.iter().map(|own| own.1).sum::<f64>();
+        while effects.len() > 1 && left(&effects[1..]) > tolerance {
+            add(&mut choice, effects.remove(0).0);
+        }
+        for _ in 0..ROUNDS {
+            if verdict.separates && !choice.admits_separation() {
+                choice.admit_separation();
+            } else if effects.is_empty() {
+                break;
+            } else {
+                add(&mut choice, effects.remove(0).0);
+            }
+            (choice, verdict) = self.judged(choice)?;
+            if verdict.is_within(tolerance, &choice) {
+                break;
+            }
+        }
+        Ok(choice)
+    }
+}
+
+impl Verdict {
+    fn is_within(&self, tolerance: f64, choice: &HarmonicChoice) -> bool {
+        let lacks_separation = self.separates && !choice.admits_separation();
+        self.found
+            && !lacks_separation
+            && self.remainder.is_some_and(|remainder| remainder <= tolerance)
+    }
+}
+
+/// A set not yet judged.
+fn choice_of((engine_order, contact): (u32, ContactCondition), harmonics: &[u32]) -> HarmonicChoice {
+    HarmonicChoice {
+        engine_order,
+        contact,
+        harmonics: harmonics.to_vec(),
+        remainder: None,
+    }
+}
+
+fn add(choice: &mut HarmonicChoice, harmonic: u32) {
+    choice.harmonics.push(harmonic);
+    choice.harmonics.sort_unstable();
+    choice.harmonics.dedup();
+}
