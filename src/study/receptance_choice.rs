@@ -9,7 +9,7 @@ use crate::model::cyclic::ContactGeometry;
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings};
 use crate::response::forced_response::{
     ContactCondition, EngineRow, ErrorEstimate, Peak, PointSettings, SolverOptions, Window,
-    receptance_effects, receptance_errors, receptance_peak,
+    receptance_effects, receptance_errors, receptance_peak, receptance_plan, receptance_top_m,
 };
 use crate::response::harmonic_balance::{Status, TransformError};
 use crate::response::mistuning::{ContactFactors, Pattern};
@@ -22,9 +22,17 @@ const COMPARED_TOLERANCE: f64 = 1e-4;
 /// Relative tolerance of the solutions that tell the effects of harmonics.
 const EFFECT_TOLERANCE: f64 = 1e-4;
 /// Share of the wanted tolerance that the judged wheels keep to: those of the population are more, and some of them worse.
-const JUDGED_SHARE: f64 = 0.25;
-/// Times that a set is judged, each time with one harmonic more.
-const ROUNDS: usize = 8;
+const JUDGED_SHARE: f64 = 0.2;
+/// Harmonics that are added each time that a set is not enough.
+const MORE: usize = 2;
+/// Times that this is done at most.
+const ROUNDS: usize = 4;
+/// What may be left, over the tolerance, where more harmonics leave no less.
+const GOOD_ENOUGH: f64 = 2.0;
+/// Harmonics that are added at once at most.
+const MOST_AT_ONCE: usize = 7;
+/// Distance of the points by which a top is climbed, in half-bandwidths of a linear resonance.
+const NEIGHBOURS: f64 = 0.35;
 /// Harmonics up to this one are taken where no wheel says which are needed.
 const FIRST_HARMONICS: u32 = 5;
 
@@ -37,6 +45,9 @@ pub(super) struct Judges<'a> {
     /// The tuned wheel first.
     wheels: Vec<(EngineWheel, ContactFactors)>,
 }
+
+/// A judged row, the settings of its points, and its peak.
+type JudgedPeak<'a> = (EngineRow<'a>, PointSettings, Peak);
 
 /// What the peaks of a set say of it.
 struct Verdict {
@@ -59,7 +70,10 @@ impl<'a> Judges<'a> {
         let study = &excitation.study;
         let own = excitation.of(model);
         let force = |&order: &u32| (order, WaveForce::new(&own, order, study.amplitude_n));
-        let tuned = (EngineWheel::new(None, model.sectors), ContactFactors::default());
+        let tuned = (
+            EngineWheel::new(None, model.sectors),
+            ContactFactors::default(),
+        );
         let mistuned = patterns.iter().map(|pattern| {
             let wheel = EngineWheel::new(Some(pattern), model.sectors);
             (wheel, pattern.contact.clone())
@@ -121,45 +135,53 @@ impl<'a> Judges<'a> {
         admitted.collect()
     }
 
-    /// Largest relative change of a peak, with all harmonics that its errors look at, from these wheels to the same ones of
-    /// another engine; none where no peak is found on both.
+    /// Largest relative change of a peak, with its harmonics, from these wheels to the same ones on another engine; none where no
+    /// peak is found on both. Each is looked for here, and climbed from here there.
     ///
     /// # Errors
     /// If the samples per period cannot tell the harmonics apart.
     pub(super) fn change(
         &self,
-        finer: &Self,
+        other: &Self,
         conditions: &[ContactCondition],
         sets: &[HarmonicChoice],
     ) -> Result<Option<f64>, TransformError> {
-        let options = SolverOptions {
-            peak_tolerance: COMPARED_TOLERANCE,
-            ..self.settings.solver.clone()
-        };
-        let mut jobs = Vec::new();
+        let mut choices = Vec::new();
         for &(order, _) in &self.forces {
-            for &condition in conditions {
-                let own = |set: &&HarmonicChoice| {
-                    set.engine_order == order && set.contact == condition
-                };
-                let set = sets.iter().find(own).map_or(&[1][..], |set| &set.harmonics);
-                let points = self.points(&options, set)?;
-                jobs.extend((0..self.wheels.len()).map(|wheel| (order, condition, wheel, points.clone())));
+            for condition in spread(conditions) {
+                let own =
+                    |set: &&HarmonicChoice| set.engine_order == order && set.contact == condition;
+                let known = sets.iter().find(own).cloned();
+                choices.push(known.unwrap_or_else(|| choice_of((order, condition), &[1])));
             }
         }
-        let changes = jobs.par_iter().map(|(order, condition, wheel, points)| {
-            let [own, other] = [self, finer].map(|judges| {
-                let row = judges.row(*wheel, *order, *condition)?;
-                let points = points.with_factors(&judges.wheels[*wheel].1);
-                let peak = judges.peak(&row, &points, COMPARED_TOLERANCE);
-                let amplitude_m = peak.amplitude_m()?;
-                let errors = receptance_errors(&row, &points, peak.point.as_ref()?, COMPARED_TOLERANCE);
-                Some(amplitude_m * (1.0 + errors.map_or(0.0, |errors| errors.harmonics)))
-            });
-            Some((other? / own? - 1.0).abs())
+        let changes = choices.par_iter().map(|choice| {
+            let mut largest: Option<f64> = None;
+            for (wheel, own) in self.peaks(choice)?.into_iter().enumerate() {
+                if let Some(change) = self.change_of(&own, other, wheel, choice) {
+                    largest = Some(largest.unwrap_or(0.0).max(change));
+                }
+            }
+            Ok(largest)
         });
-        let changes: Vec<Option<f64>> = changes.collect();
+        let changes: Vec<Option<f64>> = changes.collect::<Result<_, TransformError>>()?;
         Ok(changes.into_iter().flatten().reduce(f64::max))
+    }
+
+    fn change_of(
+        &self,
+        (row, points, peak): &JudgedPeak<'_>,
+        other: &Self,
+        wheel: usize,
+        choice: &HarmonicChoice,
+    ) -> Option<f64> {
+        let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok)?;
+        let envelope = receptance_plan(row, self.window()).ok()?.envelope;
+        let step_hz = NEIGHBOURS * envelope.linear_half_bandwidth_hz;
+        let there = other.row(wheel, choice.engine_order, choice.contact)?;
+        let [own, other] = [row, &there]
+            .map(|row| receptance_top_m(row, points, point, step_hz, COMPARED_TOLERANCE));
+        Some((other? / own? - 1.0).abs())
     }
 
     fn row(
@@ -168,7 +190,10 @@ impl<'a> Judges<'a> {
         engine_order: u32,
         condition: ContactCondition,
     ) -> Option<EngineRow<'_>> {
-        let force = self.forces.iter().find(|(order, _)| *order == engine_order)?;
+        let force = self
+            .forces
+            .iter()
+            .find(|(order, _)| *order == engine_order)?;
         Some(EngineRow {
             engine: self.engine,
             wheel: &self.wheels[wheel].0,
@@ -178,23 +203,23 @@ impl<'a> Judges<'a> {
     }
 
     /// Settings of the points of rows with the harmonics `set`.
-    fn points(&self, options: &SolverOptions, set: &[u32]) -> Result<PointSettings, TransformError> {
+    fn points(
+        &self,
+        options: &SolverOptions,
+        set: &[u32],
+    ) -> Result<PointSettings, TransformError> {
         PointSettings::new(options, set, self.settings.contact, self.geometry.clone())
     }
 
-    fn peak(&self, row: &EngineRow<'_>, points: &PointSettings, tolerance: f64) -> Peak {
-        let window = Window {
+    fn window(&self) -> Window {
+        Window {
             resonances_hz: None,
             band: self.settings.solver.frequency_band,
-        };
-        receptance_peak(row, points, points.search(), window, tolerance)
+        }
     }
 
     /// The peak of every wheel with the harmonics of `choice`, beside the settings of its points.
-    fn peaks(
-        &self,
-        choice: &HarmonicChoice,
-    ) -> Result<Vec<(EngineRow<'_>, PointSettings, Peak)>, TransformError> {
+    fn peaks(&self, choice: &HarmonicChoice) -> Result<Vec<JudgedPeak<'_>>, TransformError> {
         let tolerance = self.settings.solver.peak_tolerance.min(PEAK_TOLERANCE);
         let options = SolverOptions {
             peak_tolerance: tolerance,
@@ -204,95 +229,141 @@ impl<'a> Judges<'a> {
         let peaks = (0..self.wheels.len()).filter_map(|wheel| {
             let row = self.row(wheel, choice.engine_order, choice.contact)?;
             let points = points.with_factors(&self.wheels[wheel].1);
-            let peak = self.peak(&row, &points, tolerance);
+            let peak = receptance_peak(&row, &points, points.search(), self.window(), tolerance);
             Some((row, points, peak))
         });
         Ok(peaks.collect())
     }
 
-    /// The set with its remainder, and what else the peaks say.
-    fn judged(&self, mut choice: HarmonicChoice) -> Result<(HarmonicChoice, Verdict), TransformError> {
+    /// The set with its remainder, what else the peaks say, and these.
+    fn judged(
+        &self,
+        mut choice: HarmonicChoice,
+    ) -> Result<(HarmonicChoice, Verdict, Vec<JudgedPeak<'_>>), TransformError> {
         let mut verdict = Verdict {
             found: true,
             separates: false,
             remainder: Some(0.0),
         };
-        for (row, points, peak) in self.peaks(&choice)? {
+        let peaks = self.peaks(&choice)?;
+        for (row, points, peak) in &peaks {
             let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok);
-            let errors = point.and_then(|point| receptance_errors(&row, &points, point, PEAK_TOLERANCE));
+            let errors =
+                point.and_then(|point| receptance_errors(row, points, point, PEAK_TOLERANCE));
             verdict.found &= point.is_some();
             verdict.separates |= point.is_some_and(|point| point.shares.separated > 0.0);
             let own = errors.map(|errors: ErrorEstimate| errors.harmonics.abs() + errors.unsettled);
             verdict.remainder = verdict.remainder.zip(own).map(|(a, b)| a.max(b));
         }
         choice.remainder = verdict.remainder;
-        Ok((choice, verdict))
+        Ok((choice, verdict, peaks))
     }
 
-    /// The harmonics outside of `choice` with the largest effect that each has on one of the wheels, the largest first.
-    fn effects(&self, choice: &HarmonicChoice) -> Result<Vec<(u32, f64)>, TransformError> {
-        let mut effects: Vec<(u32, f64)> = Vec::new();
-        let mut outside = Vec::new();
-        for (row, points, peak) in self.peaks(choice)? {
-            let all = points.errors().harmonics().iter().copied();
-            outside = all.filter(|k| !choice.harmonics.contains(k)).collect();
-            let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok);
-            let own = point
-                .and_then(|point| receptance_effects(&row, &points, point, EFFECT_TOLERANCE));
-            for (k, effect) in own.into_iter().flatten() {
-                match effects.iter_mut().find(|known| known.0 == k) {
-                    Some(known) => known.1 = known.1.max(effect),
-                    None => effects.push((k, effect)),
-                }
-            }
-        }
-        if effects.is_empty() {
-            let first = outside.into_iter().filter(|&k| k <= FIRST_HARMONICS);
-            effects = first.map(|k| (k, f64::INFINITY)).collect();
-        }
-        effects.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        Ok(effects)
-    }
-
-    /// `choice`, enlarged by the harmonics of the largest effects until what is left is within `tolerance`.
-    fn chosen(&self, choice: HarmonicChoice, tolerance: f64) -> Result<HarmonicChoice, TransformError> {
-        let (mut choice, mut verdict) = self.judged(choice)?;
+    /// `choice`, enlarged by the harmonics that change one of the wheels by themselves, then by more of them, until what is left
+    /// is within `tolerance`.
+    fn chosen(
+        &self,
+        choice: HarmonicChoice,
+        tolerance: f64,
+    ) -> Result<HarmonicChoice, TransformError> {
+        let (mut choice, mut verdict, peaks) = self.judged(choice)?;
         if verdict.is_within(tolerance, &choice) {
             return Ok(choice);
         }
-        let mut effects = self.effects(&choice)?;
-        let left = |effects: &[(u32, f64)]| effects.iter().map(|own| own.1).sum::<f64>();
-        while effects.len() > 1 && left(&effects[1..]) > tolerance {
-            add(&mut choice, effects.remove(0).0);
-        }
+        let mut effects = effects(&peaks, &choice);
+        let mut best = (choice.clone(), verdict.rank());
+        let mut wanted = effects
+            .iter()
+            .filter(|own| own.1 > tolerance)
+            .count()
+            .clamp(1, MOST_AT_ONCE);
         for _ in 0..ROUNDS {
-            if verdict.separates && !choice.admits_separation() {
-                choice.admit_separation();
-            } else if effects.is_empty() {
+            if effects.is_empty() {
                 break;
-            } else {
-                add(&mut choice, effects.remove(0).0);
             }
-            (choice, verdict) = self.judged(choice)?;
-            if verdict.is_within(tolerance, &choice) {
+            if verdict.separates {
+                choice.admit_separation();
+            }
+            for (harmonic, _) in effects.drain(..wanted.min(effects.len())) {
+                add(&mut choice, harmonic);
+            }
+            wanted = MORE;
+            (choice, verdict, _) = self.judged(choice)?;
+            let better = verdict.rank() < best.1;
+            if better {
+                best = (choice.clone(), verdict.rank());
+            }
+            // Where more harmonics no longer help, they only cost, most of all where contacts separate.
+            let good_enough = best.1 <= GOOD_ENOUGH * tolerance && !better;
+            if verdict.is_within(tolerance, &choice) || !verdict.found || good_enough {
                 break;
             }
         }
-        Ok(choice)
+        Ok(best.0)
     }
 }
 
+/// The harmonics outside of `choice` with the largest effect that each has on one of the wheels, the largest first.
+fn effects(peaks: &[JudgedPeak<'_>], choice: &HarmonicChoice) -> Vec<(u32, f64)> {
+    let mut effects: Vec<(u32, f64)> = Vec::new();
+    for (row, points, peak) in peaks {
+        let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok);
+        let own = point.and_then(|point| receptance_effects(row, points, point, EFFECT_TOLERANCE));
+        for (k, effect) in own.into_iter().flatten() {
+            match effects.iter_mut().find(|known| known.0 == k) {
+                Some(known) => known.1 = known.1.max(effect),
+                None => effects.push((k, effect)),
+            }
+        }
+    }
+    if effects.is_empty() {
+        let all = peaks.iter().take(1);
+        let all = all.flat_map(|(_, points, _)| points.errors().harmonics().iter().copied());
+        let first = all.filter(|k| *k <= FIRST_HARMONICS && !choice.harmonics.contains(k));
+        effects = first.map(|k| (k, f64::INFINITY)).collect();
+    }
+    effects.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    effects
+}
+
+/// The linear limits, and of the loads the lowest, one in the middle and the highest.
+fn spread(conditions: &[ContactCondition]) -> Vec<ContactCondition> {
+    let is_linear = |own: &&ContactCondition| own.normal_load_n().is_none();
+    let mut spread: Vec<ContactCondition> = conditions.iter().filter(is_linear).copied().collect();
+    let loads = conditions.iter().filter(|own| !is_linear(own));
+    let loads: Vec<ContactCondition> = loads.copied().collect();
+    let places = [0, loads.len() / 2, loads.len().saturating_sub(1)];
+    for place in places {
+        if let Some(own) = loads.get(place).filter(|own| !spread.contains(own)) {
+            spread.push(*own);
+        }
+    }
+    spread
+}
+
 impl Verdict {
+    /// What a set leaves out; more than anything else where a wheel has no peak.
+    fn rank(&self) -> f64 {
+        self.remainder
+            .filter(|_| self.found)
+            .unwrap_or(f64::INFINITY)
+    }
+
     fn is_within(&self, tolerance: f64, choice: &HarmonicChoice) -> bool {
         let lacks_separation = self.separates && !choice.admits_separation();
         self.found
             && !lacks_separation
-            && self.remainder.is_some_and(|remainder| remainder <= tolerance)
+            && self
+                .remainder
+                .is_some_and(|remainder| remainder <= tolerance)
     }
 }
 
 /// A set not yet judged.
-fn choice_of((engine_order, contact): (u32, ContactCondition), harmonics: &[u32]) -> HarmonicChoice {
+fn choice_of(
+    (engine_order, contact): (u32, ContactCondition),
+    harmonics: &[u32],
+) -> HarmonicChoice {
     HarmonicChoice {
         engine_order,
         contact,

@@ -9,7 +9,7 @@ use super::basis_choice::BasisEvidence;
 use super::fixed_interface::{FixedInterface, reduce_sector, sensitivity_vectors};
 use super::reduced_study::{Stored, models_digest, reduced, reduced_on_receptances, solver_of};
 use super::{Engine, EngineSource, PipelineError, Study, SurrogateOf};
-use crate::model::reduction::ContactStiffness;
+use crate::model::reduction::{Basis, ContactStiffness};
 use crate::model::sector::SectorModel;
 use crate::model::{read_cached, reduction_digest, write_cached};
 use crate::population::monte_carlo::{
@@ -81,7 +81,7 @@ impl EngineSource for ReducedEngineSource {
         let stored = if let Some(stored) = cached.filter(|stored| stored.fits(study, model)) {
             stored
         } else {
-            let stored = if study.is_on_receptances(model) {
+            let stored = if study.reduction.basis == Basis::TunedReceptances {
                 reduced_on_receptances(study, model)?
             } else {
                 let (reduction, fixed_interface) = reduce_sector(study, model)?;

@@ -304,9 +304,8 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Pip
     let excitations = study.excitations();
     let engine = stored.engine.as_ref().map(|own| {
         let made = stored.receptances.clone().map(Ok);
-        let engine = made.unwrap_or_else(|| {
-            engine_of(own, &engine_options(study, &excitations, &own.model))
-        });
+        let engine = made
+            .unwrap_or_else(|| engine_of(own, &engine_options(study, &excitations, &own.model)));
         Ok::<_, PipelineError>((own, engine?))
     });
     let engine = engine.transpose()?;

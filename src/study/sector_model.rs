@@ -116,7 +116,7 @@ fn refused(study: &Study, error: ModelError) -> StudyError {
 }
 
 /// Mistuned wheels by which settings are chosen.
-const JUDGING_PATTERNS: u32 = 3;
+const JUDGING_PATTERNS: u32 = 2;
 
 fn check_contact(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
     let finding = |key: &str, problem: Problem| {

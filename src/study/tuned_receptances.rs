@@ -4,23 +4,21 @@ use std::sync::Arc;
 
 use super::PipelineError;
 use super::Study;
-use super::basis_choice::{BasisError, BasisEvidence, judged_conditions};
+use super::basis_choice::{BasisError, BasisEvidence};
 use super::fixed_interface::{FixedInterface, ModesTried, expected_deviation, reduction_with};
 use super::load_cases::Excitation;
 use super::receptance_choice::Judges;
 use crate::model::ReducedModel;
-use crate::model::reduction::{Basis, BasisChoice, Reduction};
+use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::{ModelError, SectorModel, StiffnessKind};
 use crate::population::monte_carlo::HarmonicChoice;
 use crate::response::forced_response::{
-    ContactCondition, EngineRow, FrequencyBand, Harmonics, HigherHarmonics, PointSettings, Window,
-    receptance_peak,
+    ContactCondition, EngineRow, FrequencyBand, PointSettings, Window, receptance_peak,
 };
-use crate::response::friction::Ring;
 use crate::response::harmonic_balance::TransformError;
 use crate::response::mistuning::{Distribution, Pattern, PatternSource};
 use crate::response::receptance::{
-    EngineModel, EngineOptions, EngineWheel, HIGHEST_HARMONIC, Limit, ReceptanceEngine, WaveForce,
+    EngineModel, EngineOptions, EngineWheel, Limit, ReceptanceEngine, WaveForce,
 };
 
 /// Standard deviations that a blade deviates by at most, for the choice of its shapes.
@@ -31,44 +29,14 @@ const WHEELS: u32 = 4;
 const SEED: u64 = 0x0062_6c69_736b;
 /// Relative tolerance of their peaks.
 const PEAK_TOLERANCE: f64 = 1e-5;
-/// Sectors of so many dofs are solved in all of them.
-const WHOLE_SPACE: usize = 40;
 /// Fixed-interface modes per nodal diameter that are tried first.
-const FIRST_MODES: usize = 80;
+const FIRST_MODES: usize = 60;
 /// Modes from which on none are added without being asked for.
 const MOST_MODES: usize = 320;
 /// Error of as many modes as the study says, over what twice as many change.
 const FIXED_MARGIN: f64 = 1.5;
 /// Modes of the companion model of each kind.
 pub(super) const COMPANION_MODES: usize = 4;
-
-impl Study {
-    /// Whether rows are solved on tuned receptances: where the study says so, and by default wherever that is possible and a sector is
-    /// not so small that its whole space is cheaper.
-    #[must_use]
-    pub(super) fn is_on_receptances(&self, sector: &SectorModel) -> bool {
-        let possible = || {
-            let creeps = self
-                .contact
-                .as_ref()
-                .is_some_and(|contact| contact.ring == Ring::Creeping);
-            let beyond = match &self.solver.harmonics {
-                Harmonics::Set(set) => set.iter().any(|&k| k > HIGHEST_HARMONIC),
-                Harmonics::Auto => false,
-            };
-            !creeps
-                && !beyond
-                && self.solver.higher_harmonics == HigherHarmonics::Mistuned
-                && !sector.contact_pairs.is_empty()
-                && sector.dofs.len() > WHOLE_SPACE
-        };
-        match self.reduction.basis {
-            Basis::TunedReceptances => true,
-            Basis::Auto => possible(),
-            Basis::StickSlide | Basis::StickPartialSlide | Basis::StickAttachment => false,
-        }
-    }
-}
 
 /// What the engine of a study is made for.
 pub(super) fn engine_options(
@@ -136,7 +104,11 @@ impl Made {
     }
 
     /// The wheels that judge, under each force vector.
-    pub(super) fn judges(&self, excitations: &[Excitation], patterns: &[Pattern]) -> Vec<Judges<'_>> {
+    pub(super) fn judges(
+        &self,
+        excitations: &[Excitation],
+        patterns: &[Pattern],
+    ) -> Vec<Judges<'_>> {
         let under = |case| Judges::new(&self.receptances, &self.own.model, case, patterns);
         excitations.iter().map(under).collect()
     }
@@ -151,7 +123,7 @@ pub(super) struct Refined<'a> {
     pub(super) harmonics: Vec<Vec<HarmonicChoice>>,
 }
 
-/// As many fixed-interface modes as the study says, or the first of 80, 160, ... that half as many change no judged peak by more than
+/// As many fixed-interface modes as the study says, or the first of 60, 120, ... that half as many change no judged peak by more than
 /// `reduction.error`; their error is that change, which is larger than what is left of it, or a half more than what twice as many as the
 /// study says change. Harmonics by `chosen`, once.
 ///
@@ -166,11 +138,13 @@ pub(super) fn refined<'a>(
 ) -> Result<Refined<'a>, PipelineError> {
     let fixed = study.reduction.craig_bampton_modes;
     let mut modes = fixed.map_or(FIRST_MODES, |own| 2 * own);
-    let conditions = judged_conditions(&study.contacts);
+    let conditions = &study.contacts;
     let mut harmonics: Option<Vec<Vec<HarmonicChoice>>> = None;
     let mut tried = Vec::new();
     loop {
-        let fine = reduction_with(study, sector, modes).completed()?;
+        let fine = reduction_with(study, sector, modes)
+            .with_residual_vectors()
+            .completed()?;
         let coarse = fine.with_fewer_modes(modes / 2);
         let whole = fine.is_whole_space();
         let (taken, other) = match fixed {
@@ -188,8 +162,12 @@ pub(super) fn refined<'a>(
             Some(other) => {
                 let other = Made::new(study, other, excitations)?;
                 let mut changes = Vec::new();
-                for ((own, other), sets) in own.iter().zip(other.judges(excitations, patterns)).zip(&sets) {
-                    changes.extend(own.change(&other, &conditions, sets)?);
+                for ((own, other), sets) in own
+                    .iter()
+                    .zip(other.judges(excitations, patterns))
+                    .zip(&sets)
+                {
+                    changes.extend(own.change(&other, conditions, sets)?);
                 }
                 changes.into_iter().reduce(f64::max)
             }

@@ -1,7 +1,7 @@
 //! Default settings against converged harmonics: within the error that the row states.
 
 use blisk::model::reduction::ReductionOptions;
-use blisk::population::monte_carlo::{ScenarioError, stated_error};
+use blisk::population::monte_carlo::{HARMONIC_SAFETY, ScenarioError, stated_error};
 use blisk::response::forced_response::{ContactCondition, Harmonics, SolverOptions};
 use blisk::study::{FullModel, FullRow, FullSettings, Study, load_sector_model};
 
@@ -195,7 +195,12 @@ impl Truth<'_> {
                 harmonics: chosen(&default, place).1,
             };
             let errors = tuned.errors.unwrap();
-            let stated = stated_error(&errors, &of_scenario, study.solver.peak_tolerance);
+            let stated = stated_error(
+                &errors,
+                &of_scenario,
+                HARMONIC_SAFETY,
+                study.solver.peak_tolerance,
+            );
             let name = format!(
                 "{} {normal_load_n} N, {} modes",
                 study.name, facts["craig_bampton_modes"]

@@ -2,7 +2,7 @@
 
 use blisk::model::reduction::BasisChoice;
 use blisk::model::sector::bundle;
-use blisk::population::monte_carlo::{ScenarioError, stated_error};
+use blisk::population::monte_carlo::{HARMONIC_SAFETY, ScenarioError, stated_error};
 use blisk::response::forced_response::{ErrorEstimate, SolverOptions};
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::Damping;
@@ -46,7 +46,12 @@ struct Compared {
 impl Compared {
     fn new(name: &str, set: &[u32], amplitude: f64, errors: ErrorEstimate, truth: f64) -> Self {
         let actual = truth / amplitude - 1.0;
-        let stated = stated_error(&errors, &ScenarioError::default(), PEAK_TOLERANCE);
+        let stated = stated_error(
+            &errors,
+            &ScenarioError::default(),
+            HARMONIC_SAFETY,
+            PEAK_TOLERANCE,
+        );
         let line = format!(
             "{name} {set:?}: actual {:+.3} %, sampling {:+.3} %, harmonics {:+.3} % (unsettled {:.3} %), stated {:.3} %",
             100.0 * actual,

@@ -53,7 +53,8 @@ fn craig_bampton_frequencies_approach_the_unreduced_ones_from_above() {
         let sector = CyclicSector::new(&model);
         let mut worst = [0.0_f64; 2];
         for h in diameters {
-            let reduced = [25, 50].map(|modes| CraigBampton::new(&sector, h, modes).unwrap());
+            let reduced =
+                [25, 50].map(|modes| CraigBampton::new(&sector, h, modes, false).unwrap());
             for springs in spring_states(&sector) {
                 let exact = unreduced(&sector, h, &springs, 8);
                 let [coarse, fine] = reduced.each_ref().map(|model| {
@@ -78,6 +79,36 @@ fn craig_bampton_frequencies_approach_the_unreduced_ones_from_above() {
             model.name, worst[0], worst[1]
         );
         assert!(worst[0] < 1e-4 && worst[1] < 1e-2, "{worst:?}");
+    }
+}
+
+/// Residual vectors beside 25 fixed-interface modes come nearer to the unreduced sector than 50 such modes alone, and the first 25
+/// of 50 modes with them are a model made with 25.
+#[test]
+fn residual_vectors_are_worth_more_than_twice_the_modes() {
+    let model = wheel8_sector();
+    let sector = CyclicSector::new(&model);
+    for h in 0..=4 {
+        let plain = CraigBampton::new(&sector, h, 50, false).unwrap();
+        let residual = CraigBampton::new(&sector, h, 25, true).unwrap();
+        let fewer = CraigBampton::new(&sector, h, 50, true)
+            .unwrap()
+            .with_fewer_modes(25);
+        for springs in spring_states(&sector) {
+            let exact = unreduced(&sector, h, &springs, 12);
+            let [plain, residual, fewer] = [&plain, &residual, &fewer].map(|model| {
+                let (found, _) = model.modes(&springs).unwrap();
+                excess(&found, &exact).into_iter().fold(0.0, f64::max)
+            });
+            assert!(
+                residual < 0.2 * plain + 1e-9,
+                "h = {h}: {residual:.1e} {plain:.1e}"
+            );
+            assert!(
+                (fewer - residual).abs() < 1e-9,
+                "h = {h}: {residual:.3e} {fewer:.3e}"
+            );
+        }
     }
 }
 

@@ -41,8 +41,8 @@ pub fn solved(wheel: &str) -> Vec<(Row, ResponseRow)> {
     truth.into_iter().map(row).collect()
 }
 
-/// The study of a wheel on tuned receptances, with the conditions of these rows alone. Harmonics and fixed-interface modes are
-/// those of the truth as far as a row should cost no second.
+/// The study of a wheel with the conditions of these rows alone, on tuned receptances, in all else as the program
+/// chooses by itself.
 fn study_of(wheel: &str, rows: &[Row]) -> Study {
     let path = folder(wheel).join("study.toml");
     let text = std::fs::read_to_string(&path).expect("a study");
@@ -60,8 +60,7 @@ fn study_of(wheel: &str, rows: &[Row]) -> Study {
         .filter(|line| !line.starts_with("normal_load_n"))
         .collect();
     let text = format!(
-        "{}\nnormal_load_n = [{}]\n\n[reduction]\nbasis = \"tuned_receptances\"\ncraig_bampton_modes = 80\n\n\
-         [solver]\nharmonics = [0, 1, 2, 3, 4, 5, 6, 7]\n",
+        "{}\nnormal_load_n = [{}]\n\n[reduction]\nbasis = \"tuned_receptances\"\n",
         physics.join("\n"),
         conditions.join(", ")
     );

@@ -100,7 +100,7 @@ fn the_peaks_known_for_wheel8_are_met() {
 #[test]
 fn rows_on_tuned_receptances_are_as_true_as_they_state() {
     let mut friction = 0;
-    for wheel in ["wheel8", "built-in"] {
+    for wheel in WHEELS {
         for (truth, row) in engine::solved(wheel) {
             let error =
                 row.peak_amplitude_m.expect("a peak") / truth.amplitude_m.expect("a peak") - 1.0;

@@ -27,6 +27,8 @@ pub struct CraigBampton {
     pub highest_fixed_interface_hz: Option<f64>,
     /// Columns of T that are constraint modes, and then those that are fixed-interface modes.
     columns: [usize; 2],
+    /// Residual vectors after them.
+    residual: Residual,
     /// Enrichment vectors in the columns of T, `size x n_enrichment`: what every basis keeps besides its modes.
     pub enrichment: Matrix<Complex64>,
     /// T, `n_dofs x size`.
@@ -39,12 +41,28 @@ pub struct CraigBampton {
     pub contact: Matrix<Complex64>,
 }
 
+/// What is known of the residual vectors of a model, one per constraint mode.
+#[derive(Debug, Clone, Default)]
+struct Residual {
+    /// Factors that make their mass 1; none without such vectors.
+    scales: Vec<f64>,
+    /// Eigenvalues of the fixed-interface modes less the shift, (rad/s)^2.
+    eigenvalues: Vec<f64>,
+}
+
 impl CraigBampton {
-    /// Reduces nodal diameter `h` with `modes` fixed-interface modes.
+    /// Reduces nodal diameter `h` with `modes` fixed-interface modes, and with residual vectors where they are asked for: what
+    /// the inertia of each constraint mode moves outside of the fixed-interface modes, `(K_ii - s M_ii)^-1 (M_ii Psi + M_ib)`. They
+    /// are the leading part of what the modes left out do (Kim & Lee 2015, Int. J. Numer. Meth. Engng 103(2)).
     ///
     /// # Errors
     /// If the mass is not positive definite, or the stiffness with held contact is indefinite.
-    pub fn new(sector: &CyclicSector<'_>, h: usize, modes: usize) -> Result<Self, ModelError> {
+    pub fn new(
+        sector: &CyclicSector<'_>,
+        h: usize,
+        modes: usize,
+        with_residual: bool,
+    ) -> Result<Self, ModelError> {
         let mass = sector.mass(h);
         let stiffness = sector.stiffness(h);
         mass.factor()
@@ -69,8 +87,22 @@ impl CraigBampton {
         let held = HeldInterior::new(&stiffness, &mass, &interior, h)?;
         let (eigenvalues, fixed) = held.modes(modes, h)?;
         let constraint = held.constraint_modes(&stiffness, &mass, &interior, &boundary);
+        let room = n - boundary.len() - fixed.columns();
+        let (residual, vectors) = if with_residual && room >= boundary.len() {
+            let inertia = mass.block(&interior, &boundary);
+            let vectors = held.residual_vectors(&inertia, &constraint, &fixed);
+            let scales = vectors.iter().map(|own| own.1).collect();
+            let eigenvalues = eigenvalues.iter().map(|own| own - held.shift).collect();
+            let residual = Residual {
+                scales,
+                eigenvalues,
+            };
+            (residual, vectors)
+        } else {
+            (Residual::default(), Vec::new())
+        };
 
-        let columns = boundary.len() + fixed.columns();
+        let columns = boundary.len() + fixed.columns() + vectors.len();
         let mut recovery = Matrix::zeros(n, columns);
         for (column, &dof) in boundary.iter().enumerate() {
             recovery[(dof, column)] = Complex64::new(1.0, 0.0);
@@ -83,9 +115,16 @@ impl CraigBampton {
                 recovery[(at, boundary.len() + column)] = fixed[(row, column)];
             }
         }
+        for (column, (vector, _)) in vectors.iter().enumerate() {
+            let column = boundary.len() + fixed.columns() + column;
+            for (row, &at) in interior.iter().enumerate() {
+                recovery[(at, column)] = vector[(row, 0)];
+            }
+        }
         let whole_space = columns == n;
         let mut model = Self::project(sector, h, &stiffness, &mass, recovery, whole_space);
         model.columns = [boundary.len(), fixed.columns()];
+        model.residual = residual;
         model.highest_fixed_interface_hz = eigenvalues
             .last()
             .filter(|_| !whole_space)
@@ -141,36 +180,44 @@ impl CraigBampton {
         let loaded = model.recovery.adjoint_times(&mass.times(&sensitivity));
         model.highest_fixed_interface_hz = self.highest_fixed_interface_hz;
         model.columns = self.columns;
+        model.residual = self.residual.clone();
         model.enrichment = phi.times(&phi.adjoint_times(&loaded));
         Ok(model)
     }
 
-    /// The same with the first `modes` fixed-interface modes alone: its matrices are parts of these.
+    /// The same with the first `modes` fixed-interface modes alone, and what the others move of the residual vectors in these.
     #[must_use]
     pub fn with_fewer_modes(&self, modes: usize) -> Self {
         let [constraint, fixed] = self.columns;
         if modes >= fixed {
             return self.clone();
         }
-        let kept: Vec<usize> = (0..constraint + modes)
-            .chain(constraint + fixed..self.size())
-            .collect();
-        let columns = |a: &Matrix<Complex64>| {
-            Matrix::from_fn(a.rows(), kept.len(), |i, j| a[(i, kept[j])])
-        };
-        let both = |a: &Matrix<Complex64>| {
-            Matrix::from_fn(kept.len(), kept.len(), |i, j| a[(kept[i], kept[j])])
-        };
+        let one = Complex64::new(1.0, 0.0);
+        let kept = (0..constraint + modes).chain(constraint + fixed..self.size());
+        let kept: Vec<usize> = kept.collect();
+        let mut within = Matrix::zeros(self.size(), kept.len());
+        for (column, &row) in kept.iter().enumerate() {
+            within[(row, column)] = one;
+        }
+        for (b, scale) in self.residual.scales.iter().enumerate() {
+            for mode in modes..fixed {
+                let inertia = self.mass[(constraint + mode, b)];
+                let part = inertia * (scale / self.residual.eigenvalues[mode]);
+                within[(constraint + mode, constraint + modes + b)] = part;
+            }
+        }
+        let both = |a: &Matrix<Complex64>| within.adjoint_times(&a.times(&within));
         Self {
             nodal_diameter: self.nodal_diameter,
             whole_space: false,
             highest_fixed_interface_hz: None,
             columns: [constraint, modes],
+            residual: self.residual.clone(),
             enrichment: Matrix::zeros(kept.len(), 0),
-            recovery: columns(&self.recovery),
+            recovery: self.recovery.times(&within),
             stiffness: both(&self.stiffness),
             mass: both(&self.mass),
-            contact: columns(&self.contact),
+            contact: self.contact.times(&within),
         }
     }
 
@@ -261,6 +308,7 @@ impl CraigBampton {
             whole_space,
             highest_fixed_interface_hz: None,
             columns: [recovery.columns(), 0],
+            residual: Residual::default(),
             enrichment: Matrix::zeros(recovery.columns(), 0),
             recovery,
             stiffness: reduced_stiffness,
@@ -345,6 +393,41 @@ impl HeldInterior {
         }
         lowest_modes(&self.factor, &self.mass, self.shift, count)
             .map_err(|_| ModelError::MassNotPositiveDefinite { nodal_diameter })
+    }
+
+    /// Response to the inertia of each constraint mode outside of the fixed-interface modes, scaled to unit mass, with its factor;
+    /// `inertia` is `M_ib`.
+    fn residual_vectors(
+        &self,
+        inertia: &Matrix<Complex64>,
+        constraint: &Matrix<Complex64>,
+        fixed: &Matrix<Complex64>,
+    ) -> Vec<(Matrix<Complex64>, f64)> {
+        let mut right = self.mass.times(constraint);
+        for (entry, &own) in right.as_mut_slice().iter_mut().zip(inertia.as_slice()) {
+            *entry += own;
+        }
+        let mut response = self.factor.solve(&right);
+        for _ in 0..2 {
+            let inside = fixed.adjoint_times(&self.mass.times(&response));
+            let inside = fixed.times(&inside);
+            for (entry, &part) in response.as_mut_slice().iter_mut().zip(inside.as_slice()) {
+                *entry -= part;
+            }
+        }
+        let inertia = self.mass.times(&response);
+        (0..response.columns())
+            .map(|column| {
+                let mut vector = response.column_range(column, column + 1);
+                let own = inertia.column_range(column, column + 1);
+                let norm = vector.adjoint_times(&own)[(0, 0)].re.max(0.0).sqrt();
+                let scale = if norm > 0.0 { 1.0 / norm } else { 0.0 };
+                for entry in vector.as_mut_slice() {
+                    *entry *= scale;
+                }
+                (vector, scale)
+            })
+            .collect()
     }
 
     /// Static (for a shift, quasi-static) interior response to unit motions of the boundary,

@@ -28,6 +28,7 @@ pub struct Reduction<'a> {
     springs: ContactSprings,
     craig_bampton_modes: usize,
     sensitivity_vectors: usize,
+    residual_vectors: bool,
     damping: NodalDiameterDamping,
     force_factors: Vec<(u32, f64)>,
     models: Vec<OnceLock<CraigBampton>>,
@@ -84,6 +85,7 @@ impl<'a> Reduction<'a> {
             springs,
             craig_bampton_modes,
             sensitivity_vectors,
+            residual_vectors: false,
             damping: NodalDiameterDamping::default(),
             force_factors: Vec::new(),
             models: (0..=model.sectors / 2).map(|_| OnceLock::new()).collect(),
@@ -101,6 +103,15 @@ impl<'a> Reduction<'a> {
     pub fn with_force_factors(self, force_factors: Vec<(u32, f64)>) -> Self {
         Self {
             force_factors,
+            ..self
+        }
+    }
+
+    /// The same with a residual vector for each constraint mode.
+    #[must_use]
+    pub fn with_residual_vectors(self) -> Self {
+        Self {
+            residual_vectors: true,
             ..self
         }
     }
@@ -138,6 +149,7 @@ impl<'a> Reduction<'a> {
             springs: self.springs.clone(),
             craig_bampton_modes: modes,
             sensitivity_vectors: self.sensitivity_vectors,
+            residual_vectors: self.residual_vectors,
             damping: self.damping.clone(),
             force_factors: self.force_factors.clone(),
             models: self.models.iter().map(fewer).collect(),
@@ -148,8 +160,17 @@ impl<'a> Reduction<'a> {
         if let Some(model) = self.models[h].get() {
             return Ok(model);
         }
-        let model = CraigBampton::new(&self.sector, h, self.craig_bampton_modes)?
-            .with_blade_sensitivity(&self.sector, &self.springs.stick, self.sensitivity_vectors)?;
+        let model = CraigBampton::new(
+            &self.sector,
+            h,
+            self.craig_bampton_modes,
+            self.residual_vectors,
+        )?
+        .with_blade_sensitivity(
+            &self.sector,
+            &self.springs.stick,
+            self.sensitivity_vectors,
+        )?;
         Ok(self.models[h].get_or_init(|| model))
     }
 

@@ -21,7 +21,8 @@ mod wheel_state;
 pub use blocks::{PatternBlock, StoredRows, block_size, plan_blocks};
 pub use curves::CurveResult;
 pub use harmonic_choice::{
-    ErrorTolerance, HARMONIC_SAFETY, HarmonicChoice, ScenarioError, stated_error,
+    ErrorTolerance, HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, HarmonicChoice, ScenarioError,
+    stated_error,
 };
 pub use operations::{RowWork, SystemSize};
 pub use parallel::{Interruption, solve_blocks};

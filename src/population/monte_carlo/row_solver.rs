@@ -8,8 +8,8 @@ use super::engine_rows::RowEngine;
 use super::mistuned_peak::MistunedPeak;
 use super::tuned_harmonics::TunedHarmonics;
 use super::{
-    ErrorTolerance, HarmonicChoice, LoadCaseName, ResponseRow, Scenario, ScenarioError,
-    TunedReference, stated_error,
+    ErrorTolerance, HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, HarmonicChoice, LoadCaseName,
+    ResponseRow, Scenario, ScenarioError, TunedReference, stated_error,
 };
 use crate::linalg::Matrix;
 use crate::model::ReducedModel;
@@ -277,11 +277,10 @@ impl RowSolver {
         let choice = self.chosen(scenario.engine_order, scenario.contact);
         ScenarioError {
             basis: self.basis_error,
-            harmonics: match choice {
-                // Each of these rows is asked itself.
-                _ if self.engine.is_some() => 0.0,
-                // A remainder that could not be measured bounds nothing.
-                Some((choice, _)) => choice.remainder.unwrap_or(f64::INFINITY),
+            // A remainder that could not be measured bounds nothing, but rows on tuned receptances are asked themselves.
+            harmonics: match choice.map(|(choice, _)| choice.remainder) {
+                Some(None) if self.engine.is_none() => f64::INFINITY,
+                Some(remainder) => remainder.unwrap_or(0.0),
                 None => 0.0,
             },
         }
@@ -431,7 +430,12 @@ impl RowSolver {
             stated_error: errors
                 .map(|errors| {
                     let of_scenario = self.scenario_error(scenario);
-                    stated_error(&errors, &of_scenario, self.settings.solver.peak_tolerance)
+                    let safety = match &self.engine {
+                        Some(_) => HARMONIC_SAFETY_ON_RECEPTANCES,
+                        None => HARMONIC_SAFETY,
+                    };
+                    let tolerance = self.settings.solver.peak_tolerance;
+                    stated_error(&errors, &of_scenario, safety, tolerance)
                 })
                 .filter(|error| error.is_finite()),
             // An error that cannot be estimated is within no tolerance.

@@ -16,6 +16,7 @@ mod point;
 mod point_settings;
 mod point_solver;
 mod point_source;
+mod receptance_errors;
 mod receptance_points;
 mod refined_peak;
 mod rivals;
@@ -43,8 +44,9 @@ pub use peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_pe
 pub use point::{Point, Slope, Work};
 pub use point_settings::PointSettings;
 pub use point_solver::PointSolver;
+pub use receptance_errors::{receptance_effects, receptance_errors, receptance_top_m};
 pub use receptance_points::{
-    EngineRow, linear_peaks_of, receptance_curve, receptance_effects, receptance_errors, receptance_peak,
-    receptance_plan, receptance_state,
+    EngineRow, linear_peaks_of, receptance_curve, receptance_peak, receptance_plan,
+    receptance_state,
 };
 pub use refined_peak::{Search, refined, refined_peak};

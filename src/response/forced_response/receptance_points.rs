@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::a_posteriori::{ErrorEstimate, ErrorSettings};
 use super::linear_peaks::LinearPeak;
 use super::observed_amplitude::{ObservedAmplitude, ObservedHarmonic};
 use super::options::ContactCondition;
@@ -15,16 +14,12 @@ use super::starts::between;
 use crate::linalg::Complex64;
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{
-    ContactInterface, ContactShares, HarmonicTransform, PairContact, Status, WheelContact,
+    ContactInterface, HarmonicTransform, PairContact, Status, WheelContact,
 };
 use crate::response::receptance::{
     EngineWheel, Limit, ReceptanceEngine, Resonance, WaveForce, WheelSolution, WheelSolver,
     embedded,
 };
-
-/// Tolerance of the solutions that tell the errors of another one, over that of the peak, and its bounds.
-const ERROR_SHARE: f64 = 0.1;
-const ERROR_TOLERANCES: (f64, f64) = (1e-6, 3e-4);
 
 /// One wheel on an engine under one excitation and contact condition.
 #[derive(Debug, Clone, Copy)]
@@ -90,7 +85,7 @@ impl<'a> EngineRow<'a> {
     }
 
     /// Solver in the harmonics of `transform`.
-    fn solver(
+    pub(super) fn solver(
         &self,
         settings: &PointSettings,
         transform: &Arc<HarmonicTransform>,
@@ -103,7 +98,7 @@ impl<'a> EngineRow<'a> {
     }
 
     /// The contact in the harmonics of `transform`; none for a linear limit of a wheel whose contact is nominal.
-    fn contact(
+    pub(super) fn contact(
         &self,
         settings: &PointSettings,
         transform: &Arc<HarmonicTransform>,
@@ -261,7 +256,10 @@ impl PointSource for ReceptancePoints<'_> {
 }
 
 /// What is observed of the solution last solved, in every harmonic that the amplitude takes notice of.
-fn observed(solver: &mut WheelSolver<'_>, amplitude: &ObservedAmplitude) -> Vec<ObservedHarmonic> {
+pub(super) fn observed(
+    solver: &mut WheelSolver<'_>,
+    amplitude: &ObservedAmplitude,
+) -> Vec<ObservedHarmonic> {
     let set = solver.harmonics().to_vec();
     let blades = solver.sectors();
     set.into_iter()
@@ -327,131 +325,6 @@ pub fn receptance_peak(
         work: found.work.plus(wasted),
         ..found
     }
-}
-
-/// What the amplitude of `point` would change by with finer sampling, and with the harmonics up to 15 that are not in its set; on
-/// the engine of `row`, which may have more blade shapes than that of the point. None where one of these solutions is not found.
-#[must_use]
-pub fn receptance_errors(
-    row: &EngineRow<'_>,
-    settings: &PointSettings,
-    point: &Point,
-    peak_tolerance: f64,
-) -> Option<ErrorEstimate> {
-    let tolerance = ERROR_SHARE * peak_tolerance;
-    let tolerance = tolerance.clamp(ERROR_TOLERANCES.0, ERROR_TOLERANCES.1);
-    let ErrorSettings {
-        set,
-        amplitude,
-        law,
-    } = settings.errors();
-    let nonlinear = row.condition.normal_load_n().is_some();
-    let sticks = law.is_none() && point.shares == ContactShares::default();
-    if !nonlinear || sticks {
-        return Some(ErrorEstimate::default());
-    }
-    let [alone, enlarged, tangents] = set.transforms();
-    let settled = |mut solver: WheelSolver<'_>, start: &[f64], from: &[u32]| {
-        let start = embedded(start, from, solver.harmonics());
-        let (motions, unsettled) = solver.settle(point.frequency_hz, &start, tolerance)?;
-        let observed = observed(&mut solver, amplitude);
-        let observed = in_harmonics(&observed, set.harmonics(), row.engine.sectors());
-        Some((motions, observed, unsettled))
-    };
-    let harmonics = settings.harmonics();
-    let solver = row.solver(settings, &settings.transform, None);
-    let (_, before, _) = settled(solver, &point.solution, harmonics)?;
-    let solver = row.solver(settings, alone, *law);
-    let (motions, alone, own_unsettled) = settled(solver, &point.solution, harmonics)?;
-    let solver = row
-        .solver(settings, enlarged, *law)
-        .with_tangents(row.contact(settings, tangents, *law));
-    let (_, after, unsettled) = settled(solver, &motions, harmonics)?;
-    let largest = |amplitudes: Vec<f64>| amplitudes.into_iter().fold(0.0, f64::max);
-    let height = largest(amplitude.of_observed(&before));
-    let change = |after: &[ObservedHarmonic]| {
-        largest(amplitude.changed_observed(&before, after)) / height - 1.0
-    };
-    let sampling = change(&alone);
-    Some(ErrorEstimate {
-        sampling,
-        harmonics: change(&after) - sampling,
-        unsettled: own_unsettled + unsettled,
-    })
-}
-
-/// What the amplitude of `point` would change by without each of the harmonics that its errors look at and its set does not have,
-/// beside all of them; none where the solution with all of them is not found, infinite where one without a harmonic is not.
-#[must_use]
-pub fn receptance_effects(
-    row: &EngineRow<'_>,
-    settings: &PointSettings,
-    point: &Point,
-    tolerance: f64,
-) -> Option<Vec<(u32, f64)>> {
-    if point.shares == ContactShares::default() {
-        return Some(Vec::new());
-    }
-    let ErrorSettings { set, amplitude, .. } = settings.errors();
-    let [_, enlarged, tangents] = set.transforms();
-    let solver = row
-        .solver(settings, enlarged, None)
-        .with_tangents(row.contact(settings, tangents, None));
-    let start = embedded(&point.solution, settings.harmonics(), set.harmonics());
-    let solved = |mut solver: WheelSolver<'_>, start: &[f64]| {
-        let (motions, _) = solver.settle(point.frequency_hz, start, tolerance)?;
-        let observed = observed(&mut solver, amplitude);
-        Some((motions, in_harmonics(&observed, set.harmonics(), row.engine.sectors())))
-    };
-    let (motions, with_all) = solved(solver, &start)?;
-    let largest = |amplitudes: Vec<f64>| amplitudes.into_iter().fold(0.0, f64::max);
-    let height = largest(amplitude.of_observed(&with_all));
-    let size = motions.len() / set.harmonics().len();
-    let largest_motion = |part: &[f64]| part.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let whole = largest_motion(&motions);
-    let outside = set.harmonics().iter().zip(motions.chunks_exact(size));
-    let outside = outside.filter(|(k, _)| !settings.harmonics().contains(k));
-    let effects = outside.map(|(&k, motion)| {
-        if largest_motion(motion) < NO_MOTION * whole {
-            return (k, 0.0);
-        }
-        let others = set.harmonics().iter().copied().filter(|&own| own != k);
-        let others: Vec<u32> = others.collect();
-        let numbers: Vec<usize> = others.iter().map(|&own| own as usize).collect();
-        let without = HarmonicTransform::new(&numbers, enlarged.n_samples()).ok();
-        let without = without.and_then(|without| {
-            let solver = row.solver(settings, &Arc::new(without), None);
-            solved(solver, &embedded(&motions, set.harmonics(), &others))
-        });
-        let change = without.map_or(f64::INFINITY, |(_, without)| {
-            (largest(amplitude.changed_observed(&with_all, &without)) / height - 1.0).abs()
-        });
-        (k, change)
-    });
-    Some(effects.collect())
-}
-
-/// Share of the largest motion at the contact below which that of a harmonic is without effect.
-const NO_MOTION: f64 = 1e-5;
-
-/// What is observed in the harmonics of a larger set.
-fn in_harmonics(
-    observed: &[ObservedHarmonic],
-    set: &[u32],
-    blades: usize,
-) -> Vec<ObservedHarmonic> {
-    set.iter()
-        .map(|&harmonic| ObservedHarmonic {
-            harmonic,
-            displacement: observed
-                .iter()
-                .find(|own| own.harmonic == harmonic)
-                .map_or_else(
-                    || vec![Complex64::default(); 3 * blades],
-                    |own| own.displacement.clone(),
-                ),
-        })
-        .collect()
 }
 
 /// The point of a row at a frequency, Hz, with the state of every contact pair; none for a linear limit.

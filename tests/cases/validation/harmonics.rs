@@ -1,6 +1,6 @@
 //! Default settings against converged harmonics, and what the rows state about it.
 
-use blisk::population::monte_carlo::{ScenarioError, stated_error};
+use blisk::population::monte_carlo::{HARMONIC_SAFETY, ScenarioError, stated_error};
 use blisk::response::forced_response::{ContactCondition, Harmonics};
 use blisk::study::Study;
 use rayon::prelude::*;
@@ -182,7 +182,7 @@ fn of_tuned(wheel: &str, loads: &[f64], all: &[u32]) -> Vec<Compared> {
                 marked: None,
                 stated: tuned
                     .errors
-                    .map(|errors| stated_error(&errors, &scenario, tolerance)),
+                    .map(|errors| stated_error(&errors, &scenario, HARMONIC_SAFETY, tolerance)),
                 same_modes_m: peak(&both.full),
                 converged_m: Some(peak(&fine)),
             }
