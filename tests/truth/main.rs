@@ -95,11 +95,11 @@ fn the_peaks_known_for_wheel8_are_met() {
     assert_eq!(rows, 23);
 }
 
-/// Mistuned rows of two wheels of solid elements, drawn before the program solved any of them: within what each states, and within
-/// 2 % under friction; without friction within 0.03 %.
+/// Mistuned rows of six wheels of solid elements at the settings that the program chooses, drawn before it solved any of them: within what
+/// each states and within 2 % under friction, 95 of 100 within 1 %; without friction within 0.03 %.
 #[test]
 fn rows_on_tuned_receptances_are_as_true_as_they_state() {
-    let mut friction = 0;
+    let [mut friction, mut near] = [0, 0];
     for wheel in WHEELS {
         for (truth, row) in engine::solved(wheel) {
             let error =
@@ -114,9 +114,11 @@ fn rows_on_tuned_receptances_are_as_true_as_they_state() {
                 "{name}: {error:.2e}, stated {stated:.2e}"
             );
             friction += usize::from(truth.load_n().is_some());
+            near += usize::from(truth.load_n().is_some() && error.abs() < 0.01);
         }
     }
-    assert!(friction >= 11, "{friction} rows with friction are stored");
+    assert!(friction >= 43, "{friction} rows with friction are stored");
+    assert!(near * 100 >= 95 * friction, "{near} of {friction} within 1 %");
 }
 
 /// The load under which every pair of the tuned wheel sticks at its stuck peak, N per sector.
