@@ -117,8 +117,11 @@ fn rows_on_tuned_receptances_are_as_true_as_they_state() {
             near += usize::from(truth.load_n().is_some() && error.abs() < 0.01);
         }
     }
-    assert!(friction >= 43, "{friction} rows with friction are stored");
-    assert!(near * 100 >= 95 * friction, "{near} of {friction} within 1 %");
+    assert!(friction >= 41, "{friction} rows with friction are stored");
+    assert!(
+        near * 100 >= 95 * friction,
+        "{near} of {friction} within 1 %"
+    );
 }
 
 /// The load under which every pair of the tuned wheel sticks at its stuck peak, N per sector.
