@@ -17,7 +17,7 @@ use crate::response::receptance::{EngineWheel, ReceptanceEngine, WaveForce};
 
 /// Relative tolerance of the peaks by which harmonics are judged, at most.
 const PEAK_TOLERANCE: f64 = 1e-3;
-/// The same of peaks that are compared on two engines.
+/// Relative tolerance of the solutions whose tops are compared on two engines.
 const COMPARED_TOLERANCE: f64 = 1e-4;
 /// Relative tolerance of the solutions that tell the effects of harmonics.
 const EFFECT_TOLERANCE: f64 = 1e-4;
@@ -267,11 +267,11 @@ impl<'a> Judges<'a> {
         tolerance: f64,
     ) -> Result<HarmonicChoice, TransformError> {
         let (mut choice, mut verdict, peaks) = self.judged(choice)?;
-        if verdict.is_within(tolerance, &choice) {
+        let mut best = (choice.clone(), verdict.left_out(&choice));
+        if best.1 <= tolerance {
             return Ok(choice);
         }
         let mut effects = effects(&peaks, &choice);
-        let mut best = (choice.clone(), verdict.rank());
         let mut wanted = effects
             .iter()
             .filter(|own| own.1 > tolerance)
@@ -289,15 +289,19 @@ impl<'a> Judges<'a> {
             }
             wanted = MORE;
             (choice, verdict, _) = self.judged(choice)?;
-            let better = verdict.rank() < best.1;
+            let left_out = verdict.left_out(&choice);
+            let better = left_out < best.1;
             if better {
-                best = (choice.clone(), verdict.rank());
+                best = (choice.clone(), left_out);
             }
             // Where more harmonics no longer help, they only cost, most of all where contacts separate.
             let good_enough = best.1 <= GOOD_ENOUGH * tolerance && !better;
-            if verdict.is_within(tolerance, &choice) || !verdict.found || good_enough {
+            if left_out <= tolerance || !verdict.found || good_enough {
                 break;
             }
+        }
+        if best.1.is_infinite() && verdict.separates {
+            best.0.admit_separation();
         }
         Ok(best.0)
     }
@@ -342,20 +346,12 @@ fn spread(conditions: &[ContactCondition]) -> Vec<ContactCondition> {
 }
 
 impl Verdict {
-    /// What a set leaves out; more than anything else where a wheel has no peak.
-    fn rank(&self) -> f64 {
-        self.remainder
-            .filter(|_| self.found)
-            .unwrap_or(f64::INFINITY)
-    }
-
-    fn is_within(&self, tolerance: f64, choice: &HarmonicChoice) -> bool {
+    /// What a set leaves out; more than anything else where a wheel has no peak, or contacts separate and it lacks what that needs.
+    fn left_out(&self, choice: &HarmonicChoice) -> f64 {
         let lacks_separation = self.separates && !choice.admits_separation();
-        self.found
-            && !lacks_separation
-            && self
-                .remainder
-                .is_some_and(|remainder| remainder <= tolerance)
+        self.remainder
+            .filter(|_| self.found && !lacks_separation)
+            .unwrap_or(f64::INFINITY)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The engine of a study on tuned receptances, and what its blade shapes leave out.
+//! The engine of a study on tuned receptances: its fixed-interface modes, and what its blade shapes leave out.
 
 use std::sync::Arc;
 

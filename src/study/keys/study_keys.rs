@@ -84,7 +84,7 @@ pub(super) const REDUCTION_KEYS: &[Entry] = &[
         "reduction.craig_bampton_modes",
         MODES,
         "chosen: 25 or more",
-        "fixed-interface modes per nodal diameter; without it so many that half as many more change no tuned peak by more than `error`",
+        "fixed-interface modes per nodal diameter; without it so many that half as many more change no tuned peak by more than `error`; with `tuned_receptances` 60 or more, so many that half of them change no judged peak by more than that",
     ),
     entry(
         "reduction.sensitivity_vectors",
