@@ -9,7 +9,7 @@ use super::basis_choice::BasisEvidence;
 use super::fixed_interface::{FixedInterface, reduce_sector, sensitivity_vectors};
 use super::reduced_study::{Stored, models_digest, reduced, reduced_on_receptances, solver_of};
 use super::{Engine, EngineSource, PipelineError, Study, SurrogateOf};
-use crate::model::reduction::{Basis, ContactStiffness};
+use crate::model::reduction::{Basis, ContactStiffness, WHOLE_SPACE_DOFS};
 use crate::model::sector::SectorModel;
 use crate::model::{read_cached, reduction_digest, write_cached};
 use crate::population::monte_carlo::{
@@ -17,10 +17,11 @@ use crate::population::monte_carlo::{
 };
 use crate::population::table::CurvePoint;
 use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
-use crate::response::forced_response::{Harmonics, ResponseTrace, SearchPlan};
+use crate::response::forced_response::{Harmonics, HigherHarmonics, ResponseTrace, SearchPlan};
 use crate::response::friction::{ContactOptions, PairParameters, Ring};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
+use crate::response::receptance::HIGHEST_HARMONIC;
 use crate::response::time_integration::{PointComparison, TimeOptions};
 
 /// Harmonics that an automatic set begins with.
@@ -81,7 +82,7 @@ impl EngineSource for ReducedEngineSource {
         let stored = if let Some(stored) = cached.filter(|stored| stored.fits(study, model)) {
             stored
         } else {
-            let stored = if study.reduction.basis == Basis::TunedReceptances {
+            let stored = if is_on_receptances(study, model) {
                 reduced_on_receptances(study, model)?
             } else {
                 let (reduction, fixed_interface) = reduce_sector(study, model)?;
@@ -312,6 +313,28 @@ impl Engine for ReducedEngine {
         options: &TimeOptions,
     ) -> Result<PointComparison, Status> {
         self.solver.compare_in_time(pattern, scenario, row, options)
+    }
+}
+
+/// Whether rows are solved on the receptances of the tuned wheel: where the study names them, and by default wherever they are ready for
+/// what it asks, on sectors that are not solved in their whole space.
+pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
+    let ready = || {
+        let contact = study.contact.as_ref();
+        let harmonics = match &study.solver.harmonics {
+            Harmonics::Auto => true,
+            Harmonics::Set(set) => set.iter().all(|&k| k <= HIGHEST_HARMONIC),
+        };
+        !sector.contact_pairs.is_empty()
+            && sector.dofs.len() > WHOLE_SPACE_DOFS
+            && contact.is_none_or(|own| own.ring == Ring::Locked && own.in_place_of.is_none())
+            && study.solver.higher_harmonics == HigherHarmonics::Mistuned
+            && harmonics
+    };
+    match study.reduction.basis {
+        Basis::TunedReceptances => true,
+        Basis::Auto => ready(),
+        Basis::StickSlide | Basis::StickPartialSlide | Basis::StickAttachment => false,
     }
 }
 

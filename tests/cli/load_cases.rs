@@ -329,10 +329,10 @@ fn forces_that_the_model_refuses_are_told_with_key_and_line() {
 }
 
 /// A wheel imported from a finite-element code, its basis left to the program.
-fn imported(bundle: &str, name: &str, excitation: &str) -> String {
+fn imported(basis: &str, bundle: &str, name: &str, excitation: &str) -> String {
     format!(
         "schema = 1\n\n[study]\nname = \"{name}\"\nseed = 1\npatterns = 2\n\n[model]\nsource = \"bundle\"\n\n\
-         [model.bundle]\npath = \"{bundle}\"\n\n[reduction]\nbasis = \"auto\"\n\n[contact]\n\
+         [model.bundle]\npath = \"{bundle}\"\n\n[reduction]\nbasis = \"{basis}\"\n\n[contact]\n\
          friction_coefficient = 0.3\ntangential_stiffness_n_per_m = 2.0e7\nnormal_stiffness_n_per_m = 4.0e7\n\n\
          [damping]\nstructural_loss_factor = 0.002\n\n[mistuning]\n\
          distribution = {{ kind = \"normal\", standard_deviation = 0.01 }}\n\n[sweep]\n\
@@ -368,7 +368,8 @@ fn an_imported_finite_element_wheel_has_one_basis_for_all_its_forces() {
         ("own", "first", plain),
         ("other", "second", strong),
     ] {
-        place.write("study.toml", &imported(bundle, name, excitation));
+        let text = imported("stick_slide", bundle, name, excitation);
+        place.write("study.toml", &text);
         let ended = place.run(&["run", "study.toml"]);
         assert_eq!(ended.code, 0, "{name}: {}{}", ended.stdout, ended.stderr);
         let manifest = Manifest::read(&place.path(&format!("results/{name}")));
@@ -396,6 +397,33 @@ fn an_imported_finite_element_wheel_has_one_basis_for_all_its_forces() {
         assert!(own.stated_error >= Some((ratio - 1.0).abs()));
     }
     assert!(other.iter().any(|row| row.slipping_fraction > Some(0.0)));
+}
+
+/// A small sector, of which the fixed-interface modes of the default are half of the degrees of freedom.
+#[test]
+fn an_imported_finite_element_wheel_is_solved_by_default_and_by_a_basis() {
+    let wheel = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let wheel = wheel.join("tests/data/calculix_wheel/wheel_rest.toml");
+    let place = Place::new();
+    let ended = place.run(&["import", wheel.to_str().expect("a path"), "--out", "own"]);
+    assert_eq!(ended.code, 0, "{}", ended.stderr);
+    for basis in ["auto", "stick_slide"] {
+        let text = imported(basis, "own", basis, "[excitation]\nengine_orders = [2]\n");
+        place.write("study.toml", &text);
+        let ended = place.run(&["run", "study.toml"]);
+        assert_eq!(ended.code, 0, "{basis}: {}{}", ended.stdout, ended.stderr);
+    }
+    let (own, by_basis) = (
+        rows(&place, "auto", None),
+        rows(&place, "stick_slide", None),
+    );
+    assert_eq!(own.len(), 4);
+    for (own, other) in own.iter().zip(&by_basis) {
+        assert_eq!(own.basis, "tuned_receptances");
+        let amplitude = |row: &ResponseRow| row.peak_amplitude_m.expect("a peak");
+        let ratio = amplitude(own) / amplitude(other);
+        assert!((ratio - 1.0).abs() < 2e-3, "{ratio}");
+    }
 }
 
 /// [`study`] with this accepted error in the place of its harmonics, at two loads.

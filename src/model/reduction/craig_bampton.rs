@@ -9,7 +9,9 @@ use crate::model::cyclic::CyclicSector;
 use crate::model::sector::{ModelError, StiffnessKind};
 
 /// At most so many independent dofs, the whole space is the basis.
-const WHOLE_SPACE_DOFS: usize = 12;
+pub const WHOLE_SPACE_DOFS: usize = 12;
+/// Share of their mass below which a combination of residual vectors is known by the others.
+const KNOWN_ALREADY: f64 = 1e-8;
 /// At most so many interior dofs, the fixed-interface modes are found by a dense solution.
 const DENSE_INTERIOR: usize = 60;
 
@@ -41,13 +43,22 @@ pub struct CraigBampton {
     pub contact: Matrix<Complex64>,
 }
 
-/// What is known of the residual vectors of a model, one per constraint mode.
-#[derive(Debug, Clone, Default)]
+/// What is known of the residual vectors of a model.
+#[derive(Debug, Clone)]
 struct Residual {
-    /// Factors that make their mass 1; none without such vectors.
-    scales: Vec<f64>,
+    /// What each of them is of the responses to the inertia of the constraint modes, `n_constraint x n_residual`.
+    combinations: Matrix<Complex64>,
     /// Eigenvalues of the fixed-interface modes less the shift, (rad/s)^2.
     eigenvalues: Vec<f64>,
+}
+
+impl Residual {
+    fn none() -> Self {
+        Self {
+            combinations: Matrix::zeros(0, 0),
+            eigenvalues: Vec::new(),
+        }
+    }
 }
 
 impl CraigBampton {
@@ -90,19 +101,19 @@ impl CraigBampton {
         let room = n - boundary.len() - fixed.columns();
         let (residual, vectors) = if with_residual && room >= boundary.len() {
             let inertia = mass.block(&interior, &boundary);
-            let vectors = held.residual_vectors(&inertia, &constraint, &fixed);
-            let scales = vectors.iter().map(|own| own.1).collect();
+            let (vectors, combinations) =
+                held.residual_vectors(&inertia, &constraint, &fixed, h)?;
             let eigenvalues = eigenvalues.iter().map(|own| own - held.shift).collect();
             let residual = Residual {
-                scales,
+                combinations,
                 eigenvalues,
             };
             (residual, vectors)
         } else {
-            (Residual::default(), Vec::new())
+            (Residual::none(), Matrix::zeros(interior.len(), 0))
         };
 
-        let columns = boundary.len() + fixed.columns() + vectors.len();
+        let columns = boundary.len() + fixed.columns() + vectors.columns();
         let mut recovery = Matrix::zeros(n, columns);
         for (column, &dof) in boundary.iter().enumerate() {
             recovery[(dof, column)] = Complex64::new(1.0, 0.0);
@@ -115,10 +126,10 @@ impl CraigBampton {
                 recovery[(at, boundary.len() + column)] = fixed[(row, column)];
             }
         }
-        for (column, (vector, _)) in vectors.iter().enumerate() {
-            let column = boundary.len() + fixed.columns() + column;
+        for column in 0..vectors.columns() {
+            let to = boundary.len() + fixed.columns() + column;
             for (row, &at) in interior.iter().enumerate() {
-                recovery[(at, column)] = vector[(row, 0)];
+                recovery[(at, to)] = vectors[(row, column)];
             }
         }
         let whole_space = columns == n;
@@ -199,11 +210,16 @@ impl CraigBampton {
         for (column, &row) in kept.iter().enumerate() {
             within[(row, column)] = one;
         }
-        for (b, scale) in self.residual.scales.iter().enumerate() {
-            for mode in modes..fixed {
-                let inertia = self.mass[(constraint + mode, b)];
-                let part = inertia * (scale / self.residual.eigenvalues[mode]);
-                within[(constraint + mode, constraint + modes + b)] = part;
+        let Residual {
+            combinations,
+            eigenvalues,
+        } = &self.residual;
+        for mode in modes..fixed {
+            for vector in 0..combinations.columns() {
+                let inertia = |b: usize| self.mass[(constraint + mode, b)];
+                let part = (0..constraint).map(|b| inertia(b) * combinations[(b, vector)]);
+                let part = part.sum::<Complex64>() / eigenvalues[mode];
+                within[(constraint + mode, constraint + modes + vector)] = part;
             }
         }
         let both = |a: &Matrix<Complex64>| within.adjoint_times(&a.times(&within));
@@ -308,7 +324,7 @@ impl CraigBampton {
             whole_space,
             highest_fixed_interface_hz: None,
             columns: [recovery.columns(), 0],
-            residual: Residual::default(),
+            residual: Residual::none(),
             enrichment: Matrix::zeros(recovery.columns(), 0),
             recovery,
             stiffness: reduced_stiffness,
@@ -395,14 +411,15 @@ impl HeldInterior {
             .map_err(|_| ModelError::MassNotPositiveDefinite { nodal_diameter })
     }
 
-    /// Response to the inertia of each constraint mode outside of the fixed-interface modes, scaled to unit mass, with its factor;
-    /// `inertia` is `M_ib`.
+    /// Response to the inertia of each constraint mode outside of the fixed-interface modes, orthonormal in the mass, with its
+    /// combinations of the responses; `inertia` is `M_ib`. What is known by the others already is left out.
     fn residual_vectors(
         &self,
         inertia: &Matrix<Complex64>,
         constraint: &Matrix<Complex64>,
         fixed: &Matrix<Complex64>,
-    ) -> Vec<(Matrix<Complex64>, f64)> {
+        nodal_diameter: usize,
+    ) -> Result<(Matrix<Complex64>, Matrix<Complex64>), ModelError> {
         let mut right = self.mass.times(constraint);
         for (entry, &own) in right.as_mut_slice().iter_mut().zip(inertia.as_slice()) {
             *entry += own;
@@ -415,19 +432,18 @@ impl HeldInterior {
                 *entry -= part;
             }
         }
-        let inertia = self.mass.times(&response);
-        (0..response.columns())
-            .map(|column| {
-                let mut vector = response.column_range(column, column + 1);
-                let own = inertia.column_range(column, column + 1);
-                let norm = vector.adjoint_times(&own)[(0, 0)].re.max(0.0).sqrt();
-                let scale = if norm > 0.0 { 1.0 / norm } else { 0.0 };
-                for entry in vector.as_mut_slice() {
-                    *entry *= scale;
-                }
-                (vector, scale)
-            })
-            .collect()
+        let gram = response.adjoint_times(&self.mass.times(&response));
+        let count = gram.columns();
+        let scales: Vec<f64> = (0..count)
+            .map(|own| gram[(own, own)].re.max(f64::MIN_POSITIVE).sqrt().recip())
+            .collect();
+        let scaled = Matrix::from_fn(count, count, |i, j| gram[(i, j)] * (scales[i] * scales[j]));
+        let (sizes, directions) = pencil(&scaled, &Matrix::identity(count), nodal_diameter)?;
+        let first = sizes.partition_point(|&size| size < KNOWN_ALREADY * count as f64);
+        let combinations = Matrix::from_fn(count, count - first, |i, j| {
+            directions[(i, first + j)] * (scales[i] / sizes[first + j].sqrt())
+        });
+        Ok((response.times(&combinations), combinations))
     }
 
     /// Static (for a shift, quasi-static) interior response to unit motions of the boundary,
