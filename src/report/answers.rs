@@ -7,7 +7,9 @@ use super::{
     BestLoads, CommonErrors, GroupReport, LoadChoice, NumericalError, PercentileError,
     ScenarioErrors, ScenarioSummary, StatedErrors, StudyReport,
 };
-use crate::population::monte_carlo::HARMONIC_SAFETY;
+use crate::population::monte_carlo::{
+    HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, TUNED_RECEPTANCES,
+};
 use crate::population::statistics::{CONFIDENCE, Percentile};
 
 /// A question of an engineer with its answer from the numbers of a report.
@@ -342,18 +344,25 @@ impl Writer<'_> {
     /// Errors that every row of a load states, whatever its own.
     fn common(&self, common: &CommonErrors) -> Option<String> {
         let basis = &self.report.summary.basis;
+        // Rows on tuned receptances have their harmonics and modes judged by mistuned wheels.
+        let (safety, judged_by) = if basis.name == TUNED_RECEPTANCES {
+            (
+                HARMONIC_SAFETY_ON_RECEPTANCES,
+                "the worst of the mistuned wheels that judge",
+            )
+        } else {
+            (HARMONIC_SAFETY, "the tuned wheel")
+        };
         let parts = [
             (
-                common.harmonics.map(|change| HARMONIC_SAFETY * change),
-                format!(
-                    "harmonics left out ({HARMONIC_SAFETY} times what they change on the tuned wheel)"
-                ),
+                common.harmonics.map(|change| safety * change),
+                format!("harmonics left out ({safety} times what they change on {judged_by})"),
             ),
             (common.peak, "the peak search".to_owned()),
             (
                 basis.tuned_peak_error,
                 format!(
-                    "the reduced basis ({}, measured on the tuned wheel)",
+                    "the reduced model ({}, measured on {judged_by})",
                     basis.name
                 ),
             ),

@@ -11,7 +11,7 @@ use super::receptance_choice::Judges;
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::{ModelError, SectorModel, StiffnessKind};
-use crate::population::monte_carlo::HarmonicChoice;
+use crate::population::monte_carlo::{HarmonicChoice, TUNED_RECEPTANCES};
 use crate::response::forced_response::{
     ContactCondition, EngineRow, FrequencyBand, PointSettings, Window, receptance_peak,
 };
@@ -252,7 +252,7 @@ pub(super) fn shape_evidence(
         whole_space: false,
         craig_bampton_reach: None,
         tried: vec![BasisError {
-            basis: "tuned_receptances".to_owned(),
+            basis: TUNED_RECEPTANCES.to_owned(),
             vectors: engine.shape_count(Limit::Stuck, 1),
             error,
             contact_displacement: None,

@@ -18,7 +18,7 @@ use super::curves::CurveResult;
 use super::wheel_state::WheelState;
 
 /// In the column `basis`.
-pub(super) const NAME: &str = "tuned_receptances";
+pub const TUNED_RECEPTANCES: &str = "tuned_receptances";
 
 /// Samples per period of a search with few harmonics: what it finds is only where to look.
 const SEARCH_SAMPLES: usize = 32;
@@ -69,7 +69,7 @@ impl RowSolver {
     #[must_use]
     pub fn basis_name(&self) -> String {
         match &self.engine {
-            Some(_) => NAME.to_owned(),
+            Some(_) => TUNED_RECEPTANCES.to_owned(),
             None => self.basis().model().basis_name(),
         }
     }
@@ -78,7 +78,7 @@ impl RowSolver {
     #[must_use]
     pub fn rows_on(&self) -> String {
         match &self.engine {
-            Some(_) => NAME.to_owned(),
+            Some(_) => TUNED_RECEPTANCES.to_owned(),
             None => self.basis().model().basis.to_string(),
         }
     }

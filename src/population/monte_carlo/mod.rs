@@ -20,6 +20,7 @@ mod wheel_state;
 
 pub use blocks::{PatternBlock, StoredRows, block_size, plan_blocks};
 pub use curves::CurveResult;
+pub use engine_rows::TUNED_RECEPTANCES;
 pub use harmonic_choice::{
     ErrorTolerance, HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, HarmonicChoice, ScenarioError,
     stated_error,
