@@ -54,13 +54,13 @@ pub(super) const REDUCTION_KEYS: &[Entry] = &[
             "tuned_receptances",
         ]),
         "`\"auto\"`",
-        "family of the basis ([formulation.md](formulation.md))",
+        "family of the basis ([formulation.md](formulation.md)). `auto` is `tuned_receptances`, which has none, where the contact has pairs, the sector more than 12 dofs, the ring is locked and all harmonics are of the mistuned wheel; else a basis is chosen by `error`",
     ),
     entry(
         "reduction.error",
         Number(Range::above(0.0).up_to(0.5)),
         "0.001",
-        "wanted relative error of the tuned peak, by which the number of modes is chosen where it is not fixed",
+        "wanted relative error of the judged peaks by the modes left out, by which their number is chosen where it is not fixed",
     ),
     entry(
         "reduction.stick_modes",
