@@ -344,14 +344,15 @@ impl Writer<'_> {
     /// Errors that every row of a load states, whatever its own.
     fn common(&self, common: &CommonErrors) -> Option<String> {
         let basis = &self.report.summary.basis;
-        // Rows on tuned receptances have their harmonics and modes judged by mistuned wheels.
-        let (safety, judged_by) = if basis.name == TUNED_RECEPTANCES {
+        let (safety, judged_by, measured_on) = if basis.name == TUNED_RECEPTANCES {
+            // The tuned wheel judges harmonics too, mistuned ones alone the modes.
             (
                 HARMONIC_SAFETY_ON_RECEPTANCES,
-                "the worst of the mistuned wheels that judge",
+                "the worst of the wheels that judge",
+                "mistuned wheels",
             )
         } else {
-            (HARMONIC_SAFETY, "the tuned wheel")
+            (HARMONIC_SAFETY, "the tuned wheel", "the tuned wheel")
         };
         let parts = [
             (
@@ -362,7 +363,7 @@ impl Writer<'_> {
             (
                 basis.tuned_peak_error,
                 format!(
-                    "the reduced model ({}, measured on {judged_by})",
+                    "the reduced model ({}, measured on {measured_on})",
                     basis.name
                 ),
             ),

@@ -8,6 +8,7 @@ use super::accurate_engine::accurate_engine;
 use super::basis_choice::BasisEvidence;
 use super::fixed_interface::{FixedInterface, reduce_sector, sensitivity_vectors};
 use super::reduced_study::{Stored, models_digest, reduced, reduced_on_receptances, solver_of};
+use super::validate::against_receptances;
 use super::{Engine, EngineSource, PipelineError, Study, SurrogateOf};
 use crate::model::reduction::{Basis, ContactStiffness, WHOLE_SPACE_DOFS};
 use crate::model::sector::SectorModel;
@@ -17,11 +18,10 @@ use crate::population::monte_carlo::{
 };
 use crate::population::table::CurvePoint;
 use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
-use crate::response::forced_response::{Harmonics, HigherHarmonics, ResponseTrace, SearchPlan};
+use crate::response::forced_response::{Harmonics, ResponseTrace, SearchPlan};
 use crate::response::friction::{ContactOptions, PairParameters, Ring};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
-use crate::response::receptance::HIGHEST_HARMONIC;
 use crate::response::time_integration::{PointComparison, TimeOptions};
 
 /// Harmonics that an automatic set begins with.
@@ -321,15 +321,10 @@ impl Engine for ReducedEngine {
 pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
     let ready = || {
         let contact = study.contact.as_ref();
-        let harmonics = match &study.solver.harmonics {
-            Harmonics::Auto => true,
-            Harmonics::Set(set) => set.iter().all(|&k| k <= HIGHEST_HARMONIC),
-        };
         !sector.contact_pairs.is_empty()
             && sector.dofs.len() > WHOLE_SPACE_DOFS
-            && contact.is_none_or(|own| own.ring == Ring::Locked && own.in_place_of.is_none())
-            && study.solver.higher_harmonics == HigherHarmonics::Mistuned
-            && harmonics
+            && contact.is_none_or(|own| own.in_place_of.is_none())
+            && against_receptances(contact.map(|own| own.ring), &study.solver).is_empty()
     };
     match study.reduction.basis {
         Basis::TunedReceptances => true,

@@ -192,7 +192,12 @@ fn resolve(
     };
     let creeping = contact.as_ref().is_some_and(|c| c.ring == Ring::Creeping);
     tuned_harmonics(check, &solver, creeping, !contact_variations.is_empty());
-    tuned_receptances(check, &raw.reduction, &solver, creeping);
+    if raw.reduction.basis == Basis::TunedReceptances {
+        let ring = contact.as_ref().map(|own| own.ring);
+        for (key, reason) in against_receptances(ring, &solver) {
+            check.conflict(key, &format!("basis = \"tuned_receptances\" {reason}"));
+        }
+    }
     let mistuning = mistuning(check, path, raw.mistuning, &sweep, head.patterns)?;
     let (Some(model), Some(damping), Some(mistuning)) = (model, damping, mistuning) else {
         return Ok(None);
@@ -401,39 +406,28 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
     }
 }
 
-/// What rows on tuned receptances leave no choice of, or cannot do.
-fn tuned_receptances(
-    check: &mut Check,
-    reduction: &ReductionOptions,
+/// Keys by which a study cannot be solved on tuned receptances, each with what would be accepted.
+pub(super) fn against_receptances(
+    ring: Option<Ring>,
     solver: &SolverOptions,
-    creeping: bool,
-) {
-    if reduction.basis != Basis::TunedReceptances {
-        return;
-    }
-    if creeping {
-        check.conflict(
-            "contact.ring",
-            "basis = \"tuned_receptances\" is solved with a locked ring only; accepted: \"locked\", or another basis",
-        );
+) -> Vec<(&'static str, String)> {
+    let mut found = Vec::new();
+    if ring == Some(Ring::Creeping) {
+        let reason = "is solved with a locked ring only; accepted: \"locked\", or another basis";
+        found.push(("contact.ring", reason.to_owned()));
     }
     if let Harmonics::Set(set) = &solver.harmonics
-        && set
-            .last()
-            .is_some_and(|&highest| highest > HIGHEST_HARMONIC)
+        && set.iter().any(|&harmonic| harmonic > HIGHEST_HARMONIC)
     {
-        let reason = format!(
-            "basis = \"tuned_receptances\" has harmonics up to {HIGHEST_HARMONIC}; accepted: these, or another basis"
-        );
-        check.conflict("solver.harmonics", &reason);
+        let reason =
+            format!("has harmonics up to {HIGHEST_HARMONIC}; accepted: these, or another basis");
+        found.push(("solver.harmonics", reason));
     }
     if solver.higher_harmonics == HigherHarmonics::Tuned {
-        check.conflict(
-            "solver.higher_harmonics",
-            "basis = \"tuned_receptances\" takes every harmonic in the mistuned wheel; accepted: \"mistuned\", or another \
-             basis",
-        );
+        let reason = "takes every harmonic in the mistuned wheel; accepted: \"mistuned\", or another basis";
+        found.push(("solver.higher_harmonics", reason.to_owned()));
     }
+    found
 }
 
 fn contact_options(check: &mut Check, raw: &RawContact) -> ContactOptions {
