@@ -13,9 +13,7 @@ use super::load_cases::{Excitation, solver_under};
 use super::receptance_choice::Judges;
 use super::reduced_engine::row_settings;
 use super::sector_model::judging_patterns;
-use super::tuned_receptances::{
-    COMPANION_MODES, Refined, engine_of, engine_options, refined, shape_evidence,
-};
+use super::tuned_receptances::{COMPANION_MODES, Refined, engine_of, engine_options, refined};
 use super::{PipelineError, Study};
 use crate::model::ReducedModel;
 use crate::model::reduction::{Basis, BasisChoice, Reduction, ReductionOptions};
@@ -221,6 +219,7 @@ pub(super) fn reduced_on_receptances(
         reduction,
         engine,
         fixed_interface,
+        evidence,
         harmonics,
     } = refined(study, sector, &excitations, &patterns, |judges| {
         judges.harmonics(&study.contacts, &first, tolerance)
@@ -249,7 +248,6 @@ pub(super) fn reduced_on_receptances(
         .then(|| judges.iter().zip(&harmonics).map(further).collect());
     let beyond: Option<Vec<Sets>> = beyond.transpose()?;
     drop(judges);
-    let evidence = shape_evidence(study, &engine, &excitations)?;
     let modes = study.mistuning.cantilever_mode_count;
     let model = if reduction.is_whole_space() {
         engine.own.model.clone()

@@ -27,6 +27,8 @@ const LARGEST: f64 = 3.0;
 const WHEELS: u32 = 4;
 /// Seed of their deviations.
 const SEED: u64 = 0x0062_6c69_736b;
+/// Factor on the number of shapes beyond which none are added.
+const MOST_SHAPES: usize = 8;
 /// Relative tolerance of their peaks.
 const PEAK_TOLERANCE: f64 = 1e-5;
 /// Fixed-interface modes per nodal diameter that are tried first.
@@ -59,7 +61,6 @@ pub(super) fn engine_options(
             FrequencyBand::Auto => None,
             FrequencyBand::Fixed { start_hz, stop_hz } => Some((start_hz, stop_hz)),
         },
-        more_shapes: 1,
     }
 }
 
@@ -94,12 +95,26 @@ impl Made {
         study: &Study,
         reduction: &Reduction<'_>,
         excitations: &[Excitation],
+        shape_factor: usize,
     ) -> Result<Self, PipelineError> {
         let modes = study.mistuning.cantilever_mode_count;
         let model = reduction.reduce(BasisChoice::CraigBampton, modes)?;
         let options = engine_options(study, excitations, &model);
         let own = EngineModel::new(&model, &options).ok_or_else(no_modes)?;
+        let own = own.with_shape_factor(shape_factor);
         let receptances = engine_of(&own, &options)?;
+        Ok(Self { own, receptances })
+    }
+
+    /// The same with another number of blade shapes.
+    fn with_shape_factor(
+        &self,
+        study: &Study,
+        excitations: &[Excitation],
+        shape_factor: usize,
+    ) -> Result<Self, PipelineError> {
+        let own = self.own.clone().with_shape_factor(shape_factor);
+        let receptances = engine_of(&own, &engine_options(study, excitations, &own.model))?;
         Ok(Self { own, receptances })
     }
 
@@ -119,6 +134,8 @@ pub(super) struct Refined<'a> {
     pub(super) reduction: Reduction<'a>,
     pub(super) engine: Made,
     pub(super) fixed_interface: FixedInterface,
+    /// Of the blade shapes.
+    pub(super) evidence: BasisEvidence,
     /// Under each force vector.
     pub(super) harmonics: Vec<Vec<HarmonicChoice>>,
 }
@@ -141,6 +158,7 @@ pub(super) fn refined<'a>(
     let conditions = &study.contacts;
     let mut harmonics: Option<Vec<Vec<HarmonicChoice>>> = None;
     let mut tried = Vec::new();
+    let mut shape_factor = 1;
     loop {
         let fine = reduction_with(study, sector, modes)
             .with_residual_vectors()
@@ -151,7 +169,9 @@ pub(super) fn refined<'a>(
             Some(_) if !whole => (coarse, Some(fine)),
             _ => (fine, (!whole).then_some(coarse)),
         };
-        let engine = Made::new(study, &taken, excitations)?;
+        let engine = Made::new(study, &taken, excitations, shape_factor)?;
+        let (engine, factor, evidence) = with_shapes(study, engine, excitations, shape_factor)?;
+        shape_factor = factor;
         let own = engine.judges(excitations, patterns);
         let sets = match harmonics.take() {
             Some(sets) => sets,
@@ -160,7 +180,7 @@ pub(super) fn refined<'a>(
         let change = match &other {
             None => Some(0.0),
             Some(other) => {
-                let other = Made::new(study, other, excitations)?;
+                let other = Made::new(study, other, excitations, shape_factor)?;
                 let mut changes = Vec::new();
                 for ((own, other), sets) in own
                     .iter()
@@ -188,6 +208,7 @@ pub(super) fn refined<'a>(
                 },
                 reduction: taken,
                 engine,
+                evidence,
                 harmonics: sets,
             });
         }
@@ -196,41 +217,73 @@ pub(super) fn refined<'a>(
     }
 }
 
-/// Evidence for an engine: largest relative change of the stuck and sliding peaks of some mistuned wheels by twice the shapes.
-///
-/// # Errors
-/// The modes of a nodal diameter are not found.
-pub(super) fn shape_evidence(
+/// The engine with `shape_factor` or the first of twice, four times ... as many blade shapes that twice as many again change no
+/// linear peak by more than `reduction.error`, with its factor and what was tried.
+fn with_shapes(
     study: &Study,
-    made: &Made,
+    made: Made,
     excitations: &[Excitation],
-) -> Result<BasisEvidence, PipelineError> {
-    let (own, engine) = (&made.own, &made.receptances);
-    let options = &engine_options(study, excitations, &own.model);
-    let more = EngineOptions {
-        more_shapes: 2,
-        ..options.clone()
-    };
-    let finer = &engine_of(own, &more)?;
+    shape_factor: usize,
+) -> Result<(Made, usize, BasisEvidence), PipelineError> {
+    let mut made = made;
+    let mut factor = shape_factor;
+    let mut tried = Vec::new();
+    loop {
+        let exact = made.receptances.is_exact();
+        let finer = made.with_shape_factor(study, excitations, 2 * factor)?;
+        let error = if exact {
+            Some(0.0)
+        } else {
+            linear_change(study, &made, &finer, excitations)?
+        };
+        tried.push(BasisError {
+            basis: TUNED_RECEPTANCES.to_owned(),
+            vectors: made.receptances.shape_count(Limit::Stuck, 1),
+            error,
+            contact_displacement: None,
+        });
+        let enough = error.is_some_and(|error| error <= study.reduction.error);
+        if enough || factor >= MOST_SHAPES {
+            let evidence = BasisEvidence {
+                whole_space: false,
+                craig_bampton_reach: None,
+                tried,
+            };
+            return Ok((made, factor, evidence));
+        }
+        made = finer;
+        factor *= 2;
+    }
+}
+
+/// Largest relative change of the stuck and sliding peaks of some mistuned wheels from one engine to another; none where a peak
+/// is not found.
+fn linear_change(
+    study: &Study,
+    own: &Made,
+    finer: &Made,
+    excitations: &[Excitation],
+) -> Result<Option<f64>, PipelineError> {
+    let engines = [&own.receptances, &finer.receptances];
     let source = PatternSource::Random {
         seed: SEED,
         count: WHEELS,
-        sectors: engine.sectors(),
+        sectors: own.receptances.sectors(),
         distribution: Distribution::Normal,
     };
     let sigma = expected_deviation(study);
     let patterns = (0..WHEELS).filter_map(|id| source.pattern(id, Some(sigma)));
     let patterns: Vec<Pattern> = patterns.collect();
     let mut error = Some(0.0_f64);
-    let points = linear_points(study, &own.model)?;
+    let points = linear_points(study, &own.own.model)?;
     let window = Window {
         resonances_hz: None,
         band: study.solver.frequency_band,
     };
-    for force in &options.forces {
+    for force in &engine_options(study, excitations, &own.own.model).forces {
         for condition in [ContactCondition::Stuck, ContactCondition::Slide] {
             for pattern in &patterns {
-                let peaks = [engine, finer].map(|engine| {
+                let peaks = engines.map(|engine| {
                     let wheel = EngineWheel::new(Some(pattern), engine.sectors());
                     let row = EngineRow {
                         engine,
@@ -247,17 +300,7 @@ pub(super) fn shape_evidence(
             }
         }
     }
-    let error = if engine.is_exact() { Some(0.0) } else { error };
-    Ok(BasisEvidence {
-        whole_space: false,
-        craig_bampton_reach: None,
-        tried: vec![BasisError {
-            basis: TUNED_RECEPTANCES.to_owned(),
-            vectors: engine.shape_count(Limit::Stuck, 1),
-            error,
-            contact_displacement: None,
-        }],
-    })
+    Ok(error)
 }
 
 /// Settings of the points of linear limits.

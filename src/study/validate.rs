@@ -424,7 +424,8 @@ pub(super) fn against_receptances(
         found.push(("solver.harmonics", reason));
     }
     if solver.higher_harmonics == HigherHarmonics::Tuned {
-        let reason = "takes every harmonic in the mistuned wheel; accepted: \"mistuned\", or another basis";
+        let reason =
+            "takes every harmonic in the mistuned wheel; accepted: \"mistuned\", or another basis";
         found.push(("solver.higher_harmonics", reason.to_owned()));
     }
     found

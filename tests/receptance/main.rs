@@ -119,7 +119,6 @@ impl Case {
             forces: vec![force.clone()],
             deviation: 0.1,
             band_hz: None,
-            more_shapes: 1,
         };
         let own = EngineModel::new(&self.model, &options).unwrap();
         (ReceptanceEngine::new(&own, &options).unwrap(), force)

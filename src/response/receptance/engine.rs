@@ -36,6 +36,8 @@ pub struct EngineModel {
     pub model: ReducedModel,
     /// Participation of the contact-free modes of nodal diameters 0..=N/2 in coordinates of the blade's strain.
     strain: Vec<Matrix<Complex64>>,
+    /// Factor on the number of blade shapes.
+    shape_factor: usize,
 }
 
 impl EngineModel {
@@ -56,7 +58,20 @@ impl EngineModel {
             blade_gram: Matrix::zeros(0, 0),
             ..model.clone()
         };
-        Some(Self { model, strain })
+        Some(Self {
+            model,
+            strain,
+            shape_factor: 1,
+        })
+    }
+
+    /// The same with so many times as many blade shapes as there are at least.
+    #[must_use]
+    pub fn with_shape_factor(self, shape_factor: usize) -> Self {
+        Self {
+            shape_factor,
+            ..self
+        }
     }
 }
 
@@ -73,8 +88,6 @@ pub struct EngineOptions {
     pub deviation: f64,
     /// The band that is asked for, Hz; none for that of the resonances.
     pub band_hz: Option<(f64, f64)>,
-    /// Factor on the number of blade shapes, 1 for rows.
-    pub more_shapes: usize,
 }
 
 /// Receptances of the tuned wheel, shared by all threads.
@@ -99,7 +112,7 @@ pub(super) struct Pencil {
     band: (f64, f64),
     forces: Vec<WaveForce>,
     deviation: f64,
-    more_shapes: usize,
+    shape_factor: usize,
     sectors: usize,
     modes: Option<BandModes>,
     /// By harmonic.
@@ -152,7 +165,7 @@ impl ReceptanceEngine {
             band,
             forces: options.forces.clone(),
             deviation: options.deviation,
-            more_shapes: options.more_shapes,
+            shape_factor: own.shape_factor,
             sectors: model.sectors,
             modes: None,
             tables: (0..=HIGHEST_HARMONIC).map(|_| OnceLock::new()).collect(),
@@ -322,7 +335,7 @@ impl Pencil {
             contact_forces: &self.contact_forces,
             excitations: if harmonic == 1 { &self.forces } else { &[] },
             deviation: self.deviation,
-            count: SHAPES[place] * self.more_shapes,
+            count: SHAPES[place] * self.shape_factor,
         };
         let shapes = blade_shapes(&self.diameters, &self.strain, &wanted)?;
         Some(in_shapes(&self.strain, &shapes))
