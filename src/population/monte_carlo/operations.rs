@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{ResponseRow, RowSolver, Scenario};
-use crate::response::forced_response::{ContactCondition, Harmonics};
+use crate::response::forced_response::{ContactCondition, samples_per_period};
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{LARGEST_WHOLE_JACOBIAN, condensing_pays};
 
@@ -26,8 +26,6 @@ const CHECK_COEFFICIENTS_ODD: usize = 16;
 const CHECK_BLOCKS_ODD: f64 = 7.0;
 /// Samples of the check over those of the solution.
 const CHECK_SAMPLES: f64 = 4.0;
-/// Samples per period of the highest harmonic that an automatic set has at least.
-const SAMPLES_OF_HIGHEST: usize = 16;
 
 /// Work counts of a row.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -358,8 +356,6 @@ impl RowSolver {
         let model = solver.basis().model();
         let linear = !matches!(scenario.contact, ContactCondition::Full { .. });
         let options = &solver.settings.solver;
-        let highest = harmonics.last().map_or(1, |&k| k as usize);
-        let samples = options.samples_per_period;
         let law = solver.settings.contact.map(|(law, _)| law);
         let law = law.filter(|_| !linear);
         SystemSize {
@@ -373,10 +369,10 @@ impl RowSolver {
             in_stages: solver
                 .search(solver.points(scenario.engine_order, scenario.contact))
                 .is_some(),
-            samples: match options.harmonics {
-                _ if linear => 1,
-                Harmonics::Auto => samples.max(SAMPLES_OF_HIGHEST * highest),
-                Harmonics::Set(_) => samples,
+            samples: if linear {
+                1
+            } else {
+                samples_per_period(options, harmonics)
             },
         }
     }

@@ -42,7 +42,7 @@ pub use peak::{
 };
 pub use peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
 pub use point::{Point, Slope, Work};
-pub use point_settings::PointSettings;
+pub use point_settings::{PointSettings, samples_per_period};
 pub use point_solver::PointSolver;
 pub use receptance_errors::{receptance_effects, receptance_errors, receptance_top_m};
 pub use receptance_points::{

@@ -11,7 +11,9 @@ use crate::response::harmonic_balance::{HarmonicTransform, NewtonBounds, Transfo
 use crate::response::mistuning::ContactFactors;
 
 /// Samples per period of the highest harmonic of an automatic set at least.
-const SAMPLES_OF_HIGHEST: usize = 16;
+const SAMPLES_OF_HIGHEST: usize = 12;
+/// A number of samples is a multiple of this one: quarters of a period are whole vectors of the machine.
+const SAMPLES_STEP: usize = 16;
 
 /// Everything of a study that the solution of a point needs besides the structure.
 #[derive(Debug, Clone)]
@@ -164,12 +166,16 @@ fn sought(search: &SearchHarmonics, harmonics: &[u32]) -> Option<Vec<u32>> {
     (sought.len() < harmonics.len()).then_some(sought)
 }
 
-/// Those asked for; where the set is automatic, at least [`SAMPLES_OF_HIGHEST`] per period of the highest
-/// harmonic.
-pub(super) fn samples_per_period(options: &SolverOptions, harmonics: &[u32]) -> usize {
+/// Samples per period of a solution in `harmonics`: those asked for; where the set is automatic, at least 12 per period of
+/// the highest.
+#[must_use]
+pub fn samples_per_period(options: &SolverOptions, harmonics: &[u32]) -> usize {
     let highest = harmonics.last().map_or(1, |&k| k as usize);
     match options.harmonics {
-        Harmonics::Auto => options.samples_per_period.max(SAMPLES_OF_HIGHEST * highest),
+        Harmonics::Auto => {
+            let wanted = (SAMPLES_OF_HIGHEST * highest).next_multiple_of(SAMPLES_STEP);
+            options.samples_per_period.max(wanted)
+        }
         Harmonics::Set(_) => options.samples_per_period,
     }
 }

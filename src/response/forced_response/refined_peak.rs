@@ -22,8 +22,8 @@ use crate::response::harmonic_balance::Status;
 
 /// Least tolerance of the first search: what it finds is only where to look.
 const COARSE_TOLERANCE: f64 = 0.02;
-/// Precision of the amplitudes of all harmonics that are compared, over the tolerance.
-const REFINED_PRECISION: f64 = 0.05;
+/// Precision of the amplitudes of all harmonics that are compared, over the tolerance: the best is solved again beyond it.
+const REFINED_PRECISION: f64 = 0.2;
 /// Share that harmonics may change the height of one top more than that of another.
 const MADE_UP: f64 = 0.05;
 /// First neighbours of a top, in half-bandwidths: the distance at which a parabola is trusted at 0.5 %.

@@ -34,7 +34,7 @@ struct Plan {
 /// From motions that are known beside the frequency or with other harmonics.
 const WARM: Plan = Plan {
     renewals: &[0],
-    iterations: 60,
+    iterations: 100,
 };
 /// From the linear response, whose tangent says little.
 const COLD: Plan = Plan {

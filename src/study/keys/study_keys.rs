@@ -309,7 +309,7 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "solver.samples_per_period",
         Whole(16, 65_536),
         "128",
-        "at least 4 times the highest harmonic; an automatic set takes at least 16 per period of its highest harmonic",
+        "at least 4 times the highest harmonic; an automatic set takes at least 12 per period of its highest harmonic",
     ),
     entry(
         "solver.residual_tolerance",
