@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use blisk::model::ReducedModel;
-use blisk::model::reduction::{Basis, BasisChoice, ContactStiffness, Reduction, ReductionOptions};
+use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction, ReductionOptions};
 use blisk::model::sector::SectorModel;
 use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{
@@ -59,14 +59,9 @@ impl Model {
             tangential_2_n_per_m: second,
         };
         let (stick, slide) = (study.reduction.stick_modes, study.reduction.slide_modes);
-        let choice = match (study.reduction.basis, stick, slide) {
-            (Basis::StickPartialSlide, stick, slide) => BasisChoice::StickPartialSlide {
-                stick: stick.unwrap_or(2),
-                partial: study.reduction.partial_modes.unwrap_or(1),
-                slide: slide.unwrap_or(1),
-            },
-            (_, Some(stick), Some(slide)) => BasisChoice::StickSlide { stick, slide },
-            (_, stick, _) => BasisChoice::StickAttachment {
+        let choice = match (stick, slide) {
+            (Some(stick), Some(slide)) => BasisChoice::StickSlide { stick, slide },
+            (stick, _) => BasisChoice::StickAttachment {
                 stick: stick.unwrap_or(4),
             },
         };

@@ -15,15 +15,6 @@ pub enum BasisChoice {
         /// Slide modes.
         slide: usize,
     },
-    /// The same with the lowest modes under each of two tangential contact stiffnesses in between.
-    StickPartialSlide {
-        /// Stick modes.
-        stick: usize,
-        /// Modes at each stiffness in between.
-        partial: usize,
-        /// Slide modes.
-        slide: usize,
-    },
     /// Stick modes and one attachment vector per contact direction.
     StickAttachment {
         /// Stick modes.
@@ -37,11 +28,6 @@ impl std::fmt::Display for BasisChoice {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::StickSlide { stick, slide } => write!(f, "stick_slide {stick}+{slide}"),
-            Self::StickPartialSlide {
-                stick,
-                partial,
-                slide,
-            } => write!(f, "stick_partial_slide {stick}+{partial}+{slide}"),
             Self::StickAttachment { stick } => write!(f, "stick_attachment {stick}"),
             Self::CraigBampton => write!(f, "craig_bampton"),
         }

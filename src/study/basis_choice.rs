@@ -19,8 +19,6 @@ use crate::response::mistuning::{ContactFactors, ContactQuantity, ContactVariati
 
 /// Numbers of stick modes of `stick_attachment` that are tried, ascending.
 const ATTACHMENT_LADDER: [usize; 5] = [4, 8, 14, 20, 28];
-/// Stick, partial and slide modes of `stick_partial_slide` where the study names none.
-const PARTIAL_SIZES: [usize; 3] = [2, 1, 1];
 /// Numbers of stick and of slide modes that are tried, ascending.
 const STICK_SLIDE_LADDER: [usize; 9] = [2, 3, 4, 6, 8, 10, 14, 20, 28];
 /// Loads of a study by which a basis is judged at most.
@@ -200,13 +198,6 @@ fn candidates(reduction: &Reduction<'_>, options: &ReductionOptions) -> Vec<Basi
         slide: modes,
     });
     match (options.basis, options.stick_modes, options.slide_modes) {
-        (Basis::StickPartialSlide, stick, slide) => {
-            vec![BasisChoice::StickPartialSlide {
-                stick: stick.unwrap_or(PARTIAL_SIZES[0]),
-                partial: options.partial_modes.unwrap_or(PARTIAL_SIZES[1]),
-                slide: slide.unwrap_or(PARTIAL_SIZES[2]),
-            }]
-        }
         (Basis::StickAttachment, Some(stick), _) => vec![BasisChoice::StickAttachment { stick }],
         (Basis::StickAttachment, None, _) => attachments.to_vec(),
         (_, Some(stick), Some(slide)) => vec![BasisChoice::StickSlide { stick, slide }],
@@ -228,11 +219,6 @@ fn candidates(reduction: &Reduction<'_>, options: &ReductionOptions) -> Vec<Basi
 fn vectors(reduction: &Reduction<'_>, choice: BasisChoice) -> usize {
     match choice {
         BasisChoice::StickSlide { stick, slide } => stick + slide,
-        BasisChoice::StickPartialSlide {
-            stick,
-            partial,
-            slide,
-        } => stick + 2 * partial + slide,
         BasisChoice::StickAttachment { stick } => stick + reduction.contact_rows(),
         BasisChoice::CraigBampton => reduction
             .models()

@@ -154,17 +154,7 @@ impl LadderSetting {
         own.accuracy = None;
         let reduction = &mut own.reduction;
         (reduction.stick_modes, reduction.slide_modes) = (None, None);
-        reduction.partial_modes = None;
         match self.basis {
-            BasisChoice::StickPartialSlide {
-                stick,
-                partial,
-                slide,
-            } => {
-                reduction.basis = Basis::StickPartialSlide;
-                (reduction.stick_modes, reduction.slide_modes) = (Some(stick), Some(slide));
-                reduction.partial_modes = Some(partial);
-            }
             BasisChoice::StickSlide { stick, slide } => {
                 reduction.basis = Basis::StickSlide;
                 (reduction.stick_modes, reduction.slide_modes) = (Some(stick), Some(slide));
@@ -241,9 +231,6 @@ const STICK_SLIDE: [(usize, usize); 11] = [
     (14, 14),
     (20, 20),
 ];
-/// Stick, partial and slide modes of `stick_partial_slide` that are tried.
-const STICK_PARTIAL_SLIDE: [(usize, usize, usize); 5] =
-    [(2, 1, 1), (2, 1, 2), (3, 1, 2), (2, 2, 2), (3, 2, 3)];
 /// Stick modes of `stick_attachment` that are tried.
 const ATTACHMENT: [usize; 3] = [4, 8, 14];
 /// Sets under a constant normal load.
@@ -271,11 +258,6 @@ impl LadderSpace {
     pub fn vectors(&self, basis: BasisChoice) -> usize {
         match basis {
             BasisChoice::StickSlide { stick, slide } => stick + slide,
-            BasisChoice::StickPartialSlide {
-                stick,
-                partial,
-                slide,
-            } => stick + 2 * partial + slide,
             BasisChoice::StickAttachment { stick } => stick + self.contact_rows,
             BasisChoice::CraigBampton => usize::MAX,
         }
@@ -288,16 +270,9 @@ impl LadderSpace {
             return vec![BasisChoice::CraigBampton];
         }
         let modes = STICK_SLIDE.map(|(stick, slide)| BasisChoice::StickSlide { stick, slide });
-        let partial =
-            STICK_PARTIAL_SLIDE.map(|(stick, partial, slide)| BasisChoice::StickPartialSlide {
-                stick,
-                partial,
-                slide,
-            });
         let attachments = ATTACHMENT.map(|stick| BasisChoice::StickAttachment { stick });
         let mut bases: Vec<BasisChoice> = attachments
             .into_iter()
-            .chain(partial)
             .chain(modes)
             .filter(|&basis| self.vectors(basis) < self.most_vectors)
             .collect();

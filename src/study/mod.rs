@@ -47,6 +47,7 @@ mod receptance_choice;
 mod reduced_engine;
 mod reduced_study;
 mod repair;
+mod replaced;
 mod replay;
 mod report_wheels;
 mod resolved;

@@ -329,7 +329,7 @@ pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
     match study.reduction.basis {
         Basis::TunedReceptances => true,
         Basis::Auto => ready(),
-        Basis::StickSlide | Basis::StickPartialSlide | Basis::StickAttachment => false,
+        Basis::StickSlide | Basis::StickAttachment => false,
     }
 }
 

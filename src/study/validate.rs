@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::raw::{RawContact, RawHead, RawModel, RawModelKind, RawStudy};
+use super::replaced::replaced;
 use super::validate_accuracy::accuracy;
 use super::validate_contact::contact_variations;
 use super::validate_damping::{damping, nodal_diameter_damping};
@@ -126,6 +127,10 @@ impl Study {
             findings,
         };
         let map = SourceMap::new(text).map_err(|finding| invalid(vec![*finding]))?;
+        let replaced = replaced(&map);
+        if !replaced.is_empty() {
+            return Err(invalid(replaced));
+        }
         let raw: RawStudy =
             toml::from_str(text).map_err(|error| invalid(vec![map.describe(&error)]))?;
         let mut check = Check {
@@ -328,7 +333,6 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
     let counts = [
         ("reduction.stick_modes", options.stick_modes, 1),
         ("reduction.slide_modes", options.slide_modes, 1),
-        ("reduction.partial_modes", options.partial_modes, 1),
         (
             "reduction.craig_bampton_modes",
             options.craig_bampton_modes,
@@ -345,14 +349,7 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
             check.refuse(key, &format!("a whole number from {least} to 1000"));
         }
     }
-    if options.partial_modes.is_some() && options.basis != Basis::StickPartialSlide {
-        check.conflict(
-            "reduction.partial_modes",
-            "only basis = \"stick_partial_slide\" has partial modes",
-        );
-    }
     match options.basis {
-        Basis::StickPartialSlide => {}
         Basis::TunedReceptances => {
             for (key, given) in [
                 ("reduction.stick_modes", options.stick_modes.is_some()),
@@ -376,7 +373,7 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
                     check.conflict(
                         key,
                         "basis = \"auto\" chooses the number of modes; accepted: reduction.error, or \
-                         basis = \"stick_slide\", \"stick_partial_slide\" or \"stick_attachment\" with fixed numbers",
+                         basis = \"stick_slide\" or \"stick_attachment\" with fixed numbers",
                     );
                 }
             }

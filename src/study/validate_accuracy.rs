@@ -8,12 +8,11 @@ use super::{AccuracyOptions, Finding, Problem, Study, StudyError};
 use crate::input::SourceMap;
 
 /// Keys that the program sets itself under `[accuracy]`.
-pub(super) const KEYS_OF_ACCURACY: [&str; 13] = [
+pub(super) const KEYS_OF_ACCURACY: [&str; 12] = [
     "reduction.basis",
     "reduction.error",
     "reduction.stick_modes",
     "reduction.slide_modes",
-    "reduction.partial_modes",
     "solver.harmonics",
     "solver.search_harmonics",
     "solver.higher_harmonics",

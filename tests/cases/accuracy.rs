@@ -28,9 +28,7 @@ fn lumped(sectors: u32, patterns: u32) -> Study {
 fn quickstart(patterns: u32) -> Study {
     let text = std::fs::read_to_string(package("studies/quickstart.toml")).unwrap();
     let (before, _) = text.split_once("[sweep]").unwrap();
-    let before = before
-        .replace("patterns = 440", &format!("patterns = {patterns}"))
-        .replace("basis = \"stick_partial_slide\"\nerror = 0.01\n", "");
+    let before = before.replace("patterns = 440", &format!("patterns = {patterns}"));
     let text =
         format!("{before}[sweep]\nnormal_load_n = [240, 480, 1600]\nstandard_deviation = [0.03]\n");
     Study::parse(&package("studies/quickstart.toml"), &text).unwrap()

@@ -556,6 +556,23 @@ pub const CASES: &[Case] = &[
     ),
     (
         "[1, 3]",
+        "[1]\n[reduction]\nbasis = \"stick_partial_slide\"",
+        &[
+            "reduction.basis",
+            "replaced by \"tuned_receptances\"",
+            "\"auto\"",
+        ],
+    ),
+    (
+        "[1, 3]",
+        "[1]\n[reduction]\npartial_modes = 2",
+        &[
+            "reduction.partial_modes",
+            "replaced by basis = \"tuned_receptances\"",
+        ],
+    ),
+    (
+        "[1, 3]",
         "[1]\n[reduction]\nbasis = \"stick_attachment\"\nslide_modes = 4",
         &["reduction.slide_modes"],
     ),

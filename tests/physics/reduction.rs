@@ -1,18 +1,15 @@
 //! Craig-Bampton models and bases against the unreduced sector, and what is refused.
 
-use std::sync::Arc;
 
 use blisk::linalg::{Complex64, Matrix, SymmetricSparse, hermitian_eigen, lowest_modes};
 use blisk::model::ReducedNodalDiameter;
 use blisk::model::cyclic::CyclicSector;
 use blisk::model::reduction::{BasisChoice, ContactStiffness, CraigBampton, Reduction};
 use blisk::model::sector::{ModelError, ParametricOptions, SectorModel, lumped, parametric};
-use blisk::response::forced_response::SolverOptions;
-use blisk::response::friction::{ContactLaw, PairParameters, Ring};
-use blisk::response::harmonic_balance::Damping;
+use blisk::response::friction::ContactLaw;
 
 use super::sector_sources::lumped::{lumped24, one_dof};
-use super::wheels::{ENGINE_ORDER, Wheel, full, relative, springs, wheel8_contact, wheel8_sector};
+use super::wheels::{relative, springs, wheel8_contact, wheel8_sector};
 
 /// Eigenvalue of 100 Hz. Those of the sliding ring at 5 Hz carry the rounding of the highest ones
 /// and are compared on the scale of this one.
@@ -254,52 +251,4 @@ fn an_indefinite_mass_or_stiffness_is_refused_with_its_nodal_diameter() {
         refusal(soft),
         ModelError::StiffnessNotPositiveDefinite { .. }
     ));
-}
-
-/// A ring that slips moves as if on softer springs than a ring that sticks.
-#[test]
-fn modes_of_partly_sticking_contact_reach_with_five_vectors_what_six_of_the_extremes_do_not() {
-    let sector = parametric::build(&ParametricOptions::default()).unwrap();
-    let contact = PairParameters {
-        normal_load_n: 0.0,
-        normal_stiffness_n_per_m: 1e8,
-        tangential_stiffness_n_per_m: 1e8,
-        friction_coefficient: 0.15,
-    };
-    let law = ContactLaw::Simplified3d;
-    let reduction = Reduction::new(&sector, springs(law, contact), 25, 0).unwrap();
-    let peaks = |choice: BasisChoice| {
-        let wheel = Wheel {
-            model: Arc::new(reduction.tuned(choice).unwrap()),
-            law,
-            sector: contact,
-            damping: Damping::StructuralLossFactor(0.002),
-            amplitude_n: 1.0,
-            ring: Ring::Locked,
-        };
-        let solver = wheel.solver(&[1, 3], SolverOptions::default());
-        [240.0, 480.0, 800.0].map(|load| {
-            let peak = solver.tuned_peak(ENGINE_ORDER, full(load));
-            peak.amplitude_m().unwrap()
-        })
-    };
-    let whole = peaks(BasisChoice::CraigBampton);
-    let error = |choice: BasisChoice| {
-        let own = peaks(choice);
-        let errors = own
-            .iter()
-            .zip(whole)
-            .map(|(own, whole)| relative(*own, whole));
-        let largest = errors.fold(0.0, f64::max);
-        println!("{choice}: {:.3} %", 100.0 * largest);
-        largest
-    };
-    let partial = error(BasisChoice::StickPartialSlide {
-        stick: 2,
-        partial: 1,
-        slide: 1,
-    });
-    let extremes = error(BasisChoice::StickSlide { stick: 3, slide: 3 });
-    assert!(partial < 4e-3, "{partial:e}");
-    assert!(extremes > 3.0 * partial, "{extremes:e} {partial:e}");
 }

@@ -8,7 +8,7 @@ use blisk::study::{Engine, EngineSource, ReducedEngineSource, Study, pattern_sou
 use super::cases::{Condition, Wheel, folder};
 
 /// Settings that find a place, not a height.
-const SETTINGS: &str = "\n[reduction]\nbasis = \"stick_partial_slide\"\nerror = 0.01\n\n[solver]\nharmonics = [1, 3]\n\
+const SETTINGS: &str = "\n[reduction]\nbasis = \"stick_slide\"\nstick_modes = 6\nslide_modes = 6\n\n[solver]\nharmonics = [1, 3]\n\
                         peak_tolerance = 1e-3\n";
 
 pub struct Hints {

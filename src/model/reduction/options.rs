@@ -10,8 +10,6 @@ pub enum Basis {
     Auto,
     /// Modes under global sticking and global sliding contact.
     StickSlide,
-    /// Modes under sticking, sliding and partly sticking contact.
-    StickPartialSlide,
     /// Stick modes and one attachment vector per contact direction.
     StickAttachment,
     /// No basis: rows are solved on the receptances of the tuned wheel with every contact degree of freedom.
@@ -30,9 +28,6 @@ pub struct ReductionOptions {
     pub stick_modes: Option<usize>,
     /// Number of slide modes per nodal diameter (not `stick_attachment`); fixes the size instead of `error`.
     pub slide_modes: Option<usize>,
-    /// Number of modes per nodal diameter at each of the two contact stiffnesses between sliding and sticking
-    /// (`stick_partial_slide` only).
-    pub partial_modes: Option<usize>,
     /// Fixed-interface modes of the Craig-Bampton model per nodal diameter. Absent: so many, from
     /// [`Self::FIRST_CRAIG_BAMPTON_MODES`] on, that more of them change no tuned peak by more than
     /// [`Self::error`].
@@ -54,7 +49,6 @@ impl Default for ReductionOptions {
             error: 1e-3,
             stick_modes: None,
             slide_modes: None,
-            partial_modes: None,
             craig_bampton_modes: None,
             sensitivity_vectors: None,
         }

@@ -49,7 +49,6 @@ pub(super) const REDUCTION_KEYS: &[Entry] = &[
         Name(&[
             "auto",
             "stick_slide",
-            "stick_partial_slide",
             "stick_attachment",
             "tuned_receptances",
         ]),
@@ -65,20 +64,14 @@ pub(super) const REDUCTION_KEYS: &[Entry] = &[
     entry(
         "reduction.stick_modes",
         MODES,
-        "chosen; 2 with `stick_partial_slide`",
+        "chosen",
         "not with `auto`; with `stick_slide` only beside `slide_modes`",
     ),
     entry(
         "reduction.slide_modes",
         MODES,
-        "chosen; 1 with `stick_partial_slide`",
-        "with `stick_slide`, beside `stick_modes`, or `stick_partial_slide`",
-    ),
-    entry(
-        "reduction.partial_modes",
-        MODES,
-        "1 with `stick_partial_slide`",
-        "modes at each of two contact stiffnesses between sliding and sticking; only with `stick_partial_slide`",
+        "chosen",
+        "with `stick_slide`, beside `stick_modes`",
     ),
     entry(
         "reduction.craig_bampton_modes",
