@@ -8,13 +8,11 @@ use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction, Reductio
 use blisk::model::sector::SectorModel;
 use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{
-    ContactCondition, Excited, FrequencyBand, Harmonics, HigherHarmonics, LimitsWanted, Peak,
-    PointSettings, Search, Wheel, mistuned_window, peak, refined, tuned_span, wheel_force,
+    ContactCondition, Excited, FrequencyBand, Harmonics, LimitsWanted, Peak, PointSettings, Search,
+    Wheel, mistuned_window, peak, refined, tuned_span, wheel_force,
 };
 use blisk::response::friction::{ContactLaw, PairParameters};
-use blisk::response::harmonic_balance::{
-    ContactInterface, HarmonicSystem, HarmonicTransform, TunedWaves,
-};
+use blisk::response::harmonic_balance::{ContactInterface, HarmonicSystem, HarmonicTransform};
 use blisk::response::mistuning::{ContactFactors, Deviations, Pattern, StructuralModes};
 use blisk::study::{Study, load_sector_model, pattern_source};
 
@@ -25,7 +23,6 @@ pub struct Case {
     pub solver: RowSolver,
     pub patterns: Vec<Pattern>,
     harmonics: Vec<u32>,
-    waves: Option<Arc<TunedWaves>>,
     contact: (ContactLaw, PairParameters),
     settings: PointSettings,
     tuned: Excited,
@@ -41,8 +38,6 @@ pub fn study(name: &str) -> Study {
 pub struct Model {
     sector: SectorModel,
     reduced: Arc<ReducedModel>,
-    /// For the harmonics that are taken in the tuned wheel.
-    tuned: Option<Arc<ReducedModel>>,
 }
 
 impl Model {
@@ -69,15 +64,7 @@ impl Model {
         let modes = modes.unwrap_or(ReductionOptions::FIRST_CRAIG_BAMPTON_MODES);
         let reduction = Reduction::new(&sector, stiffness, modes, 0).expect("reduced");
         let reduced = Arc::new(reduction.reduce(choice, None).expect("reduced"));
-        let tuned = (study.solver.higher_harmonics == HigherHarmonics::Tuned).then(|| {
-            let model = reduction.tuned(BasisChoice::CraigBampton);
-            Arc::new(model.expect("reduced"))
-        });
-        Self {
-            sector,
-            reduced,
-            tuned,
-        }
+        Self { sector, reduced }
     }
 }
 
@@ -87,11 +74,10 @@ impl Case {
         Self::of(name, study(name), patterns)
     }
 
-    /// The same with harmonics 1 and 3, both of the mistuned wheel: small enough for its whole Jacobian.
+    /// The same with harmonics 1 and 3: small enough for its whole Jacobian.
     pub fn with_whole_jacobian(name: &'static str, patterns: u32) -> Self {
         let mut study = study(name);
         study.solver.harmonics = Harmonics::Set(vec![1, 3]);
-        study.solver.higher_harmonics = HigherHarmonics::Mistuned;
         Self::of(name, study, patterns)
     }
 
@@ -103,15 +89,7 @@ impl Case {
     /// A study whose model is reduced already.
     pub fn with_model(name: &'static str, model: &Model, study: Study, patterns: u32) -> Self {
         let contact = study.contact.as_ref().expect("a study with contact");
-        let Model {
-            sector,
-            reduced,
-            tuned,
-        } = model;
-        let waves = tuned.as_ref().map(|model| {
-            let waves = TunedWaves::new(model, study.damping);
-            Arc::new(waves.expect("a contact that is held at rest"))
-        });
+        let Model { sector, reduced } = model;
         let harmonics = match &study.solver.harmonics {
             Harmonics::Auto => vec![1, 3],
             Harmonics::Set(set) => set.clone(),
@@ -154,12 +132,9 @@ impl Case {
             name,
             settings: point_settings.expect("enough samples"),
             tuned: tuned_wheel,
-            solver: RowSolver::new(reduced.clone(), settings)
-                .expect("enough samples")
-                .with_tuned_harmonics(tuned.clone()),
+            solver: RowSolver::new(reduced.clone(), settings).expect("enough samples"),
             patterns,
             harmonics,
-            waves,
             contact,
             study,
         }
@@ -191,11 +166,7 @@ impl Case {
             self.study.damping,
             wanted,
         );
-        let excited = Excited::wheel(&wheel, force, harmonics);
-        match &self.waves {
-            Some(waves) if harmonics.len() > 1 => excited.with_waves(waves),
-            _ => excited,
-        }
+        Excited::wheel(&wheel, force, harmonics)
     }
 
     fn engine_order(&self) -> u32 {
@@ -208,11 +179,7 @@ impl Case {
         let window = mistuned_window(span, pattern.largest_deviation(), FrequencyBand::Auto);
         let (options, settings) = (&self.study.solver, &self.settings);
         let tolerance = options.peak_tolerance;
-        let search = match self.waves {
-            Some(_) => settings.search(),
-            None => self.solver.search(settings),
-        };
-        match search {
+        match self.solver.search(settings) {
             Some(search) => {
                 let coarse = excited.in_harmonics(search.harmonics());
                 let search = Search {

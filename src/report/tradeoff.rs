@@ -314,7 +314,6 @@ fn level(own: &TradeoffRecord) -> String {
     match own.knob {
         Some("basis") => own.basis.clone(),
         Some("harmonics") => own.harmonics.clone(),
-        Some("higher_harmonics") => own.higher_harmonics.to_owned(),
         Some("samples_per_period") => own.samples_per_period.to_string(),
         Some("residual_tolerance") => format!("{:e}", own.residual_tolerance),
         Some("peak_tolerance") => format!("{:e}", own.peak_tolerance),

@@ -285,7 +285,6 @@ fn levels(
         Knob::SamplesPerPeriod
         | Knob::ResidualTolerance
         | Knob::PeakTolerance
-        | Knob::HigherHarmonics
         | Knob::Projection => false,
     });
     let loose = LOOSE.into_iter().find(|(error, _)| accepted >= *error);

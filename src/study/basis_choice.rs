@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::PipelineError;
-use super::contact_displacement::{CarriedHarmonics, ContactMotion};
+use super::contact_displacement::ContactMotion;
 use super::load_cases::Excitation;
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
@@ -80,8 +80,6 @@ pub struct Judged<'a> {
     pub sets: &'a [HarmonicChoice],
     /// Factors on the contact stiffness besides the nominal one.
     pub varied: &'a [PairFactors],
-    /// The tuned wheel that harmonics other than 1 are taken in, whatever the basis; none where the basis carries them.
-    pub tuned_harmonics: Option<&'a Arc<ReducedModel>>,
 }
 
 impl<'a> Judged<'a> {
@@ -135,9 +133,6 @@ pub(super) fn choose_basis_under(
     for ((peaks, whole), (_, judged)) in reference.iter().zip(&wholes).zip(cases) {
         motions.push(peaks.contact_motions(whole, *judged)?);
     }
-    let all_carried = cases
-        .iter()
-        .all(|(_, judged)| judged.tuned_harmonics.is_none());
     let mut tried: Vec<(BasisChoice, BasisError, f64)> = Vec::new();
     for choice in candidates(reduction, options) {
         let model = reduction.tuned(choice)?;
@@ -147,17 +142,12 @@ pub(super) fn choose_basis_under(
         let error = errors
             .map(|(own, reference)| own.error(reference))
             .try_fold(0.0, |largest: f64, error| Some(largest.max(error?)));
-        // A basis is chosen by all harmonics, and said to be short of those alone that it carries.
-        let displacement = largest_displacement_error(&motions, &models, CarriedHarmonics::All);
+        let displacement = largest_displacement_error(&motions, &models);
         let own = BasisError {
             basis: choice.to_string(),
             vectors: vectors(reduction, choice),
             error,
-            contact_displacement: if all_carried {
-                displacement
-            } else {
-                largest_displacement_error(&motions, &models, CarriedHarmonics::Fundamental)
-            },
+            contact_displacement: displacement,
         };
         let excess = excess(error, displacement, options.error);
         tried.push((choice, own, excess));
@@ -232,14 +222,13 @@ fn vectors(reduction: &Reduction<'_>, choice: BasisChoice) -> usize {
 fn largest_displacement_error(
     motions: &[Vec<ContactMotion<'_>>],
     models: &[ReducedModel],
-    carried: CarriedHarmonics,
 ) -> Option<ContactDisplacementErrors> {
     motions
         .iter()
         .zip(models)
         .flat_map(|(motions, model)| {
             let motions = motions.iter();
-            motions.map(|motion| motion.errors_of(model, carried))
+            motions.map(|motion| motion.errors_of(model))
         })
         .reduce(|a, b| Some(a?.larger(b?)))?
 }
@@ -264,8 +253,7 @@ impl Peaks {
                 slide: of_sector.springs(&model.springs.slide, &model.contact.rows),
             };
             let solver = RowSolver::new(Arc::new(varied), settings)?
-                .with_choices(judged.sets.to_vec(), 0.0)?
-                .with_tuned_harmonics(judged.tuned_harmonics.cloned());
+                .with_choices(judged.sets.to_vec(), 0.0)?;
             peaks.extend(
                 judged
                     .each()

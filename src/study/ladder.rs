@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::Study;
 use crate::model::reduction::{Basis, BasisChoice};
 use crate::population::monte_carlo::harmonics_name;
-use crate::response::forced_response::{Harmonics, HigherHarmonics, RowsBeyondTolerance};
+use crate::response::forced_response::{Harmonics, RowsBeyondTolerance};
 use crate::response::friction::ContactLaw;
 use crate::response::mistuning::Projection;
 
@@ -39,8 +39,6 @@ pub struct LadderSetting {
     pub basis: BasisChoice,
     /// Harmonics.
     pub harmonics: HarmonicLevel,
-    /// Wheel of the harmonics other than 1.
-    pub higher_harmonics: HigherHarmonics,
     /// Samples per period.
     pub samples_per_period: usize,
     /// Bound on the residual relative to the excitation.
@@ -61,8 +59,6 @@ pub enum Knob {
     Basis,
     /// `solver.harmonics`.
     Harmonics,
-    /// `solver.higher_harmonics`.
-    HigherHarmonics,
     /// `solver.samples_per_period`.
     SamplesPerPeriod,
     /// `solver.residual_tolerance`.
@@ -77,10 +73,9 @@ pub enum Knob {
 
 impl Knob {
     /// Every knob.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 7] = [
         Self::Basis,
         Self::Harmonics,
-        Self::HigherHarmonics,
         Self::SamplesPerPeriod,
         Self::ResidualTolerance,
         Self::PeakTolerance,
@@ -94,7 +89,6 @@ impl Knob {
         match self {
             Self::Basis => "basis",
             Self::Harmonics => "harmonics",
-            Self::HigherHarmonics => "higher_harmonics",
             Self::SamplesPerPeriod => "samples_per_period",
             Self::ResidualTolerance => "residual_tolerance",
             Self::PeakTolerance => "peak_tolerance",
@@ -112,7 +106,6 @@ impl LadderSetting {
         match knob {
             Knob::Basis => own.basis = other.basis,
             Knob::Harmonics => own.harmonics.clone_from(&other.harmonics),
-            Knob::HigherHarmonics => own.higher_harmonics = other.higher_harmonics,
             Knob::SamplesPerPeriod => own.samples_per_period = other.samples_per_period,
             Knob::ResidualTolerance => own.residual_tolerance = other.residual_tolerance,
             Knob::PeakTolerance => own.peak_tolerance = other.peak_tolerance,
@@ -128,7 +121,6 @@ impl LadderSetting {
         match knob {
             Knob::Basis => self.basis.to_string(),
             Knob::Harmonics => self.harmonics.to_string(),
-            Knob::HigherHarmonics => self.higher_harmonics.name().to_owned(),
             Knob::SamplesPerPeriod => self.samples_per_period.to_string(),
             Knob::ResidualTolerance => format!("{:e}", self.residual_tolerance),
             Knob::PeakTolerance => format!("{:e}", self.peak_tolerance),
@@ -173,7 +165,6 @@ impl LadderSetting {
                 solver.harmonic_tolerance = *tolerance;
             }
         }
-        solver.higher_harmonics = self.higher_harmonics;
         solver.rows_beyond_tolerance = RowsBeyondTolerance::Flag;
         solver.samples_per_period = self.samples_per_period;
         solver.residual_tolerance = self.residual_tolerance;
@@ -320,19 +311,8 @@ impl LadderSpace {
         for basis in self.bases() {
             add(Knob::Basis, &|own| own.basis = basis);
         }
-        let tuned = base.higher_harmonics == HigherHarmonics::Tuned;
-        // Harmonic 0 is never taken in the tuned wheel.
-        let possible = |level: &HarmonicLevel| match level {
-            HarmonicLevel::Set(set) => !(tuned && set.contains(&0)),
-            HarmonicLevel::Automatic(_) => true,
-        };
-        for harmonics in self.harmonics(finest).into_iter().filter(possible) {
+        for harmonics in self.harmonics(finest) {
             add(Knob::Harmonics, &|own| own.harmonics.clone_from(&harmonics));
-        }
-        if tuned {
-            add(Knob::HigherHarmonics, &|own| {
-                own.higher_harmonics = HigherHarmonics::Mistuned;
-            });
         }
         for samples in SAMPLES {
             add(Knob::SamplesPerPeriod, &|own| {
@@ -367,7 +347,6 @@ pub(super) mod tests {
         LadderSetting {
             basis: BasisChoice::StickAttachment { stick: 4 },
             harmonics,
-            higher_harmonics: HigherHarmonics::Mistuned,
             samples_per_period: 64,
             residual_tolerance: 1e-8,
             peak_tolerance: 1e-3,

@@ -25,7 +25,7 @@ use crate::platform::thread_processor_time_s;
 use crate::population::monte_carlo::{
     ResponseRow, RowSolver, RowWork, Scenario, SystemSize, TunedReference,
 };
-use crate::response::forced_response::{Harmonics, HigherHarmonics};
+use crate::response::forced_response::Harmonics;
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::{Pattern, PatternSource};
@@ -181,10 +181,6 @@ impl<'a> LadderBench<'a> {
         let place = self.reduction_for(contact_stiffness(study.contact.as_ref()))?;
         let modes = study.mistuning.cantilever_mode_count;
         let model = self.model((place, setting.basis, modes))?;
-        let tuned_harmonics = (setting.higher_harmonics == HigherHarmonics::Tuned)
-            .then(|| self.reductions[place].1.tuned(BasisChoice::CraigBampton))
-            .transpose()?
-            .map(Arc::new);
         let full = match setting.harmonics {
             HarmonicLevel::Automatic(_) => {
                 Some(self.reductions[place].1.tuned(BasisChoice::CraigBampton)?)
@@ -194,8 +190,7 @@ impl<'a> LadderBench<'a> {
         let solver = solver_under(&study.excitations(), |case| {
             let settings = row_settings(&case.study);
             let model = Arc::new(case.of(&model));
-            let solver = RowSolver::new(Arc::clone(&model), settings.clone())?
-                .with_tuned_harmonics(tuned_harmonics.clone());
+            let solver = RowSolver::new(Arc::clone(&model), settings.clone())?;
             let (HarmonicLevel::Automatic(tolerance), Some(full)) = (&setting.harmonics, &full)
             else {
                 return Ok(solver);

@@ -15,15 +15,12 @@ use super::ladder_reference::LadderEnds;
 use super::{PipelineError, Progress};
 use crate::model::reduction::BasisChoice;
 use crate::report::{ExpectedCost, ExpectedTime};
-use crate::response::forced_response::HigherHarmonics;
 use crate::response::mistuning::PatternSource;
 
 /// Least cost of a setting over that of the base: what does not depend on the basis.
 const LEAST: f64 = 0.4;
-/// Cost of harmonics chosen for each load over those of the base, and of those of every blade over those of
-/// the tuned wheel.
+/// Cost of harmonics chosen for each load over those of the base.
 const AUTOMATIC: f64 = 1.5;
-const MISTUNED: f64 = 1.75;
 /// Share of the cost of the base that goes with its samples.
 const SAMPLES: f64 = 0.2;
 
@@ -123,9 +120,6 @@ impl LadderPlan<'_> {
         } else {
             1.0
         };
-        let mistuned = setting.higher_harmonics != base.higher_harmonics
-            && setting.higher_harmonics == HigherHarmonics::Mistuned;
-        let mistuned = if mistuned { MISTUNED } else { 1.0 };
-        (ratio * ratio).max(LEAST) * (1.0 - SAMPLES + SAMPLES * samples) * harmonics * mistuned
+        (ratio * ratio).max(LEAST) * (1.0 - SAMPLES + SAMPLES * samples) * harmonics
     }
 }

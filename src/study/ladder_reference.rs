@@ -1,7 +1,7 @@
 //! The reference that settings are judged by: every knob at its best.
 //!
 //! All knobs at their best at once is what is wanted, and what is solved where the equation is small. On
-//! larger models that costs minutes a row, unless harmonics other than 1 can be taken in the tuned wheel. There the base setting is taken with one knob at its best at
+//! larger models that costs minutes a row. There the base setting is taken with one knob at its best at
 //! a time (basis, harmonics, numerical tolerances), and the ratios to the base are multiplied:
 //!
 //! ```text
@@ -18,9 +18,7 @@ use super::ladder_measure::Measured;
 use super::load_cases::Excitation;
 use super::reduced_engine::row_settings;
 use crate::model::reduction::{Basis, BasisChoice, ReductionOptions};
-use crate::response::forced_response::{AmplitudeMeasure, Harmonics, HigherHarmonics};
-use crate::response::friction::{ContactOptions, Ring};
-use crate::response::harmonic_balance::LARGEST_WHOLE_JACOBIAN;
+use crate::response::forced_response::Harmonics;
 use crate::response::mistuning::PatternSource;
 
 /// Relative error of the tuned peak by which the basis of the base is chosen.
@@ -108,7 +106,6 @@ impl LadderEnds {
         let setting = |basis, harmonics, (samples, residual, peak)| LadderSetting {
             basis,
             harmonics,
-            higher_harmonics: HigherHarmonics::Mistuned,
             samples_per_period: samples,
             residual_tolerance: residual,
             peak_tolerance: peak,
@@ -123,16 +120,10 @@ impl LadderEnds {
         let automatic = HarmonicLevel::Automatic(tolerance);
         let best = setting(best_basis, automatic, BEST_TOLERANCES);
         let separates = bench.law().has_variable_load() && bench.engine(&closed)?.separates();
-        let mut ends = Self {
+        Ok(Self {
             base: if separates { separating } else { closed },
             best,
-        };
-        // Where a wheel is large the harmonics are its largest error, and only the tuned one has modes enough for them.
-        if !separates && can_tune_harmonics(bench, base_basis) {
-            ends.base.higher_harmonics = HigherHarmonics::Tuned;
-            ends.best.higher_harmonics = HigherHarmonics::Tuned;
-        }
-        Ok(ends)
+        })
     }
 
     /// The base with all tolerances at their best.
@@ -142,25 +133,6 @@ impl LadderEnds {
             .with(Knob::ResidualTolerance, &self.best)
             .with(Knob::PeakTolerance, &self.best)
     }
-}
-
-/// Whether harmonics other than 1 can be taken in the tuned wheel, and are worth it: where a study may ask for it, and
-/// the mistuned wheel has too many unknowns for its whole Jacobian.
-fn can_tune_harmonics(bench: &LadderBench<'_>, base: BasisChoice) -> bool {
-    let study = bench.study();
-    let creeping = |contact: &ContactOptions| contact.ring == Ring::Creeping;
-    let whole_space = bench.reduction().is_whole_space();
-    let vectors = if whole_space {
-        0
-    } else {
-        bench.space(base).most_vectors
-    };
-    let unknowns = 2 * BASE_HARMONICS[0].len() * vectors * bench.reduction().sectors();
-    study.has_friction()
-        && !study.contact.as_ref().is_some_and(creeping)
-        && study.contact_variations.is_empty()
-        && study.solver.amplitude == AmplitudeMeasure::Fundamental
-        && unknowns > LARGEST_WHOLE_JACOBIAN
 }
 
 /// The smallest basis of a family whose tuned peaks are within `error`.
@@ -186,7 +158,6 @@ fn basis_within(
             conditions: &conditions,
             sets: &[],
             varied: &varied,
-            tuned_harmonics: None,
         };
         (case, judged)
     };
@@ -240,8 +211,7 @@ impl LadderReference {
             all.filter_map(of).max().unwrap_or(0)
         };
         let unknowns = largest(&coordinates) * largest(&coefficients);
-        let tuned = ends.best.higher_harmonics == HigherHarmonics::Tuned;
-        if unknowns > JOINT_UNKNOWNS && !tuned {
+        if unknowns > JOINT_UNKNOWNS {
             return Ok(Self {
                 kind: ReferenceKind::ByKnobs,
                 values: by_ratios.clone(),

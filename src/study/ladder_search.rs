@@ -77,8 +77,8 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
 
     fn add(&mut self, knob: Knob, level: Measured) {
         self.levels.push(level);
-        // The other projection, and small bases for high harmonics, have an error and save nothing.
-        if !matches!(knob, Knob::Projection | Knob::HigherHarmonics) {
+        // The other projection has an error and saves nothing.
+        if knob != Knob::Projection {
             self.of_knob[knob as usize].push(self.levels.len() - 1);
         }
     }

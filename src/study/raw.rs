@@ -11,7 +11,7 @@ use crate::model::reduction::{DampedModes, ReductionOptions};
 use crate::model::sector::{LumpedOptions, ParametricOptions};
 use crate::population::statistics::Quantity;
 use crate::population::table::Compression;
-use crate::response::forced_response::{AmplitudeMeasure, HigherHarmonics, RowsBeyondTolerance};
+use crate::response::forced_response::{AmplitudeMeasure, RowsBeyondTolerance};
 use crate::response::friction::{ContactLaw, Ring};
 use crate::response::mistuning::{Projection, VariesPer};
 
@@ -211,7 +211,6 @@ pub(super) struct RawSweep {
 pub(super) struct RawSolver {
     pub harmonics: Option<RawHarmonics>,
     pub search_harmonics: Option<RawHarmonics>,
-    pub higher_harmonics: Option<HigherHarmonics>,
     pub harmonic_tolerance: Option<f64>,
     pub rows_beyond_tolerance: Option<RowsBeyondTolerance>,
     pub samples_per_period: Option<usize>,

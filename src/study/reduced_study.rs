@@ -19,7 +19,7 @@ use crate::model::ReducedModel;
 use crate::model::reduction::{Basis, BasisChoice, Reduction, ReductionOptions};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
-use crate::response::forced_response::{Harmonics, HigherHarmonics, RowsBeyondTolerance};
+use crate::response::forced_response::{Harmonics, RowsBeyondTolerance};
 use crate::response::receptance::{EngineModel, ReceptanceEngine};
 
 /// Share of the harmonic tolerance by which the set for rows beyond it is chosen.
@@ -33,8 +33,6 @@ pub(super) struct Stored {
     pub(super) fixed_interface: FixedInterface,
     harmonics: Vec<HarmonicChoice>,
     beyond: Option<StoredBeyond>,
-    /// The tuned wheel that harmonics other than 1 are taken in, where the study asks for it.
-    tuned_harmonics: Option<ReducedModel>,
     /// What rows are solved on in the place of a basis, where the study asks for it.
     engine: Option<EngineModel>,
     /// The engine itself, where it was made a moment ago.
@@ -50,12 +48,12 @@ impl Stored {
         let loads = nonlinear
             .filter(|own| own.normal_load_n().is_some())
             .count();
-        let models = [Some(&self.model), self.tuned_harmonics.as_ref()];
         let beyond = self.beyond.as_ref();
-        let models = models.into_iter().chain([beyond.map(|own| &own.model)]);
+        let models = [Some(&self.model), beyond.map(|own| &own.model)];
         let sets = [Some(&self.harmonics), beyond.map(|own| &own.harmonics)];
         self.model.contact.weights.len() == sector.contact_pairs.len()
             && models
+                .into_iter()
                 .flatten()
                 .all(|model| model.sectors == sector.sectors)
             && sets
@@ -123,8 +121,6 @@ pub(super) fn reduced(
     let sets = |tolerance| -> Result<Vec<Sets>, PipelineError> {
         cases.iter().map(|case| case.sets(tolerance)).collect()
     };
-    let tuned_harmonics =
-        study.has_friction() && study.solver.higher_harmonics == HigherHarmonics::Tuned;
     let conditions = judged_conditions(&study.contacts);
     let varied = judged_variations(&study.contact_variations);
     let basis = |options: &ReductionOptions, sets: &[Sets]| {
@@ -138,7 +134,6 @@ pub(super) fn reduced(
                     conditions: &conditions,
                     sets,
                     varied: &varied,
-                    tuned_harmonics: tuned_harmonics.then_some(&case.full),
                 };
                 (case.excitation, judged)
             })
@@ -189,9 +184,6 @@ pub(super) fn reduced(
         fixed_interface,
         harmonics: harmonics.concat(),
         beyond,
-        tuned_harmonics: tuned_harmonics
-            .then(|| reduction.tuned(BasisChoice::CraigBampton))
-            .transpose()?,
         engine: None,
         receptances: None,
     })
@@ -268,7 +260,6 @@ pub(super) fn reduced_on_receptances(
         evidence,
         fixed_interface,
         harmonics: harmonics.concat(),
-        tuned_harmonics: None,
         engine: Some(engine.own),
         receptances: Some(engine.receptances),
     })
@@ -292,7 +283,6 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Pip
     let truncation = stored.fixed_interface.error.unwrap_or(f64::INFINITY);
     let error = basis_error(&stored.evidence) + truncation;
     let inexact = study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
-    let tuned_harmonics = stored.tuned_harmonics.clone().map(Arc::new);
     let nonlinear = study
         .contacts
         .iter()
@@ -313,8 +303,7 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Pip
         first = sets.end;
         let settings = row_settings(&case.study);
         let solver = RowSolver::new(Arc::new(case.of(&stored.model)), settings.clone())?
-            .with_choices(stored.harmonics[sets.clone()].to_vec(), error)?
-            .with_tuned_harmonics(tuned_harmonics.clone());
+            .with_choices(stored.harmonics[sets.clone()].to_vec(), error)?;
         let on_engine = |solver: RowSolver| match &engine {
             Some((own, engine)) => {
                 let orders = &case.study.engine_orders;
@@ -326,12 +315,10 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Pip
         let Some(beyond) = &stored.beyond else {
             return Ok(solver);
         };
-        let finer = RowSolver::new(Arc::new(case.of(&beyond.model)), settings)?
-            .with_choices(
-                beyond.harmonics[sets].to_vec(),
-                beyond.basis_error + truncation,
-            )?
-            .with_tuned_harmonics(tuned_harmonics.clone());
+        let finer = RowSolver::new(Arc::new(case.of(&beyond.model)), settings)?.with_choices(
+            beyond.harmonics[sets].to_vec(),
+            beyond.basis_error + truncation,
+        )?;
         Ok(solver.with_beyond(on_engine(finer)?, inexact))
     })
 }
@@ -348,9 +335,6 @@ pub(super) fn models_digest(stored: &Stored) -> String {
     add(&stored.model, basis_error(&stored.evidence));
     if let Some(beyond) = &stored.beyond {
         add(&beyond.model, beyond.basis_error);
-    }
-    if let Some(model) = &stored.tuned_harmonics {
-        add(model, 0.0);
     }
     if let Some(engine) = &stored.engine {
         hasher.update(&postcard::to_stdvec(engine).unwrap_or_default());

@@ -4,7 +4,7 @@ use super::{Finding, Problem};
 use crate::input::SourceMap;
 
 /// Keys that are refused, with one value or with any, and why.
-const REPLACED: [(&str, Option<&str>, &str); 2] = [
+const REPLACED: [(&str, Option<&str>, &str); 3] = [
     (
         "reduction.basis",
         Some("\"stick_partial_slide\""),
@@ -15,6 +15,12 @@ const REPLACED: [(&str, Option<&str>, &str); 2] = [
         "reduction.partial_modes",
         None,
         "\"stick_partial_slide\" had them, which is replaced by basis = \"tuned_receptances\"; accepted: no such key",
+    ),
+    (
+        "solver.higher_harmonics",
+        None,
+        "harmonics of the tuned wheel are replaced by basis = \"tuned_receptances\", on which every harmonic is of the \
+         mistuned one; accepted: no such key",
     ),
 ];
 

@@ -174,7 +174,6 @@ impl Study {
                     SearchHarmonics::All => json!("all"),
                     SearchHarmonics::Set(harmonics) => json!(harmonics),
                 },
-                "higher_harmonics": self.solver.higher_harmonics,
                 "harmonic_tolerance": self.solver.harmonic_tolerance,
                 "rows_beyond_tolerance": self.solver.rows_beyond_tolerance,
                 "samples_per_period": self.solver.samples_per_period,

@@ -140,6 +140,9 @@ struct Trade {
     settings: Vec<Measured>,
 }
 
+/// The wheel of harmonics other than 1 in `tradeoff.parquet`.
+const HIGHER_HARMONICS: &str = "mistuned";
+
 impl Trade {
     fn measure(
         (study, sector): (&Study, &SectorModel),
@@ -243,7 +246,7 @@ impl Trade {
             knob: measured.knob.map(Knob::name),
             basis: basis_name(setting),
             harmonics: setting.harmonics.to_string(),
-            higher_harmonics: setting.higher_harmonics.name(),
+            higher_harmonics: HIGHER_HARMONICS,
             samples_per_period: setting.samples_per_period as u32,
             residual_tolerance: setting.residual_tolerance,
             peak_tolerance: setting.peak_tolerance,
@@ -274,7 +277,7 @@ impl Trade {
                 Knob::SamplesPerPeriod
             }
             // The base has the law and the projection of the study, and the better harmonics.
-            Knob::ContactLaw | Knob::Projection | Knob::HigherHarmonics => {
+            Knob::ContactLaw | Knob::Projection => {
                 let base = self.reference.base.values();
                 return error_bound(&measured.values(), &base, Compared::Amplitude);
             }

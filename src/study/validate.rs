@@ -10,12 +10,12 @@ use super::validate_damping::{damping, nodal_diameter_damping};
 use super::validate_excitation::excitation;
 use super::validate_loads::{contacts, rotation};
 use super::validate_mistuning::mistuning;
-use super::validate_solver::{solver, tuned_harmonics};
+use super::validate_solver::solver;
 use super::validate_stop::stop;
 use super::{Finding, ModelSource, OutputOptions, Problem, RotationOptions, Study, StudyError};
 use crate::input::SourceMap;
 use crate::model::reduction::{Basis, ReductionOptions};
-use crate::response::forced_response::{Harmonics, HigherHarmonics, SolverOptions};
+use crate::response::forced_response::{Harmonics, SolverOptions};
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
 use crate::response::receptance::HIGHEST_HARMONIC;
 
@@ -195,8 +195,6 @@ fn resolve(
         (Some(raw), Some(contact)) => contact_variations(check, raw, contact),
         _ => Vec::new(),
     };
-    let creeping = contact.as_ref().is_some_and(|c| c.ring == Ring::Creeping);
-    tuned_harmonics(check, &solver, creeping, !contact_variations.is_empty());
     if raw.reduction.basis == Basis::TunedReceptances {
         let ring = contact.as_ref().map(|own| own.ring);
         for (key, reason) in against_receptances(ring, &solver) {
@@ -419,11 +417,6 @@ pub(super) fn against_receptances(
         let reason =
             format!("has harmonics up to {HIGHEST_HARMONIC}; accepted: these, or another basis");
         found.push(("solver.harmonics", reason));
-    }
-    if solver.higher_harmonics == HigherHarmonics::Tuned {
-        let reason =
-            "takes every harmonic in the mistuned wheel; accepted: \"mistuned\", or another basis";
-        found.push(("solver.higher_harmonics", reason.to_owned()));
     }
     found
 }

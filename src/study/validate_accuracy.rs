@@ -8,14 +8,13 @@ use super::{AccuracyOptions, Finding, Problem, Study, StudyError};
 use crate::input::SourceMap;
 
 /// Keys that the program sets itself under `[accuracy]`.
-pub(super) const KEYS_OF_ACCURACY: [&str; 12] = [
+pub(super) const KEYS_OF_ACCURACY: [&str; 11] = [
     "reduction.basis",
     "reduction.error",
     "reduction.stick_modes",
     "reduction.slide_modes",
     "solver.harmonics",
     "solver.search_harmonics",
-    "solver.higher_harmonics",
     "solver.harmonic_tolerance",
     "solver.rows_beyond_tolerance",
     "solver.samples_per_period",

@@ -2,9 +2,7 @@
 
 use super::raw::{RawBand, RawHarmonics, RawSolver};
 use super::validate::Check;
-use crate::response::forced_response::{
-    AmplitudeMeasure, FrequencyBand, Harmonics, HigherHarmonics, SearchHarmonics, SolverOptions,
-};
+use crate::response::forced_response::{FrequencyBand, Harmonics, SearchHarmonics, SolverOptions};
 
 /// Highest harmonic accepted.
 const MAX_HARMONIC: u32 = 100;
@@ -24,7 +22,6 @@ pub(super) fn solver(check: &mut Check, raw: RawSolver) -> SolverOptions {
     let left_out = raw.harmonic_tolerance.unwrap_or(default.harmonic_tolerance);
     SolverOptions {
         search_harmonics: search_harmonics(check, raw.search_harmonics),
-        higher_harmonics: raw.higher_harmonics.unwrap_or(default.higher_harmonics),
         harmonic_tolerance: check.within(
             "solver.harmonic_tolerance",
             left_out,
@@ -64,50 +61,6 @@ pub(super) fn solver(check: &mut Check, raw: RawSolver) -> SolverOptions {
         ),
         frequency_band: band(check, raw.frequency_band_hz),
         harmonics,
-    }
-}
-
-/// What does not go with harmonics in the tuned wheel.
-pub(super) fn tuned_harmonics(
-    check: &mut Check,
-    solver: &SolverOptions,
-    creeping: bool,
-    contact_varies: bool,
-) {
-    const KEY: &str = "solver.higher_harmonics";
-    if solver.higher_harmonics == HigherHarmonics::Mistuned {
-        return;
-    }
-    let set = match &solver.harmonics {
-        Harmonics::Set(set) => set.as_slice(),
-        Harmonics::Auto => &[],
-    };
-    let reasons = [
-        (
-            set.contains(&0),
-            "`solver.harmonics` has 0, which is that of contact that opens",
-        ),
-        (
-            !matches!(&solver.search_harmonics, SearchHarmonics::Auto)
-                && solver.search_harmonics != SearchHarmonics::Set(vec![1]),
-            "`solver.search_harmonics` is not 1: the others come beside a solution with harmonic 1",
-        ),
-        (
-            solver.amplitude == AmplitudeMeasure::TimeMaximum,
-            "`solver.amplitude = \"time_maximum\"` asks for all harmonics of the blades",
-        ),
-        (
-            creeping,
-            "`contact.ring = \"creeping\"` has no second stage",
-        ),
-        (
-            contact_varies,
-            "`contact.variation` makes the contact of the sectors differ",
-        ),
-    ];
-    for (_, reason) in reasons.iter().filter(|(holds, _)| *holds) {
-        let reason = format!("{reason}; accepted here: \"mistuned\"");
-        check.conflict(KEY, &reason);
     }
 }
 

@@ -2,9 +2,7 @@
 
 use blisk::model::reduction::{Basis, BasisChoice};
 use blisk::population::statistics::ErrorBound;
-use blisk::response::forced_response::{
-    ContactCondition, Harmonics, HigherHarmonics, SearchHarmonics,
-};
+use blisk::response::forced_response::{ContactCondition, Harmonics, SearchHarmonics};
 use blisk::study::{AccuracyChoice, AccuracyEvidence, AccuracyOptions, Study, load_sector_model};
 use rayon::prelude::*;
 
@@ -46,7 +44,6 @@ fn best(study: &Study, choice: &AccuracyChoice, tolerance: f64) -> Study {
         best.reduction.basis = Basis::StickAttachment;
         best.reduction.stick_modes = Some(8);
         best.reduction.craig_bampton_modes = Some(choice.craig_bampton_modes);
-        best.solver.higher_harmonics = HigherHarmonics::Tuned;
     }
     best
 }

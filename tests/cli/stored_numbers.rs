@@ -106,10 +106,6 @@ fn a_whole_cached_model_is_used_again_and_not_written_again() {
         ("harmonics = [1, 3]", "harmonics = [1, 3]"),
         (
             "harmonics = [1, 3]",
-            "harmonics = [1, 3]\nhigher_harmonics = \"tuned\"",
-        ),
-        (
-            "harmonics = [1, 3]",
             "harmonics = \"auto\"\nrows_beyond_tolerance = \"resolve\"",
         ),
     ] {

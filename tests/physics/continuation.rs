@@ -54,7 +54,6 @@ mod oscillator {
                 harmonic: 1,
                 structure,
                 stuck,
-                waves: None,
             }],
             vec![Complex64::new(FORCE_N, 0.0)],
             ContactInterface {

@@ -28,6 +28,5 @@ mod separation;
 mod simpler_laws;
 mod surrogate;
 mod time_integration;
-mod tuned_harmonics;
 mod wheels;
 mod work_counts;

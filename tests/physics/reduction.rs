@@ -1,6 +1,5 @@
 //! Craig-Bampton models and bases against the unreduced sector, and what is refused.
 
-
 use blisk::linalg::{Complex64, Matrix, SymmetricSparse, hermitian_eigen, lowest_modes};
 use blisk::model::ReducedNodalDiameter;
 use blisk::model::cyclic::CyclicSector;

@@ -34,11 +34,7 @@ impl RowSolver {
             Some(pattern) => {
                 let (modes, wheel) = self.mistuned(pattern, LimitsWanted::default())?;
                 let points = self.points(engine_order, contact);
-                let excited = self.wheel_excited(&modes, &wheel, engine_order, points.harmonics());
-                match self.waves(pattern, points) {
-                    Some(waves) => excited.with_waves(waves),
-                    None => excited,
-                }
+                self.wheel_excited(&modes, &wheel, engine_order, points.harmonics())
             }
         };
         let points = self.points_of(pattern, engine_order, contact);

@@ -199,7 +199,6 @@ impl RowSolver {
         Ok(MistunedPeak {
             errors: point.and_then(|point| receptance_errors(&row, &points, point, tolerance)),
             peak,
-            tuned_harmonics: false,
         })
     }
 

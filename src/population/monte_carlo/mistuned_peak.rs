@@ -13,8 +13,6 @@ use crate::response::mistuning::{ContactFactors, Pattern, StructuralModes};
 pub(super) struct MistunedPeak {
     pub(super) peak: Peak,
     pub(super) errors: Option<ErrorEstimate>,
-    /// Whether harmonics other than 1 were taken in the tuned wheel.
-    pub(super) tuned_harmonics: bool,
 }
 
 impl RowSolver {
@@ -54,7 +52,7 @@ impl RowSolver {
         engine_order: u32,
         contact: ContactCondition,
     ) -> Result<(f64, f64), Status> {
-        let varied = self.tuned_waves_with(factors, engine_order, contact, &[1]);
+        let varied = self.tuned_waves(factors, engine_order, contact, &[1]);
         let own = tuned_span(&varied, contact, None).ok_or(Status::NotBracketed)?;
         Ok((span.0.min(own.0), span.1.max(own.1)))
     }
@@ -99,29 +97,13 @@ impl RowSolver {
             refined(excited, search, contact, &points, window, tolerance)
         };
         let excited = in_harmonics(points.harmonics());
-        let waves = self.waves(pattern, &points);
         let mut wasted = Work::default();
-        if let (Some(waves), Some(search)) = (waves, points.search()) {
-            let excited = excited.clone().with_waves(waves);
-            match in_stages(&excited, search) {
-                Ok(peak) => {
-                    let enlarged = in_harmonics(points.errors().harmonics()).with_waves(waves);
-                    return Ok(MistunedPeak {
-                        errors: errors(&excited, contact, &points, &peak, &enlarged),
-                        peak,
-                        tuned_harmonics: true,
-                    });
-                }
-                Err(work) => wasted = work,
-            }
-        }
-        // What the first stage finds is the same, where it has been made.
-        let staged = self.search(&points).filter(|_| wasted == Work::default());
+        let staged = self.search(&points);
         let staged = staged.map(|search| in_stages(&excited, search));
         let found = match staged {
             Some(Ok(found)) => found,
             Some(Err(work)) => {
-                wasted = wasted.plus(work);
+                wasted = work;
                 peak(&excited, contact, &points, window, tolerance)
             }
             None => peak(&excited, contact, &points, window, tolerance),
@@ -131,15 +113,9 @@ impl RowSolver {
             ..found
         };
         let enlarged = in_harmonics(points.errors().harmonics());
-        let enlarged = match waves {
-            // Harmonic 1 alone: the others are in its error.
-            Some(waves) if points.harmonics().len() == 1 => enlarged.with_waves(waves),
-            _ => enlarged,
-        };
         Ok(MistunedPeak {
             errors: errors(&excited, contact, &points, &found, &enlarged),
             peak: found,
-            tuned_harmonics: false,
         })
     }
 }

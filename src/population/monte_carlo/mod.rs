@@ -15,7 +15,6 @@ mod scenario;
 mod sink;
 mod surrogate;
 mod time_domain;
-mod tuned_harmonics;
 mod wheel_state;
 
 pub use blocks::{PatternBlock, StoredRows, block_size, plan_blocks};

@@ -65,44 +65,10 @@ pub struct SystemSize {
     pub samples: usize,
     /// Whether tops are sought with fewer harmonics, so that the set is solved by its harmonics.
     pub in_stages: bool,
-    /// The tuned wheel that harmonics other than 1 are taken in, if they are.
-    pub tuned: Option<TunedSize>,
     /// Contact law, where friction is solved for.
     pub law: Option<ContactLaw>,
     /// Law of the check: the same, or the one in whose place it is taken.
     pub check_law: Option<ContactLaw>,
-}
-
-/// Size of the tuned wheel as its contact feels it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TunedSize {
-    /// Sectors.
-    pub sectors: usize,
-    /// Modes of a nodal diameter.
-    pub modes: usize,
-}
-
-impl TunedSize {
-    /// Contact receptance of one harmonic at one frequency, with `rows` contact rows on the wheel: a modal sum in every
-    /// nodal diameter, and the springs.
-    fn receptance(self, rows: f64) -> f64 {
-        let (sectors, modes) = (self.sectors as f64, self.modes as f64);
-        let own = rows / sectors;
-        0.5 * sectors * (8.0 * modes * own.powi(2) + 11.0 * own.powi(3))
-    }
-
-    /// Derivative of one harmonic: an inverse in every wave.
-    fn factors(self, rows: f64) -> f64 {
-        let sectors = self.sectors as f64;
-        19.0 * sectors * (rows / sectors).powi(3)
-    }
-
-    /// Residual and step of one harmonic: two circulant products with their transforms over the sectors.
-    fn products(self, rows: f64) -> f64 {
-        let sectors = self.sectors as f64;
-        let transforms = 4.0 * 5.0 * rows * sectors.log2().max(1.0);
-        2.0 * 8.0 * rows.powi(2) / sectors + transforms
-    }
 }
 
 impl SystemSize {
@@ -122,7 +88,7 @@ impl SystemSize {
     fn condenses(&self) -> bool {
         let pays =
             |law| condensing_pays(law, self.coefficients, self.coordinates, self.contact_rows);
-        self.tuned.is_none() && self.law.is_some_and(pays)
+        self.law.is_some_and(pays)
     }
 
     /// Real coefficients of all contact rows.
@@ -143,10 +109,6 @@ impl SystemSize {
     /// them, though the first stage has fewer.
     #[must_use]
     pub fn per_factorisation(&self) -> f64 {
-        if let Some(tuned) = self.tuned {
-            let own = self.whole_jacobian(2 * self.coordinates);
-            return own + self.beyond() * tuned.factors(self.contact_rows as f64);
-        }
         if self.condenses() {
             let size = self.contact_coefficients();
             return 4.0 * size.powi(2) + 2.0 / 3.0 * size.powi(3);
@@ -200,11 +162,6 @@ impl SystemSize {
     /// frequency/time method.
     #[must_use]
     pub fn per_iteration(&self) -> f64 {
-        if let Some(tuned) = self.tuned {
-            let own = 2.0 * (2.0 * self.coordinates as f64).powi(2);
-            let waves = self.beyond() * tuned.products(self.contact_rows as f64);
-            return own + waves + self.evaluation(self.coefficients as f64, self.samples as f64);
-        }
         if self.condenses() {
             let rows = self.contact_rows as f64;
             let (size, samples) = (self.contact_coefficients(), self.samples as f64);
@@ -226,12 +183,7 @@ impl SystemSize {
     /// One residual with `coefficients` and `samples`.
     fn evaluation(&self, coefficients: f64, samples: f64) -> f64 {
         let rows = self.contact_rows as f64;
-        let in_modes = if self.tuned.is_some() {
-            2.0
-        } else {
-            coefficients
-        };
-        let modal = 4.0 * rows * self.coordinates as f64 * in_modes;
+        let modal = 4.0 * rows * self.coordinates as f64 * coefficients;
         modal + self.contact(coefficients, samples)
     }
 
@@ -267,13 +219,6 @@ impl SystemSize {
             (CHECK_COEFFICIENTS, CHECK_BLOCKS)
         };
         let evaluation = self.evaluation(coefficients, samples);
-        if let Some(tuned) = self.tuned {
-            let rows = self.contact_rows as f64;
-            let factors = self.whole_jacobian(2 * self.coordinates)
-                + blocks * (tuned.receptance(rows) + tuned.factors(rows));
-            let waves = blocks * tuned.products(rows);
-            return factors + CHECK_ITERATIONS * (evaluation + waves);
-        }
         if self.condenses() {
             return self.check_by_contact(samples);
         }
@@ -310,10 +255,10 @@ impl SystemSize {
     /// Operations of the search for the peak alone.
     #[must_use]
     pub fn search(&self, work: &RowWork) -> f64 {
-        let once_a_frequency = match self.tuned {
-            Some(tuned) => self.beyond() * tuned.receptance(self.contact_rows as f64),
-            None if self.condenses() => self.linear_parts(),
-            None => 0.0,
+        let once_a_frequency = if self.condenses() {
+            self.linear_parts()
+        } else {
+            0.0
         };
         work.factorisations * self.per_factorisation()
             + work.nonlinear_solves * once_a_frequency
@@ -363,7 +308,6 @@ impl RowSolver {
             contact_rows: solver.basis().contact().rows(),
             pairs: model.contact.weights.len() * model.sectors,
             coefficients: SystemSize::coefficients_of(harmonics),
-            tuned: solver.tuned_size(harmonics).filter(|_| !linear),
             law,
             check_law: solver.settings.in_place_of.filter(|_| !linear).or(law),
             in_stages: solver
@@ -391,7 +335,6 @@ mod tests {
             coefficients: SystemSize::coefficients_of(&[0, 1, 3]),
             samples: 128,
             in_stages: false,
-            tuned: None,
             law: Some(ContactLaw::Simplified3d),
             check_law: Some(ContactLaw::Simplified3d),
         };
@@ -414,7 +357,6 @@ mod tests {
             coefficients: SystemSize::coefficients_of(&[1, 3]),
             samples: 128,
             in_stages: false,
-            tuned: None,
             law: Some(law),
             check_law: Some(law),
         };

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use super::beyond::Beyond;
 use super::engine_rows::RowEngine;
 use super::mistuned_peak::MistunedPeak;
-use super::tuned_harmonics::TunedHarmonics;
 use super::{
     ErrorTolerance, HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, HarmonicChoice, LoadCaseName,
     ResponseRow, Scenario, ScenarioError, TunedReference, stated_error,
@@ -83,7 +82,6 @@ pub struct RowSolver {
     pub(super) chosen: Vec<(HarmonicChoice, PointSettings)>,
     basis_error: f64,
     pub(super) beyond: Option<Beyond>,
-    pub(super) tuned_harmonics: Option<TunedHarmonics>,
     /// What rows are solved on in the place of the basis.
     pub(super) engine: Option<RowEngine>,
     /// Solvers of the further load cases of the study.
@@ -104,7 +102,6 @@ impl RowSolver {
             chosen: Vec::new(),
             basis_error: 0.0,
             beyond: None,
-            tuned_harmonics: None,
             engine: None,
             load_cases: Vec::new(),
         })
@@ -171,7 +168,8 @@ impl RowSolver {
         let point = found.point.as_ref().filter(|_| found.status == Status::Ok);
         let screening = point.and_then(|point| {
             let points = self.points(engine_order, contact);
-            let of = |harmonics: &[u32]| self.tuned_waves(engine_order, contact, harmonics);
+            let nominal = ContactFactors::default();
+            let of = |set: &[u32]| self.tuned_waves(&nominal, engine_order, contact, set);
             let enlarged = of(points.errors().harmonics());
             screen(
                 &of(points.harmonics()),
@@ -295,11 +293,11 @@ impl RowSolver {
 
     pub(super) fn tuned_excited(&self, engine_order: u32, contact: ContactCondition) -> Excited {
         let harmonics = self.points(engine_order, contact).harmonics();
-        self.tuned_waves(engine_order, contact, harmonics)
+        self.tuned_waves(&ContactFactors::default(), engine_order, contact, harmonics)
     }
 
     /// The tuned wheel with the contact of every sector multiplied by `factors`.
-    pub(super) fn tuned_waves_with(
+    pub(super) fn tuned_waves(
         &self,
         factors: &ContactFactors,
         engine_order: u32,
@@ -385,14 +383,9 @@ impl RowSolver {
         tuned: &TunedReference,
         found: Result<MistunedPeak, Status>,
     ) -> ResponseRow {
-        let (status, found, errors, tuned_harmonics) = match found {
-            Ok(found) => (
-                found.peak.status,
-                Some(found.peak),
-                found.errors,
-                found.tuned_harmonics,
-            ),
-            Err(status) => (status, None, None, false),
+        let (status, found, errors) = match found {
+            Ok(found) => (found.peak.status, Some(found.peak), found.errors),
+            Err(status) => (status, None, None),
         };
         let good: Option<(&Peak, &Point)> = found
             .as_ref()
@@ -445,15 +438,11 @@ impl RowSolver {
             shortcut: shortcut(
                 scenario.contact,
                 good.map(|(_, point)| point),
-                tuned_harmonics,
                 self.settings.simpler_law(),
             ),
         }
     }
 }
-
-/// In the column `shortcut`: harmonics other than 1 were taken in the tuned wheel.
-pub(super) const TUNED_HARMONICS: &str = "tuned_harmonics";
 
 /// Largest amplitude over blades and frequency of the mistuned wheel over that of the tuned wheel
 /// with the same normal load, engine order and settings.
@@ -470,20 +459,14 @@ pub fn harmonics_name(harmonics: &[u32]) -> String {
 }
 
 /// `linear` for a linear limit; `stuck` where every pair sticks at the peak, so that the linear
-/// solution is the exact one; [`TUNED_HARMONICS`]; where a simpler law is taken this first.
-fn shortcut(
-    contact: ContactCondition,
-    point: Option<&Point>,
-    tuned_harmonics: bool,
-    simpler_law: Option<&str>,
-) -> String {
+/// solution is the exact one; else `none`; where a simpler law is taken this first.
+fn shortcut(contact: ContactCondition, point: Option<&Point>, simpler_law: Option<&str>) -> String {
     let own = match (contact, point) {
         (ContactCondition::Full { .. }, Some(point))
             if point.shares.slipping == 0.0 && point.shares.separated == 0.0 =>
         {
             "stuck"
         }
-        (ContactCondition::Full { .. }, Some(_)) if tuned_harmonics => TUNED_HARMONICS,
         (ContactCondition::Full { .. }, _) => "none",
         _ => return "linear".to_owned(),
     };

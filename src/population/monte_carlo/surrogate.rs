@@ -157,7 +157,6 @@ impl Surrogate<'_> {
             coefficients: 2,
             samples: SAMPLES,
             in_stages: false,
-            tuned: None,
             ..self.solver.system_size(&self.scenario)
         };
         let projection = 2.0 * n * m * (n + 2.0 * m);

@@ -1,6 +1,5 @@
 //! A delivered row looked into: blade amplitudes and the state of every contact pair at its peak.
 
-use super::row_solver::TUNED_HARMONICS;
 use super::{ResponseRow, RowSolver, Scenario};
 use crate::response::forced_response::{LimitsWanted, PointSolver};
 use crate::response::harmonic_balance::{PairContact, Status};
@@ -37,10 +36,6 @@ impl RowSolver {
         let (modes, wheel) = solver.mistuned(pattern, LimitsWanted::of(&[contact]))?;
         let points = solver.points_of(pattern, engine_order, contact);
         let excited = solver.wheel_excited(&modes, &wheel, engine_order, points.harmonics());
-        let excited = match solver.waves(pattern, &points) {
-            Some(waves) if row.shortcut.ends_with(TUNED_HARMONICS) => excited.with_waves(waves),
-            _ => excited,
-        };
         let mut solver = PointSolver::new(&excited, contact, &points);
         let point = solver.solve(frequency_hz)?.clone();
         Ok(WheelState {

@@ -81,7 +81,7 @@ pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
         "shortcut",
         Text,
         "",
-        "What was left out: linear, stuck, tuned_harmonics, or none; after the simplification of the contact law, if there is one",
+        "What was left out: linear, stuck, or none; after the simplification of the contact law, if there is one",
     ),
     ColumnSpec::new(
         "retries",

@@ -29,7 +29,7 @@ pub struct TradeoffRecord {
     pub basis: String,
     /// Harmonics: a set, or `auto` with its tolerance.
     pub harmonics: String,
-    /// Wheel of the harmonics other than 1.
+    /// Wheel of the harmonics other than 1: always the mistuned one.
     pub higher_harmonics: &'static str,
     /// Samples per period.
     pub samples_per_period: u32,
@@ -122,7 +122,12 @@ pub const TRADEOFF_COLUMNS: &[ColumnSpec] = &[
         "",
         "Harmonic set, or auto with solver.harmonic_tolerance",
     ),
-    ColumnSpec::new("higher_harmonics", Text, "", "solver.higher_harmonics"),
+    ColumnSpec::new(
+        "higher_harmonics",
+        Text,
+        "",
+        "Wheel of the harmonics other than 1: always mistuned",
+    ),
     ColumnSpec::new(
         "samples_per_period",
         Int32,

@@ -11,8 +11,6 @@ pub(super) enum Attempt {
     /// From what a solution with fewer harmonics and the converged points lead one to expect, with the derivatives
     /// of harmonics by themselves.
     ByHarmonic,
-    /// The same with derivatives of this very point: those of an earlier one serve most often, not always.
-    ByHarmonicAfresh,
     /// The same with the whole Jacobian, found once.
     Once,
     /// From what the converged points beside it lead one to expect, or from the stuck solution, with
@@ -31,10 +29,9 @@ pub(super) enum Attempt {
 }
 
 /// In the order in which they are made.
-const LADDER: [Attempt; 10] = [
+const LADDER: [Attempt; 9] = [
     Attempt::Renewed,
     Attempt::ByHarmonic,
-    Attempt::ByHarmonicAfresh,
     Attempt::Once,
     Attempt::Neighbours,
     Attempt::Line,
@@ -45,19 +42,11 @@ const LADDER: [Attempt; 10] = [
 ];
 
 impl Attempt {
-    /// The attempts where Newton's steps are condensed or not, with or without a solution with fewer harmonics; where
-    /// the others are `waves` of the tuned wheel, the whole Jacobian is not to be had.
-    pub(super) fn ladder(
-        condenses: bool,
-        refines: bool,
-        waves: bool,
-    ) -> impl Iterator<Item = Self> {
+    /// The attempts where Newton's steps are condensed or not, with or without a solution with fewer harmonics.
+    pub(super) fn ladder(condenses: bool, refines: bool) -> impl Iterator<Item = Self> {
         let made = move |attempt: &Self| match attempt {
-            Self::ByHarmonicAfresh => waves,
-            Self::ByHarmonic => waves || refines,
-            _ if waves => false,
             Self::Renewed => condenses,
-            Self::Once => refines,
+            Self::ByHarmonic | Self::Once => refines,
             _ => true,
         };
         LADDER.into_iter().filter(made)
@@ -67,7 +56,7 @@ impl Attempt {
     pub(super) fn steps(self) -> Steps {
         match self {
             Self::Renewed => Steps::Renewed,
-            Self::ByHarmonic | Self::ByHarmonicAfresh => Steps::ByHarmonic,
+            Self::ByHarmonic => Steps::ByHarmonic,
             Self::Once => Steps::Once,
             Self::Neighbours => Steps::Accelerated,
             _ => Steps::Plain,

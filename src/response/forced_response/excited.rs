@@ -8,7 +8,7 @@ use crate::linalg::Complex64;
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::response::harmonic_balance::{
-    ContactStiffnessMatrix, Damping, HarmonicBlock, Structure, TunedWaves,
+    ContactStiffnessMatrix, Damping, HarmonicBlock, Structure,
 };
 use crate::response::mistuning::{ContactFactors, StructuralModes, WheelBasis};
 
@@ -169,8 +169,6 @@ pub struct Excited {
     /// Modal force of the fundamental harmonic, N / sqrt(kg).
     pub force: Vec<Complex64>,
     modes: LimitModes,
-    /// Harmonic 1 alone, where the others are taken in the tuned wheel.
-    pub(super) fundamental: Option<Box<Self>>,
 }
 
 impl Excited {
@@ -183,7 +181,6 @@ impl Excited {
                 harmonic,
                 structure: Arc::clone(&wheel.linear.structure),
                 stuck: Arc::clone(&wheel.linear.stuck),
-                waves: None,
             })
             .collect();
         Self {
@@ -191,7 +188,6 @@ impl Excited {
             blocks,
             force: modal_force,
             modes: wheel.modes.clone(),
-            fundamental: None,
         }
     }
 
@@ -229,7 +225,6 @@ impl Excited {
                     harmonic,
                     structure: own.structure,
                     stuck: own.stuck,
-                    waves: None,
                 }
             })
             .collect();
@@ -240,20 +235,7 @@ impl Excited {
             linear,
             blocks,
             force: force.column(0).iter().map(|f| f * amplitude_n).collect(),
-            fundamental: None,
         }
-    }
-
-    /// The same wheel with the harmonics other than 1 taken in the tuned one.
-    #[must_use]
-    pub fn with_waves(mut self, waves: &Arc<TunedWaves>) -> Self {
-        let mut fundamental = self.clone();
-        fundamental.blocks.retain(|block| block.harmonic == 1);
-        self.fundamental = Some(Box::new(fundamental));
-        for block in &mut self.blocks {
-            block.waves = (block.harmonic != 1).then(|| Arc::clone(waves));
-        }
-        self
     }
 
     /// The same in some of its harmonics, 1 among them.
@@ -262,19 +244,7 @@ impl Excited {
         let mut own = self.clone();
         own.blocks
             .retain(|block| harmonics.contains(&block.harmonic));
-        own.fundamental = None;
         own
-    }
-
-    /// The same tuned wheel with the harmonics other than 1 of `other`, which has more modes.
-    #[must_use]
-    pub fn with_harmonics_of(mut self, other: Self) -> Self {
-        for (own, other) in self.blocks.iter_mut().zip(other.blocks) {
-            if own.harmonic != 1 {
-                *own = other;
-            }
-        }
-        self
     }
 
     /// The same with viscous damping, see [`Structure::with_viscous_damping`].

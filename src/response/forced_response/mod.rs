@@ -33,8 +33,8 @@ pub use excited::{Excited, LimitsWanted, LinearStructure, Wheel, wheel_force};
 pub use linear_peaks::LinearPeak;
 pub use observed_amplitude::{ObservedAmplitude, ObservedBlock};
 pub use options::{
-    AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, HigherHarmonics,
-    RowsBeyondTolerance, SearchHarmonics, SolverOptions,
+    AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, RowsBeyondTolerance,
+    SearchHarmonics, SolverOptions,
 };
 pub use peak::{
     Peak, SearchPlan, Window, mistuned_window, peak, search_plan, slopes_lead, tuned_span,

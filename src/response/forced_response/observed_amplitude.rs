@@ -20,9 +20,6 @@ pub struct ObservedBlock<'a> {
     structure: &'a Structure,
     /// Complex unknowns.
     size: usize,
-    /// Whether they are modal coordinates of the structure; else nothing is known of what the harmonic moves, and the
-    /// measure is the fundamental.
-    is_modal: bool,
 }
 
 impl<'a> ObservedBlock<'a> {
@@ -33,7 +30,6 @@ impl<'a> ObservedBlock<'a> {
             harmonic: block.harmonic,
             structure: &block.structure,
             size: block.size(),
-            is_modal: block.waves.is_none(),
         };
         blocks.iter().map(block).collect()
     }
@@ -45,7 +41,6 @@ impl<'a> ObservedBlock<'a> {
             harmonic: 1,
             structure,
             size: structure.size(),
-            is_modal: true,
         }]
     }
 }
@@ -192,13 +187,12 @@ fn observed(blocks: &[ObservedBlock<'_>], solution: &[f64]) -> Vec<ObservedHarmo
         harmonic,
         structure,
         size: n,
-        is_modal,
     } in blocks
     {
         let rows = structure.observed();
         let mut re = vec![0.0; rows.real.rows()];
         let mut im = vec![0.0; rows.real.rows()];
-        if harmonic > 0 && is_modal {
+        if harmonic > 0 {
             let x = &solution[start..start + 2 * n];
             let (x_re, x_im) = x.split_at(n);
             let mut both = vec![0.0; 2 * re.len()];

@@ -22,27 +22,6 @@ pub enum SearchHarmonics {
     Set(Vec<u32>),
 }
 
-/// The wheel in which harmonics other than 1 are taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum HigherHarmonics {
-    /// The mistuned wheel in its reduced basis, as harmonic 1.
-    Mistuned,
-    /// The tuned wheel with all its Craig-Bampton modes, see [`crate::response::harmonic_balance::TunedWaves`].
-    Tuned,
-}
-
-impl HigherHarmonics {
-    /// Name in studies and tables.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Mistuned => "mistuned",
-            Self::Tuned => "tuned",
-        }
-    }
-}
-
 /// What becomes of a row whose error exceeds its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -84,8 +63,6 @@ pub struct SolverOptions {
     pub harmonics: Harmonics,
     /// Harmonics of the search. Default auto.
     pub search_harmonics: SearchHarmonics,
-    /// Wheel of the harmonics other than 1. Default mistuned.
-    pub higher_harmonics: HigherHarmonics,
     /// Wanted relative error of the amplitude by the harmonics left out. Default 0.02.
     pub harmonic_tolerance: f64,
     /// What becomes of a row beyond it. Default flag.
@@ -110,7 +87,6 @@ impl Default for SolverOptions {
         Self {
             harmonics: Harmonics::Auto,
             search_harmonics: SearchHarmonics::Auto,
-            higher_harmonics: HigherHarmonics::Mistuned,
             harmonic_tolerance: 0.02,
             rows_beyond_tolerance: RowsBeyondTolerance::Flag,
             samples_per_period: 128,

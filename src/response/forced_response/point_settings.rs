@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::a_posteriori::ErrorSettings;
 use super::observed_amplitude::ObservedAmplitude;
-use super::options::{Harmonics, HigherHarmonics, SearchHarmonics, SolverOptions};
+use super::options::{Harmonics, SearchHarmonics, SolverOptions};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{HarmonicTransform, NewtonBounds, TransformError};
@@ -46,12 +46,7 @@ impl PointSettings {
         let set: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
         let samples = samples_per_period(options, harmonics);
         let law = contact.map(|(law, _)| law);
-        let search = match options.higher_harmonics {
-            HigherHarmonics::Mistuned => &options.search_harmonics,
-            // Beside a solution with harmonic 1 alone the others come by themselves.
-            HigherHarmonics::Tuned => &SearchHarmonics::Auto,
-        };
-        let sought = sought(search, harmonics);
+        let sought = sought(&options.search_harmonics, harmonics);
         let search = match &sought {
             Some(sought) if contact.is_some() => {
                 let search = Self::new(options, sought, contact, geometry.clone())?;

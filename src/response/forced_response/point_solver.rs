@@ -27,8 +27,6 @@ pub struct PointSolver<'a> {
     pub(super) points: Vec<Point>,
     /// Points with fewer harmonics, in the unknowns of this solver; none unless it refines them.
     pub(super) coarse: Vec<Point>,
-    /// Solver of harmonic 1 alone, whose points the others come beside; only where they are taken in the tuned wheel.
-    fundamental: Option<Box<Self>>,
     failures: Vec<(f64, Status)>,
     /// Relative precision of the amplitudes at which a point may end before its residual is met.
     pub(super) precision: Option<f64>,
@@ -63,10 +61,6 @@ impl<'a> PointSolver<'a> {
             }
             _ => None,
         };
-        let fundamental = match (&excited.fundamental, settings.search()) {
-            (Some(alone), Some(search)) => Some(Self::new(alone, condition, search)),
-            _ => None,
-        };
         Self {
             excited,
             condition,
@@ -75,7 +69,6 @@ impl<'a> PointSolver<'a> {
             nonlinear,
             points: Vec::new(),
             coarse: Vec::new(),
-            fundamental: fundamental.map(Box::new),
             failures: Vec::new(),
             precision: None,
             sloped: false,
@@ -148,9 +141,8 @@ impl<'a> PointSolver<'a> {
     #[must_use]
     pub(super) fn with_slopes(mut self) -> Self {
         let condenses = |(system, _): &(HarmonicSystem, _)| system.condenses();
-        self.sloped = self.nonlinear.as_ref().is_some_and(condenses)
-            && self.settings.ring == Ring::Locked
-            && self.fundamental.is_none();
+        self.sloped =
+            self.nonlinear.as_ref().is_some_and(condenses) && self.settings.ring == Ring::Locked;
         self
     }
 
@@ -167,7 +159,6 @@ impl<'a> PointSolver<'a> {
         let coarse = coarse.map(|point| self.beside(coarse_excited, point.clone()));
         Self {
             coarse: coarse.collect(),
-            fundamental: None,
             ..self
         }
     }
@@ -311,18 +302,13 @@ impl<'a> PointSolver<'a> {
     }
 
     fn solve_nonlinear(&mut self, frequency_hz: f64) -> Result<Point, Status> {
-        self.solve_fundamental(frequency_hz)?;
         self.work.nonlinear_solves += 1;
         let mut last = Status::IterationLimit;
         let condenses = self.nonlinear.as_ref().is_some_and(|(s, _)| s.condenses());
-        let waves = self.excited.fundamental.is_some();
-        let ladder = Attempt::ladder(condenses, !self.coarse.is_empty(), waves);
+        let ladder = Attempt::ladder(condenses, !self.coarse.is_empty());
         for (rung, attempt) in ladder.enumerate() {
             if let Some((_, workspace)) = &mut self.nonlinear {
                 workspace.set_steps(attempt.steps());
-                if matches!(attempt, Attempt::ByHarmonicAfresh) {
-                    workspace.forget_jacobian();
-                }
             }
             match self.attempt(attempt, frequency_hz) {
                 Ok(point) => {
@@ -336,26 +322,13 @@ impl<'a> PointSolver<'a> {
         Err(last)
     }
 
-    /// Adds the point of harmonic 1 alone to those that are refined, where there is a solver for it.
-    fn solve_fundamental(&mut self, frequency_hz: f64) -> Result<(), Status> {
-        let Some(solver) = &mut self.fundamental else {
-            return Ok(());
-        };
-        let solved = solver.solve(frequency_hz).cloned();
-        self.work = self.work.plus(std::mem::take(&mut solver.work));
-        let point = solved?;
-        let excited = solver.excited;
-        self.start_beside(excited, point);
-        Ok(())
-    }
-
     fn attempt(&mut self, attempt: Attempt, frequency_hz: f64) -> Result<Point, Status> {
         match attempt {
             Attempt::Renewed if self.coarse.is_empty() => {
                 let start = self.expected(frequency_hz)?;
                 self.newton(frequency_hz, start, None)
             }
-            Attempt::Renewed | Attempt::ByHarmonic | Attempt::ByHarmonicAfresh | Attempt::Once => {
+            Attempt::Renewed | Attempt::ByHarmonic | Attempt::Once => {
                 let start = self.expected_from_coarse(frequency_hz)?;
                 self.newton(frequency_hz, start, None)
             }

@@ -23,10 +23,6 @@ pub(super) struct Anderson {
     triangle: Vec<f64>,
     columns: usize,
     shares: Vec<f64>,
-    /// What the entries of steps count, all the same unless given.
-    weights: Vec<f64>,
-    /// The last step as it counts.
-    weighted: Vec<f64>,
 }
 
 impl Anderson {
@@ -43,14 +39,7 @@ impl Anderson {
             triangle: vec![0.0; depth * depth],
             columns: 0,
             shares: vec![0.0; depth],
-            weights: Vec::new(),
-            weighted: Vec::new(),
         }
-    }
-
-    /// The same where the length of a step is that of its entries times `weights`.
-    pub(super) fn weighted(self, weights: Vec<f64>) -> Self {
-        Self { weights, ..self }
     }
 
     /// Forgets the iterates: another function follows.
@@ -101,9 +90,6 @@ impl Anderson {
         for ((d, f), last) in direction.iter_mut().zip(step).zip(last_step) {
             *d = f - last;
         }
-        for (d, weight) in direction.iter_mut().zip(&self.weights) {
-            *d *= weight;
-        }
         let length = dot(direction, direction).sqrt();
         let triangle = &mut self.triangle[self.depth * column..][..self.depth];
         triangle.fill(0.0);
@@ -133,16 +119,9 @@ impl Anderson {
 
     /// Shares by which the differences of steps come nearest to `step`: `R shares = Q^T step`.
     fn find_shares(&mut self, step: &[f64]) {
-        self.weighted.clear();
-        let weighted = step.iter().zip(&self.weights).map(|(f, weight)| weight * f);
-        self.weighted.extend(weighted);
         vectorized(Dots {
             columns: Columns::of(&self.directions, self.unknowns),
-            vector: if self.weights.is_empty() {
-                step
-            } else {
-                &self.weighted
-            },
+            vector: step,
             products: &mut self.shares[..self.columns],
         });
         for column in (0..self.columns).rev() {
@@ -184,27 +163,22 @@ mod tests {
         }
     }
 
-    /// From two iterates, `x + f - share (dx + df)` with the share by which `W df` comes nearest to `W f`.
+    /// From two iterates, `x + f - share (dx + df)` with the share by which `df` comes nearest to `f`.
     #[test]
-    fn the_combination_is_that_of_the_least_weighted_step() {
+    fn the_combination_is_that_of_the_least_step() {
         let (first, second) = ([0.0, 0.0], [1.0, 2.0]);
         let (step, next_step) = ([1.0, 2.0], [-3.0, 0.5]);
-        for weights in [[1.0, 1.0], [0.01, 1.0], [1.0, 0.01]] {
-            let mut acceleration = Anderson::new(2, 4).weighted(weights.to_vec());
-            let mut next = [0.0; 2];
-            acceleration.begin();
-            acceleration.next(&first, &step, &mut next);
-            acceleration.next(&second, &next_step, &mut next);
-            let change = [0, 1].map(|i| next_step[i] - step[i]);
-            let weighted = |a: [f64; 2], b: [f64; 2]| -> f64 {
-                (0..2).map(|i| weights[i].powi(2) * a[i] * b[i]).sum()
-            };
-            let share = weighted(change, next_step) / weighted(change, change);
-            for i in 0..2 {
-                let expected =
-                    second[i] + next_step[i] - share * (second[i] - first[i] + change[i]);
-                assert!((next[i] - expected).abs() < 1e-12, "{weights:?}: {next:?}");
-            }
+        let mut acceleration = Anderson::new(2, 4);
+        let mut next = [0.0; 2];
+        acceleration.begin();
+        acceleration.next(&first, &step, &mut next);
+        acceleration.next(&second, &next_step, &mut next);
+        let change = [0, 1].map(|i| next_step[i] - step[i]);
+        let dot = |a: [f64; 2], b: [f64; 2]| -> f64 { (0..2).map(|i| a[i] * b[i]).sum() };
+        let share = dot(change, next_step) / dot(change, change);
+        for i in 0..2 {
+            let expected = second[i] + next_step[i] - share * (second[i] - first[i] + change[i]);
+            assert!((next[i] - expected).abs() < 1e-12, "{next:?}");
         }
     }
 

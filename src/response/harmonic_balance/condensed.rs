@@ -247,7 +247,6 @@ pub(super) mod tests {
             harmonic: harmonic as u32,
             structure: Arc::clone(&structure),
             stuck: Arc::clone(&stuck),
-            waves: None,
         });
         let pair = PairParameters {
             normal_load_n: 0.4,

@@ -39,12 +39,8 @@ const LINEARISED_SAMPLES: usize = 128;
 const LINEARISED_SAMPLES_OF_HIGHEST: usize = 4;
 /// Steps of the iteration at most.
 const EVALUATIONS: usize = 14;
-/// The same where harmonics are taken in the tuned wheel: P has the mean contact of its sectors, and a step is cheap.
-const EVALUATIONS_OF_WAVES: usize = 120;
 /// The iteration ends when the next step would change the set by this share of the change so far,
 const SETTLED: f64 = 0.03;
-/// (where harmonics are taken in the tuned wheel; the set then follows the others, and changes last)
-const SETTLED_OF_WAVES: f64 = 0.01;
 /// or by this share of the set itself.
 const NEGLIGIBLE: f64 = 5e-5;
 
@@ -189,12 +185,9 @@ pub fn enlarge(
     let before = embed(system, &enlarged, &places, x);
     let linearised = with(blocks, &set.linearised);
     let large = system.unknowns() > LARGEST_WHOLE_JACOBIAN && system.is_shared();
-    let mut buffers = enlarged.workspace();
-    let factors = if large || enlarged.has_waves() {
-        let mut linearised_buffers = linearised.workspace();
-        let factors = Factors::by_harmonic(&linearised, omega, &before, &mut linearised_buffers)?;
-        buffers.waves = linearised_buffers.waves;
-        factors
+    let buffers = enlarged.workspace();
+    let factors = if large {
+        Factors::by_harmonic(&linearised, omega, &before)?
     } else {
         if !workspace.factor_at(system, omega, x) {
             return None;
@@ -228,13 +221,11 @@ impl Enlargement<'_> {
     ) -> Option<Enlarged> {
         let mut step = self.step(&alone);
         let scale = self.in_set(&alone);
-        let evaluations = self.evaluations();
-        let weights = self.enlarged.weights_of_steps();
-        let mut acceleration = Anderson::new(before.len(), evaluations).weighted(weights);
+        let mut acceleration = Anderson::new(before.len(), EVALUATIONS);
         let mut iterate = alone.clone();
         let mut next = alone.clone();
         let mut best: Option<(f64, Vec<f64>)> = None;
-        for evaluation in 1..=evaluations {
+        for evaluation in 1..=EVALUATIONS {
             let last = self.in_set(&step);
             acceleration.next(&iterate, &step, &mut next);
             std::mem::swap(&mut iterate, &mut next);
@@ -249,7 +240,7 @@ impl Enlargement<'_> {
             }
             let change: Vec<f64> = iterate.iter().zip(&alone).map(|(a, b)| a - b).collect();
             if evaluation > 1
-                && left <= f64::max(NEGLIGIBLE, self.settled() * self.in_set(&change) / scale)
+                && left <= f64::max(NEGLIGIBLE, SETTLED * self.in_set(&change) / scale)
             {
                 break;
             }
@@ -267,24 +258,6 @@ impl Enlargement<'_> {
             unsettled,
             without,
         })
-    }
-
-    /// Steps at most.
-    fn evaluations(&self) -> usize {
-        if self.enlarged.has_waves() {
-            EVALUATIONS_OF_WAVES
-        } else {
-            EVALUATIONS
-        }
-    }
-
-    /// Share of the change at which the iteration ends.
-    fn settled(&self) -> f64 {
-        if self.enlarged.has_waves() {
-            SETTLED_OF_WAVES
-        } else {
-            SETTLED
-        }
     }
 
     fn residual(&mut self, x: &[f64]) -> Vec<f64> {
@@ -340,13 +313,9 @@ impl Enlargement<'_> {
     /// unknowns of the enlarged system: by one Newton correction, or by accelerated steps. None if they diverge.
     fn in_set_of(&mut self, other: &HarmonicSystem, x: &[f64]) -> Option<Vec<f64>> {
         let newton = !matches!(self.factors, Factors::ByHarmonic(_));
-        let evaluations = if newton { 1 } else { self.evaluations() };
+        let evaluations = if newton { 1 } else { EVALUATIONS };
         let mut buffers = other.workspace();
-        if let (Some(own), Some(all)) = (&mut buffers.waves, &self.buffers.waves) {
-            own.take_over(all, &self.places);
-        }
-        let weights = other.weights_of_steps();
-        let mut acceleration = Anderson::new(x.len(), evaluations).weighted(weights);
+        let mut acceleration = Anderson::new(x.len(), evaluations);
         let scale = norm_of(x);
         let mut iterate = x.to_vec();
         let (mut next, mut residual) = (iterate.clone(), vec![0.0; x.len()]);
@@ -364,7 +333,7 @@ impl Enlargement<'_> {
             acceleration.next(&iterate, &step, &mut next);
             std::mem::swap(&mut iterate, &mut next);
             let change: Vec<f64> = iterate.iter().zip(x).map(|(a, b)| a - b).collect();
-            if norm_of(&step) <= f64::max(NEGLIGIBLE * scale, self.settled() * norm_of(&change)) {
+            if norm_of(&step) <= f64::max(NEGLIGIBLE * scale, SETTLED * norm_of(&change)) {
                 break;
             }
         }
@@ -441,17 +410,13 @@ fn embed(
 
 impl Factors {
     /// Of every harmonic of `system` by itself at `x`; none if one is singular.
-    fn by_harmonic(
-        system: &HarmonicSystem,
-        omega: f64,
-        x: &[f64],
-        buffers: &mut SystemWorkspace,
-    ) -> Option<Self> {
-        system.couple_leading(buffers);
+    fn by_harmonic(system: &HarmonicSystem, omega: f64, x: &[f64]) -> Option<Self> {
+        let mut buffers = system.workspace();
+        system.couple_leading(&mut buffers);
         let mut residual = vec![0.0; system.unknowns()];
-        system.residual(omega, x, &mut residual, true, buffers);
+        system.residual(omega, x, &mut residual, true, &mut buffers);
         let mut factors = KeptJacobian::new();
-        let regular = factors.factor_by_harmonic(system, omega, buffers);
+        let regular = factors.factor_by_harmonic(system, omega, &mut buffers);
         regular.then(|| Self::ByHarmonic(Box::new(factors)))
     }
 

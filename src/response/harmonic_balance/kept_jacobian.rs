@@ -18,7 +18,6 @@
 //! ```
 
 use super::condensed::CondensedJacobian;
-use super::wave_blocks::WaveFactors;
 use super::{HarmonicSystem, SystemWorkspace};
 use crate::linalg::{Complex64, LuWorkspace, add_times};
 
@@ -51,7 +50,6 @@ enum Held {
     Condensed,
     Triangle,
     ByHarmonic,
-    Waves,
 }
 
 /// Factors of the Jacobian of one system.
@@ -66,7 +64,6 @@ pub(super) struct KeptJacobian {
     /// `J_cc` and the blocks of the harmonics beyond.
     leading: Option<LuWorkspace<f64>>,
     beyond: Vec<LuWorkspace<Complex64>>,
-    waves: WaveFactors,
 }
 
 /// The column of one harmonic in P.
@@ -88,7 +85,6 @@ impl KeptJacobian {
             negative: Vec::new(),
             leading: None,
             beyond: Vec::new(),
-            waves: WaveFactors::default(),
         }
     }
 
@@ -201,14 +197,6 @@ impl KeptJacobian {
         omega: f64,
         workspace: &mut SystemWorkspace,
     ) -> bool {
-        if system.has_waves() {
-            let own = system.fundamental()..system.fundamental() + 1;
-            let size = system.start[own.end] - system.start[own.start];
-            let factors = self.leading.get_or_insert_with(|| LuWorkspace::new(size));
-            system.jacobian_of(own.clone(), own, omega, workspace, factors.matrix_mut());
-            let regular = factors.factor() && self.waves.factor(system, omega, workspace);
-            return self.hold(Held::Waves, regular);
-        }
         let (count, leading) = (system.blocks.len(), system.leading());
         let factors = self
             .leading
@@ -256,13 +244,6 @@ impl KeptJacobian {
                     solve_complex(factors, own);
                     rest = beyond;
                 }
-            }
-            (Held::Waves, _) => {
-                if let Some(factors) = &mut self.leading {
-                    let own = self.waves.fundamental();
-                    factors.solve(&mut residual[own]);
-                }
-                self.waves.solve(residual);
             }
             (Held::Triangle, _) => {
                 let mut rest = residual;
@@ -348,7 +329,6 @@ mod tests {
             harmonic: harmonic as u32,
             structure: Arc::clone(&structure),
             stuck: Arc::clone(&stuck),
-            waves: None,
         });
         let pair = PairParameters {
             normal_load_n: 2.0,

@@ -213,7 +213,6 @@ mod tests {
             harmonic,
             structure: Arc::new(structure),
             stuck,
-            waves: None,
         }
     }
 

@@ -20,11 +20,6 @@ impl HarmonicSystem {
         for (index, block) in self.blocks.iter().enumerate() {
             let range = self.start[index]..self.start[index + 1];
             let (x, r) = (&x[range.clone()], &mut residual[range]);
-            if block.waves.is_some() {
-                let stiffness = self.wave_scale.stiffness();
-                r.iter_mut().zip(x).for_each(|(r, x)| *r = stiffness * x);
-                continue;
-            }
             let n = block.structure.size();
             let k_omega = f64::from(block.harmonic) * omega;
             let stuck = &block.stuck;

@@ -41,10 +41,7 @@ mod status;
 mod structure;
 mod system;
 mod transform;
-mod tuned_waves;
 mod vector_sums;
-mod wave_blocks;
-mod wave_table;
 mod wheel_contact;
 
 pub use condensed::condensing_pays;
@@ -65,5 +62,4 @@ pub use status::Status;
 pub use structure::{ContactStiffnessMatrix, Structure};
 pub use system::{ContactShares, HarmonicSystem, SystemWorkspace};
 pub use transform::{HarmonicTransform, TransformError, TransformScratch};
-pub use tuned_waves::TunedWaves;
 pub use wheel_contact::{MeanTangent, WheelContact};

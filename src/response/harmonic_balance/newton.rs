@@ -144,15 +144,6 @@ impl NewtonBuffers {
             ..Self::new(n)
         }
     }
-
-    /// The same where entries of steps count as much as `weights`, all the same if there are none.
-    pub(super) fn weighted(self, weights: &[f64]) -> Self {
-        let weights = weights.to_vec();
-        Self {
-            acceleration: self.acceleration.map(|a| a.weighted(weights)),
-            ..self
-        }
-    }
 }
 
 /// The harmonic balance equation at one frequency.
@@ -177,8 +168,7 @@ impl Equation for FixedFrequency<'_> {
     }
 
     fn linearise(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
-        let small = (self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN || !self.system.is_shared())
-            && !self.system.has_waves();
+        let small = self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN || !self.system.is_shared();
         let by_harmonic = self.steps == Steps::ByHarmonic && !small;
         if by_harmonic {
             self.system.couple_leading(self.workspace);
@@ -189,10 +179,6 @@ impl Equation for FixedFrequency<'_> {
             .system
             .residual(self.omega, x, residual, true, self.workspace);
         let (system, omega) = (self.system, self.omega);
-        // Of waves there is no whole Jacobian.
-        if system.has_waves() && shares.separated > 0.0 {
-            return false;
-        }
         // Contact that opens couples the harmonics closely.
         if by_harmonic && shares.separated > 0.0 {
             HarmonicSystem::couple_all(self.workspace);

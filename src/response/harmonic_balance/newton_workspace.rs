@@ -16,8 +16,6 @@ pub struct NewtonWorkspace {
     /// The same in motions at the contact rows, and the buffers of steps of them.
     pub(super) motion_start: Option<MotionStart>,
     pub(super) motions: Option<NewtonBuffers>,
-    /// What the entries of steps count where one Jacobian is to do.
-    weights: Vec<f64>,
 }
 
 /// A start with what its choice has found.
@@ -41,7 +39,6 @@ impl NewtonWorkspace {
             start: None,
             motion_start: None,
             motions: None,
-            weights: system.weights_of_steps(),
         }
     }
 
@@ -97,7 +94,7 @@ impl NewtonWorkspace {
             self.jacobian.forget();
             let n = self.buffers.step.len();
             self.buffers = if steps.keep_jacobian() {
-                NewtonBuffers::accelerated(n, DEPTH_OF_ONCE).weighted(&self.weights)
+                NewtonBuffers::accelerated(n, DEPTH_OF_ONCE)
             } else {
                 NewtonBuffers::accelerated(n, DEPTH)
             };

@@ -15,7 +15,6 @@ use std::sync::Arc;
 
 use super::macro_slip_pairs::MacroSlipPairs;
 use super::simplified_3d_pairs::Simplified3dPairs;
-use super::wave_blocks::{WaveScale, WaveWorkspace};
 use super::{ContactInterface, HarmonicBlock, HarmonicTransform, PairHarmonics, PairJacobian};
 use crate::linalg::{
     Complex64, Matrix, add_times, add_times_vector, add_transpose_times, add_transpose_times_vector,
@@ -39,8 +38,6 @@ pub struct HarmonicSystem {
     /// Whether all harmonics have the same real matrices, those of a wheel: the unknowns are then one matrix
     /// with a column per real coefficient.
     pub(super) shared: bool,
-    /// Units of the unknowns of waves.
-    pub(super) wave_scale: WaveScale,
     /// Drift of the ring along its rigid motions, m per period.
     ring_drift_m: [f64; 2],
 }
@@ -60,7 +57,6 @@ pub struct ContactShares {
 #[derive(Debug)]
 pub struct SystemWorkspace {
     pub(super) pairs: PairHarmonics,
-    pub(super) waves: Option<WaveWorkspace>,
     /// Displacement and correction at the contact rows, coefficient after coefficient (`n_coefficients x rows`).
     pub(super) displacement: Vec<f64>,
     pub(super) correction: Vec<f64>,
@@ -114,13 +110,11 @@ impl HarmonicSystem {
         let force_norm = force.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
         let rows = blocks[0].structure.contact().real.rows();
         let shared = blocks.iter().all(|block| {
-            block.waves.is_none()
-                && Arc::ptr_eq(&block.structure, &blocks[0].structure)
+            Arc::ptr_eq(&block.structure, &blocks[0].structure)
                 && Arc::ptr_eq(&block.stuck, &blocks[0].stuck)
                 && block.structure.contact().imaginary.is_none()
                 && block.stuck.imaginary.is_none()
         });
-        let wave_scale = WaveScale::of(&blocks, &interface);
         Self {
             blocks,
             start,
@@ -131,7 +125,6 @@ impl HarmonicSystem {
             transform,
             rows,
             shared,
-            wave_scale,
             ring_drift_m: [0.0; 2],
         }
     }
@@ -212,7 +205,6 @@ impl HarmonicSystem {
             .unwrap_or(0);
         SystemWorkspace {
             pairs: PairHarmonics::new(self.interface.law, Arc::clone(&self.transform)),
-            waves: self.wave_workspace(),
             displacement: vec![0.0; coefficients * self.rows],
             correction: vec![0.0; coefficients * self.rows],
             contact_force: vec![0.0; coefficients * self.rows],
@@ -266,7 +258,6 @@ impl HarmonicSystem {
                 self.add_shared_force(workspace, residual);
             } else if shares != ContactShares::default() {
                 self.add_contact_force(&workspace.correction, residual);
-                self.add_motion_of_waves(omega, workspace, residual);
             }
             shares
         } else {
@@ -285,14 +276,6 @@ impl HarmonicSystem {
             add_times(displacement, rows.as_slice(), x, size);
             return;
         }
-        self.displacement_of_waves(x, displacement);
-        if let Some(own) = self.real_fundamental() {
-            let rows = &self.blocks[own].structure.contact().real;
-            let x = &x[self.start[own]..self.start[own + 1]];
-            let d = &mut displacement[self.coefficient[own] * self.rows..][..2 * self.rows];
-            add_times(d, rows.as_slice(), x, (self.rows, 2, rows.columns()));
-            return;
-        }
         for link in self.links() {
             let x = &x[link.unknown..link.unknown + link.size];
             let d = &mut displacement[link.coefficient * self.rows..][..self.rows];
@@ -302,14 +285,6 @@ impl HarmonicSystem {
 
     /// `residual += C^H G`, where harmonics have matrices of their own.
     fn add_contact_force(&self, correction: &[f64], residual: &mut [f64]) {
-        if let Some(own) = self.real_fundamental() {
-            let rows = &self.blocks[own].structure.contact().real;
-            let n = rows.columns();
-            let r = &mut residual[self.start[own]..self.start[own + 1]];
-            let g = &correction[self.coefficient[own] * self.rows..][..2 * self.rows];
-            add_transpose_times(r, n, 1.0, rows.as_slice(), g, (n, 2, self.rows));
-            return;
-        }
         for link in self.links() {
             let r = &mut residual[link.unknown..link.unknown + link.size];
             let g = &correction[link.coefficient * self.rows..][..self.rows];
@@ -335,15 +310,6 @@ impl HarmonicSystem {
         let forces = &workspace.contact_force;
         let size = (n, count, self.rows);
         add_transpose_times(residual, n, 1.0, rows.as_slice(), forces, size);
-    }
-
-    /// The fundamental, where all other harmonics are waves and its rows are real: a matrix with two right-hand sides.
-    fn real_fundamental(&self) -> Option<usize> {
-        let own = self.fundamental();
-        let alone = self.blocks.iter().enumerate();
-        let mut alone = alone.map(|(at, block)| (at == own) != block.waves.is_some());
-        let real = self.blocks[own].structure.contact().imaginary.is_none();
-        (real && self.has_waves() && alone.all(|alone| alone)).then_some(own)
     }
 
     /// Coefficients of the displacement of one pair into `pair_input`, and its drift.
@@ -428,9 +394,6 @@ impl HarmonicSystem {
     pub(super) fn links(&self) -> Vec<Link<'_>> {
         let mut links = Vec::new();
         for (index, block) in self.blocks.iter().enumerate() {
-            if block.waves.is_some() {
-                continue;
-            }
             let size = block.structure.size();
             let (unknown, coefficient) = (self.start[index], self.coefficient[index]);
             let contact = block.structure.contact();

@@ -57,7 +57,6 @@ impl WheelContact {
             harmonic: harmonic as u32,
             structure: Arc::clone(&structure),
             stuck: Arc::clone(&stuck),
-            waves: None,
         });
         let own = interface.stuck_springs(1.0);
         let varied = own

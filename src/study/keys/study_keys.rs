@@ -53,7 +53,7 @@ pub(super) const REDUCTION_KEYS: &[Entry] = &[
             "tuned_receptances",
         ]),
         "`\"auto\"`",
-        "family of the basis ([formulation.md](formulation.md)). `auto` is `tuned_receptances`, which has none, where the contact has pairs, the sector more than 12 dofs, the ring is locked and all harmonics are of the mistuned wheel; else a basis is chosen by `error`",
+        "family of the basis ([formulation.md](formulation.md)). `auto` is `tuned_receptances`, which has none, where the contact has pairs, the sector more than 12 dofs, and the ring is locked; else a basis is chosen by `error`",
     ),
     entry(
         "reduction.error",
@@ -279,12 +279,6 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         Either(&[Name(&["auto", "all"]), Ascending(&Whole(0, 100), None)]),
         "`\"auto\"`",
         "tops are sought with these, then solved with `harmonics` ([formulation.md](formulation.md)); `auto`: where contact rows are few, 1 at points far below the peak; else 1 where the equation is large; `all`: sought with `harmonics`",
-    ),
-    entry(
-        "solver.higher_harmonics",
-        Name(&["mistuned", "tuned"]),
-        "`\"mistuned\"`",
-        "wheel that harmonics other than 1 are taken in ([formulation.md](formulation.md)); `tuned`: with all modes of the tuned one",
     ),
     entry(
         "solver.harmonic_tolerance",

@@ -293,7 +293,6 @@ fn oscillator(
             harmonic: harmonic as u32,
             structure: Arc::clone(&structure),
             stuck: Arc::clone(&stuck),
-            waves: None,
         })
         .collect();
     let interface = ContactInterface {

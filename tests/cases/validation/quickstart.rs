@@ -54,7 +54,7 @@ pub fn section() -> Section {
         ),
         body: format!(
             "{}\nIts warnings ({}):\n\n{}\nRows under {HARD_LOAD_N} N beside the full contact model with the same harmonics, in which the blades deviate in every harmonic. They are \
-             those of the first thirty patterns that `higher_harmonics = \"tuned\"` serves worst, no random sample:\n\n{}",
+             those of the first thirty patterns that a small basis with harmonics of the tuned wheel served worst, no random sample:\n\n{}",
             of_loads(&summary),
             warnings.len(),
             warnings.concat(),
