@@ -54,11 +54,9 @@ impl Model {
             tangential_2_n_per_m: second,
         };
         let (stick, slide) = (study.reduction.stick_modes, study.reduction.slide_modes);
-        let choice = match (stick, slide) {
-            (Some(stick), Some(slide)) => BasisChoice::StickSlide { stick, slide },
-            (stick, _) => BasisChoice::StickAttachment {
-                stick: stick.unwrap_or(4),
-            },
+        let choice = BasisChoice::StickSlide {
+            stick: stick.unwrap_or(4),
+            slide: slide.unwrap_or(4),
         };
         let modes = study.reduction.craig_bampton_modes;
         let modes = modes.unwrap_or(ReductionOptions::FIRST_CRAIG_BAMPTON_MODES);

@@ -55,6 +55,8 @@ pub struct BasisSummary {
     pub craig_bampton_error: Option<f64>,
     /// Error that the study asks for.
     pub wanted_error: f64,
+    /// Whether rows are solved on something else than the basis that the study names, because that is replaced.
+    pub is_replaced: bool,
 }
 
 impl BasisSummary {
@@ -89,7 +91,12 @@ impl BasisSummary {
                 error,
                 wanted: self.wanted_error,
             });
-        peak.into_iter()
+        let replaced = self.is_replaced.then(|| Warning::ReplacedBasis {
+            taken: self.name.clone(),
+        });
+        replaced
+            .into_iter()
+            .chain(peak)
             .chain(contact)
             .chain(modes)
             .chain(truncation)

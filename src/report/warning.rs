@@ -26,6 +26,11 @@ pub enum Warning {
         /// Largest stated error of a row.
         largest_stated_error: f64,
     },
+    /// The basis that the study names is replaced.
+    ReplacedBasis {
+        /// What rows are solved on.
+        taken: String,
+    },
     /// The basis is less accurate than the study asks for.
     BasisError {
         /// The basis.
@@ -111,6 +116,11 @@ impl fmt::Display for Warning {
                  solver.rows_beyond_tolerance = \"resolve\", a larger set, or accept it by a larger \
                  solver.harmonic_tolerance",
                 100.0 * largest_stated_error
+            ),
+            Self::ReplacedBasis { taken } => write!(
+                f,
+                "basis = \"stick_attachment\" is replaced: rows are on {taken}, which has no modes to choose; take \
+                 basis = \"auto\", or leave it out"
             ),
             Self::BasisError {
                 basis,

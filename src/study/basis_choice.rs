@@ -17,10 +17,13 @@ use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
 use crate::response::forced_response::{ContactCondition, Peak};
 use crate::response::mistuning::{ContactFactors, ContactQuantity, ContactVariation, PairFactors};
 
-/// Numbers of stick modes of `stick_attachment` that are tried, ascending.
+/// Numbers of stick modes beside attachment vectors that are tried, ascending.
 const ATTACHMENT_LADDER: [usize; 5] = [4, 8, 14, 20, 28];
 /// Numbers of stick and of slide modes that are tried, ascending.
 const STICK_SLIDE_LADDER: [usize; 9] = [2, 3, 4, 6, 8, 10, 14, 20, 28];
+/// Contact rows of a sector up to which each has an attachment vector: the basis grows with them, and only it holds where contacts
+/// separate.
+const MOST_ATTACHMENTS: usize = 24;
 /// Loads of a study by which a basis is judged at most.
 const LOADS_JUDGED: usize = 8;
 /// Standard deviations at which a varied contact stiffness is judged: 90 % of a normal law lie within.
@@ -189,20 +192,17 @@ fn candidates(reduction: &Reduction<'_>, options: &ReductionOptions) -> Vec<Basi
     });
     match (options.basis, options.stick_modes, options.slide_modes) {
         (Basis::StickAttachment, Some(stick), _) => vec![BasisChoice::StickAttachment { stick }],
-        (Basis::StickAttachment, None, _) => attachments.to_vec(),
+        (Basis::Auto | Basis::StickAttachment, None, None)
+            if (1..=MOST_ATTACHMENTS).contains(&reduction.contact_rows()) =>
+        {
+            attachments.to_vec()
+        }
         (_, Some(stick), Some(slide)) => vec![BasisChoice::StickSlide { stick, slide }],
         (_, Some(modes), None) | (_, None, Some(modes)) => vec![BasisChoice::StickSlide {
             stick: modes,
             slide: modes,
         }],
-        (Basis::StickSlide | Basis::TunedReceptances, None, None) => ladder.to_vec(),
-        (Basis::Auto, None, None) if reduction.contact_rows() == 0 => ladder.to_vec(),
-        (Basis::Auto, None, None) => {
-            // Of two of one size the attachment vectors, which also hold where contacts separate.
-            let mut all = [attachments.as_slice(), &ladder].concat();
-            all.sort_by_key(|&choice| vectors(reduction, choice));
-            all
-        }
+        (_, None, None) => ladder.to_vec(),
     }
 }
 

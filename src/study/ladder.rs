@@ -222,8 +222,6 @@ const STICK_SLIDE: [(usize, usize); 11] = [
     (14, 14),
     (20, 20),
 ];
-/// Stick modes of `stick_attachment` that are tried.
-const ATTACHMENT: [usize; 3] = [4, 8, 14];
 /// Sets under a constant normal load.
 const ODD_SETS: [&[u32]; 5] = [&[1], &[1, 3], &[1, 3, 5], &[1, 3, 5, 7], &[1, 3, 5, 7, 9]];
 /// Sets under a variable one.
@@ -261,14 +259,10 @@ impl LadderSpace {
             return vec![BasisChoice::CraigBampton];
         }
         let modes = STICK_SLIDE.map(|(stick, slide)| BasisChoice::StickSlide { stick, slide });
-        let attachments = ATTACHMENT.map(|stick| BasisChoice::StickAttachment { stick });
-        let mut bases: Vec<BasisChoice> = attachments
-            .into_iter()
-            .chain(modes)
+        let smaller = modes.into_iter();
+        smaller
             .filter(|&basis| self.vectors(basis) < self.most_vectors)
-            .collect();
-        bases.sort_by_key(|&basis| self.vectors(basis));
-        bases
+            .collect()
     }
 
     /// The harmonics, coarser than an automatic set of tolerance `finest`.

@@ -25,7 +25,7 @@ use crate::response::mistuning::PatternSource;
 const BASE_ERROR: f64 = 5e-3;
 /// Relative error of the tuned peak by which the best `stick_slide` is chosen.
 const BEST_ERROR: f64 = 1e-4;
-/// Stick modes of the best `stick_attachment`.
+/// Stick modes of the best basis, beside its attachment vectors.
 const BEST_STICK: usize = 8;
 /// Vectors per nodal diameter up to which attachment vectors are the best basis.
 const MOST_ATTACHMENT: usize = 24;

@@ -41,6 +41,8 @@ struct ReducedEngine {
     /// Whether the study says how many fixed-interface modes there are.
     fixed_modes: bool,
     wanted_error: f64,
+    /// Whether the study names a basis whose place the receptances take.
+    is_replaced: bool,
     digest: String,
     /// Digest of the models that rows are solved on, with their errors.
     models: String,
@@ -105,6 +107,8 @@ impl EngineSource for ReducedEngineSource {
             fixed_modes: study.reduction.craig_bampton_modes.is_some(),
             solver: solver_of(study, &stored)?,
             wanted_error: study.reduction.error,
+            is_replaced: stored.is_on_receptances()
+                && study.reduction.basis == Basis::StickAttachment,
             digest,
             sector_dofs: model.dofs.len(),
             observed: model
@@ -136,6 +140,7 @@ impl Engine for ReducedEngine {
             craig_bampton_reach,
             craig_bampton_error: self.fixed_interface.error.filter(|_| self.fixed_modes),
             wanted_error: self.wanted_error,
+            is_replaced: self.is_replaced,
         };
         ModelReport {
             name: model.name.clone(),
@@ -328,8 +333,8 @@ pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
     };
     match study.reduction.basis {
         Basis::TunedReceptances => true,
-        Basis::Auto => ready(),
-        Basis::StickSlide | Basis::StickAttachment => false,
+        Basis::Auto | Basis::StickAttachment => ready(),
+        Basis::StickSlide => false,
     }
 }
 

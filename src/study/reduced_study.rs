@@ -16,7 +16,7 @@ use super::sector_model::judging_patterns;
 use super::tuned_receptances::{COMPANION_MODES, Refined, engine_of, engine_options, refined};
 use super::{PipelineError, Study};
 use crate::model::ReducedModel;
-use crate::model::reduction::{Basis, BasisChoice, Reduction, ReductionOptions};
+use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
 use crate::response::forced_response::{Harmonics, RowsBeyondTolerance};
@@ -41,6 +41,11 @@ pub(super) struct Stored {
 }
 
 impl Stored {
+    /// Whether rows are solved on tuned receptances.
+    pub(super) fn is_on_receptances(&self) -> bool {
+        self.engine.is_some()
+    }
+
     /// Whether sectors, contact and harmonic sets are as many as `study` and `sector` have.
     pub(super) fn fits(&self, study: &Study, sector: &SectorModel) -> bool {
         let orders: usize = study.excited_orders().iter().map(|own| own.1.len()).sum();
@@ -123,7 +128,7 @@ pub(super) fn reduced(
     };
     let conditions = judged_conditions(&study.contacts);
     let varied = judged_variations(&study.contact_variations);
-    let basis = |options: &ReductionOptions, sets: &[Sets]| {
+    let basis = |sets: &[Sets]| {
         let judged: Vec<_> = cases
             .iter()
             .zip(sets)
@@ -138,7 +143,7 @@ pub(super) fn reduced(
                 (case.excitation, judged)
             })
             .collect();
-        choose_basis_under(reduction, options, &judged)
+        choose_basis_under(reduction, &study.reduction, &judged)
     };
     let modes = study.mistuning.cantilever_mode_count;
     let harmonics = sets(tolerance)?;
@@ -147,11 +152,8 @@ pub(super) fn reduced(
         .contact
         .as_ref()
         .is_some_and(|contact| contact.law.has_variable_load());
-    let (choice, evidence) = basis(&study.reduction, &harmonics)?;
-    let follows = study.reduction.basis == Basis::Auto && study.reduction.stick_modes.is_none();
-    let by_modes = matches!(choice, BasisChoice::StickSlide { .. }) && follows;
-    let on_separation = separates && (by_modes || automatic);
-    let beyond = if study.has_friction() && (on_separation || resolves) {
+    let (choice, evidence) = basis(&harmonics)?;
+    let beyond = if study.has_friction() && ((separates && automatic) || resolves) {
         let mut harmonics = if resolves {
             let larger = tolerance.map(|tolerance| BEYOND_TOLERANCE * tolerance);
             sets(larger)?
@@ -161,15 +163,7 @@ pub(super) fn reduced(
         if automatic && separates {
             harmonics = admitting_separation(&cases, harmonics)?;
         }
-        let options = ReductionOptions {
-            basis: if by_modes {
-                Basis::StickAttachment
-            } else {
-                study.reduction.basis
-            },
-            ..study.reduction.clone()
-        };
-        let (choice, evidence) = basis(&options, &harmonics)?;
+        let (choice, evidence) = basis(&harmonics)?;
         Some(StoredBeyond {
             model: reduction.reduce(choice, modes)?,
             basis_error: basis_error(&evidence),

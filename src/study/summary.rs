@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::PipelineError;
 use super::results_folder::{finished_rows, verify_tables};
-use crate::population::monte_carlo::{Scenario, TunedReference};
+use crate::population::monte_carlo::{Scenario, TUNED_RECEPTANCES, TunedReference};
 use crate::population::statistics::{CONFIDENCE, ScenarioAccumulator};
 use crate::population::table::{
     Compression, Manifest, RowSchema, RowStore, RunState, ScenarioEntry, ScenarioRecord,
@@ -174,6 +174,7 @@ fn basis_of(manifest: &Manifest) -> BasisSummary {
         craig_bampton_reach: number("craig_bampton_reach"),
         craig_bampton_error: truncation.filter(|_| asked["craig_bampton_modes"].is_u64()),
         wanted_error: asked["error"].as_f64().unwrap_or(f64::INFINITY),
+        is_replaced: asked["basis"] == "stick_attachment" && facts["basis"] == TUNED_RECEPTANCES,
     }
 }
 

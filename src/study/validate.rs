@@ -371,7 +371,7 @@ fn reduction(check: &mut Check, options: &ReductionOptions) {
                     check.conflict(
                         key,
                         "basis = \"auto\" chooses the number of modes; accepted: reduction.error, or \
-                         basis = \"stick_slide\" or \"stick_attachment\" with fixed numbers",
+                         basis = \"stick_slide\" with fixed numbers",
                     );
                 }
             }

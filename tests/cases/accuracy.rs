@@ -41,8 +41,9 @@ fn best(study: &Study, choice: &AccuracyChoice, tolerance: f64) -> Study {
     best.solver.residual_tolerance = 1e-10;
     best.solver.peak_tolerance = 1e-4;
     if choice.setting.basis != BasisChoice::CraigBampton {
-        best.reduction.basis = Basis::StickAttachment;
-        best.reduction.stick_modes = Some(8);
+        best.reduction.basis = Basis::StickSlide;
+        best.reduction.stick_modes = Some(14);
+        best.reduction.slide_modes = Some(14);
         best.reduction.craig_bampton_modes = Some(choice.craig_bampton_modes);
     }
     best

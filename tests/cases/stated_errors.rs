@@ -57,7 +57,7 @@ fn automatic_harmonics_find_the_internal_contact_resonances() {
         let study = wheel(
             name,
             load,
-            "basis = \"stick_attachment\"\ncraig_bampton_modes = 25",
+            "basis = \"stick_slide\"\nstick_modes = 6\nslide_modes = 6\ncraig_bampton_modes = 25",
             "harmonics = \"auto\"",
         );
         let case = Case::new(study);
@@ -131,11 +131,10 @@ fn the_full_contact_model_meets_the_tuned_peaks_known_for_it() {
     assert!(missed.is_empty(), "{missed:?}");
 }
 
-/// Tuned peak on the whole Craig-Bampton space: so many stick modes are asked for that with the
-/// attachment vectors nothing is left out.
+/// Tuned peak on the whole Craig-Bampton space: so many stick modes are asked for that nothing is left out.
 fn full_model_peak(name: &str, load: f64, set: &[u32], fixed_interface_modes: usize) -> f64 {
     let reduction = format!(
-        "basis = \"stick_attachment\"\nstick_modes = 200\ncraig_bampton_modes = {fixed_interface_modes}"
+        "basis = \"stick_slide\"\nstick_modes = 200\nslide_modes = 1\ncraig_bampton_modes = {fixed_interface_modes}"
     );
     let solver = format!("harmonics = {set:?}\nsamples_per_period = 512");
     let case = Case::new(wheel(name, &format!("{load:?}"), &reduction, &solver));
@@ -300,7 +299,8 @@ fn default_settings_state_what_fixed_interface_modes_and_harmonics_leave_out() {
 #[test]
 fn fixed_interface_modes_follow_the_tuned_peak_and_a_fixed_number_states_what_it_leaves_out() {
     let facts = |modes: &str| {
-        let reduction = format!("basis = \"stick_attachment\"\nstick_modes = 4\n{modes}");
+        let reduction =
+            format!("basis = \"stick_slide\"\nstick_modes = 6\nslide_modes = 6\n{modes}");
         Case::new(wheel("wheel8", "400", &reduction, "harmonics = [1]")).reduction()
     };
     // Harmonics 0 to 15: 1.2192e-4 m with 25 modes, 1.2641e-4 with 57, 1.2662e-4 with 130.

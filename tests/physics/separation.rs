@@ -212,9 +212,12 @@ fn rows_that_separate(way: &Way) {
 /// the tuned peak of that study.
 fn on_that_level(folder: &Path, stored: &StoredStudy, row: &ResponseRow) {
     let load = stored.study.contacts[row.scenario].normal_load_n().unwrap();
-    let reduction = row.basis.strip_prefix("stick_attachment ").map_or_else(
+    let modes = row.basis.strip_prefix("stick_slide ");
+    let reduction = modes.and_then(|modes| modes.split_once('+')).map_or_else(
         || "error = 0.3".to_owned(),
-        |modes| format!("basis = \"stick_attachment\"\nstick_modes = {modes}"),
+        |(stick, slide)| {
+            format!("basis = \"stick_slide\"\nstick_modes = {stick}\nslide_modes = {slide}")
+        },
     );
     let fixed = study(
         folder,

@@ -202,6 +202,7 @@ fn a_basis_less_accurate_than_asked_for_is_a_warning_and_an_accurate_one_is_not(
             craig_bampton_reach: None,
             craig_bampton_error: None,
             wanted_error: 0.005,
+            is_replaced: false,
         };
         let context = SummaryContext {
             basis,
@@ -230,6 +231,7 @@ fn a_basis_that_cannot_follow_the_contact_and_a_short_reach_of_modes_are_warning
             craig_bampton_reach: Some(reach),
             craig_bampton_error: None,
             wanted_error,
+            is_replaced: false,
         };
         basis.warnings()
     };

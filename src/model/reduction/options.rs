@@ -6,11 +6,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Basis {
-    /// The smallest basis whose tuned nonlinear peak meets [`ReductionOptions::error`].
+    /// [`Self::TunedReceptances`] wherever these serve; else stick modes and attachment vectors, or [`Self::StickSlide`] where these would
+    /// be many.
     Auto,
     /// Modes under global sticking and global sliding contact.
     StickSlide,
-    /// Stick modes and one attachment vector per contact direction.
+    /// [`Self::Auto`], by the name that earlier versions had for what it takes where no tuned receptances serve.
     StickAttachment,
     /// No basis: rows are solved on the receptances of the tuned wheel with every contact degree of freedom.
     TunedReceptances,
@@ -22,7 +23,7 @@ pub enum Basis {
 pub struct ReductionOptions {
     /// Family of the basis. Default `auto`.
     pub basis: Basis,
-    /// Wanted relative error of the tuned nonlinear peak, used by `auto`. Default 0.001.
+    /// Wanted relative error of the judged peaks, by which numbers of modes are chosen. Default 0.001.
     pub error: f64,
     /// Number of stick modes per nodal diameter; fixes the size instead of `error`.
     pub stick_modes: Option<usize>,

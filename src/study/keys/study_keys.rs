@@ -53,7 +53,7 @@ pub(super) const REDUCTION_KEYS: &[Entry] = &[
             "tuned_receptances",
         ]),
         "`\"auto\"`",
-        "family of the basis ([formulation.md](formulation.md)). `auto` is `tuned_receptances`, which has none, where the contact has pairs, the sector more than 12 dofs, and the ring is locked; else a basis is chosen by `error`",
+        "family of the basis ([formulation.md](formulation.md)). `auto` is `tuned_receptances`, which has none, where the contact has pairs, the sector more than 12 dofs, and the ring is locked; else a basis is chosen by `error`. `stick_attachment` is `auto` by an earlier name, with a warning where that leaves its modes out",
     ),
     entry(
         "reduction.error",
@@ -65,7 +65,7 @@ pub(super) const REDUCTION_KEYS: &[Entry] = &[
         "reduction.stick_modes",
         MODES,
         "chosen",
-        "not with `auto`; with `stick_slide` only beside `slide_modes`",
+        "with `stick_slide`, beside `slide_modes`",
     ),
     entry(
         "reduction.slide_modes",

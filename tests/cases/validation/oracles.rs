@@ -446,8 +446,9 @@ fn full(normal_load_n: f64) -> ContactCondition {
 fn symmetries() -> Vec<Oracle> {
     let study = |amplitude_n: f64, friction: f64| {
         let mut study = reference_wheel("wheel8", &[400.0], Some(&[1, 3]));
-        study.reduction.basis = Basis::StickAttachment;
+        study.reduction.basis = Basis::StickSlide;
         study.reduction.stick_modes = Some(4);
+        study.reduction.slide_modes = Some(4);
         study.solver.peak_tolerance = 1e-7;
         study.solver.residual_tolerance = 1e-11;
         study.amplitude_n = amplitude_n;
