@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 
 use blisk::linalg::LuWorkspace;
 use blisk::population::monte_carlo::Scenario;
-use blisk::response::forced_response::{ContactCondition, Harmonics, Work};
-use blisk::study::{Progress, ReducedEngineSource, RunRequest, Study, run};
+use blisk::response::forced_response::{ContactCondition, Work};
+use blisk::study::{Progress, ReducedEngineSource, RunRequest, run};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 use common::case::{Case, study};
@@ -123,26 +123,6 @@ fn peaks(_: &mut Criterion) {
         peaks_of(&case);
         rows_of_a_pattern(&case);
     }
-    for (error, modes, samples, tolerance) in
-        [("0.3 %", [3, 2], 32, 3e-3), ("0.1 %", [5, 5], 64, 1e-3)]
-    {
-        let case = Case::of("quickstart", at_error(modes, samples, tolerance), 3);
-        println!("\nquickstart, settings for an error of {error} (docs/accuracy.md), 3 patterns");
-        peaks_of(&case);
-    }
-}
-
-/// The quickstart with settings of docs/accuracy.md; its basis, with these modes; harmonics as many as at the load that needs most.
-fn at_error(modes: [usize; 2], samples: usize, peak_tolerance: f64) -> Study {
-    let mut study = study("quickstart");
-    let [stick, slide] = modes.map(Some);
-    study.reduction.stick_modes = stick;
-    study.reduction.slide_modes = slide;
-    study.solver.harmonics = Harmonics::Set((1..=10).collect());
-    study.solver.samples_per_period = samples;
-    study.solver.residual_tolerance = 1e-4;
-    study.solver.peak_tolerance = peak_tolerance;
-    study
 }
 
 /// Time and counts of the peaks of a case under every load.

@@ -7,7 +7,6 @@ use serde::Serialize;
 use super::RotationFacts;
 use super::text_table::TextTable;
 use super::warning::Warning;
-use crate::model::reduction::{ContactDisplacementError, ContactDisplacementErrors};
 
 /// Facts about one nodal diameter of the reduced model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -47,8 +46,6 @@ pub struct ModelReport {
     pub reduced_coordinates: usize,
     /// Measured relative error of the tuned nonlinear peak, where the basis was chosen by it.
     pub error: Option<f64>,
-    /// Error of the relative displacement at the contact, under friction.
-    pub contact_displacement: Option<ContactDisplacementErrors>,
     /// Fixed-interface modes of the Craig-Bampton model, per nodal diameter.
     pub craig_bampton_modes: usize,
     /// Largest relative change of a tuned peak by more fixed-interface modes; zero where none is left
@@ -92,14 +89,6 @@ impl fmt::Display for ModelReport {
             Some(error) => writeln!(f, ", tuned peak within {:.2} %", 100.0 * error)?,
             None => writeln!(f)?,
         }
-        if let Some(errors) = &self.contact_displacement {
-            writeln!(
-                f,
-                "contact displacement within {}, in any nodal diameter within {}",
-                place(&errors.tuned),
-                place(&errors.any_nodal_diameter)
-            )?;
-        }
         if let Some(reach) = self.craig_bampton_reach {
             write!(
                 f,
@@ -134,17 +123,6 @@ impl fmt::Display for ModelReport {
         }
         write!(f, "\n{table}")
     }
-}
-
-fn place(error: &ContactDisplacementError) -> String {
-    format!(
-        "{:.2} % (engine order {}, {} N per sector, harmonic {}, ND {})",
-        100.0 * error.error,
-        error.engine_order,
-        error.normal_load_n,
-        error.harmonic,
-        error.nodal_diameter
-    )
 }
 
 fn frequencies(hz: &[f64]) -> String {

@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::{NumericalError, RotationFacts, Warning};
-use crate::model::reduction::ContactDisplacementErrors;
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{
     Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics, StopOutcome,
@@ -46,8 +45,6 @@ pub struct BasisSummary {
     pub name: String,
     /// Measured relative error of the tuned peak; none where nothing is left out or no peak was found.
     pub tuned_peak_error: Option<f64>,
-    /// Largest relative error of the contact displacement in any nodal diameter.
-    pub contact_displacement_error: Option<f64>,
     /// Highest fixed-interface frequency over what it should be; 1 is enough.
     pub craig_bampton_reach: Option<f64>,
     /// Largest relative change of a tuned peak by more fixed-interface modes than the study asks for;
@@ -71,15 +68,6 @@ impl BasisSummary {
                 error,
                 wanted: self.wanted_error,
             });
-        let accepted = ContactDisplacementErrors::accepted(self.wanted_error);
-        let contact = self
-            .contact_displacement_error
-            .filter(|&error| error > accepted)
-            .map(|error| Warning::ContactDisplacement {
-                basis: self.name.clone(),
-                error,
-                accepted,
-            });
         let modes = self
             .craig_bampton_reach
             .filter(|&reach| reach < 1.0)
@@ -97,7 +85,6 @@ impl BasisSummary {
         replaced
             .into_iter()
             .chain(peak)
-            .chain(contact)
             .chain(modes)
             .chain(truncation)
             .collect()

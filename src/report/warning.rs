@@ -40,15 +40,6 @@ pub enum Warning {
         /// Error asked for.
         wanted: f64,
     },
-    /// The basis cannot follow the contact displacement in some nodal diameter.
-    ContactDisplacement {
-        /// The basis.
-        basis: String,
-        /// Relative error of the relative displacement at the contact.
-        error: f64,
-        /// Error accepted.
-        accepted: f64,
-    },
     /// The Craig-Bampton model itself has too few modes.
     CraigBamptonModes {
         /// Highest fixed-interface frequency over what it should be.
@@ -131,18 +122,6 @@ impl fmt::Display for Warning {
                 "basis {basis} misses the tuned peak by {:.2} %, more than reduction.error = {wanted}; \
                  take more modes or basis = \"auto\", or accept it by a larger reduction.error",
                 100.0 * error
-            ),
-            Self::ContactDisplacement {
-                basis,
-                error,
-                accepted,
-            } => write!(
-                f,
-                "basis {basis} misses the contact displacement by {:.0} % in some nodal diameter, more \
-                 than {:.0} %, so that mistuned peaks may be wrong where the tuned one is right; take \
-                 more modes or basis = \"auto\"",
-                100.0 * error,
-                100.0 * accepted
             ),
             Self::CraigBamptonModes { reach } => write!(
                 f,

@@ -5,13 +5,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::PipelineError;
-use super::contact_displacement::ContactMotion;
 use super::load_cases::Excitation;
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::model::reduction::{
-    Basis, BasisChoice, ContactDisplacementErrors, ContactSprings, Reduction, ReductionOptions,
-    wanted_reach_hz,
+    Basis, BasisChoice, ContactSprings, Reduction, ReductionOptions, wanted_reach_hz,
 };
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
 use crate::response::forced_response::{ContactCondition, Peak};
@@ -43,19 +41,6 @@ pub struct BasisError {
     /// Largest relative error of the tuned peak over the conditions compared; none if a peak was
     /// not found.
     pub error: Option<f64>,
-    /// Largest error of the relative displacement at the contact over the same conditions under
-    /// friction, in the harmonics that the basis carries; none if there is none or a peak was not found.
-    pub contact_displacement: Option<ContactDisplacementErrors>,
-}
-
-/// The larger of the errors of the tuned peak and of the contact displacement, each over what is accepted of
-/// it for `wanted_error`.
-fn excess(peak: Option<f64>, contact: Option<ContactDisplacementErrors>, wanted_error: f64) -> f64 {
-    let contact = contact.map_or(0.0, |errors| {
-        errors.any_nodal_diameter.error / ContactDisplacementErrors::accepted(wanted_error)
-    });
-    peak.map_or(f64::INFINITY, |error| error / wanted_error)
-        .max(contact)
 }
 
 /// The chosen basis and the evidence for it.
@@ -105,8 +90,7 @@ impl<'a> Judged<'a> {
 
 /// Chooses the basis for `options` by the tuned nonlinear peak on one sector, against the whole
 /// Craig-Bampton sector with every contact dof, under every force vector with its engine orders and conditions, each
-/// with its harmonic set, and by the contact displacement that it can follow in every nodal diameter: the largest of
-/// all errors counts.
+/// with its harmonic set: the largest of all errors counts.
 ///
 /// # Errors
 /// If a mass or stiffness is not positive definite.
@@ -132,10 +116,6 @@ pub(super) fn choose_basis_under(
             .collect()
     };
     let reference = of_cases(&wholes)?;
-    let mut motions = Vec::new();
-    for ((peaks, whole), (_, judged)) in reference.iter().zip(&wholes).zip(cases) {
-        motions.push(peaks.contact_motions(whole, *judged)?);
-    }
     let mut tried: Vec<(BasisChoice, BasisError, f64)> = Vec::new();
     for choice in candidates(reduction, options) {
         let model = reduction.tuned(choice)?;
@@ -145,16 +125,14 @@ pub(super) fn choose_basis_under(
         let error = errors
             .map(|(own, reference)| own.error(reference))
             .try_fold(0.0, |largest: f64, error| Some(largest.max(error?)));
-        let displacement = largest_displacement_error(&motions, &models);
         let own = BasisError {
             basis: choice.to_string(),
             vectors: vectors(reduction, choice),
             error,
-            contact_displacement: displacement,
         };
-        let excess = excess(error, displacement, options.error);
-        tried.push((choice, own, excess));
-        if excess <= 1.0 {
+        let error = error.unwrap_or(f64::INFINITY);
+        tried.push((choice, own, error));
+        if error <= options.error {
             break;
         }
     }
@@ -216,21 +194,6 @@ fn vectors(reduction: &Reduction<'_>, choice: BasisChoice) -> usize {
             .max()
             .unwrap_or(0),
     }
-}
-
-/// Largest error of the contact displacement over the tuned peaks; none without any.
-fn largest_displacement_error(
-    motions: &[Vec<ContactMotion<'_>>],
-    models: &[ReducedModel],
-) -> Option<ContactDisplacementErrors> {
-    motions
-        .iter()
-        .zip(models)
-        .flat_map(|(motions, model)| {
-            let motions = motions.iter();
-            motions.map(|motion| motion.errors_of(model))
-        })
-        .reduce(|a, b| Some(a?.larger(b?)))?
 }
 
 /// Tuned peaks, one per engine order and condition, those under the nominal contact first.
@@ -298,27 +261,6 @@ impl Peaks {
                     })
             })
             .min_by(f64::total_cmp)
-    }
-
-    /// What happens at the contact at those that are nonlinear.
-    fn contact_motions<'a>(
-        &self,
-        model: &'a ReducedModel,
-        judged: Judged<'a>,
-    ) -> Result<Vec<ContactMotion<'a>>, PipelineError> {
-        let mut motions = Vec::new();
-        for ((engine_order, condition), peak) in judged.each().zip(&self.0) {
-            let harmonics = judged.harmonics(engine_order, condition);
-            motions.extend(ContactMotion::of_peak(
-                model,
-                judged.settings,
-                harmonics,
-                engine_order,
-                condition,
-                peak,
-            )?);
-        }
-        Ok(motions)
     }
 }
 

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! v: vectors per nodal diameter; s, h: what samples and harmonics cost beside those of the base, as measured
-//! on the built-in wheel (docs/accuracy.md). It is an estimate of the size, good to a factor of two or so.
+//! on the built-in wheel. It is an estimate of the size, good to a factor of two or so.
 
 use std::time::Instant;
 

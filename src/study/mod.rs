@@ -6,7 +6,6 @@ mod accurate_engine;
 mod basis_choice;
 mod campbell;
 mod compare;
-mod contact_displacement;
 mod digest;
 mod echo;
 mod engine;

@@ -130,13 +130,10 @@ impl Engine for ReducedEngine {
         };
         let taken = self.evidence.tried.last();
         let error = taken.and_then(|taken| taken.error);
-        let contact_displacement = taken.and_then(|taken| taken.contact_displacement);
         let craig_bampton_reach = self.evidence.craig_bampton_reach;
         let summary = BasisSummary {
             name: basis.clone(),
             tuned_peak_error: error,
-            contact_displacement_error: contact_displacement
-                .map(|errors| errors.any_nodal_diameter.error),
             craig_bampton_reach,
             craig_bampton_error: self.fixed_interface.error.filter(|_| self.fixed_modes),
             wanted_error: self.wanted_error,
@@ -151,7 +148,6 @@ impl Engine for ReducedEngine {
             basis,
             reduced_coordinates: self.solver.basis().size(),
             error,
-            contact_displacement,
             craig_bampton_modes: self.fixed_interface.modes,
             craig_bampton_error: self.fixed_interface.error,
             craig_bampton_reach,

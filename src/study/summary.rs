@@ -168,9 +168,6 @@ fn basis_of(manifest: &Manifest) -> BasisSummary {
     BasisSummary {
         name: facts["basis"].as_str().unwrap_or_default().to_owned(),
         tuned_peak_error: taken.and_then(|taken| taken["error"].as_f64()),
-        contact_displacement_error: taken.and_then(|taken| {
-            taken["contact_displacement"]["any_nodal_diameter"]["error"].as_f64()
-        }),
         craig_bampton_reach: number("craig_bampton_reach"),
         craig_bampton_error: truncation.filter(|_| asked["craig_bampton_modes"].is_u64()),
         wanted_error: asked["error"].as_f64().unwrap_or(f64::INFINITY),

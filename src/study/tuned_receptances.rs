@@ -240,7 +240,6 @@ fn with_shapes(
             basis: TUNED_RECEPTANCES.to_owned(),
             vectors: made.receptances.shape_count(Limit::Stuck, 1),
             error,
-            contact_displacement: None,
         });
         let enough = error.is_some_and(|error| error <= study.reduction.error);
         if enough || factor >= MOST_SHAPES {

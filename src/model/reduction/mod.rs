@@ -11,7 +11,7 @@ mod reduce;
 pub use super::reduced_model::{BasisChoice, CantileverModes, ContactSprings};
 pub use blade::blade_gram;
 pub use craig_bampton::{CraigBampton, WHOLE_SPACE_DOFS};
-pub use error::{ContactDisplacementError, ContactDisplacementErrors, wanted_reach_hz};
+pub use error::wanted_reach_hz;
 pub use nodal_diameter_damping::{DampedModes, NodalDiameterDamping};
 pub use options::{Basis, ReductionOptions};
 pub use reduce::{ContactStiffness, Reduction};
