@@ -6,7 +6,6 @@ mod dense;
 mod lu;
 mod matrix;
 mod row_blocks;
-mod small_complex;
 mod sparse;
 mod symmetric_sparse;
 mod vectors;
@@ -23,7 +22,6 @@ pub use matrix::{
 };
 pub use row_blocks::{BlockVector, RowBlocks};
 pub use rustfft::num_complex::Complex64;
-pub use small_complex::SmallComplex;
 pub use sparse::{HermitianSparse, SparseFactor, lowest_modes};
 pub use symmetric_sparse::SymmetricSparse;
 pub use vectors::{Loops, vectorized};

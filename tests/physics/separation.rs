@@ -150,11 +150,12 @@ fn rows_that_separate_are_solved_again_and_replayed() {
     });
 }
 
+/// Of all modes there are: with few of them `stick_slide` does not hold where contacts separate.
 #[test]
 fn rows_with_a_basis_that_separate_are_solved_again_with_more_harmonics() {
     rows_that_separate(&Way {
         name: "basis",
-        reduction: "basis = \"stick_slide\"",
+        reduction: "basis = \"stick_slide\"\nstick_modes = 1000\nslide_modes = 1",
         kept: "stick_slide",
         again: "stick_slide",
     });

@@ -102,11 +102,6 @@ impl NewtonWorkspace {
         self.buffers.steps = steps;
     }
 
-    /// Lets go of the factors of an earlier point.
-    pub fn forget_jacobian(&mut self) {
-        self.jacobian.forget();
-    }
-
     /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
     pub fn factor_at(&mut self, system: &HarmonicSystem, omega: f64, x: &[f64]) -> bool {
         if system.condenses() {
