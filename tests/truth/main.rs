@@ -182,7 +182,7 @@ fn make_the_truth() {
         let sectors = Sectors::new(&wheel);
         let hints = Hints::new(&wheel);
         let known = stored(name);
-        let mut jobs: Vec<(usize, Condition)> = [true, false]
+        let mut jobs: Vec<(usize, Condition)> = [false, true]
             .into_iter()
             .flat_map(|friction| (0..PATTERNS).map(move |pattern| (pattern, friction)))
             .map(|(pattern, friction)| (pattern, wheel.condition(pattern, friction)))

@@ -3,6 +3,7 @@
 mod a_posteriori;
 mod attempt;
 mod branch;
+mod corrected_peak;
 mod dense_sweep;
 mod excited;
 mod folded_peak;

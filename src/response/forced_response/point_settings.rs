@@ -129,6 +129,22 @@ impl PointSettings {
         })
     }
 
+    /// The search with fewer harmonics at the samples of all of them; none without such a search.
+    ///
+    /// # Errors
+    /// If the harmonics cannot be told apart with them.
+    pub(super) fn search_at_own_samples(&self) -> Result<Option<Self>, TransformError> {
+        let Some(search) = self.search() else {
+            return Ok(None);
+        };
+        let set = search.transform.harmonics();
+        let transform = HarmonicTransform::new(set, self.transform.n_samples())?;
+        Ok(Some(Self {
+            transform: Arc::new(transform),
+            ..search.clone()
+        }))
+    }
+
     /// Harmonic set of the nonlinear solution.
     #[must_use]
     pub fn harmonics(&self) -> &[u32] {

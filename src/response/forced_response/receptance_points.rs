@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::corrected_peak::corrected_peak;
 use super::linear_peaks::LinearPeak;
 use super::observed_amplitude::{ObservedAmplitude, ObservedHarmonic};
 use super::options::ContactCondition;
@@ -9,7 +10,6 @@ use super::peak::{Peak, SearchPlan, Window, peak_by, search_plan_of};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::point_source::PointSource;
-use super::refined_peak::refined_by;
 use super::starts::between;
 use crate::linalg::Complex64;
 use crate::response::friction::ContactLaw;
@@ -18,7 +18,6 @@ use crate::response::harmonic_balance::{
 };
 use crate::response::receptance::{
     EngineWheel, Limit, ReceptanceEngine, Resonance, WaveForce, WheelSolution, WheelSolver,
-    embedded,
 };
 
 /// One wheel on an engine under one excitation and contact condition.
@@ -129,12 +128,10 @@ impl<'a> EngineRow<'a> {
 }
 
 /// Solver of the points of one row; keeps the converged points as starts for others.
-struct ReceptancePoints<'a> {
-    solver: WheelSolver<'a>,
+pub(super) struct ReceptancePoints<'a> {
+    pub(super) solver: WheelSolver<'a>,
     settings: &'a PointSettings,
-    points: Vec<Point>,
-    /// Points with fewer harmonics, in the unknowns of this solver.
-    coarse: Vec<Point>,
+    pub(super) points: Vec<Point>,
     failures: Vec<(f64, Status)>,
     precision: f64,
     is_nonlinear: bool,
@@ -142,12 +139,11 @@ struct ReceptancePoints<'a> {
 }
 
 impl<'a> ReceptancePoints<'a> {
-    fn new(row: &EngineRow<'a>, settings: &'a PointSettings) -> Self {
+    pub(super) fn new(row: &EngineRow<'a>, settings: &'a PointSettings) -> Self {
         Self {
             solver: row.solver(settings, &settings.transform, None),
             settings,
             points: Vec::new(),
-            coarse: Vec::new(),
             failures: Vec::new(),
             precision: 0.0,
             is_nonlinear: row.condition.normal_load_n().is_some(),
@@ -155,22 +151,23 @@ impl<'a> ReceptancePoints<'a> {
         }
     }
 
-    /// The same beside the points of a solver with fewer harmonics.
-    fn refining(mut self, coarse: &Self) -> Self {
-        let (from, to) = (coarse.solver.harmonics(), self.solver.harmonics());
-        let points = coarse.points.iter().map(|point| Point {
-            solution: embedded(&point.solution, from, to),
-            ..point.clone()
-        });
-        self.coarse = points.collect();
-        self
-    }
-
     fn solve(&mut self, frequency_hz: f64, tolerance: f64) -> Result<Point, Status> {
         let mut starts = between(&self.points, frequency_hz);
         starts.truncate(1);
-        starts.extend(between(&self.coarse, frequency_hz).into_iter().next());
-        let (solved, work) = self.solver.solve(frequency_hz, &starts, tolerance);
+        self.solve_from(frequency_hz, &starts, tolerance)
+    }
+
+    /// The point at a frequency, Hz, from the best of `starts`.
+    ///
+    /// # Errors
+    /// The status of the last attempt, if none converged.
+    pub(super) fn solve_from(
+        &mut self,
+        frequency_hz: f64,
+        starts: &[Vec<f64>],
+        tolerance: f64,
+    ) -> Result<Point, Status> {
+        let (solved, work) = self.solver.solve(frequency_hz, starts, tolerance);
         self.work.nonlinear_solves += u64::from(self.is_nonlinear);
         self.work.newton_iterations += work.iterations;
         self.work.factorisations += work.tangents;
@@ -194,6 +191,23 @@ impl<'a> ReceptancePoints<'a> {
             ring_drift_m: [0.0; 2],
             slope: None,
         })
+    }
+
+    /// Amplitude of every blade at the solution last solved, over what `few` take for it in the harmonics that they count.
+    pub(super) fn growth_over(&mut self, few: &Self) -> Vec<f64> {
+        let own = observed(&mut self.solver, &self.settings.amplitude);
+        let counted = own
+            .iter()
+            .filter(|own| few.solver.harmonics().contains(&own.harmonic));
+        let counted: Vec<ObservedHarmonic> = counted.cloned().collect();
+        let of_few = few.settings.amplitude.of_observed(&counted);
+        let amplitudes = self.settings.amplitude.of_observed(&own).into_iter();
+        amplitudes.zip(of_few).map(|(own, few)| own / few).collect()
+    }
+
+    /// Tolerance of the residual that is asked for.
+    pub(super) fn least_tolerance(&self) -> f64 {
+        self.settings.bounds.residual_tolerance
     }
 
     fn tolerance(&self) -> f64 {
@@ -310,11 +324,7 @@ pub fn receptance_peak(
     let nonlinear = row.condition.normal_load_n().is_some();
     let mut wasted = Work::default();
     if let Some(search) = search.filter(|_| nonlinear) {
-        let coarse = ReceptancePoints::new(row, search);
-        let refined = refined_by(&plan, coarse, peak_tolerance, |coarse| {
-            ReceptancePoints::new(row, settings).refining(coarse)
-        });
-        match refined {
+        match corrected_peak(row, &plan, [search, settings], peak_tolerance) {
             Ok(peak) => return peak,
             Err(work) => wasted = work,
         }

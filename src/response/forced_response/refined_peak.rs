@@ -25,15 +25,15 @@ const COARSE_TOLERANCE: f64 = 0.02;
 /// Precision of the amplitudes of all harmonics that are compared, over the tolerance: the best is solved again beyond it.
 const REFINED_PRECISION: f64 = 0.2;
 /// Share that harmonics may change the height of one top more than that of another.
-const MADE_UP: f64 = 0.05;
+pub(super) const MADE_UP: f64 = 0.05;
 /// First neighbours of a top, in half-bandwidths: the distance at which a parabola is trusted at 0.5 %.
-const NEIGHBOURS: f64 = 0.35;
+pub(super) const NEIGHBOURS: f64 = 0.35;
 /// Points of one top at most.
-const POINTS_OF_TOP: usize = 40;
+pub(super) const POINTS_OF_TOP: usize = 40;
 /// Times that a top may be followed beyond its neighbours.
-const EXTENSIONS: usize = 12;
+pub(super) const EXTENSIONS: usize = 12;
 /// Share of the height that a hump may add to a top: what is lower by more is not looked into.
-const HUMP: f64 = 0.01;
+pub(super) const HUMP: f64 = 0.01;
 /// Gaps beside a top that are looked into, in half-bandwidths of a linear resonance.
 const WIDE: f64 = 0.5;
 /// Times that they are looked into at most; each halves them.
@@ -49,10 +49,10 @@ pub struct Search<'a> {
 }
 
 /// A local maximum of the first search.
-struct Top {
-    frequency_hz: f64,
-    amplitude_m: f64,
-    half_bandwidth_hz: f64,
+pub(super) struct Top {
+    pub(super) frequency_hz: f64,
+    pub(super) amplitude_m: f64,
+    pub(super) half_bandwidth_hz: f64,
 }
 
 /// [`peak`] with `search` before it.
@@ -88,21 +88,23 @@ pub fn refined(
     if settings.ring == Ring::Creeping {
         return Err(Work::default());
     }
-    let coarse = PointSolver::new(search.excited, condition, search.settings);
-    refined_by(&plan, coarse, peak_tolerance, |coarse| {
-        PointSolver::new(excited, condition, settings).refining(coarse)
-    })
+    let mut coarse = PointSolver::new(search.excited, condition, search.settings);
+    let tops = tops_of_few(&plan, &mut coarse, peak_tolerance)?;
+    let mut solver = PointSolver::new(excited, condition, settings).refining(&coarse);
+    solver.precision = Some(REFINED_PRECISION * peak_tolerance);
+    let refined = highest(solver, &tops, plan.envelope, peak_tolerance)
+        .map_err(|wasted| coarse.work().plus(wasted))?;
+    inside_of_band(&plan, with_work(refined, coarse.work()))
 }
 
-/// [`refined`] by `plan`, with `coarse` for few harmonics and what `fine` makes of it for all of them.
-pub(super) fn refined_by<C: PointSource, F: PointSource>(
+/// The tops that `few` harmonics find by `plan`, the highest first; the work done where they find no peak, or a contact opens.
+pub(super) fn tops_of_few(
     plan: &SearchPlan,
-    mut coarse: C,
+    few: &mut impl PointSource,
     peak_tolerance: f64,
-    fine: impl FnOnce(&C) -> F,
-) -> Result<Peak, Work> {
+) -> Result<Vec<Top>, Work> {
     let coarse_tolerance = peak_tolerance.max(COARSE_TOLERANCE);
-    coarse.set_precision(SEARCH_PRECISION * coarse_tolerance);
+    few.set_precision(SEARCH_PRECISION * coarse_tolerance);
     let found = find_peak(
         plan.band_hz,
         &plan.starts_hz,
@@ -113,22 +115,18 @@ pub(super) fn refined_by<C: PointSource, F: PointSource>(
             extensions: plan.extensions,
             rivals_from: 1.0 - MADE_UP,
         },
-        |hz| coarse.amplitudes_at(hz),
+        |hz| few.amplitudes_at(hz),
     );
-    let opens = coarse
-        .points()
-        .iter()
-        .any(|point| point.shares.separated > 0.0);
+    let mut points = few.points().iter();
+    let opens = points.any(|point| point.shares.separated > 0.0);
     if found.end != SearchEnd::Found || !found.bracketed || opens {
-        return Err(coarse.work());
+        return Err(few.work());
     }
-    let mut solver = fine(&coarse);
-    solver.set_precision(REFINED_PRECISION * peak_tolerance);
-    let tops = tops(&found, plan.envelope);
-    let refined = highest(solver, &tops, plan.envelope, peak_tolerance)
-        .map_err(|wasted| coarse.work().plus(wasted))?;
-    let refined = with_work(refined, coarse.work());
-    // A band that is asked for has no peak beyond its ends.
+    Ok(tops(&found, plan.envelope))
+}
+
+/// The peak, unless a band that is asked for ends there: it has no peak beyond its ends.
+pub(super) fn inside_of_band(plan: &SearchPlan, refined: Peak) -> Result<Peak, Work> {
     let hz = refined.point.as_ref().map(|point| point.frequency_hz);
     let inside = hz.is_some_and(|hz| plan.band_hz.0 < hz && hz < plan.band_hz.1);
     if plan.extensions > 0 || inside {
@@ -173,7 +171,7 @@ fn tops(found: &SearchResult, envelope: Envelope) -> Vec<Top> {
 }
 
 /// The highest sample of a search that found a peak.
-fn summit_of(found: &SearchResult) -> Option<&Sample> {
+pub(super) fn summit_of(found: &SearchResult) -> Option<&Sample> {
     let sample = found.best.map(|best| &found.samples[best]);
     sample.filter(|_| found.end == SearchEnd::Found && found.bracketed)
 }

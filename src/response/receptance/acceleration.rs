@@ -33,6 +33,8 @@ pub(super) struct Acceleration {
     latest: Vec<f64>,
     /// Scalar products of the changes, a row of growing length each.
     products: Vec<Vec<f64>>,
+    /// Scalar products of the changes with the step.
+    along: Vec<f64>,
     shares: Vec<f64>,
 }
 
@@ -47,16 +49,20 @@ impl Acceleration {
     /// Forgets the steps: another function follows.
     pub(super) fn begin(&mut self) {
         self.begun = false;
+        self.forget();
+    }
+
+    fn forget(&mut self) {
         self.columns = 0;
         self.products.clear();
+        self.along.clear();
     }
 
     /// The next iterate from `x` and `step = f(x)`, into `next`; combines `depth` steps at most and begins anew then.
     pub(super) fn next(&mut self, x: &[f64], step: &[f64], depth: usize, next: &mut [f64]) {
         if self.begun {
             if self.columns == depth {
-                self.columns = 0;
-                self.products.clear();
+                self.forget();
             }
             self.learn(x, step);
         }
@@ -69,7 +75,7 @@ impl Acceleration {
         for ((next, x), f) in next.iter_mut().zip(x).zip(step) {
             *next = x + f;
         }
-        self.find_shares(step);
+        self.find_shares();
         vectorized(Combined {
             columns: &self.moves,
             shares: &self.shares,
@@ -101,8 +107,8 @@ impl Acceleration {
             *change = *latest as f32;
         }
         let moved = self.moves[n * column..][..n].iter_mut();
-        let (x, step) = (x.iter().zip(last_x), step.iter().zip(last_step));
-        for (moved, ((x, last_x), (f, last_f))) in moved.zip(x.zip(step)) {
+        let (points, steps) = (x.iter().zip(last_x), step.iter().zip(last_step));
+        for (moved, ((x, last_x), (f, last_f))) in moved.zip(points.zip(steps)) {
             *moved = (((x - last_x) + (f - last_f)) * scale) as f32;
         }
         let mut row = vec![0.0; column];
@@ -111,21 +117,28 @@ impl Acceleration {
             vector: &self.latest,
             into: &mut row,
         });
+        // The step is the last one and this change: products with earlier changes move on by those with the change.
+        for (along, product) in self.along.iter_mut().zip(&row) {
+            *along += length * product;
+        }
+        let mut own = [0.0];
+        vectorized(Products {
+            columns: change,
+            vector: step,
+            into: &mut own,
+        });
+        self.along.extend(own);
         row.push(1.0);
         self.products.push(row);
         self.columns += 1;
     }
 
     /// Solves the normal equations of the shares by Cholesky's method; what depends on earlier changes has none.
-    fn find_shares(&mut self, step: &[f64]) {
+    fn find_shares(&mut self) {
         let count = self.columns;
         self.shares.clear();
         self.shares.resize(count, 0.0);
-        vectorized(Products {
-            columns: &self.changes[..count * self.unknowns],
-            vector: step,
-            into: &mut self.shares,
-        });
+        self.shares.copy_from_slice(&self.along);
         // The latest change first: it is the one that must not be dropped.
         let at = |i: usize, j: usize| {
             let (i, j) = (count - 1 - i, count - 1 - j);

@@ -16,6 +16,7 @@ use crate::linalg::Complex64;
 use crate::response::harmonic_balance::{ContactShares, Status, WheelContact};
 
 use super::acceleration::Acceleration;
+use super::contact_forces::ContactForces;
 use super::fields::{
     Field, SectorTransform, flatten, norm_squared, padded, returned, turned, unflatten,
 };
@@ -66,6 +67,8 @@ pub(super) struct ContactEquation<'a> {
     pub(super) harmonics: &'a mut [WheelHarmonic],
     /// `u_lin` of harmonic 1, at this place of the set.
     pub(super) linear: &'a Field,
+    /// Forces on the contact besides its own, a field per harmonic.
+    pub(super) load: Option<&'a ContactForces>,
     pub(super) fundamental: usize,
     pub(super) buffers: &'a mut Buffers,
 }
@@ -275,6 +278,26 @@ impl ContactEquation<'_> {
         self.give_motions();
     }
 
+    /// Evaluates the contact's own forces at the motions of a solution; they are left in the buffers.
+    pub(super) fn evaluate_forces(&mut self, motions: &[f64]) {
+        self.place(motions);
+        self.contact.evaluate(false);
+        let places = Places::of(self.contact);
+        for place in 0..places.harmonics.len() {
+            let Buffers {
+                forces, sectors, ..
+            } = &mut *self.buffers;
+            let correction = self.contact.correction();
+            places.to_waves(
+                self.transform,
+                place,
+                correction,
+                sectors,
+                &mut forces[place],
+            );
+        }
+    }
+
     /// Gives the contact the motions of every sector.
     fn give_motions(&mut self) {
         let places = Places::of(self.contact);
@@ -308,6 +331,9 @@ impl ContactEquation<'_> {
                 sectors,
                 &mut forces[place],
             );
+            if let Some(load) = self.load {
+                forces[place].add(1.0, &load.fields[place]);
+            }
             residual[place].clone_from(&motions[place]);
             if place == self.fundamental {
                 residual[place].add(-1.0, self.linear);

@@ -41,6 +41,13 @@ impl Field {
         }
     }
 
+    pub(super) fn zeros_like(other: &Self) -> Self {
+        Self {
+            re: vec![0.0; other.re.len()],
+            im: vec![0.0; other.im.len()],
+        }
+    }
+
     pub(super) fn fill(&mut self, value: f64) {
         self.re.fill(value);
         self.im.fill(value);

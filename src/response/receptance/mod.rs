@@ -6,6 +6,7 @@
 
 mod acceleration;
 mod blade_shapes;
+mod contact_forces;
 mod contact_iteration;
 mod engine;
 mod fields;
@@ -18,9 +19,10 @@ mod wave_matrix;
 mod wheel_harmonic;
 mod wheel_solver;
 
+pub use contact_forces::ContactForces;
 pub use engine::{
     EngineModel, EngineOptions, EngineWheel, HIGHEST_HARMONIC, Limit, ReceptanceEngine,
 };
 pub use resonances::Resonance;
 pub use wave_force::WaveForce;
-pub use wheel_solver::{SolutionWork, WheelSolution, WheelSolver, embedded};
+pub use wheel_solver::{SolutionWork, WheelSolution, WheelSolver, embedded, overlay};

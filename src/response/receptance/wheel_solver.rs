@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use crate::linalg::Complex64;
 use crate::response::harmonic_balance::{ContactShares, PairContact, Status, WheelContact};
 
+use super::contact_forces::ContactForces;
 use super::contact_iteration::{Buffers, ContactEquation, angular, damped};
 use super::engine::{EngineWheel, Limit, ReceptanceEngine};
 use super::fields::Field;
@@ -22,6 +23,8 @@ pub struct WheelSolver<'a> {
     tangents: Option<WheelContact>,
     harmonics: Vec<WheelHarmonic>,
     linear: Field,
+    /// Forces on the contact besides its own.
+    load: Option<ContactForces>,
     buffers: Buffers,
     /// Tuned response to the excitation of the motions [contact, strain, observed].
     excited: Vec<Complex64>,
@@ -75,6 +78,7 @@ impl<'a> WheelSolver<'a> {
             tangents: None,
             harmonics: Vec::new(),
             linear: Field::default(),
+            load: None,
             buffers: Buffers::default(),
             excited: Vec::new(),
         }
@@ -118,6 +122,7 @@ impl<'a> WheelSolver<'a> {
             tangents: self.tangents.as_mut(),
             harmonics: &mut self.harmonics,
             linear: &self.linear,
+            load: self.load.as_ref(),
             fundamental,
             buffers: &mut self.buffers,
         })
@@ -233,6 +238,26 @@ impl<'a> WheelSolver<'a> {
         Some(self.contact.as_mut()?.mean_friction_n())
     }
 
+    /// From now on these forces, in the harmonics of the solver, act on the contact besides its own.
+    pub fn load_contact(&mut self, load: ContactForces) {
+        self.load = Some(load);
+    }
+
+    /// Contact forces at the solution last solved.
+    #[must_use]
+    pub fn contact_forces(&self) -> ContactForces {
+        ContactForces {
+            harmonics: self.set.clone(),
+            fields: self.buffers.forces.clone(),
+        }
+    }
+
+    /// The contact's own forces at the motions of a solution; none for a linear limit.
+    pub fn contact_forces_at(&mut self, motions: &[f64]) -> Option<ContactForces> {
+        self.equation()?.evaluate_forces(motions);
+        Some(self.contact_forces())
+    }
+
     /// State of every contact pair at the solution last solved; none for a linear limit.
     pub fn contact_states(&mut self) -> Option<Vec<PairContact>> {
         Some(self.contact.as_mut()?.contact_states())
@@ -257,15 +282,21 @@ impl<'a> WheelSolver<'a> {
     }
 }
 
-/// Motions in the harmonics `from` as a start in those of `to`; harmonics that `from` does not have do not move.
-#[must_use]
-pub fn embedded(motions: &[f64], from: &[u32], to: &[u32]) -> Vec<f64> {
+/// Puts motions in the harmonics `from` in the place of those of a solution in `to`.
+pub fn overlay(all: &mut [f64], motions: &[f64], from: &[u32], to: &[u32]) {
     let size = motions.len() / from.len().max(1);
-    let mut all = vec![0.0; size * to.len()];
     for (own, part) in from.iter().zip(motions.chunks_exact(size.max(1))) {
         if let Some(place) = to.iter().position(|k| k == own) {
             all[place * size..][..size].copy_from_slice(part);
         }
     }
+}
+
+/// Motions in the harmonics `from` as a start in those of `to`; harmonics that `from` does not have do not move.
+#[must_use]
+pub fn embedded(motions: &[f64], from: &[u32], to: &[u32]) -> Vec<f64> {
+    let size = motions.len() / from.len().max(1);
+    let mut all = vec![0.0; size * to.len()];
+    overlay(&mut all, motions, from, to);
     all
 }
