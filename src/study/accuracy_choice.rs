@@ -1,5 +1,7 @@
-//! The choice of settings by an accepted error: the cheapest of the ladder, with the evidence.
+//! The choice of settings by an accepted error, with the evidence: on tuned receptances those of
+//! [`ReceptanceSetting`], on a basis the cheapest of the ladder.
 //!
+//! Of the ladder:
 //! A few patterns of the study are solved at reference settings. Single knobs are moved on fewer of them,
 //! which proposes combinations, the cheapest first by estimated operations. These are measured pattern by
 //! pattern and given up at the first row beyond the accepted error, which no bound can be below, so that
@@ -17,6 +19,8 @@ use super::ladder_measure::{Compared, Measured, error_bound, errors_of_load_case
 use super::ladder_reference::{LadderEnds, LadderReference};
 use super::ladder_sample::most_scenarios;
 use super::ladder_search::{LadderSearch, Proposal};
+use super::receptance_accuracy::{ReceptanceSetting, on_receptances};
+use super::reduced_engine::is_on_receptances;
 use super::tradeoff::sample_of_patterns;
 use super::{AccuracyOptions, PipelineError, Progress, Study, StudyDigest, pattern_source};
 use crate::model::sector::SectorModel;
@@ -49,13 +53,22 @@ pub struct AccuracyChoice {
     /// Error accepted.
     pub accepted: f64,
     /// The settings.
-    pub setting: LadderSetting,
+    pub setting: ChosenSetting,
     /// Fixed-interface modes.
     pub craig_bampton_modes: usize,
     /// Whether the upper bound of the 95th percentile of the amplitude error is accepted.
     pub met: bool,
     /// Errors on the sample; none where nothing was to be measured.
     pub evidence: Option<AccuracyEvidence>,
+}
+
+/// Settings that were chosen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum ChosenSetting {
+    /// A combination of the ladder, for rows on a basis.
+    Ladder(LadderSetting),
+    /// For rows on tuned receptances.
+    Receptances(ReceptanceSetting),
 }
 
 /// What a choice was made by.
@@ -65,9 +78,9 @@ pub struct AccuracyEvidence {
     pub patterns: Vec<u32>,
     /// Normal loads of its scenarios, N.
     pub normal_loads_n: Vec<f64>,
-    /// Tolerance of the harmonics of the reference.
-    pub reference_tolerance: f64,
-    /// `joint` or `by_knobs`.
+    /// Tolerance of the harmonics of the reference; none where they are fixed.
+    pub reference_tolerance: Option<f64>,
+    /// `joint`, `by_knobs`, or `enlarged` on tuned receptances.
     pub reference: String,
     /// Errors of the peak amplitude.
     pub amplitude: ErrorBound,
@@ -128,7 +141,18 @@ impl AccuracyChoice {
             return Ok(stored);
         }
         let patterns = pattern_source(study, sector)?;
-        let choice = Self::make(study, accuracy, sector, &patterns)?;
+        let choice = if is_on_receptances(study, sector) {
+            let ids = sample_of_patterns(study, &patterns, sampled_patterns(study));
+            on_receptances(
+                study,
+                accuracy.amplitude_error,
+                sector,
+                (&patterns, ids),
+                cache,
+            )?
+        } else {
+            Self::make(study, accuracy, sector, &patterns)?
+        };
         if let Some(folder) = cache {
             write_cached(folder, &digest, &choice)?;
         }
@@ -151,7 +175,7 @@ impl AccuracyChoice {
             // Linear limits know none of these settings but the basis.
             return Ok(Self {
                 accepted,
-                setting: ends.base,
+                setting: ChosenSetting::Ladder(ends.base),
                 craig_bampton_modes,
                 met: true,
                 evidence: None,
@@ -182,7 +206,7 @@ impl AccuracyChoice {
             // No row of the sample has a reference: the best that is affordable.
             return Ok(Self {
                 accepted,
-                setting: ends.base,
+                setting: ChosenSetting::Ladder(ends.base),
                 craig_bampton_modes,
                 met: false,
                 evidence: None,
@@ -203,7 +227,7 @@ impl AccuracyChoice {
                     .iter()
                     .filter_map(|scenario| scenario.contact.normal_load_n())
                     .collect(),
-                reference_tolerance: tolerance,
+                reference_tolerance: Some(tolerance),
                 reference: reference.kind.name().to_owned(),
                 amplitude,
                 amplitude_worst_upper: amplitude.worst_upper(measured.setting.peak_tolerance),
@@ -219,27 +243,39 @@ impl AccuracyChoice {
                     .iter()
                     .filter_map(|scenario| scenario.load_case)
                     .collect(),
-                errors_of_load_cases: errors_of_load_cases(&measured, &reference.values, &sample),
+                errors_of_load_cases: errors_of_load_cases(
+                    &measured.rows,
+                    &reference.values,
+                    &sample,
+                ),
             }),
-            setting: measured.setting,
+            setting: ChosenSetting::Ladder(measured.setting),
         })
     }
 
     /// The study at the settings chosen.
     #[must_use]
     pub fn applied_to(&self, study: &Study) -> Study {
-        let mut own = self.setting.applied_to(study);
-        own.reduction.craig_bampton_modes = Some(self.craig_bampton_modes);
-        own
+        match &self.setting {
+            ChosenSetting::Ladder(setting) => {
+                let mut own = setting.applied_to(study);
+                own.reduction.craig_bampton_modes = Some(self.craig_bampton_modes);
+                own
+            }
+            ChosenSetting::Receptances(setting) => setting.applied_to(study),
+        }
     }
 
     /// The choice for the manifest.
     #[must_use]
     pub fn facts(&self) -> Value {
-        let setting: Vec<(&str, Value)> = Knob::ALL
-            .into_iter()
-            .map(|knob| (knob.name(), json!(self.setting.level(knob))))
-            .collect();
+        let setting: Value = match &self.setting {
+            ChosenSetting::Ladder(setting) => Knob::ALL
+                .into_iter()
+                .map(|knob| (knob.name(), json!(setting.level(knob))))
+                .collect(),
+            ChosenSetting::Receptances(setting) => setting.facts(),
+        };
         let mut evidence = json!(self.evidence);
         if let Some(evidence) = evidence.as_object_mut() {
             // A study without load cases has none in its manifest.
@@ -249,7 +285,7 @@ impl AccuracyChoice {
             "accepted_error": self.accepted,
             "met": self.met,
             "craig_bampton_modes": self.craig_bampton_modes,
-            "setting": setting.into_iter().collect::<std::collections::BTreeMap<_, _>>(),
+            "setting": setting,
             "evidence": evidence,
         })
     }

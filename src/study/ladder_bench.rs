@@ -280,7 +280,12 @@ impl<'a> LadderBench<'a> {
 }
 
 impl<'a> LadderEngine<'a> {
-    fn new(solver: RowSolver, scenarios: &[Scenario], progress: &'a dyn Progress) -> Self {
+    /// A solver with the tuned wheel of every scenario solved.
+    pub(super) fn new(
+        solver: RowSolver,
+        scenarios: &[Scenario],
+        progress: &'a dyn Progress,
+    ) -> Self {
         let mut tuned: Vec<TunedReference> = Vec::new();
         for scenario in scenarios {
             let same = scenarios[..tuned.len()].iter().position(|other| {

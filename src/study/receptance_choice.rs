@@ -135,17 +135,17 @@ impl<'a> Judges<'a> {
         admitted.collect()
     }
 
-    /// Largest relative change of a peak, with its harmonics, from these wheels to the same ones on another engine; none where no
-    /// peak is found on both. Each is looked for here, and climbed from here there.
+    /// Largest relative change of a peak, with its harmonics, from these wheels to the same ones on each of the other engines; none
+    /// where no peak is found on both. Each is looked for here, and climbed from here there.
     ///
     /// # Errors
     /// If the samples per period cannot tell the harmonics apart.
-    pub(super) fn change(
+    pub(super) fn changes<const N: usize>(
         &self,
-        other: &Self,
+        others: [Option<&Self>; N],
         conditions: &[ContactCondition],
         sets: &[HarmonicChoice],
-    ) -> Result<Option<f64>, TransformError> {
+    ) -> Result<[Option<f64>; N], TransformError> {
         let mut choices = Vec::new();
         for &(order, _) in &self.forces {
             for condition in spread(conditions) {
@@ -156,16 +156,15 @@ impl<'a> Judges<'a> {
             }
         }
         let changes = choices.par_iter().map(|choice| {
-            let mut largest: Option<f64> = None;
+            let mut largest = [None; N];
             for (wheel, own) in self.peaks(choice)?.into_iter().enumerate() {
-                if let Some(change) = self.change_of(&own, other, wheel, choice) {
-                    largest = Some(largest.unwrap_or(0.0).max(change));
-                }
+                let changes = others.map(|other| self.change_of(&own, other?, wheel, choice));
+                largest = larger(largest, changes);
             }
             Ok(largest)
         });
-        let changes: Vec<Option<f64>> = changes.collect::<Result<_, TransformError>>()?;
-        Ok(changes.into_iter().flatten().reduce(f64::max))
+        let changes: Vec<[Option<f64>; N]> = changes.collect::<Result<_, TransformError>>()?;
+        Ok(changes.into_iter().fold([None; N], larger))
     }
 
     fn change_of(
@@ -353,6 +352,12 @@ impl Verdict {
             .filter(|_| self.found && !lacks_separation)
             .unwrap_or(f64::INFINITY)
     }
+}
+
+/// The larger of each two, where there is one.
+pub(super) fn larger<const N: usize>(a: [Option<f64>; N], b: [Option<f64>; N]) -> [Option<f64>; N] {
+    let larger = |place: usize| a[place].into_iter().chain(b[place]).reduce(f64::max);
+    std::array::from_fn(larger)
 }
 
 /// A set not yet judged.

@@ -58,26 +58,7 @@ impl EngineSource for ReducedEngineSource {
         if let Some(accuracy) = study.accuracy {
             return accurate_engine(study, accuracy, model, cache);
         }
-        let settings = row_settings(study);
-        let stiffness = contact_stiffness(study.contact.as_ref());
-        let sensitivity = sensitivity_vectors(study);
-        // Everything the stored models and sets depend on besides the sector: also what their
-        // errors are judged by.
-        let key = format!(
-            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?} {:?} {:?}",
-            study.reduction,
-            study.mistuning.cantilever_mode_count,
-            study.engine_orders,
-            study.contacts,
-            study.contact_variations,
-            study.nodal_diameter_damping,
-            study.amplitudes_n
-        );
-        let key = match study.load_cases.as_slice() {
-            [] => key,
-            load_cases => format!("{key} {load_cases:?}"),
-        };
-        let digest = reduction_digest(model, &key);
+        let digest = stored_digest(study, model);
         let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
         let stored = if let Some(stored) = cached.filter(|stored| stored.fits(study, model)) {
             stored
@@ -314,6 +295,28 @@ impl Engine for ReducedEngine {
     ) -> Result<PointComparison, Status> {
         self.solver.compare_in_time(pattern, scenario, row, options)
     }
+}
+
+/// Digest of everything that the stored models and sets of a study depend on: also of what their errors are judged by.
+pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> String {
+    let settings = row_settings(study);
+    let stiffness = contact_stiffness(study.contact.as_ref());
+    let sensitivity = sensitivity_vectors(study);
+    let key = format!(
+        "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?} {:?} {:?}",
+        study.reduction,
+        study.mistuning.cantilever_mode_count,
+        study.engine_orders,
+        study.contacts,
+        study.contact_variations,
+        study.nodal_diameter_damping,
+        study.amplitudes_n
+    );
+    let key = match study.load_cases.as_slice() {
+        [] => key,
+        load_cases => format!("{key} {load_cases:?}"),
+    };
+    reduction_digest(model, &key)
 }
 
 /// Whether rows are solved on the receptances of the tuned wheel: where the study names them, and by default wherever they are ready for

@@ -26,7 +26,7 @@ use crate::response::receptance::{EngineModel, ReceptanceEngine};
 const BEYOND_TOLERANCE: f64 = 0.25;
 
 /// What the cache keeps.
-#[derive(Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Stored {
     pub(super) model: ReducedModel,
     pub(super) evidence: BasisEvidence,
@@ -43,6 +43,23 @@ pub(super) struct Stored {
 }
 
 impl Stored {
+    /// The same with `harmonics` in every scenario and, on tuned receptances, twice as many blade shapes.
+    pub(super) fn enlarged(&self, harmonics: &[u32]) -> Self {
+        let enlarged = |choice: &HarmonicChoice| HarmonicChoice {
+            harmonics: harmonics.to_vec(),
+            remainder: None,
+            ..choice.clone()
+        };
+        let engine = self.engine.clone();
+        Self {
+            harmonics: self.harmonics.iter().map(enlarged).collect(),
+            beyond: None,
+            engine: engine.map(EngineModel::with_twice_the_shapes),
+            receptances: None,
+            ..self.clone()
+        }
+    }
+
     /// Whether sectors, contact and harmonic sets are as many as `study` and `sector` have.
     pub(super) fn fits(&self, study: &Study, sector: &SectorModel) -> bool {
         let orders: usize = study.excited_orders().iter().map(|own| own.1.len()).sum();
@@ -66,7 +83,7 @@ impl Stored {
 }
 
 /// The model and sets for rows that the others are not good enough for.
-#[derive(Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct StoredBeyond {
     model: ReducedModel,
     basis_error: f64,

@@ -7,7 +7,7 @@ use super::Study;
 use super::basis_choice::{BasisError, BasisEvidence};
 use super::fixed_interface::{FixedInterface, ModesTried, expected_deviation, reduction_with};
 use super::load_cases::Excitation;
-use super::receptance_choice::Judges;
+use super::receptance_choice::{Judges, larger};
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::{ModelError, SectorModel, StiffnessKind};
@@ -142,7 +142,8 @@ pub(super) struct Refined<'a> {
 
 /// As many fixed-interface modes as the study says, or the first of 60, 120, ... that half as many change no judged peak by more than
 /// `reduction.error`; their error is that change, which is larger than what is left of it, or a half more than what twice as many as the
-/// study says change. Harmonics by `chosen`, once.
+/// study says change. Blade shapes the first that twice as many change no judged peak by more, with friction among them: the shapes
+/// of the harmonics above the first show there alone. Harmonics by `chosen`, once.
 ///
 /// # Errors
 /// The model cannot be reduced, or samples cannot tell harmonics apart.
@@ -159,61 +160,80 @@ pub(super) fn refined<'a>(
     let mut harmonics: Option<Vec<Vec<HarmonicChoice>>> = None;
     let mut tried = Vec::new();
     let mut shape_factor = 1;
+    let reduction = |modes| {
+        let reduction = reduction_with(study, sector, modes);
+        reduction.with_residual_vectors().completed()
+    };
+    let mut fine = reduction(modes)?;
     loop {
-        let fine = reduction_with(study, sector, modes)
-            .with_residual_vectors()
-            .completed()?;
         let coarse = fine.with_fewer_modes(modes / 2);
         let whole = fine.is_whole_space();
-        let (taken, other) = match fixed {
-            Some(_) if !whole => (coarse, Some(fine)),
-            _ => (fine, (!whole).then_some(coarse)),
+        let takes_coarse = fixed.is_some() && !whole;
+        let (taken, other) = if takes_coarse {
+            (&coarse, Some(&fine))
+        } else {
+            (&fine, (!whole).then_some(&coarse))
         };
-        let engine = Made::new(study, &taken, excitations, shape_factor)?;
-        let (engine, factor, evidence) = with_shapes(study, engine, excitations, shape_factor)?;
+        let engine = Made::new(study, taken, excitations, shape_factor)?;
+        let (engine, factor, mut evidence) = with_shapes(study, engine, excitations, shape_factor)?;
         shape_factor = factor;
         let own = engine.judges(excitations, patterns);
         let sets = match harmonics.take() {
             Some(sets) => sets,
             None => own.iter().map(&chosen).collect::<Result<_, _>>()?,
         };
-        let change = match &other {
-            None => Some(0.0),
-            Some(other) => {
-                let other = Made::new(study, other, excitations, shape_factor)?;
-                let mut changes = Vec::new();
-                for ((own, other), sets) in own
-                    .iter()
-                    .zip(other.judges(excitations, patterns))
-                    .zip(&sets)
-                {
-                    changes.extend(own.change(&other, conditions, sets)?);
-                }
-                changes.into_iter().reduce(f64::max)
-            }
+        let other = other.map(|other| Made::new(study, other, excitations, shape_factor));
+        let other = other.transpose()?;
+        let finer = if engine.receptances.is_exact() {
+            None
+        } else {
+            Some(engine.with_shape_factor(study, excitations, 2 * shape_factor)?)
         };
+        let [others, finers] = [&other, &finer].map(|made| {
+            let judges = made.as_ref().map(|made| made.judges(excitations, patterns));
+            judges.unwrap_or_default()
+        });
+        let mut changes = [other.is_none().then_some(0.0), None];
+        for (case, (own, sets)) in own.iter().zip(&sets).enumerate() {
+            let engines = [others.get(case), finers.get(case)];
+            changes = larger(changes, own.changes(engines, conditions, sets)?);
+        }
+        let [change, of_shapes] = changes;
+        if let Some(taken) = evidence.tried.last_mut() {
+            taken.error = larger([taken.error], [of_shapes])[0];
+        }
+        let lacks_shapes = of_shapes.is_some_and(|change| change > study.reduction.error)
+            && shape_factor < MOST_SHAPES;
         tried.push(ModesTried {
             modes: taken.fixed_interface_modes(),
             change,
         });
         let enough = change.is_none_or(|change| change <= study.reduction.error);
-        if enough || fixed.is_some() || modes >= MOST_MODES {
+        let lacks_modes = !enough && fixed.is_none() && modes < MOST_MODES;
+        if !lacks_shapes && !lacks_modes {
             let margin = if fixed.is_some() { FIXED_MARGIN } else { 1.0 };
-            drop(own);
+            drop((own, others, finers));
             return Ok(Refined {
                 fixed_interface: FixedInterface {
                     modes: taken.fixed_interface_modes(),
                     error: change.map(|change| margin * change),
                     tried,
                 },
-                reduction: taken,
+                reduction: if takes_coarse { coarse } else { fine },
                 engine,
                 evidence,
                 harmonics: sets,
             });
         }
         harmonics = Some(sets);
-        modes *= 2;
+        if lacks_shapes {
+            shape_factor *= 2;
+        }
+        if lacks_modes {
+            modes *= 2;
+            drop((own, others, finers));
+            fine = reduction(modes)?;
+        }
     }
 }
 
