@@ -27,6 +27,7 @@ mod ladder_measure;
 mod ladder_reference;
 mod ladder_sample;
 mod ladder_search;
+mod ladder_trials;
 mod load_cases;
 mod load_search;
 mod lock;

@@ -2,8 +2,9 @@
 //!
 //! Every tolerance of the engine is a fixed share of the accepted error. Rows of the study at these settings are compared with the
 //! same rows in harmonics up to 15, with twice the blade shapes and twice the samples, found by a search of their own. Where the
-//! upper bound of the 95th percentile of the amplitude error is not accepted, those of harmonics and peak are halved; where that
-//! does not do either, every harmonic is taken. Modes and shapes stay: their error was measured when they were chosen.
+//! upper bound of the 95th percentile of the amplitude error is not accepted, the tolerances of harmonics and peak are halved; where
+//! that does not do either, every harmonic is taken. What the study says itself stays. Modes and shapes stay too: their error was
+//! measured when they were chosen.
 
 use std::path::Path;
 
@@ -16,11 +17,10 @@ use super::accuracy_choice::{
 use super::ladder_bench::{LadderEngine, LadderRow, LadderValues};
 use super::ladder_measure::{Compared, error_bound, errors_of_load_cases};
 use super::ladder_sample::{LadderSample, Remainders, sampled_scenarios};
-use super::reduced_engine::stored_digest;
-use super::reduced_study::{Stored, reduced_on_receptances, solver_of};
+use super::reduced_engine::stored_for;
+use super::reduced_study::{Stored, solver_of};
 use super::{PipelineError, Study};
 use crate::model::sector::SectorModel;
-use crate::model::write_cached;
 use crate::population::monte_carlo::TUNED_RECEPTANCES;
 use crate::population::statistics::ErrorBound;
 use crate::response::forced_response::{Harmonics, RowsBeyondTolerance};
@@ -32,11 +32,15 @@ const HARMONICS: f64 = 2.0;
 const REDUCTION: f64 = 0.1;
 /// Tolerance of the peak over the accepted error.
 const PEAK: f64 = 0.1;
-/// Samples per period, and an error from which on twice as many are taken.
+/// Samples per period, and an error below which twice as many are taken.
 const SAMPLES: usize = 128;
 const FINER_SAMPLES_BELOW: f64 = 0.004;
-/// Harmonics that rows are compared with go to this one.
+/// Samples of a period over the highest harmonic at least.
+const SAMPLES_PER_HARMONIC: usize = 4;
+/// Harmonics that rows are compared with go to this one; those that the study says are among them.
 const ENLARGED_HARMONIC: u32 = 15;
+/// Samples of these rows at least.
+const ENLARGED_SAMPLES: usize = 256;
 /// Peak tolerance of these rows over that of the settings.
 const ENLARGED_PEAK: f64 = 0.2;
 
@@ -69,21 +73,55 @@ impl ReceptanceSetting {
         }
     }
 
-    /// What is tried next after as many as `tried`: half the tolerances of harmonics and peak, then `all_harmonics` besides; nothing
-    /// more after that.
-    fn tighter(self, tried: usize, all_harmonics: &[u32]) -> Option<Self> {
-        match tried {
-            1 => Some(Self {
-                harmonic_tolerance: 0.5 * self.harmonic_tolerance,
-                peak_tolerance: 0.5 * self.peak_tolerance,
-                ..self
-            }),
-            2 => Some(Self {
-                harmonics: Some(all_harmonics.to_vec()),
-                ..self
-            }),
-            _ => None,
+    /// These settings but for those that `study` says itself.
+    fn but_for_those_of(mut self, study: &Study) -> Self {
+        let solver = &study.solver;
+        if study.states("reduction.error") {
+            self.reduction_error = study.reduction.error;
         }
+        if study.states("solver.harmonic_tolerance") {
+            self.harmonic_tolerance = solver.harmonic_tolerance;
+        }
+        if study.states("solver.harmonics") {
+            self.harmonics = match &solver.harmonics {
+                Harmonics::Auto => None,
+                Harmonics::Set(set) => Some(set.clone()),
+            };
+        }
+        if study.states("solver.samples_per_period") {
+            self.samples_per_period = solver.samples_per_period;
+        }
+        if study.states("solver.peak_tolerance") {
+            self.peak_tolerance = solver.peak_tolerance;
+        }
+        self
+    }
+
+    /// The settings tried for `amplitude_error`, in order: those for it, then half the tolerances of harmonics and peak, then all of
+    /// `harmonics` besides. Where `study` says what a step would change, there is no such step.
+    fn tried_for(amplitude_error: f64, study: &Study, harmonics: &[u32]) -> Vec<Self> {
+        let first = Self::within(amplitude_error);
+        let second = Self {
+            harmonic_tolerance: 0.5 * first.harmonic_tolerance,
+            peak_tolerance: 0.5 * first.peak_tolerance,
+            ..first.clone()
+        };
+        let third = Self {
+            harmonics: Some(harmonics.to_vec()),
+            ..second.clone()
+        };
+        let mut tried: Vec<Self> = Vec::new();
+        for setting in [first, second, third] {
+            let mut setting = setting.but_for_those_of(study);
+            let most = (setting.samples_per_period / SAMPLES_PER_HARMONIC) as u32;
+            if let Some(set) = &mut setting.harmonics {
+                set.retain(|&harmonic| harmonic <= most);
+            }
+            if tried.last() != Some(&setting) {
+                tried.push(setting);
+            }
+        }
+        tried
     }
 
     /// `study` solved at these settings. What they do not say stays.
@@ -98,7 +136,9 @@ impl ReceptanceSetting {
             Some(set) => Harmonics::Set(set.clone()),
         };
         solver.harmonic_tolerance = self.harmonic_tolerance;
-        solver.rows_beyond_tolerance = RowsBeyondTolerance::Flag;
+        if !study.states("solver.rows_beyond_tolerance") {
+            solver.rows_beyond_tolerance = RowsBeyondTolerance::Flag;
+        }
         solver.samples_per_period = self.samples_per_period;
         solver.peak_tolerance = self.peak_tolerance;
         own
@@ -108,7 +148,7 @@ impl ReceptanceSetting {
     fn enlarged(&self, study: &Study, harmonics: &[u32]) -> Study {
         let mut own = self.applied_to(study);
         own.solver.harmonics = Harmonics::Set(harmonics.to_vec());
-        own.solver.samples_per_period = 2 * self.samples_per_period;
+        own.solver.samples_per_period = ENLARGED_SAMPLES.max(2 * self.samples_per_period);
         own.solver.peak_tolerance = ENLARGED_PEAK * self.peak_tolerance;
         own
     }
@@ -146,7 +186,7 @@ impl ReceptanceSetting {
     }
 }
 
-/// The settings for `accepted`, by rows of `sample`: patterns with the ids to take. What the study is solved on goes to `cache`.
+/// The settings for `accepted`, by rows of patterns with these ids. What the study is solved on goes to `cache`.
 ///
 /// # Errors
 /// The model cannot be reduced, or the cache not be written.
@@ -157,45 +197,41 @@ pub(super) fn on_receptances(
     (patterns, ids): (&PatternSource, Vec<u32>),
     cache: Option<&Path>,
 ) -> Result<AccuracyChoice, PipelineError> {
+    let harmonics = enlarged_harmonics(study);
+    let mut left = ReceptanceSetting::tried_for(accepted, study, &harmonics).into_iter();
+    let mut setting = ReceptanceSetting::within(accepted).but_for_those_of(study);
     let mut tried = Vec::new();
     let mut operations = 0.0;
-    let all_harmonics = enlarged_harmonics(study);
-    let mut setting = ReceptanceSetting::within(accepted);
     loop {
-        let own = setting.applied_to(study);
-        let stored = reduced_on_receptances(&own, sector)?;
-        let compared = Rows::compared(study, &setting, &stored, patterns, &ids)?;
-        operations += compared.operations();
-        let amplitude = compared.bound(Compared::Amplitude);
-        if let Some(amplitude) = amplitude {
-            tried.push(TriedSetting {
-                setting: setting.words(),
-                rows: amplitude.rows,
-                worst: amplitude.worst,
-                operations: mean_operations(&compared.own),
-            });
-        }
-        // Linear limits have nothing to compare.
-        let has_rows = !compared.sample.scenarios.is_empty();
-        let met = !has_rows || amplitude.is_some_and(|own| own.p95_upper <= accepted);
-        if !met && amplitude.is_some() {
-            if let Some(tighter) = setting.clone().tighter(tried.len(), &all_harmonics) {
-                setting = tighter;
-                continue;
-            }
-        }
-        if let Some(folder) = cache {
-            write_cached(folder, &stored_digest(&own, sector), &stored)?;
-        }
-        let evidence =
-            amplitude.map(|amplitude| compared.evidence(&setting, amplitude, operations, tried));
-        return Ok(AccuracyChoice {
+        setting = left.next().unwrap_or(setting);
+        let stored = stored_for(&setting.applied_to(study), sector, cache)?;
+        let choice = |met, evidence| AccuracyChoice {
             accepted,
             craig_bampton_modes: stored.fixed_interface.modes,
             met,
             evidence,
-            setting: ChosenSetting::Receptances(setting),
+            setting: ChosenSetting::Receptances(setting.clone()),
+        };
+        if !study.has_friction() {
+            // Linear limits know none of these settings but modes and shapes.
+            return Ok(choice(true, None));
+        }
+        let compared = Rows::compared(study, &setting, &stored, patterns, &ids)?;
+        operations += compared.operations();
+        let Some(amplitude) = compared.bound(Compared::Amplitude) else {
+            return Ok(choice(false, None));
+        };
+        tried.push(TriedSetting {
+            setting: setting.words(),
+            rows: amplitude.rows,
+            worst: amplitude.worst,
+            operations: mean_operations(&compared.own),
         });
+        let met = amplitude.p95_upper <= accepted;
+        if met || left.len() == 0 {
+            let evidence = compared.evidence(&setting, amplitude, operations, tried);
+            return Ok(choice(met, Some(evidence)));
+        }
     }
 }
 
@@ -285,14 +321,18 @@ impl Rows {
     }
 }
 
-/// Every harmonic that the law of `study` can excite, to the highest of the comparison.
+/// Every harmonic that the law of `study` can excite, to the highest of the comparison, and those that the study says.
 fn enlarged_harmonics(study: &Study) -> Vec<u32> {
     let contact = study.contact.as_ref();
-    if contact.is_some_and(|contact| contact.law.has_variable_load()) {
-        (0..=ENLARGED_HARMONIC).collect()
-    } else {
-        (1..=ENLARGED_HARMONIC).step_by(2).collect()
+    let varies = contact.is_some_and(|contact| contact.law.has_variable_load());
+    let all = (0..=ENLARGED_HARMONIC).filter(|harmonic| varies || harmonic % 2 == 1);
+    let mut harmonics: Vec<u32> = all.collect();
+    if let Harmonics::Set(set) = &study.solver.harmonics {
+        harmonics.extend(set);
     }
+    harmonics.sort_unstable();
+    harmonics.dedup();
+    harmonics
 }
 
 fn values(rows: &[LadderRow]) -> Vec<LadderValues> {
@@ -302,4 +342,82 @@ fn values(rows: &[LadderRow]) -> Vec<LadderValues> {
 fn mean_operations(rows: &[LadderRow]) -> f64 {
     let sum: f64 = rows.iter().map(|row| row.operations).sum();
     sum / rows.len().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::super::AccuracyOptions;
+    use super::*;
+
+    /// The built-in wheel with these lines at the end of its study.
+    fn study(lines: &str) -> Study {
+        let text = format!(
+            "schema = 1\n[study]\nname = \"a\"\nseed = 1\npatterns = 3\n[model]\nsource = \"parametric\"\n\
+             [contact]\nlaw = \"simplified_3d\"\nfriction_coefficient = 0.3\ntangential_stiffness_n_per_m = 1e8\n\
+             normal_stiffness_n_per_m = 1e8\n[damping]\nstructural_loss_factor = 0.01\n\
+             [excitation]\nengine_orders = [2]\n[mistuning]\ndistribution = {{ kind = \"normal\" }}\n\
+             [sweep]\nnormal_load_n = [10]\nstandard_deviation = [0.01]\n{lines}"
+        );
+        Study::parse(Path::new("study.toml"), &text).expect("a study")
+    }
+
+    fn tried(study: &Study) -> Vec<ReceptanceSetting> {
+        ReceptanceSetting::tried_for(0.01, study, &enlarged_harmonics(study))
+    }
+
+    #[test]
+    fn a_study_without_an_accepted_error_has_the_settings_of_the_default_one() {
+        let study = study("");
+        let default = ReceptanceSetting {
+            reduction_error: study.reduction.error,
+            harmonic_tolerance: study.solver.harmonic_tolerance,
+            harmonics: None,
+            samples_per_period: study.solver.samples_per_period,
+            peak_tolerance: study.solver.peak_tolerance,
+        };
+        assert_eq!(ReceptanceSetting::within(AccuracyOptions::DEFAULT), default);
+        let applied = default.applied_to(&study);
+        assert_eq!(applied.resolved(), study.resolved());
+    }
+
+    #[test]
+    fn what_the_study_says_stays_at_every_step() {
+        let free = tried(&study(""));
+        assert_eq!(free.len(), 3);
+        assert_eq!(free[2].harmonics, Some((0..=15).collect()));
+        // With few samples every harmonic that they can tell.
+        let coarse = tried(&study("[solver]\nsamples_per_period = 40"));
+        assert_eq!(coarse[2].harmonics, Some((0..=10).collect()));
+        assert!(coarse.iter().all(|own| own.samples_per_period == 40));
+        let stated = study(
+            "[reduction]\nerror = 3e-3\n[solver]\nharmonics = [1, 3, 5]\nharmonic_tolerance = 0.1\npeak_tolerance = 2e-4",
+        );
+        let [only] = tried(&stated).try_into().expect("one setting");
+        assert_eq!(only.harmonics, Some(vec![1, 3, 5]));
+        let numbers = [
+            only.reduction_error,
+            only.harmonic_tolerance,
+            only.peak_tolerance,
+        ];
+        assert_eq!(
+            numbers.map(f64::to_bits),
+            [3e-3, 0.1, 2e-4].map(f64::to_bits)
+        );
+        let resolves = study("[solver]\nrows_beyond_tolerance = \"resolve\"");
+        let own = free[0].applied_to(&resolves).solver.rows_beyond_tolerance;
+        assert_eq!(own, RowsBeyondTolerance::Resolve);
+    }
+
+    #[test]
+    fn rows_are_held_against_more_harmonics_and_samples_than_they_have() {
+        let study = study("[solver]\nharmonics = [1, 3, 21]");
+        let setting = tried(&study).remove(0);
+        let enlarged = setting.enlarged(&study, &enlarged_harmonics(&study));
+        let all = Harmonics::Set((0..=15).chain([21]).collect());
+        assert_eq!(enlarged.solver.harmonics, all);
+        assert_eq!(enlarged.solver.samples_per_period, 256);
+        assert!(enlarged.solver.peak_tolerance < 0.5 * setting.peak_tolerance);
+    }
 }

@@ -49,6 +49,9 @@ pub(super) struct Judges<'a> {
 /// A judged row, the settings of its points, and its peak.
 type JudgedPeak<'a> = (EngineRow<'a>, PointSettings, Peak);
 
+/// A set with the judged peaks under it.
+pub(super) type PeaksOfChoice<'a> = (HarmonicChoice, Vec<JudgedPeak<'a>>);
+
 /// What the peaks of a set say of it.
 struct Verdict {
     /// Whether every wheel has a peak.
@@ -135,17 +138,15 @@ impl<'a> Judges<'a> {
         admitted.collect()
     }
 
-    /// Largest relative change of a peak, with its harmonics, from these wheels to the same ones on each of the other engines; none
-    /// where no peak is found on both. Each is looked for here, and climbed from here there.
+    /// The peaks of these wheels with their harmonics, under some of `conditions`.
     ///
     /// # Errors
     /// If the samples per period cannot tell the harmonics apart.
-    pub(super) fn changes<const N: usize>(
+    pub(super) fn judged_peaks(
         &self,
-        others: [Option<&Self>; N],
         conditions: &[ContactCondition],
         sets: &[HarmonicChoice],
-    ) -> Result<[Option<f64>; N], TransformError> {
+    ) -> Result<Vec<PeaksOfChoice<'_>>, TransformError> {
         let mut choices = Vec::new();
         for &(order, _) in &self.forces {
             for condition in spread(conditions) {
@@ -155,16 +156,23 @@ impl<'a> Judges<'a> {
                 choices.push(known.unwrap_or_else(|| choice_of((order, condition), &[1])));
             }
         }
-        let changes = choices.par_iter().map(|choice| {
-            let mut largest = [None; N];
-            for (wheel, own) in self.peaks(choice)?.into_iter().enumerate() {
-                let changes = others.map(|other| self.change_of(&own, other?, wheel, choice));
-                largest = larger(largest, changes);
-            }
-            Ok(largest)
+        let peaks = choices.into_par_iter().map(|choice| {
+            let peaks = self.peaks(&choice)?;
+            Ok((choice, peaks))
         });
-        let changes: Vec<[Option<f64>; N]> = changes.collect::<Result<_, TransformError>>()?;
-        Ok(changes.into_iter().fold([None; N], larger))
+        peaks.collect()
+    }
+
+    /// Largest relative change of `peaks` of these wheels to the same ones on another engine, climbed from here there; none where no
+    /// peak is found on both.
+    pub(super) fn change(&self, peaks: &[PeaksOfChoice<'_>], other: &Self) -> Option<f64> {
+        let of_choice = |(choice, peaks): &PeaksOfChoice<'_>| {
+            let own = peaks.iter().enumerate();
+            own.filter_map(|(wheel, own)| self.change_of(own, other, wheel, choice))
+                .reduce(f64::max)
+        };
+        let changes: Vec<Option<f64>> = peaks.par_iter().map(of_choice).collect();
+        changes.into_iter().flatten().reduce(f64::max)
     }
 
     fn change_of(
@@ -352,12 +360,6 @@ impl Verdict {
             .filter(|_| self.found && !lacks_separation)
             .unwrap_or(f64::INFINITY)
     }
-}
-
-/// The larger of each two, where there is one.
-pub(super) fn larger<const N: usize>(a: [Option<f64>; N], b: [Option<f64>; N]) -> [Option<f64>; N] {
-    let larger = |place: usize| a[place].into_iter().chain(b[place]).reduce(f64::max);
-    std::array::from_fn(larger)
 }
 
 /// A set not yet judged.

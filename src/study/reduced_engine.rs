@@ -59,21 +59,7 @@ impl EngineSource for ReducedEngineSource {
             return accurate_engine(study, accuracy, model, cache);
         }
         let digest = stored_digest(study, model);
-        let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
-        let stored = if let Some(stored) = cached.filter(|stored| stored.fits(study, model)) {
-            stored
-        } else {
-            let stored = if is_on_receptances(study, model) {
-                reduced_on_receptances(study, model)?
-            } else {
-                let (reduction, fixed_interface) = reduce_sector(study, model)?;
-                reduced(study, &reduction, fixed_interface)?
-            };
-            if let Some(folder) = cache {
-                write_cached(folder, &digest, &stored)?;
-            }
-            stored
-        };
+        let stored = stored_for(study, model, cache)?;
         Ok(Box::new(ReducedEngine {
             evidence: stored.evidence.clone(),
             fixed_interface: stored.fixed_interface.clone(),
@@ -297,8 +283,34 @@ impl Engine for ReducedEngine {
     }
 }
 
+/// What rows of `study` are solved on: from `cache` if it is there, else made, and kept there.
+///
+/// # Errors
+/// The model cannot be reduced, or the cache not be written.
+pub(super) fn stored_for(
+    study: &Study,
+    model: &SectorModel,
+    cache: Option<&Path>,
+) -> Result<Stored, PipelineError> {
+    let digest = stored_digest(study, model);
+    let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
+    if let Some(stored) = cached.filter(|stored| stored.fits(study, model)) {
+        return Ok(stored);
+    }
+    let stored = if is_on_receptances(study, model) {
+        reduced_on_receptances(study, model)?
+    } else {
+        let (reduction, fixed_interface) = reduce_sector(study, model)?;
+        reduced(study, &reduction, fixed_interface)?
+    };
+    if let Some(folder) = cache {
+        write_cached(folder, &digest, &stored)?;
+    }
+    Ok(stored)
+}
+
 /// Digest of everything that the stored models and sets of a study depend on: also of what their errors are judged by.
-pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> String {
+fn stored_digest(study: &Study, model: &SectorModel) -> String {
     let settings = row_settings(study);
     let stiffness = contact_stiffness(study.contact.as_ref());
     let sensitivity = sensitivity_vectors(study);

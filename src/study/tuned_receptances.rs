@@ -7,7 +7,7 @@ use super::Study;
 use super::basis_choice::{BasisError, BasisEvidence};
 use super::fixed_interface::{FixedInterface, ModesTried, expected_deviation, reduction_with};
 use super::load_cases::Excitation;
-use super::receptance_choice::{Judges, larger};
+use super::receptance_choice::{Judges, PeaksOfChoice};
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::{ModelError, SectorModel, StiffnessKind};
@@ -156,123 +156,196 @@ pub(super) fn refined<'a>(
 ) -> Result<Refined<'a>, PipelineError> {
     let fixed = study.reduction.craig_bampton_modes;
     let mut modes = fixed.map_or(FIRST_MODES, |own| 2 * own);
-    let conditions = &study.contacts;
     let mut harmonics: Option<Vec<Vec<HarmonicChoice>>> = None;
     let mut tried = Vec::new();
     let mut shape_factor = 1;
-    let reduction = |modes| {
-        let reduction = reduction_with(study, sector, modes);
-        reduction.with_residual_vectors().completed()
-    };
-    let mut fine = reduction(modes)?;
     loop {
+        let fine = reduction_with(study, sector, modes)
+            .with_residual_vectors()
+            .completed()?;
         let coarse = fine.with_fewer_modes(modes / 2);
         let whole = fine.is_whole_space();
-        let takes_coarse = fixed.is_some() && !whole;
-        let (taken, other) = if takes_coarse {
-            (&coarse, Some(&fine))
-        } else {
-            (&fine, (!whole).then_some(&coarse))
+        let (taken, other) = match fixed {
+            Some(_) if !whole => (coarse, Some(fine)),
+            _ => (fine, (!whole).then_some(coarse)),
         };
-        let engine = Made::new(study, taken, excitations, shape_factor)?;
-        let (engine, factor, mut evidence) = with_shapes(study, engine, excitations, shape_factor)?;
-        shape_factor = factor;
-        let own = engine.judges(excitations, patterns);
+        let engine = Made::new(study, &taken, excitations, shape_factor)?;
+        let shaped = Shaped::new(study, engine, excitations, shape_factor)?;
+        shape_factor = shaped.factor;
+        let own = shaped.engine.judges(excitations, patterns);
         let sets = match harmonics.take() {
             Some(sets) => sets,
             None => own.iter().map(&chosen).collect::<Result<_, _>>()?,
         };
-        let other = other.map(|other| Made::new(study, other, excitations, shape_factor));
-        let other = other.transpose()?;
-        let finer = if engine.receptances.is_exact() {
-            None
-        } else {
-            Some(engine.with_shape_factor(study, excitations, 2 * shape_factor)?)
+        let peaks = Peaks::of(&own, &study.contacts, &sets)?;
+        let change = match &other {
+            None => Some(0.0),
+            Some(other) => {
+                let other = Made::new(study, other, excitations, shape_factor)?;
+                peaks.change(&other.judges(excitations, patterns))
+            }
         };
-        let [others, finers] = [&other, &finer].map(|made| {
-            let judges = made.as_ref().map(|made| made.judges(excitations, patterns));
-            judges.unwrap_or_default()
-        });
-        let mut changes = [other.is_none().then_some(0.0), None];
-        for (case, (own, sets)) in own.iter().zip(&sets).enumerate() {
-            let engines = [others.get(case), finers.get(case)];
-            changes = larger(changes, own.changes(engines, conditions, sets)?);
-        }
-        let [change, of_shapes] = changes;
-        if let Some(taken) = evidence.tried.last_mut() {
-            taken.error = larger([taken.error], [of_shapes])[0];
-        }
-        let lacks_shapes = of_shapes.is_some_and(|change| change > study.reduction.error)
-            && shape_factor < MOST_SHAPES;
         tried.push(ModesTried {
             modes: taken.fixed_interface_modes(),
             change,
         });
         let enough = change.is_none_or(|change| change <= study.reduction.error);
-        let lacks_modes = !enough && fixed.is_none() && modes < MOST_MODES;
-        if !lacks_shapes && !lacks_modes {
-            let margin = if fixed.is_some() { FIXED_MARGIN } else { 1.0 };
-            drop((own, others, finers));
-            return Ok(Refined {
-                fixed_interface: FixedInterface {
-                    modes: taken.fixed_interface_modes(),
-                    error: change.map(|change| margin * change),
-                    tried,
-                },
-                reduction: if takes_coarse { coarse } else { fine },
-                engine,
-                evidence,
-                harmonics: sets,
-            });
-        }
-        harmonics = Some(sets);
-        if lacks_shapes {
-            shape_factor *= 2;
-        }
-        if lacks_modes {
+        if !enough && fixed.is_none() && modes < MOST_MODES {
+            harmonics = Some(sets);
             modes *= 2;
-            drop((own, others, finers));
-            fine = reduction(modes)?;
+            continue;
         }
+        let of_shapes = shaped.change(&peaks, excitations, patterns);
+        drop(peaks);
+        drop(own);
+        let mut shaped = shaped.with_change(of_shapes);
+        while shaped.lacks_shapes(study) {
+            shaped = shaped.with_twice_the_shapes(study, excitations)?;
+            let own = shaped.engine.judges(excitations, patterns);
+            let peaks = Peaks::of(&own, &study.contacts, &sets)?;
+            let of_shapes = shaped.change(&peaks, excitations, patterns);
+            drop(peaks);
+            drop(own);
+            shaped = shaped.with_change(of_shapes);
+        }
+        let margin = if fixed.is_some() { FIXED_MARGIN } else { 1.0 };
+        return Ok(Refined {
+            fixed_interface: FixedInterface {
+                modes: taken.fixed_interface_modes(),
+                error: change.map(|change| margin * change),
+                tried,
+            },
+            reduction: taken,
+            engine: shaped.engine,
+            evidence: BasisEvidence {
+                whole_space: false,
+                craig_bampton_reach: None,
+                tried: shaped.tried,
+            },
+            harmonics: sets,
+        });
     }
 }
 
-/// The engine with `shape_factor` or the first of twice, four times ... as many blade shapes that twice as many again change no
-/// linear peak by more than `reduction.error`, with its factor and what was tried.
-fn with_shapes(
-    study: &Study,
-    made: Made,
-    excitations: &[Excitation],
-    shape_factor: usize,
-) -> Result<(Made, usize, BasisEvidence), PipelineError> {
-    let mut made = made;
-    let mut factor = shape_factor;
-    let mut tried = Vec::new();
-    loop {
-        let exact = made.receptances.is_exact();
-        let finer = made.with_shape_factor(study, excitations, 2 * factor)?;
-        let error = if exact {
-            Some(0.0)
-        } else {
-            linear_change(study, &made, &finer, excitations)?
+/// The peaks of the wheels that judge, under each force vector.
+struct Peaks<'a> {
+    own: &'a [Judges<'a>],
+    peaks: Vec<Vec<PeaksOfChoice<'a>>>,
+}
+
+impl<'a> Peaks<'a> {
+    fn of(
+        own: &'a [Judges<'a>],
+        conditions: &[ContactCondition],
+        sets: &[Vec<HarmonicChoice>],
+    ) -> Result<Self, TransformError> {
+        let judges = own.iter().zip(sets);
+        let peaks = judges.map(|(own, sets)| own.judged_peaks(conditions, sets));
+        Ok(Self {
+            own,
+            peaks: peaks.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Largest relative change to the same wheels on another engine; none where no peak is found on both.
+    fn change(&self, others: &[Judges<'_>]) -> Option<f64> {
+        let cases = self.own.iter().zip(&self.peaks).zip(others);
+        let changes = cases.filter_map(|((own, peaks), other)| own.change(peaks, other));
+        changes.reduce(f64::max)
+    }
+}
+
+/// An engine with enough blade shapes for linear peaks, and one with twice as many.
+struct Shaped {
+    engine: Made,
+    /// None where no shape is left out.
+    finer: Option<Made>,
+    factor: usize,
+    /// What was tried, the engine last.
+    tried: Vec<BasisError>,
+}
+
+impl Shaped {
+    /// With `factor` or the first of twice, four times ... as many shapes that twice as many again change no linear peak by more than
+    /// `reduction.error`.
+    fn new(
+        study: &Study,
+        engine: Made,
+        excitations: &[Excitation],
+        factor: usize,
+    ) -> Result<Self, PipelineError> {
+        let tried = Vec::new();
+        let mut own = Self::judged(study, engine, excitations, factor, tried)?;
+        while own.lacks_shapes(study) {
+            own = own.with_twice_the_shapes(study, excitations)?;
+        }
+        Ok(own)
+    }
+
+    /// `engine` of so many shapes, with what twice as many change of linear peaks.
+    fn judged(
+        study: &Study,
+        engine: Made,
+        excitations: &[Excitation],
+        factor: usize,
+        mut tried: Vec<BasisError>,
+    ) -> Result<Self, PipelineError> {
+        let exact = engine.receptances.is_exact();
+        let finer = (!exact).then(|| engine.with_shape_factor(study, excitations, 2 * factor));
+        let finer = finer.transpose()?;
+        let error = match &finer {
+            None => Some(0.0),
+            Some(finer) => linear_change(study, &engine, finer, excitations)?,
         };
         tried.push(BasisError {
             basis: TUNED_RECEPTANCES.to_owned(),
-            vectors: made.receptances.shape_count(Limit::Stuck, 1),
+            vectors: engine.receptances.shape_count(Limit::Stuck, 1),
             error,
             contact_displacement: None,
         });
-        let enough = error.is_some_and(|error| error <= study.reduction.error);
-        if enough || factor >= MOST_SHAPES {
-            let evidence = BasisEvidence {
-                whole_space: false,
-                craig_bampton_reach: None,
-                tried,
-            };
-            return Ok((made, factor, evidence));
+        Ok(Self {
+            engine,
+            finer,
+            factor,
+            tried,
+        })
+    }
+
+    fn with_twice_the_shapes(
+        self,
+        study: &Study,
+        excitations: &[Excitation],
+    ) -> Result<Self, PipelineError> {
+        match self.finer {
+            None => Ok(self),
+            Some(finer) => Self::judged(study, finer, excitations, 2 * self.factor, self.tried),
         }
-        made = finer;
-        factor *= 2;
+    }
+
+    /// Whether twice as many change a peak by more than `reduction.error`, and may be taken.
+    fn lacks_shapes(&self, study: &Study) -> bool {
+        let error = self.tried.last().and_then(|taken| taken.error);
+        let enough = error.is_some_and(|error| error <= study.reduction.error);
+        !enough && self.finer.is_some() && self.factor < MOST_SHAPES
+    }
+
+    /// What twice as many change of `peaks`, which are those of this engine.
+    fn change(
+        &self,
+        peaks: &Peaks<'_>,
+        excitations: &[Excitation],
+        patterns: &[Pattern],
+    ) -> Option<f64> {
+        let finer = self.finer.as_ref()?.judges(excitations, patterns);
+        peaks.change(&finer)
+    }
+
+    /// The same where this change counts too.
+    fn with_change(mut self, change: Option<f64>) -> Self {
+        if let Some(taken) = self.tried.last_mut() {
+            taken.error = taken.error.map(|own| own.max(change.unwrap_or(0.0)));
+        }
+        self
     }
 }
 
