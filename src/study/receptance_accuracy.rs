@@ -21,7 +21,7 @@ use super::reduced_engine::stored_for;
 use super::reduced_study::{Stored, solver_of};
 use super::{PipelineError, Study};
 use crate::model::sector::SectorModel;
-use crate::population::monte_carlo::TUNED_RECEPTANCES;
+use crate::population::monte_carlo::{TUNED_RECEPTANCES, harmonics_name};
 use crate::population::statistics::ErrorBound;
 use crate::response::forced_response::{Harmonics, RowsBeyondTolerance};
 use crate::response::mistuning::PatternSource;
@@ -168,10 +168,7 @@ impl ReceptanceSetting {
     fn harmonics_in_words(&self) -> String {
         match &self.harmonics {
             None => format!("auto {}", self.harmonic_tolerance),
-            Some(set) => {
-                let set: Vec<String> = set.iter().map(u32::to_string).collect();
-                set.join(", ")
-            }
+            Some(set) => harmonics_name(set),
         }
     }
 
