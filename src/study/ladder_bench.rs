@@ -310,6 +310,11 @@ impl<'a> LadderEngine<'a> {
         &self.tuned
     }
 
+    /// What solves the rows.
+    pub(super) fn solver(&self) -> &RowSolver {
+        &self.solver
+    }
+
     /// Whether contacts of a tuned wheel separate.
     #[must_use]
     pub fn separates(&self) -> bool {

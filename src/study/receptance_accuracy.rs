@@ -1,13 +1,14 @@
 //! Settings on tuned receptances by an accepted error, held against enlarged ones on mistuned wheels.
 //!
 //! Every tolerance of the engine is a fixed share of the accepted error. Rows of the study at these settings are compared with the
-//! same rows in harmonics up to 15, with twice the blade shapes and twice the samples, found by a search of their own. Where the
+//! same rows in harmonics up to 15, with twice the blade shapes and twice the samples, each climbed from its own peak. Where the
 //! upper bound of the 95th percentile of the amplitude error is not accepted, the tolerances of harmonics and peak are halved; where
 //! that does not do either, every harmonic is taken. What the study says itself stays. Modes and shapes stay too: their error was
 //! measured when they were chosen.
 
 use std::path::Path;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -23,7 +24,7 @@ use super::{PipelineError, Study};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{TUNED_RECEPTANCES, harmonics_name};
 use crate::population::statistics::ErrorBound;
-use crate::response::forced_response::{Harmonics, RowsBeyondTolerance};
+use crate::response::forced_response::{Harmonics, RowsBeyondTolerance, TopBeside};
 use crate::response::mistuning::PatternSource;
 
 /// Tolerance of the harmonics over the accepted error; judged wheels are held to a fifth of it.
@@ -41,8 +42,8 @@ const SAMPLES_PER_HARMONIC: usize = 4;
 const ENLARGED_HARMONIC: u32 = 15;
 /// Samples of these rows at least.
 const ENLARGED_SAMPLES: usize = 256;
-/// Peak tolerance of these rows over that of the settings.
-const ENLARGED_PEAK: f64 = 0.2;
+/// What a top of these rows may be off by because a solution had not settled, over the peak tolerance of the settings.
+const UNSETTLED: f64 = 1.0;
 
 /// Settings of rows on tuned receptances.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -149,8 +150,12 @@ impl ReceptanceSetting {
         let mut own = self.applied_to(study);
         own.solver.harmonics = Harmonics::Set(harmonics.to_vec());
         own.solver.samples_per_period = ENLARGED_SAMPLES.max(2 * self.samples_per_period);
-        own.solver.peak_tolerance = ENLARGED_PEAK * self.peak_tolerance;
         own
+    }
+
+    /// `top` where it is known well enough to tell an error by.
+    fn settled(&self, top: TopBeside) -> Option<TopBeside> {
+        (top.unsettled <= UNSETTLED * self.peak_tolerance).then_some(top)
     }
 
     /// The settings for the manifest, under the names of the ladder's where it has them.
@@ -232,11 +237,11 @@ pub(super) fn on_receptances(
     }
 }
 
-/// Rows of a sample at some settings and at the enlarged ones, ordered by pattern, then scenario.
+/// Rows of a sample at some settings with their values at the enlarged ones, ordered by pattern, then scenario.
 struct Rows {
     sample: LadderSample,
     own: Vec<LadderRow>,
-    enlarged: Vec<LadderRow>,
+    enlarged: Vec<LadderValues>,
 }
 
 impl Rows {
@@ -263,24 +268,44 @@ impl Rows {
             &setting.enlarged(study, &harmonics),
             &stored.enlarged(&harmonics),
         )?;
-        let [own, enlarged] = [solver, enlarged].map(|solver| {
-            let engine = LadderEngine::new(solver, &sample.scenarios, &Unwatched);
-            engine.rows(patterns, ids)
+        let engine = LadderEngine::new(solver, &sample.scenarios, &Unwatched);
+        let rows = engine.rows(patterns, ids);
+        let tuned: Vec<Option<f64>> = sample
+            .scenarios
+            .par_iter()
+            .zip(engine.tuned())
+            .map(|(scenario, tuned)| {
+                let found = (tuned.frequency_hz?, tuned.harmonics.as_str());
+                let top = enlarged.top_beside(engine.solver(), None, scenario, found)?;
+                setting.settled(top).map(|top| top.amplitude_m)
+            })
+            .collect();
+        let values = rows.par_iter().map(|row| {
+            let scenario = &sample.scenarios[row.scenario];
+            let pattern = patterns.pattern(row.pattern, scenario.standard_deviation)?;
+            let found = (row.values.frequency_hz?, row.harmonics.as_str());
+            let top = enlarged.top_beside(engine.solver(), Some(&pattern), scenario, found)?;
+            let top = setting.settled(top)?;
+            Some(LadderValues {
+                amplitude_m: Some(top.amplitude_m),
+                frequency_hz: Some(top.frequency_hz),
+                amplification_factor: tuned[row.scenario].map(|tuned| top.amplitude_m / tuned),
+            })
         });
         Ok(Self {
+            enlarged: values.map(Option::unwrap_or_default).collect(),
+            own: rows,
             sample,
-            own,
-            enlarged,
         })
     }
 
     fn bound(&self, quantity: Compared) -> Option<ErrorBound> {
-        error_bound(&values(&self.own), &values(&self.enlarged), quantity)
+        let own: Vec<LadderValues> = self.own.iter().map(|row| row.values).collect();
+        error_bound(&own, &self.enlarged, quantity)
     }
 
     fn operations(&self) -> f64 {
-        let rows = self.own.iter().chain(&self.enlarged);
-        rows.map(|row| row.operations).sum()
+        self.own.iter().map(|row| row.operations).sum()
     }
 
     fn evidence(
@@ -309,11 +334,7 @@ impl Rows {
             load_cases: scenarios
                 .filter_map(|scenario| scenario.load_case)
                 .collect(),
-            errors_of_load_cases: errors_of_load_cases(
-                &self.own,
-                &values(&self.enlarged),
-                &self.sample,
-            ),
+            errors_of_load_cases: errors_of_load_cases(&self.own, &self.enlarged, &self.sample),
         }
     }
 }
@@ -330,10 +351,6 @@ fn enlarged_harmonics(study: &Study) -> Vec<u32> {
     harmonics.sort_unstable();
     harmonics.dedup();
     harmonics
-}
-
-fn values(rows: &[LadderRow]) -> Vec<LadderValues> {
-    rows.iter().map(|row| row.values).collect()
 }
 
 fn mean_operations(rows: &[LadderRow]) -> f64 {
@@ -415,6 +432,5 @@ mod tests {
         let all = Harmonics::Set((0..=15).chain([21]).collect());
         assert_eq!(enlarged.solver.harmonics, all);
         assert_eq!(enlarged.solver.samples_per_period, 256);
-        assert!(enlarged.solver.peak_tolerance < 0.5 * setting.peak_tolerance);
     }
 }

@@ -74,7 +74,9 @@ fn study_of(wheel: &str, rows: &[Row], accepted: Option<f64>) -> Study {
         "{}\nnormal_load_n = [{}]\n\n[reduction]\nbasis = \"tuned_receptances\"\n{}",
         physics.join("\n"),
         conditions.join(", "),
-        accepted.map_or(String::new(), |own| format!("[accuracy]\namplitude_error = {own}\n"))
+        accepted.map_or(String::new(), |own| format!(
+            "[accuracy]\namplitude_error = {own}\n"
+        ))
     );
     Study::parse(&path, &text).expect("a good study")
 }

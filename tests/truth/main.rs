@@ -133,7 +133,9 @@ fn errors_within(wheel: &str, accepted: f64, wanted: impl Fn(&Row) -> bool) -> V
     let rows = engine::solved_within(wheel, Some(accepted), wanted);
     let error = |(truth, row): (Row, ResponseRow)| {
         let amplitude_m = truth.amplitude_m.expect("a peak");
-        let error = row.peak_amplitude_m.map_or(f64::INFINITY, |own| own / amplitude_m - 1.0);
+        let error = row
+            .peak_amplitude_m
+            .map_or(f64::INFINITY, |own| own / amplitude_m - 1.0);
         let uncertain = truth.change_by_modes.abs() + by_harmonics;
         println!(
             "{wheel}, pattern {}, {}, within {accepted}: {error:.2e}, truth {uncertain:.1e}, stated {:.1e}, {}",
@@ -150,7 +152,10 @@ fn errors_within(wheel: &str, accepted: f64, wanted: impl Fn(&Row) -> bool) -> V
 /// Rows of a wheel of eight sectors with friction, each load at another state of the contact.
 #[test]
 fn rows_are_as_true_as_the_accepted_error_says() {
-    let wanted = |row: &Row| row.load_n().is_some_and(|load| [397.1, 736.6, 2619.0].contains(&load));
+    let wanted = |row: &Row| {
+        row.load_n()
+            .is_some_and(|load| [397.1, 736.6, 2619.0].contains(&load))
+    };
     for accepted in [0.01, 0.001] {
         let errors = errors_within("wheel8", accepted, wanted);
         assert_eq!(errors.len(), 3);
@@ -172,8 +177,15 @@ fn every_row_is_as_true_as_the_accepted_error_says() {
         let errors = of_wheels(|row| row.load_n().is_some());
         let within = errors.iter().filter(|&&error| error <= accepted).count();
         let worst = errors.iter().copied().fold(0.0, f64::max);
-        println!("{accepted}: {within} of {} rows within, worst {worst:.2e}", errors.len());
-        assert!(within * 100 >= 95 * errors.len(), "{within} of {}", errors.len());
+        println!(
+            "{accepted}: {within} of {} rows within, worst {worst:.2e}",
+            errors.len()
+        );
+        assert!(
+            within * 100 >= 95 * errors.len(),
+            "{within} of {}",
+            errors.len()
+        );
         assert!(worst <= most, "{worst:.2e}");
         let linear = of_wheels(|row| row.load_n().is_none());
         assert!(linear.iter().all(|&error| error <= 3e-4), "{linear:?}");
