@@ -1,9 +1,9 @@
 //! Settings on tuned receptances by an accepted error, held against enlarged ones on mistuned wheels.
 //!
 //! Every tolerance of the engine is a fixed share of the accepted error. Rows of the study at these settings are compared with the
-//! same rows in harmonics up to 15, with twice the blade shapes and twice the samples, each climbed from its own peak. Where the
-//! upper bound of the 95th percentile of the amplitude error is not accepted, the tolerances of harmonics and peak are halved; where
-//! that does not do either, every harmonic is taken. What the study says itself stays. Modes and shapes stay too: their error was
+//! same rows in harmonics up to 15, with twice the blade shapes and twice the samples, each climbed from its own peak. Where one
+//! of them is further off than is accepted, the tolerances of harmonics and peak are halved; where that does not do either, every
+//! harmonic is taken. What the study says itself stays. Modes and shapes stay too: their error was
 //! measured when they were chosen.
 
 use std::path::Path;
@@ -22,9 +22,11 @@ use super::reduced_engine::stored_for;
 use super::reduced_study::{Stored, solver_of};
 use super::{PipelineError, Study};
 use crate::model::sector::SectorModel;
-use crate::population::monte_carlo::{TUNED_RECEPTANCES, harmonics_name};
+use crate::population::monte_carlo::{RowSolver, Scenario, TUNED_RECEPTANCES, harmonics_name};
 use crate::population::statistics::ErrorBound;
-use crate::response::forced_response::{Harmonics, RowsBeyondTolerance, TopBeside};
+use crate::response::forced_response::{
+    ContactCondition, Harmonics, RowsBeyondTolerance, TopBeside,
+};
 use crate::response::mistuning::PatternSource;
 
 /// Tolerance of the harmonics over the accepted error; judged wheels are held to a fifth of it.
@@ -44,6 +46,9 @@ const ENLARGED_HARMONIC: u32 = 15;
 const ENLARGED_SAMPLES: usize = 256;
 /// What a top of these rows may be off by because a solution had not settled, over the peak tolerance of the settings.
 const UNSETTLED: f64 = 1.0;
+
+/// Share of the rows whose values at the enlarged settings are known, at least.
+const SETTLED: f64 = 0.5;
 
 /// Settings of rows on tuned receptances.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -229,8 +234,10 @@ pub(super) fn on_receptances(
             worst: amplitude.worst,
             operations: mean_operations(&compared.own),
         });
-        let met = amplitude.p95_upper <= accepted;
-        if met || left.len() == 0 {
+        let known = SETTLED * compared.own.len() as f64;
+        let met = amplitude.p95_upper <= accepted && amplitude.rows as f64 >= known;
+        // The bound of few rows is wide, and what does not settle settles no better by smaller tolerances: neither asks for more.
+        if amplitude.worst <= accepted || left.len() == 0 {
             let evidence = compared.evidence(&setting, amplitude, operations, tried);
             return Ok(choice(met, Some(evidence)));
         }
@@ -260,7 +267,7 @@ impl Rows {
             .zip(choices.map(Iterator::collect::<Vec<_>>))
             .collect();
         let sample = LadderSample {
-            scenarios: sampled_scenarios(&own, &remainders),
+            scenarios: sampled_scenarios(&in_contact(own, &solver), &remainders),
             patterns: ids.to_vec(),
         };
         let harmonics = enlarged_harmonics(study);
@@ -337,6 +344,29 @@ impl Rows {
             errors_of_load_cases: errors_of_load_cases(&self.own, &self.enlarged, &self.sample),
         }
     }
+}
+
+/// `study` without the loads under which contacts of a tuned wheel separate, if there are others: with every harmonic such rows seldom
+/// settle, and each takes as long as all others.
+fn in_contact(study: Study, solver: &RowSolver) -> Study {
+    let scenarios = study.scenarios();
+    let excited: Vec<&Scenario> = scenarios
+        .iter()
+        .filter(|own| own.contact.normal_load_n().is_some())
+        .filter(|own| own.standard_deviation == scenarios[0].standard_deviation)
+        .collect();
+    let separates = excited.par_iter().map(|own| {
+        let tuned = solver.tuned(own);
+        tuned.separated_fraction.is_none_or(|share| share > 0.0)
+    });
+    let separates: Vec<bool> = separates.collect();
+    let lost = |contact: &ContactCondition| {
+        let mut own = excited.iter().zip(&separates);
+        own.any(|(own, &separates)| separates && own.contact == *contact)
+    };
+    let mut own = study.clone();
+    own.contacts.retain(|contact| !lost(contact));
+    if own.has_friction() { own } else { study }
 }
 
 /// Every harmonic that the law of `study` can excite, to the highest of the comparison, and those that the study says.

@@ -34,6 +34,9 @@ pub fn solved_within(
     let engine = ReducedEngineSource
         .build(&study, &model, None)
         .expect("an engine");
+    if accepted.is_some() {
+        println!("{wheel}: {}", engine.chosen_settings()["accuracy"]);
+    }
     let scenarios: Vec<Scenario> = study.scenarios();
     let tuned: Vec<_> = scenarios.iter().map(|own| engine.tuned(own)).collect();
     let row = |truth: Row| {
