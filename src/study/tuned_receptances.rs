@@ -7,7 +7,7 @@ use super::Study;
 use super::basis_choice::{BasisError, BasisEvidence};
 use super::fixed_interface::{FixedInterface, ModesTried, expected_deviation, reduction_with};
 use super::load_cases::Excitation;
-use super::receptance_choice::{Judges, PeaksOfChoice};
+use super::receptance_choice::{JudgedTop, Judges};
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::{ModelError, SectorModel, StiffnessKind};
@@ -177,12 +177,17 @@ pub(super) fn refined<'a>(
             Some(sets) => sets,
             None => own.iter().map(&chosen).collect::<Result<_, _>>()?,
         };
-        let peaks = Peaks::of(&own, &study.contacts, &sets)?;
+        let tops = if other.is_none() && shaped.finer.is_none() {
+            Vec::new()
+        } else {
+            judged_tops(&own, &study.contacts, &sets)?
+        };
+        drop(own);
         let change = match &other {
             None => Some(0.0),
             Some(other) => {
                 let other = Made::new(study, other, excitations, shape_factor)?;
-                peaks.change(&other.judges(excitations, patterns))
+                change_of(&tops, &other.judges(excitations, patterns))
             }
         };
         tried.push(ModesTried {
@@ -195,17 +200,14 @@ pub(super) fn refined<'a>(
             modes *= 2;
             continue;
         }
-        let of_shapes = shaped.change(&peaks, excitations, patterns);
-        drop(peaks);
-        drop(own);
+        let of_shapes = shaped.change(&tops, excitations, patterns);
         let mut shaped = shaped.with_change(of_shapes);
         while shaped.lacks_shapes(study) {
             shaped = shaped.with_twice_the_shapes(study, excitations)?;
             let own = shaped.engine.judges(excitations, patterns);
-            let peaks = Peaks::of(&own, &study.contacts, &sets)?;
-            let of_shapes = shaped.change(&peaks, excitations, patterns);
-            drop(peaks);
+            let tops = judged_tops(&own, &study.contacts, &sets)?;
             drop(own);
+            let of_shapes = shaped.change(&tops, excitations, patterns);
             shaped = shaped.with_change(of_shapes);
         }
         let margin = if fixed.is_some() { FIXED_MARGIN } else { 1.0 };
@@ -227,32 +229,23 @@ pub(super) fn refined<'a>(
     }
 }
 
-/// The peaks of the wheels that judge, under each force vector.
-struct Peaks<'a> {
-    own: &'a [Judges<'a>],
-    peaks: Vec<Vec<PeaksOfChoice<'a>>>,
+/// The tops of the wheels that judge, under each force vector.
+fn judged_tops(
+    own: &[Judges<'_>],
+    conditions: &[ContactCondition],
+    sets: &[Vec<HarmonicChoice>],
+) -> Result<Vec<Vec<JudgedTop>>, TransformError> {
+    let judges = own.iter().zip(sets);
+    judges
+        .map(|(own, sets)| own.judged_tops(conditions, sets))
+        .collect()
 }
 
-impl<'a> Peaks<'a> {
-    fn of(
-        own: &'a [Judges<'a>],
-        conditions: &[ContactCondition],
-        sets: &[Vec<HarmonicChoice>],
-    ) -> Result<Self, TransformError> {
-        let judges = own.iter().zip(sets);
-        let peaks = judges.map(|(own, sets)| own.judged_peaks(conditions, sets));
-        Ok(Self {
-            own,
-            peaks: peaks.collect::<Result<_, _>>()?,
-        })
-    }
-
-    /// Largest relative change to the same wheels on another engine; none where no peak is found on both.
-    fn change(&self, others: &[Judges<'_>]) -> Option<f64> {
-        let cases = self.own.iter().zip(&self.peaks).zip(others);
-        let changes = cases.filter_map(|((own, peaks), other)| own.change(peaks, other));
-        changes.reduce(f64::max)
-    }
+/// Largest relative change of these tops to those of the same wheels on another engine; none where no top is found on both.
+fn change_of(tops: &[Vec<JudgedTop>], others: &[Judges<'_>]) -> Option<f64> {
+    let cases = tops.iter().zip(others);
+    let changes = cases.filter_map(|(tops, other)| other.change(tops));
+    changes.reduce(f64::max)
 }
 
 /// An engine with enough blade shapes for linear peaks, and one with twice as many.
@@ -329,15 +322,15 @@ impl Shaped {
         !enough && self.finer.is_some() && self.factor < MOST_SHAPES
     }
 
-    /// What twice as many change of `peaks`, which are those of this engine.
+    /// What twice as many change of `tops`, which are those of this engine.
     fn change(
         &self,
-        peaks: &Peaks<'_>,
+        tops: &[Vec<JudgedTop>],
         excitations: &[Excitation],
         patterns: &[Pattern],
     ) -> Option<f64> {
         let finer = self.finer.as_ref()?.judges(excitations, patterns);
-        peaks.change(&finer)
+        change_of(tops, &finer)
     }
 
     /// The same where this change counts too.
