@@ -29,8 +29,8 @@ pub struct RunArguments {
     /// Kubernetes array.
     #[arg(long, value_name = "k/n|auto", num_args = 0..=1, default_missing_value = "auto")]
     pub shard: Option<ShardArgument>,
-    /// Accepted relative error of the peak amplitude, like 1% or 0.01: the program chooses basis,
-    /// harmonics and tolerances, as with `[accuracy]` in the study.
+    /// Accepted relative error of the peak amplitude, like 1% or 0.01: the program chooses what the
+    /// study does not say of harmonics and tolerances, as with `[accuracy]` in the study.
     #[arg(long, value_name = "E", value_parser = accuracy)]
     pub accuracy: Option<AccuracyOptions>,
     /// Where another build of the program solved the rows of the folder: move them to `superseded/`

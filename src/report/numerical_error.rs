@@ -107,7 +107,7 @@ impl fmt::Display for NumericalFinding {
         match self {
             Self::Missed { accepted, reached } => write!(
                 f,
-                "no settings of the ladder keep accuracy.amplitude_error = {accepted}; the most accurate \
+                "no settings that were tried keep accuracy.amplitude_error = {accepted}; the most accurate \
                  were taken ({}); accept a larger error, or see `blisk tradeoff`",
                 reached.map_or("without a bound".to_owned(), |reached| format!(
                     "95 % of the amplitudes within {:.2} %",

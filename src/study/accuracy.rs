@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AccuracyOptions {
-    /// Accepted relative error of the peak amplitude of 95 % of the rows.
+    /// Accepted relative error of the peak amplitude of 95 % of the rows. Default 0.01.
     pub amplitude_error: f64,
     /// Whether a simpler contact law may take the place of that of the study, where the error allows it. Default false.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -16,6 +16,8 @@ pub struct AccuracyOptions {
 }
 
 impl AccuracyOptions {
+    /// Accepted where nothing is said. The settings of a study without `[accuracy]` are those for it on tuned receptances, unchecked.
+    pub const DEFAULT: f64 = 0.01;
     /// Errors that can be asked for, in words.
     pub const ACCEPTED: &str = "a number from 0.001 to 0.2, relative error of the peak amplitude";
 

@@ -1,5 +1,7 @@
-//! The choice of settings by an accepted error: the cheapest of the ladder, with the evidence.
+//! The choice of settings by an accepted error, with the evidence: on tuned receptances those of
+//! [`ReceptanceSetting`], on a basis the cheapest of the ladder.
 //!
+//! Of the ladder:
 //! A few patterns of the study are solved at reference settings. Single knobs are moved on fewer of them,
 //! which proposes combinations, the cheapest first by estimated operations. These are measured pattern by
 //! pattern and given up at the first row beyond the accepted error, which no bound can be below, so that
@@ -11,19 +13,22 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::ladder::{HarmonicLevel, Knob, LadderSetting, LadderSpace};
+use super::ladder::{Knob, LadderSetting};
 use super::ladder_bench::LadderBench;
 use super::ladder_measure::{Compared, Measured, error_bound, errors_of_load_cases};
 use super::ladder_reference::{LadderEnds, LadderReference};
 use super::ladder_sample::most_scenarios;
-use super::ladder_search::{LadderSearch, Proposal};
+use super::ladder_search::LadderSearch;
+use super::ladder_trials::{Trials, levels};
+use super::receptance_accuracy::{ReceptanceSetting, on_receptances};
+use super::reduced_engine::is_on_receptances;
 use super::tradeoff::sample_of_patterns;
 use super::{AccuracyOptions, PipelineError, Progress, Study, StudyDigest, pattern_source};
 use crate::model::sector::SectorModel;
 use crate::model::{read_cached, reduction_digest, write_cached};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{ErrorBound, LoadCaseErrors};
-use crate::response::friction::{ContactLaw, Ring};
+use crate::response::friction::Ring;
 use crate::response::mistuning::PatternSource;
 
 /// Rows that the sample has at least, and fewest patterns of it.
@@ -35,13 +40,6 @@ const PROBED: usize = 2;
 const FINER_REFERENCE: f64 = 5.0;
 /// Least tolerance of these harmonics.
 const FINEST_REFERENCE: f64 = 1e-3;
-/// Combinations measured at most, under one contact law.
-const MOST_MEASURED: usize = 8;
-/// Share of the predicted error of a combination that failed, above which others are not measured.
-const BETTER: f64 = 0.9;
-/// Tolerances that are tried instead of those of the base where the accepted error is at least so large:
-/// samples, residual, peak.
-const LOOSE: [(f64, (usize, f64, f64)); 2] = [(0.01, (64, 1e-4, 3e-3)), (0.003, (64, 1e-6, 1e-3))];
 
 /// The settings chosen for an accepted error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -49,13 +47,22 @@ pub struct AccuracyChoice {
     /// Error accepted.
     pub accepted: f64,
     /// The settings.
-    pub setting: LadderSetting,
+    pub setting: ChosenSetting,
     /// Fixed-interface modes.
     pub craig_bampton_modes: usize,
     /// Whether the upper bound of the 95th percentile of the amplitude error is accepted.
     pub met: bool,
     /// Errors on the sample; none where nothing was to be measured.
     pub evidence: Option<AccuracyEvidence>,
+}
+
+/// Settings that were chosen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum ChosenSetting {
+    /// A combination of the ladder, for rows on a basis.
+    Ladder(LadderSetting),
+    /// For rows on tuned receptances.
+    Receptances(ReceptanceSetting),
 }
 
 /// What a choice was made by.
@@ -65,9 +72,9 @@ pub struct AccuracyEvidence {
     pub patterns: Vec<u32>,
     /// Normal loads of its scenarios, N.
     pub normal_loads_n: Vec<f64>,
-    /// Tolerance of the harmonics of the reference.
-    pub reference_tolerance: f64,
-    /// `joint` or `by_knobs`.
+    /// Tolerance of the harmonics of the reference; none where they are fixed.
+    pub reference_tolerance: Option<f64>,
+    /// `joint`, `by_knobs`, or `enlarged` on tuned receptances.
     pub reference: String,
     /// Errors of the peak amplitude.
     pub amplitude: ErrorBound,
@@ -128,7 +135,18 @@ impl AccuracyChoice {
             return Ok(stored);
         }
         let patterns = pattern_source(study, sector)?;
-        let choice = Self::make(study, accuracy, sector, &patterns)?;
+        let choice = if is_on_receptances(study, sector) {
+            let ids = sample_of_patterns(study, &patterns, sampled_patterns(study));
+            on_receptances(
+                study,
+                accuracy.amplitude_error,
+                sector,
+                (&patterns, ids),
+                cache,
+            )?
+        } else {
+            Self::make(study, accuracy, sector, &patterns)?
+        };
         if let Some(folder) = cache {
             write_cached(folder, &digest, &choice)?;
         }
@@ -145,13 +163,14 @@ impl AccuracyChoice {
         let ids = sample_of_patterns(study, patterns, sampled_patterns(study));
         let mut bench = LadderBench::new(study, sector, ids, &Unwatched)?;
         let tolerance = (accepted / FINER_REFERENCE).max(FINEST_REFERENCE);
-        let ends = LadderEnds::choose(&mut bench, tolerance, accepted)?;
+        let mut ends = LadderEnds::choose(&mut bench, tolerance, accepted)?;
+        ends.base = ends.base.but_for_those_of(study);
         let craig_bampton_modes = bench.fixed_interface().modes;
         if bench.sample().scenarios.is_empty() {
             // Linear limits know none of these settings but the basis.
             return Ok(Self {
                 accepted,
-                setting: ends.base,
+                setting: ChosenSetting::Ladder(ends.base),
                 craig_bampton_modes,
                 met: true,
                 evidence: None,
@@ -170,19 +189,14 @@ impl AccuracyChoice {
             simpler_contact_law: accuracy.simpler_contact_law && locked,
             ..accuracy
         };
-        search.measure_levels(levels(&space, &ends.base, accuracy, tolerance))?;
-        let mut trials = Trials {
-            accepted,
-            tried: Vec::new(),
-            operations: 0.0,
-            taken: None,
-        };
-        trials.among(&mut search, reference.most_operations())?;
+        search.measure_levels(levels(study, &space, &ends.base, accuracy, tolerance))?;
+        let mut trials = Trials::new(accepted);
+        trials.among(&mut search, study, reference.most_operations())?;
         let Some((measured, amplitude)) = trials.taken else {
             // No row of the sample has a reference: the best that is affordable.
             return Ok(Self {
                 accepted,
-                setting: ends.base,
+                setting: ChosenSetting::Ladder(ends.base),
                 craig_bampton_modes,
                 met: false,
                 evidence: None,
@@ -203,7 +217,7 @@ impl AccuracyChoice {
                     .iter()
                     .filter_map(|scenario| scenario.contact.normal_load_n())
                     .collect(),
-                reference_tolerance: tolerance,
+                reference_tolerance: Some(tolerance),
                 reference: reference.kind.name().to_owned(),
                 amplitude,
                 amplitude_worst_upper: amplitude.worst_upper(measured.setting.peak_tolerance),
@@ -219,27 +233,42 @@ impl AccuracyChoice {
                     .iter()
                     .filter_map(|scenario| scenario.load_case)
                     .collect(),
-                errors_of_load_cases: errors_of_load_cases(&measured, &reference.values, &sample),
+                errors_of_load_cases: errors_of_load_cases(
+                    &measured.rows,
+                    &reference.values,
+                    &sample,
+                ),
             }),
-            setting: measured.setting,
+            setting: ChosenSetting::Ladder(measured.setting),
         })
     }
 
     /// The study at the settings chosen.
     #[must_use]
     pub fn applied_to(&self, study: &Study) -> Study {
-        let mut own = self.setting.applied_to(study);
-        own.reduction.craig_bampton_modes = Some(self.craig_bampton_modes);
-        own
+        match &self.setting {
+            ChosenSetting::Ladder(setting) => {
+                let mut own = setting.applied_to(study);
+                own.reduction.craig_bampton_modes = Some(self.craig_bampton_modes);
+                if study.states("solver.rows_beyond_tolerance") {
+                    own.solver.rows_beyond_tolerance = study.solver.rows_beyond_tolerance;
+                }
+                own
+            }
+            ChosenSetting::Receptances(setting) => setting.applied_to(study),
+        }
     }
 
     /// The choice for the manifest.
     #[must_use]
     pub fn facts(&self) -> Value {
-        let setting: Vec<(&str, Value)> = Knob::ALL
-            .into_iter()
-            .map(|knob| (knob.name(), json!(self.setting.level(knob))))
-            .collect();
+        let setting: Value = match &self.setting {
+            ChosenSetting::Ladder(setting) => Knob::ALL
+                .into_iter()
+                .map(|knob| (knob.name(), json!(setting.level(knob))))
+                .collect(),
+            ChosenSetting::Receptances(setting) => setting.facts(),
+        };
         let mut evidence = json!(self.evidence);
         if let Some(evidence) = evidence.as_object_mut() {
             // A study without load cases has none in its manifest.
@@ -249,7 +278,7 @@ impl AccuracyChoice {
             "accepted_error": self.accepted,
             "met": self.met,
             "craig_bampton_modes": self.craig_bampton_modes,
-            "setting": setting.into_iter().collect::<std::collections::BTreeMap<_, _>>(),
+            "setting": setting,
             "evidence": evidence,
         })
     }
@@ -259,199 +288,4 @@ impl AccuracyChoice {
 fn sampled_patterns(study: &Study) -> usize {
     let scenarios = most_scenarios(study).max(1);
     ROWS.div_ceil(scenarios).max(FEWEST_PATTERNS)
-}
-
-/// Levels that are worth trying for an accepted error.
-fn levels(
-    space: &LadderSpace,
-    base: &LadderSetting,
-    accuracy: AccuracyOptions,
-    finest: f64,
-) -> Vec<(Knob, LadderSetting)> {
-    let accepted = accuracy.amplitude_error;
-    let mut levels = space.one_at_a_time(base, finest);
-    levels.retain(|(knob, setting)| match knob {
-        Knob::Basis => true,
-        // An automatic set of a tolerance beyond what is accepted is a set of the list.
-        Knob::Harmonics => match &setting.harmonics {
-            HarmonicLevel::Set(_) => true,
-            HarmonicLevel::Automatic(tolerance) => *tolerance <= accepted,
-        },
-        // The springs of `macro_slip_1d` are others, and its error is beyond anything that is asked for.
-        Knob::ContactLaw => {
-            let simpler = accuracy.simpler_contact_law && setting.law != ContactLaw::MacroSlip1d;
-            simpler || setting.law == base.law
-        }
-        Knob::SamplesPerPeriod
-        | Knob::ResidualTolerance
-        | Knob::PeakTolerance
-        | Knob::Projection => false,
-    });
-    let loose = LOOSE.into_iter().find(|(error, _)| accepted >= *error);
-    for knob in [
-        Knob::SamplesPerPeriod,
-        Knob::ResidualTolerance,
-        Knob::PeakTolerance,
-    ] {
-        levels.push((knob, base.clone()));
-        if let Some((_, (samples, residual, peak))) = loose {
-            let other = LadderSetting {
-                samples_per_period: samples,
-                residual_tolerance: residual,
-                peak_tolerance: peak,
-                ..base.clone()
-            };
-            let moved = base.with(knob, &other);
-            if moved != *base {
-                levels.push((knob, moved));
-            }
-        }
-    }
-    levels
-}
-
-/// What was tried under one contact law: how wrong predictions are under one says nothing of another, which has other
-/// harmonics.
-struct TriedUnder {
-    law: ContactLaw,
-    measured: usize,
-    /// Either predicted error above which combinations are not measured.
-    beyond: [f64; 2],
-}
-
-/// Combinations under trial.
-struct Trials {
-    accepted: f64,
-    tried: Vec<TriedSetting>,
-    /// Operations of all rows measured.
-    operations: f64,
-    /// The best so far with its errors: the cheapest of those accepted, else the most accurate.
-    taken: Option<(Measured, ErrorBound)>,
-}
-
-impl Trials {
-    fn among(
-        &mut self,
-        search: &mut LadderSearch<'_, '_>,
-        most_operations: f64,
-    ) -> Result<(), PipelineError> {
-        let mut proposals = search.proposals();
-        proposals.retain(|own| own.operations <= most_operations);
-        let mut of_laws: Vec<TriedUnder> = Vec::new();
-        for proposal in &proposals {
-            let cheapest = self.taken.as_ref().map(|(taken, _)| taken.operations());
-            if cheapest.is_some_and(|cheapest| proposal.operations >= cheapest) {
-                break;
-            }
-            let law = proposal.setting.law;
-            let place = of_laws.iter().position(|own| own.law == law);
-            let place = place.unwrap_or_else(|| {
-                of_laws.push(TriedUnder {
-                    law,
-                    measured: 0,
-                    beyond: [self.accepted; 2],
-                });
-                of_laws.len() - 1
-            });
-            let own = &mut of_laws[place];
-            let predicted = proposal.predicted.map(|bound| bound.worst);
-            let promised = [0, 1].map(|kind| predicted[kind] <= own.beyond[kind]);
-            if own.measured >= MOST_MEASURED || promised == [false; 2] {
-                continue;
-            }
-            own.measured += 1;
-            if let Some(reached) = self.reached(search, proposal)? {
-                // As much better as this one was too bad, and a little more.
-                let ratio = BETTER.min(BETTER * self.accepted / reached);
-                for kind in (0..2).filter(|&kind| promised[kind]) {
-                    own.beyond[kind] = ratio * predicted[kind];
-                }
-            }
-        }
-        if self.taken.is_some() {
-            return Ok(());
-        }
-        // None is accepted: the one that is nearest to the best levels together.
-        let best = proposals.iter().min_by(|a, b| {
-            let [a, b] = [a, b].map(|own| own.predicted[1].worst);
-            a.total_cmp(&b)
-        });
-        if let Some(best) = best {
-            let measured = search.measure(&best.setting)?;
-            self.taken = self
-                .note(search, &measured)
-                .map(|errors| (measured, errors));
-        }
-        Ok(())
-    }
-
-    /// Measures a combination: none if it is accepted, and then the one taken if it is the cheapest; else
-    /// the error that it reached.
-    fn reached(
-        &mut self,
-        search: &mut LadderSearch<'_, '_>,
-        proposal: &Proposal,
-    ) -> Result<Option<f64>, PipelineError> {
-        let (measured, whole) = search.measure_within(&proposal.setting, self.accepted)?;
-        let Some(errors) = self.note(search, &measured) else {
-            return Ok(Some(f64::INFINITY));
-        };
-        if !whole {
-            return Ok(Some(errors.worst));
-        }
-        if errors.p95_upper > self.accepted {
-            return Ok(Some(errors.p95_upper));
-        }
-        let own = measured.operations();
-        let cheaper = |(taken, _): &(Measured, ErrorBound)| own < taken.operations();
-        if self.taken.as_ref().is_none_or(cheaper) {
-            self.taken = Some((measured, errors));
-        }
-        Ok(None)
-    }
-
-    /// Records what was measured, and gives its errors.
-    fn note(&mut self, search: &LadderSearch<'_, '_>, measured: &Measured) -> Option<ErrorBound> {
-        let errors = search.error_of(measured);
-        let rows = measured.rows.iter();
-        self.operations += rows.map(|row| row.operations).sum::<f64>();
-        let words: Vec<String> = Knob::ALL
-            .into_iter()
-            .map(|knob| measured.setting.level(knob))
-            .collect();
-        self.tried.push(TriedSetting {
-            setting: words.join(", "),
-            rows: measured.rows.len() as u64,
-            worst: errors.map_or(f64::INFINITY, |errors| errors.worst),
-            operations: measured.operations(),
-        });
-        errors
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::ladder::tests::{setting, space};
-    use super::*;
-
-    #[test]
-    fn the_law_of_the_study_stays_unless_another_is_allowed() {
-        let law = ContactLaw::Coulomb3d;
-        let space = space(law);
-        let base = setting(law, HarmonicLevel::Set(vec![1, 3]));
-        let laws = |simpler_contact_law| {
-            let accuracy = AccuracyOptions {
-                simpler_contact_law,
-                ..AccuracyOptions::within(0.01)
-            };
-            let levels = levels(&space, &base, accuracy, 0.002);
-            let own = levels.iter().filter(|(knob, _)| *knob == Knob::ContactLaw);
-            own.map(|(_, level)| level.law).collect::<Vec<_>>()
-        };
-        assert_eq!(laws(false), [law]);
-        assert_eq!(
-            laws(true),
-            [ContactLaw::MacroSlip2d, ContactLaw::Simplified3d, law]
-        );
-    }
 }

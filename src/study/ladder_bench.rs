@@ -275,7 +275,12 @@ impl<'a> LadderBench<'a> {
 }
 
 impl<'a> LadderEngine<'a> {
-    fn new(solver: RowSolver, scenarios: &[Scenario], progress: &'a dyn Progress) -> Self {
+    /// A solver with the tuned wheel of every scenario solved.
+    pub(super) fn new(
+        solver: RowSolver,
+        scenarios: &[Scenario],
+        progress: &'a dyn Progress,
+    ) -> Self {
         let mut tuned: Vec<TunedReference> = Vec::new();
         for scenario in scenarios {
             let same = scenarios[..tuned.len()].iter().position(|other| {
@@ -298,6 +303,11 @@ impl<'a> LadderEngine<'a> {
     #[must_use]
     pub fn tuned(&self) -> &[TunedReference] {
         &self.tuned
+    }
+
+    /// What solves the rows.
+    pub(super) fn solver(&self) -> &RowSolver {
+        &self.solver
     }
 
     /// Whether contacts of a tuned wheel separate.

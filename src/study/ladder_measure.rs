@@ -157,12 +157,12 @@ pub fn error_bound(
 /// Errors of the amplitude of the rows of each load case by themselves; none in a study without load cases.
 #[must_use]
 pub fn errors_of_load_cases(
-    measured: &Measured,
+    rows: &[LadderRow],
     reference: &[LadderValues],
     sample: &LadderSample,
 ) -> Vec<LoadCaseErrors> {
     let of_case = |load_case| {
-        let rows = measured.rows.iter().zip(reference);
+        let rows = rows.iter().zip(reference);
         let rows =
             rows.filter(|(row, _)| sample.scenarios[row.scenario].load_case == Some(load_case));
         let (values, reference): (Vec<LadderValues>, Vec<LadderValues>) = rows

@@ -8,7 +8,7 @@ use crate::model::ReducedModel;
 use crate::model::cyclic::ContactGeometry;
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings};
 use crate::response::forced_response::{
-    ContactCondition, EngineRow, ErrorEstimate, Peak, PointSettings, SolverOptions, Window,
+    ContactCondition, EngineRow, ErrorEstimate, Peak, Point, PointSettings, SolverOptions, Window,
     receptance_effects, receptance_errors, receptance_peak, receptance_plan, receptance_top_m,
 };
 use crate::response::harmonic_balance::{Status, TransformError};
@@ -48,6 +48,16 @@ pub(super) struct Judges<'a> {
 
 /// A judged row, the settings of its points, and its peak.
 type JudgedPeak<'a> = (EngineRow<'a>, PointSettings, Peak);
+
+/// The top of a judged row, to be compared with that of the same wheel on another engine.
+pub(super) struct JudgedTop {
+    /// Wheel, engine order and condition.
+    of: (usize, u32, ContactCondition),
+    points: PointSettings,
+    point: Point,
+    step_hz: f64,
+    amplitude_m: f64,
+}
 
 /// What the peaks of a set say of it.
 struct Verdict {
@@ -135,17 +145,15 @@ impl<'a> Judges<'a> {
         admitted.collect()
     }
 
-    /// Largest relative change of a peak, with its harmonics, from these wheels to the same ones on another engine; none where no
-    /// peak is found on both. Each is looked for here, and climbed from here there.
+    /// The peaks of these wheels with their harmonics, under some of `conditions`.
     ///
     /// # Errors
     /// If the samples per period cannot tell the harmonics apart.
-    pub(super) fn change(
+    pub(super) fn judged_tops(
         &self,
-        other: &Self,
         conditions: &[ContactCondition],
         sets: &[HarmonicChoice],
-    ) -> Result<Option<f64>, TransformError> {
+    ) -> Result<Vec<JudgedTop>, TransformError> {
         let mut choices = Vec::new();
         for &(order, _) in &self.forces {
             for condition in spread(conditions) {
@@ -155,33 +163,51 @@ impl<'a> Judges<'a> {
                 choices.push(known.unwrap_or_else(|| choice_of((order, condition), &[1])));
             }
         }
-        let changes = choices.par_iter().map(|choice| {
-            let mut largest: Option<f64> = None;
-            for (wheel, own) in self.peaks(choice)?.into_iter().enumerate() {
-                if let Some(change) = self.change_of(&own, other, wheel, choice) {
-                    largest = Some(largest.unwrap_or(0.0).max(change));
-                }
-            }
-            Ok(largest)
+        let tops = choices.into_par_iter().map(|choice| {
+            let peaks = self.peaks(&choice)?.into_iter().enumerate();
+            let tops = peaks.filter_map(|(wheel, own)| self.top_of(own, wheel, &choice));
+            Ok(tops.collect())
         });
-        let changes: Vec<Option<f64>> = changes.collect::<Result<_, TransformError>>()?;
-        Ok(changes.into_iter().flatten().reduce(f64::max))
+        let tops: Vec<Vec<JudgedTop>> = tops.collect::<Result<_, TransformError>>()?;
+        Ok(tops.into_iter().flatten().collect())
     }
 
-    fn change_of(
+    /// The top at a peak by the points that it is climbed by on other engines; none where there is none.
+    fn top_of(
         &self,
-        (row, points, peak): &JudgedPeak<'_>,
-        other: &Self,
+        (row, points, peak): JudgedPeak<'_>,
         wheel: usize,
         choice: &HarmonicChoice,
-    ) -> Option<f64> {
-        let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok)?;
-        let envelope = receptance_plan(row, self.window()).ok()?.envelope;
+    ) -> Option<JudgedTop> {
+        let point = peak.point.filter(|_| peak.status == Status::Ok)?;
+        let envelope = receptance_plan(&row, self.window()).ok()?.envelope;
         let step_hz = NEIGHBOURS * envelope.linear_half_bandwidth_hz;
-        let there = other.row(wheel, choice.engine_order, choice.contact)?;
-        let [own, other] = [row, &there]
-            .map(|row| receptance_top_m(row, points, point, step_hz, COMPARED_TOLERANCE));
-        Some((other? / own? - 1.0).abs())
+        Some(JudgedTop {
+            of: (wheel, choice.engine_order, choice.contact),
+            amplitude_m: receptance_top_m(&row, &points, &point, step_hz, COMPARED_TOLERANCE)?,
+            points,
+            point,
+            step_hz,
+        })
+    }
+
+    /// Largest relative change of `tops` of other wheels to those of these, the same ones on another engine, each climbed from where it
+    /// was found; none where no top is found on both.
+    pub(super) fn change(&self, tops: &[JudgedTop]) -> Option<f64> {
+        let change = |own: &JudgedTop| {
+            let (wheel, engine_order, condition) = own.of;
+            let row = self.row(wheel, engine_order, condition)?;
+            let top_m = receptance_top_m(
+                &row,
+                &own.points,
+                &own.point,
+                own.step_hz,
+                COMPARED_TOLERANCE,
+            );
+            Some((top_m? / own.amplitude_m - 1.0).abs())
+        };
+        let changes: Vec<Option<f64>> = tops.par_iter().map(change).collect();
+        changes.into_iter().flatten().reduce(f64::max)
     }
 
     fn row(

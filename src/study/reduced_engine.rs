@@ -60,41 +60,8 @@ impl EngineSource for ReducedEngineSource {
         if let Some(accuracy) = study.accuracy {
             return accurate_engine(study, accuracy, model, cache);
         }
-        let settings = row_settings(study);
-        let stiffness = contact_stiffness(study.contact.as_ref());
-        let sensitivity = sensitivity_vectors(study);
-        // Everything the stored models and sets depend on besides the sector: also what their
-        // errors are judged by.
-        let key = format!(
-            "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?} {:?} {:?}",
-            study.reduction,
-            study.mistuning.cantilever_mode_count,
-            study.engine_orders,
-            study.contacts,
-            study.contact_variations,
-            study.nodal_diameter_damping,
-            study.amplitudes_n
-        );
-        let key = match study.load_cases.as_slice() {
-            [] => key,
-            load_cases => format!("{key} {load_cases:?}"),
-        };
-        let digest = reduction_digest(model, &key);
-        let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
-        let stored = if let Some(stored) = cached.filter(|stored| stored.fits(study, model)) {
-            stored
-        } else {
-            let stored = if is_on_receptances(study, model) {
-                reduced_on_receptances(study, model)?
-            } else {
-                let (reduction, fixed_interface) = reduce_sector(study, model)?;
-                reduced(study, &reduction, fixed_interface)?
-            };
-            if let Some(folder) = cache {
-                write_cached(folder, &digest, &stored)?;
-            }
-            stored
-        };
+        let digest = stored_digest(study, model);
+        let stored = stored_for(study, model, cache)?;
         Ok(Box::new(ReducedEngine {
             evidence: stored.evidence.clone(),
             fixed_interface: stored.fixed_interface.clone(),
@@ -315,6 +282,54 @@ impl Engine for ReducedEngine {
     ) -> Result<PointComparison, Status> {
         self.solver.compare_in_time(pattern, scenario, row, options)
     }
+}
+
+/// What rows of `study` are solved on: from `cache` if it is there, else made, and kept there.
+///
+/// # Errors
+/// The model cannot be reduced, or the cache not be written.
+pub(super) fn stored_for(
+    study: &Study,
+    model: &SectorModel,
+    cache: Option<&Path>,
+) -> Result<Stored, PipelineError> {
+    let digest = stored_digest(study, model);
+    let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
+    if let Some(stored) = cached.filter(|stored| stored.fits(study, model)) {
+        return Ok(stored);
+    }
+    let stored = if is_on_receptances(study, model) {
+        reduced_on_receptances(study, model)?
+    } else {
+        let (reduction, fixed_interface) = reduce_sector(study, model)?;
+        reduced(study, &reduction, fixed_interface)?
+    };
+    if let Some(folder) = cache {
+        write_cached(folder, &digest, &stored)?;
+    }
+    Ok(stored)
+}
+
+/// Digest of everything that the stored models and sets of a study depend on: also of what their errors are judged by.
+fn stored_digest(study: &Study, model: &SectorModel) -> String {
+    let settings = row_settings(study);
+    let stiffness = contact_stiffness(study.contact.as_ref());
+    let sensitivity = sensitivity_vectors(study);
+    let key = format!(
+        "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?} {:?} {:?}",
+        study.reduction,
+        study.mistuning.cantilever_mode_count,
+        study.engine_orders,
+        study.contacts,
+        study.contact_variations,
+        study.nodal_diameter_damping,
+        study.amplitudes_n
+    );
+    let key = match study.load_cases.as_slice() {
+        [] => key,
+        load_cases => format!("{key} {load_cases:?}"),
+    };
+    reduction_digest(model, &key)
 }
 
 /// Whether rows are solved on the receptances of the tuned wheel: where the study names them, and by default wherever they are ready for

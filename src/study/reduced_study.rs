@@ -26,7 +26,7 @@ use crate::response::receptance::{EngineModel, ReceptanceEngine};
 const BEYOND_TOLERANCE: f64 = 0.25;
 
 /// What the cache keeps.
-#[derive(Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Stored {
     pub(super) model: ReducedModel,
     pub(super) evidence: BasisEvidence,
@@ -44,6 +44,23 @@ impl Stored {
     /// Whether rows are solved on tuned receptances.
     pub(super) fn is_on_receptances(&self) -> bool {
         self.engine.is_some()
+    }
+
+    /// The same with `harmonics` in every scenario and, on tuned receptances, twice as many blade shapes.
+    pub(super) fn enlarged(&self, harmonics: &[u32]) -> Self {
+        let enlarged = |choice: &HarmonicChoice| HarmonicChoice {
+            harmonics: harmonics.to_vec(),
+            remainder: None,
+            ..choice.clone()
+        };
+        let engine = self.engine.clone();
+        Self {
+            harmonics: self.harmonics.iter().map(enlarged).collect(),
+            beyond: None,
+            engine: engine.map(EngineModel::with_twice_the_shapes),
+            receptances: None,
+            ..self.clone()
+        }
     }
 
     /// Whether sectors, contact and harmonic sets are as many as `study` and `sector` have.
@@ -69,7 +86,7 @@ impl Stored {
 }
 
 /// The model and sets for rows that the others are not good enough for.
-#[derive(Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct StoredBeyond {
     model: ReducedModel,
     basis_error: f64,

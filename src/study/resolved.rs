@@ -190,7 +190,8 @@ impl Study {
         });
         if let Some(accuracy) = &self.accuracy {
             study["accuracy"] = json!(accuracy);
-            without(&mut study, &KEYS_OF_ACCURACY);
+            let chosen = KEYS_OF_ACCURACY.into_iter();
+            without(&mut study, chosen.filter(|key| !self.states(key)));
         }
         if let Some(table) = &self.nodal_diameter_damping {
             study["nodal_diameter_damping"] = table.resolved();
@@ -262,7 +263,7 @@ impl Study {
 }
 
 /// Takes keys of tables out of a study.
-fn without(study: &mut Value, keys: &[&str]) {
+fn without(study: &mut Value, keys: impl Iterator<Item = &'static str>) {
     for key in keys {
         if let Some((table, key)) = key.split_once('.')
             && let Some(fields) = study[table].as_object_mut()

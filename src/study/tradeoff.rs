@@ -352,7 +352,7 @@ impl Trade {
                 accepted_error: accepted,
                 setting: chosen.map(|place| records[place].setting),
                 load_cases: measured.map_or_else(Vec::new, |own| {
-                    errors_of_load_cases(own, &reference.values, &self.sample)
+                    errors_of_load_cases(&own.rows, &reference.values, &self.sample)
                 }),
             }
         });

@@ -7,7 +7,7 @@ use super::Study;
 use super::basis_choice::{BasisError, BasisEvidence};
 use super::fixed_interface::{FixedInterface, ModesTried, expected_deviation, reduction_with};
 use super::load_cases::Excitation;
-use super::receptance_choice::Judges;
+use super::receptance_choice::{JudgedTop, Judges};
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::{ModelError, SectorModel, StiffnessKind};
@@ -142,7 +142,8 @@ pub(super) struct Refined<'a> {
 
 /// As many fixed-interface modes as the study says, or the first of 60, 120, ... that half as many change no judged peak by more than
 /// `reduction.error`; their error is that change, which is larger than what is left of it, or a half more than what twice as many as the
-/// study says change. Harmonics by `chosen`, once.
+/// study says change. Blade shapes the first that twice as many change no judged peak by more, with friction among them: the shapes
+/// of the harmonics above the first show there alone. Harmonics by `chosen`, once.
 ///
 /// # Errors
 /// The model cannot be reduced, or samples cannot tell harmonics apart.
@@ -155,7 +156,6 @@ pub(super) fn refined<'a>(
 ) -> Result<Refined<'a>, PipelineError> {
     let fixed = study.reduction.craig_bampton_modes;
     let mut modes = fixed.map_or(FIRST_MODES, |own| 2 * own);
-    let conditions = &study.contacts;
     let mut harmonics: Option<Vec<Vec<HarmonicChoice>>> = None;
     let mut tried = Vec::new();
     let mut shape_factor = 1;
@@ -170,26 +170,24 @@ pub(super) fn refined<'a>(
             _ => (fine, (!whole).then_some(coarse)),
         };
         let engine = Made::new(study, &taken, excitations, shape_factor)?;
-        let (engine, factor, evidence) = with_shapes(study, engine, excitations, shape_factor)?;
-        shape_factor = factor;
-        let own = engine.judges(excitations, patterns);
+        let shaped = Shaped::new(study, engine, excitations, shape_factor)?;
+        shape_factor = shaped.factor;
+        let own = shaped.engine.judges(excitations, patterns);
         let sets = match harmonics.take() {
             Some(sets) => sets,
             None => own.iter().map(&chosen).collect::<Result<_, _>>()?,
         };
+        let tops = if other.is_none() && shaped.finer.is_none() {
+            Vec::new()
+        } else {
+            judged_tops(&own, &study.contacts, &sets)?
+        };
+        drop(own);
         let change = match &other {
             None => Some(0.0),
             Some(other) => {
                 let other = Made::new(study, other, excitations, shape_factor)?;
-                let mut changes = Vec::new();
-                for ((own, other), sets) in own
-                    .iter()
-                    .zip(other.judges(excitations, patterns))
-                    .zip(&sets)
-                {
-                    changes.extend(own.change(&other, conditions, sets)?);
-                }
-                changes.into_iter().reduce(f64::max)
+                change_of(&tops, &other.judges(excitations, patterns))
             }
         };
         tried.push(ModesTried {
@@ -197,61 +195,149 @@ pub(super) fn refined<'a>(
             change,
         });
         let enough = change.is_none_or(|change| change <= study.reduction.error);
-        if enough || fixed.is_some() || modes >= MOST_MODES {
-            let margin = if fixed.is_some() { FIXED_MARGIN } else { 1.0 };
-            drop(own);
-            return Ok(Refined {
-                fixed_interface: FixedInterface {
-                    modes: taken.fixed_interface_modes(),
-                    error: change.map(|change| margin * change),
-                    tried,
-                },
-                reduction: taken,
-                engine,
-                evidence,
-                harmonics: sets,
-            });
+        if !enough && fixed.is_none() && modes < MOST_MODES {
+            harmonics = Some(sets);
+            modes *= 2;
+            continue;
         }
-        harmonics = Some(sets);
-        modes *= 2;
+        let of_shapes = shaped.change(&tops, excitations, patterns);
+        let mut shaped = shaped.with_change(of_shapes);
+        while shaped.lacks_shapes(study) {
+            shaped = shaped.with_twice_the_shapes(study, excitations)?;
+            let own = shaped.engine.judges(excitations, patterns);
+            let tops = judged_tops(&own, &study.contacts, &sets)?;
+            drop(own);
+            let of_shapes = shaped.change(&tops, excitations, patterns);
+            shaped = shaped.with_change(of_shapes);
+        }
+        let margin = if fixed.is_some() { FIXED_MARGIN } else { 1.0 };
+        return Ok(Refined {
+            fixed_interface: FixedInterface {
+                modes: taken.fixed_interface_modes(),
+                error: change.map(|change| margin * change),
+                tried,
+            },
+            reduction: taken,
+            engine: shaped.engine,
+            evidence: BasisEvidence {
+                whole_space: false,
+                craig_bampton_reach: None,
+                tried: shaped.tried,
+            },
+            harmonics: sets,
+        });
     }
 }
 
-/// The engine with `shape_factor` or the first of twice, four times ... as many blade shapes that twice as many again change no
-/// linear peak by more than `reduction.error`, with its factor and what was tried.
-fn with_shapes(
-    study: &Study,
-    made: Made,
-    excitations: &[Excitation],
-    shape_factor: usize,
-) -> Result<(Made, usize, BasisEvidence), PipelineError> {
-    let mut made = made;
-    let mut factor = shape_factor;
-    let mut tried = Vec::new();
-    loop {
-        let exact = made.receptances.is_exact();
-        let finer = made.with_shape_factor(study, excitations, 2 * factor)?;
-        let error = if exact {
-            Some(0.0)
-        } else {
-            linear_change(study, &made, &finer, excitations)?
+/// The tops of the wheels that judge, under each force vector.
+fn judged_tops(
+    own: &[Judges<'_>],
+    conditions: &[ContactCondition],
+    sets: &[Vec<HarmonicChoice>],
+) -> Result<Vec<Vec<JudgedTop>>, TransformError> {
+    let judges = own.iter().zip(sets);
+    judges
+        .map(|(own, sets)| own.judged_tops(conditions, sets))
+        .collect()
+}
+
+/// Largest relative change of these tops to those of the same wheels on another engine; none where no top is found on both.
+fn change_of(tops: &[Vec<JudgedTop>], others: &[Judges<'_>]) -> Option<f64> {
+    let cases = tops.iter().zip(others);
+    let changes = cases.filter_map(|(tops, other)| other.change(tops));
+    changes.reduce(f64::max)
+}
+
+/// An engine with enough blade shapes for linear peaks, and one with twice as many.
+struct Shaped {
+    engine: Made,
+    /// None where no shape is left out.
+    finer: Option<Made>,
+    factor: usize,
+    /// What was tried, the engine last.
+    tried: Vec<BasisError>,
+}
+
+impl Shaped {
+    /// With `factor` or the first of twice, four times ... as many shapes that twice as many again change no linear peak by more than
+    /// `reduction.error`.
+    fn new(
+        study: &Study,
+        engine: Made,
+        excitations: &[Excitation],
+        factor: usize,
+    ) -> Result<Self, PipelineError> {
+        let tried = Vec::new();
+        let mut own = Self::judged(study, engine, excitations, factor, tried)?;
+        while own.lacks_shapes(study) {
+            own = own.with_twice_the_shapes(study, excitations)?;
+        }
+        Ok(own)
+    }
+
+    /// `engine` of so many shapes, with what twice as many change of linear peaks.
+    fn judged(
+        study: &Study,
+        engine: Made,
+        excitations: &[Excitation],
+        factor: usize,
+        mut tried: Vec<BasisError>,
+    ) -> Result<Self, PipelineError> {
+        let exact = engine.receptances.is_exact();
+        let finer = (!exact).then(|| engine.with_shape_factor(study, excitations, 2 * factor));
+        let finer = finer.transpose()?;
+        let error = match &finer {
+            None => Some(0.0),
+            Some(finer) => linear_change(study, &engine, finer, excitations)?,
         };
         tried.push(BasisError {
             basis: TUNED_RECEPTANCES.to_owned(),
-            vectors: made.receptances.shape_count(Limit::Stuck, 1),
+            vectors: engine.receptances.shape_count(Limit::Stuck, 1),
             error,
         });
-        let enough = error.is_some_and(|error| error <= study.reduction.error);
-        if enough || factor >= MOST_SHAPES {
-            let evidence = BasisEvidence {
-                whole_space: false,
-                craig_bampton_reach: None,
-                tried,
-            };
-            return Ok((made, factor, evidence));
+        Ok(Self {
+            engine,
+            finer,
+            factor,
+            tried,
+        })
+    }
+
+    fn with_twice_the_shapes(
+        self,
+        study: &Study,
+        excitations: &[Excitation],
+    ) -> Result<Self, PipelineError> {
+        match self.finer {
+            None => Ok(self),
+            Some(finer) => Self::judged(study, finer, excitations, 2 * self.factor, self.tried),
         }
-        made = finer;
-        factor *= 2;
+    }
+
+    /// Whether twice as many change a peak by more than `reduction.error`, and may be taken.
+    fn lacks_shapes(&self, study: &Study) -> bool {
+        let error = self.tried.last().and_then(|taken| taken.error);
+        let enough = error.is_some_and(|error| error <= study.reduction.error);
+        !enough && self.finer.is_some() && self.factor < MOST_SHAPES
+    }
+
+    /// What twice as many change of `tops`, which are those of this engine.
+    fn change(
+        &self,
+        tops: &[Vec<JudgedTop>],
+        excitations: &[Excitation],
+        patterns: &[Pattern],
+    ) -> Option<f64> {
+        let finer = self.finer.as_ref()?.judges(excitations, patterns);
+        change_of(tops, &finer)
+    }
+
+    /// The same where this change counts too.
+    fn with_change(mut self, change: Option<f64>) -> Self {
+        if let Some(taken) = self.tried.last_mut() {
+            taken.error = taken.error.map(|own| own.max(change.unwrap_or(0.0)));
+        }
+        self
     }
 }
 

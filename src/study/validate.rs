@@ -208,7 +208,9 @@ fn resolve(
     let stop = raw
         .stop
         .and_then(|raw| stop(check, &raw, mistuning.patterns));
-    let accuracy = raw.accuracy.and_then(|raw| accuracy(check, &raw));
+    let accuracy = raw
+        .accuracy
+        .and_then(|own| accuracy(check, &own, raw.reduction.basis));
     let study = Study {
         path: path.to_owned(),
         map: SourceMap::default(),
@@ -245,7 +247,8 @@ fn resolve(
             }),
         },
     };
-    Ok(Some((study.with_accuracy(accuracy), rotation)))
+    let study = study.with_accuracy(accuracy, |key| check.is_written(key));
+    Ok(Some((study, rotation)))
 }
 
 fn identity(check: &mut Check, head: &RawHead) -> (String, u64) {

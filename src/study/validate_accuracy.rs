@@ -6,8 +6,9 @@ use super::raw::RawAccuracy;
 use super::validate::Check;
 use super::{AccuracyOptions, Finding, Problem, Study, StudyError};
 use crate::input::SourceMap;
+use crate::model::reduction::Basis;
 
-/// Keys that the program sets itself under `[accuracy]`.
+/// Keys that the program sets itself under `[accuracy]`, unless the study says them.
 pub(super) const KEYS_OF_ACCURACY: [&str; 11] = [
     "reduction.basis",
     "reduction.error",
@@ -21,11 +22,19 @@ pub(super) const KEYS_OF_ACCURACY: [&str; 11] = [
     "solver.residual_tolerance",
     "solver.peak_tolerance",
 ];
+/// Those of a basis: the ladder is one of bases, and none of its settings is left where the study says one.
+const KEYS_OF_A_BASIS: [&str; 2] = ["reduction.stick_modes", "reduction.slide_modes"];
 
-/// The accepted error; none where the number is missing or refused.
-pub(super) fn accuracy(check: &mut Check, raw: &RawAccuracy) -> Option<AccuracyOptions> {
+/// The accepted error; none where the number is refused.
+pub(super) fn accuracy(
+    check: &mut Check,
+    raw: &RawAccuracy,
+    basis: Basis,
+) -> Option<AccuracyOptions> {
     const KEY: &str = "accuracy.amplitude_error";
-    for key in KEYS_OF_ACCURACY {
+    let basis =
+        (!matches!(basis, Basis::Auto | Basis::TunedReceptances)).then_some("reduction.basis");
+    for key in KEYS_OF_A_BASIS.into_iter().chain(basis) {
         if check.is_written(key) {
             let reason = format!("{KEY} chooses it; accepted: one of the two keys");
             check.conflict(key, &reason);
@@ -33,7 +42,7 @@ pub(super) fn accuracy(check: &mut Check, raw: &RawAccuracy) -> Option<AccuracyO
     }
     let amplitude_error = check.given(
         KEY,
-        raw.amplitude_error,
+        Some(raw.amplitude_error.unwrap_or(AccuracyOptions::DEFAULT)),
         AccuracyOptions::accepts,
         AccuracyOptions::ACCEPTED,
     )?;
@@ -81,16 +90,29 @@ impl Study {
         }
     }
 
-    /// The study with the accepted error in the place of its own tolerances.
-    pub(super) fn with_accuracy(mut self, accuracy: Option<AccuracyOptions>) -> Self {
+    /// The study with the accepted error in the place of those of its own tolerances that it does not say.
+    pub(super) fn with_accuracy(
+        mut self,
+        accuracy: Option<AccuracyOptions>,
+        is_stated: impl Fn(&str) -> bool,
+    ) -> Self {
         self.accuracy = accuracy;
         if let Some(AccuracyOptions {
             amplitude_error, ..
         }) = accuracy
         {
-            self.reduction.error = amplitude_error;
-            self.solver.harmonic_tolerance = amplitude_error;
+            if !is_stated("reduction.error") {
+                self.reduction.error = amplitude_error;
+            }
+            if !is_stated("solver.harmonic_tolerance") {
+                self.solver.harmonic_tolerance = amplitude_error;
+            }
         }
         self
+    }
+
+    /// Whether the study file says the key `key`, which nothing chosen takes the place of.
+    pub(super) fn states(&self, key: &str) -> bool {
+        self.map.holds(key)
     }
 }

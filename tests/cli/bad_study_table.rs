@@ -648,13 +648,22 @@ pub const CASES: &[Case] = &[
         "[stop]\npercentil = 50\n[mistuning]",
         &["unknown key stop.percentil", "did you mean percentile?"],
     ),
-    // [accuracy] and the keys that it sets.
+    // [accuracy] and the keys of a basis, of which it has a ladder.
     (
         "harmonics = [1, 3]",
-        "harmonics = [1, 3]\n[accuracy]\namplitude_error = 0.01",
+        "harmonics = [1, 3]\nhigher_harmonics = \"tuned\"\n[accuracy]\namplitude_error = 0.01",
         &[
-            "study.toml:42:",
-            "solver.harmonics",
+            "study.toml:43:",
+            "solver.higher_harmonics",
+            "accuracy.amplitude_error chooses it",
+        ],
+    ),
+    (
+        "[solver]\nharmonics = [1, 3]",
+        "[reduction]\nbasis = \"stick_slide\"\nslide_modes = 4\nstick_modes = 4\n[accuracy]",
+        &[
+            "reduction.basis",
+            "reduction.slide_modes",
             "accuracy.amplitude_error chooses it",
         ],
     ),
@@ -666,10 +675,5 @@ pub const CASES: &[Case] = &[
             "accuracy.amplitude_error = 0.5",
             "a number from 0.001 to 0.2",
         ],
-    ),
-    (
-        "[solver]\nharmonics = [1, 3]",
-        "[accuracy]\n",
-        &["study.toml:41:", "accuracy.amplitude_error", "missing"],
     ),
 ];

@@ -233,15 +233,46 @@ fn a_longer_study_keeps_the_settings_and_shards_come_to_the_same_bytes() {
 }
 
 #[test]
-fn an_accepted_error_and_a_setting_exclude_each_other() {
+fn what_a_study_says_itself_wins_over_an_accepted_error() {
     let place = Place::with(GOOD);
+    let run = place.run(&["run", "study.toml", "--out", "one", "--accuracy", "1%"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let manifest = manifest(&place, "one");
+    let chosen = &manifest["chosen"]["accuracy"];
+    assert_eq!(chosen["setting"]["harmonics"], "1-3");
+    assert_eq!(
+        manifest["study"]["solver"]["harmonics"],
+        serde_json::json!([1, 3])
+    );
+    assert!(manifest["study"]["solver"]["peak_tolerance"].is_null());
+    // The reference is not held to them, so that what they leave out is told.
+    let worst = |chosen: &Value| chosen["evidence"]["amplitude"]["worst"].as_f64();
+    place.write("first.toml", &GOOD.replace("[1, 3]", "[1]"));
+    let first = place.run(&["run", "first.toml", "--out", "first", "--accuracy", "1%"]);
+    assert_eq!(first.code, 0, "{}", first.stderr);
+    let of_first = self::manifest(&place, "first")["chosen"]["accuracy"].clone();
+    assert_eq!(of_first["setting"]["harmonics"], "1");
+    assert!(worst(&of_first).expect("an error") > 2.0 * worst(chosen).expect("an error"));
+    // Tolerances too, and without a number the accepted error is 1 %.
+    let stated = "[solver]\nsamples_per_period = 96\npeak_tolerance = 2e-4\n[accuracy]\n";
+    place.write("stated.toml", &format!("{}{stated}", open()));
+    let run = place.run(&["run", "stated.toml", "--out", "stated"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let chosen = self::manifest(&place, "stated")["chosen"]["accuracy"].clone();
+    assert_eq!(chosen["accepted_error"], 0.01);
+    assert_eq!(chosen["setting"]["samples_per_period"], "96");
+    assert_eq!(chosen["setting"]["peak_tolerance"], "2e-4");
+}
+
+#[test]
+fn an_accepted_error_and_a_basis_exclude_each_other() {
+    let place = Place::with(&GOOD.replace(
+        "[solver]\nharmonics = [1, 3]\n",
+        "[reduction]\nstick_modes = 4\n",
+    ));
     let both = place.run(&["run", "study.toml", "--accuracy", "1%"]);
     assert_eq!(both.code, 3);
-    for fragment in [
-        "study.toml:42:",
-        "solver.harmonics",
-        "accuracy.amplitude_error",
-    ] {
+    for fragment in ["reduction.stick_modes", "accuracy.amplitude_error"] {
         assert!(both.stderr.contains(fragment), "{}", both.stderr);
     }
     for refused in ["2", "0%", "x"] {

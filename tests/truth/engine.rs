@@ -13,16 +13,30 @@ const LEAST_LOAD_N: f64 = 150.0;
 
 /// The rows of a wheel that the truth has, each with its true one.
 pub fn solved(wheel: &str) -> Vec<(Row, ResponseRow)> {
+    solved_within(wheel, None, |row| {
+        row.load_n().is_none_or(|load| load >= LEAST_LOAD_N)
+    })
+}
+
+/// Those of them that are `wanted`, at the settings for an accepted error.
+pub fn solved_within(
+    wheel: &str,
+    accepted: Option<f64>,
+    wanted: impl Fn(&Row) -> bool,
+) -> Vec<(Row, ResponseRow)> {
     let truth: Vec<Row> = stored(wheel)
         .into_iter()
-        .filter(|row| row.load_n().is_none_or(|load| load >= LEAST_LOAD_N))
+        .filter(|row| row.amplitude_m.is_some() && wanted(row))
         .collect();
-    let study = study_of(wheel, &truth);
+    let study = study_of(wheel, &truth, accepted);
     let model: SectorModel = load_sector_model(&study).expect("a model");
     let patterns: PatternSource = pattern_source(&study, &model).expect("patterns");
     let engine = ReducedEngineSource
         .build(&study, &model, None)
         .expect("an engine");
+    if accepted.is_some() {
+        println!("{wheel}: {}", engine.chosen_settings()["accuracy"]);
+    }
     let scenarios: Vec<Scenario> = study.scenarios();
     let tuned: Vec<_> = scenarios.iter().map(|own| engine.tuned(own)).collect();
     let row = |truth: Row| {
@@ -42,8 +56,8 @@ pub fn solved(wheel: &str) -> Vec<(Row, ResponseRow)> {
 }
 
 /// The study of a wheel with the conditions of these rows alone, on tuned receptances, in all else as the program
-/// chooses by itself.
-fn study_of(wheel: &str, rows: &[Row]) -> Study {
+/// chooses by itself, by an accepted error where there is one.
+fn study_of(wheel: &str, rows: &[Row], accepted: Option<f64>) -> Study {
     let path = folder(wheel).join("study.toml");
     let text = std::fs::read_to_string(&path).expect("a study");
     let mut conditions: Vec<String> = rows
@@ -60,9 +74,12 @@ fn study_of(wheel: &str, rows: &[Row]) -> Study {
         .filter(|line| !line.starts_with("normal_load_n"))
         .collect();
     let text = format!(
-        "{}\nnormal_load_n = [{}]\n\n[reduction]\nbasis = \"tuned_receptances\"\n",
+        "{}\nnormal_load_n = [{}]\n\n[reduction]\nbasis = \"tuned_receptances\"\n{}",
         physics.join("\n"),
-        conditions.join(", ")
+        conditions.join(", "),
+        accepted.map_or(String::new(), |own| format!(
+            "[accuracy]\namplitude_error = {own}\n"
+        ))
     );
     Study::parse(&path, &text).expect("a good study")
 }

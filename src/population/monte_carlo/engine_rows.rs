@@ -6,13 +6,13 @@ use super::mistuned_peak::MistunedPeak;
 use super::{ResponseRow, RowSolver, Scenario, TunedReference, harmonics_name};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
-    ContactCondition, EngineRow, FrequencyBand, LinearPeak, Peak, SearchPlan, Window,
+    ContactCondition, EngineRow, FrequencyBand, LinearPeak, Peak, SearchPlan, TopBeside, Window,
     linear_peaks_of, mistuned_window, receptance_curve, receptance_errors, receptance_peak,
-    receptance_plan, receptance_state, tuned_span_of,
+    receptance_plan, receptance_state, receptance_top_beside, tuned_span_of,
 };
 use crate::response::harmonic_balance::{PairContact, Status, TransformError};
 use crate::response::mistuning::{ContactFactors, Pattern};
-use crate::response::receptance::{EngineWheel, ReceptanceEngine, WaveForce};
+use crate::response::receptance::{EngineWheel, ReceptanceEngine, WaveForce, embedded};
 
 use super::curves::CurveResult;
 use super::wheel_state::WheelState;
@@ -22,6 +22,12 @@ pub const TUNED_RECEPTANCES: &str = "tuned_receptances";
 
 /// Samples per period of a search with few harmonics: what it finds is only where to look.
 const SEARCH_SAMPLES: usize = 32;
+
+/// Steps by which a top is climbed beside another solution, in half-bandwidths of a linear resonance.
+const CLIMBED: f64 = 0.1;
+/// Tolerance of these solutions over that of the peak, and its bounds.
+const BESIDE_SHARE: f64 = 0.1;
+const BESIDE_TOLERANCES: (f64, f64) = (1e-6, 3e-4);
 
 /// The engine of a study with the excitations of one of its force vectors.
 #[derive(Debug)]
@@ -200,6 +206,45 @@ impl RowSolver {
             errors: point.and_then(|point| receptance_errors(&row, &points, point, tolerance)),
             peak,
         })
+    }
+
+    /// The top of this solver, which has the harmonics of `coarse` among its own, beside the peak that `coarse` found at
+    /// `frequency_hz` with the set named `harmonics`; of the tuned wheel for no pattern. None without engines, or where the
+    /// solutions do not settle.
+    #[must_use]
+    pub fn top_beside(
+        &self,
+        coarse: &Self,
+        pattern: Option<&Pattern>,
+        scenario: &Scenario,
+        (frequency_hz, harmonics): (f64, &str),
+    ) -> Option<TopBeside> {
+        let (order, condition) = (scenario.engine_order, scenario.contact);
+        let coarse = coarse.under(scenario);
+        let solvers = [Some(coarse), coarse.beyond()].into_iter().flatten();
+        let is_of_the_row =
+            |own: &&Self| harmonics_name(own.points(order, condition).harmonics()) == harmonics;
+        let coarse = { solvers }.find(is_of_the_row)?;
+        let own = self.under(scenario);
+        let wheel = pattern.map(|pattern| {
+            let sectors = own.basis().model().sectors;
+            EngineWheel::new(Some(pattern), sectors)
+        });
+        let there = coarse.on_engine(wheel.as_ref(), order, condition)?;
+        let here = own.on_engine(wheel.as_ref(), order, condition)?;
+        let window = coarse.engine_window(pattern, order, condition, Some(frequency_hz));
+        let envelope = receptance_plan(&there, window.ok()?).ok()?.envelope;
+        let [before, points] = [coarse, own].map(|own| own.points_of(pattern, order, condition));
+        let (point, _) = receptance_state(&there, &before, frequency_hz).ok()?;
+        let start = embedded(&point.solution, before.harmonics(), points.harmonics());
+        let tolerance = BESIDE_SHARE * coarse.settings.solver.peak_tolerance;
+        receptance_top_beside(
+            &here,
+            &points,
+            (frequency_hz, start),
+            CLIMBED * envelope.linear_half_bandwidth_hz,
+            tolerance.clamp(BESIDE_TOLERANCES.0, BESIDE_TOLERANCES.1),
+        )
     }
 
     /// [`RowSolver::curve`] on the engine; none without one.

@@ -158,7 +158,7 @@ pub(super) fn settings(report: &StudyReport) -> String {
     } else if let Some(trials) = &report.accuracy_trials {
         let mut table = Table::new(&[
             "setting",
-            "basis, harmonics, samples, residual, peak, law, projection",
+            "basis, harmonics, samples, tolerances, law",
             "rows",
             "largest error",
             "Gflop per row",

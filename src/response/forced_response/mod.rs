@@ -45,7 +45,9 @@ pub use peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_pe
 pub use point::{Point, Slope, Work};
 pub use point_settings::{PointSettings, samples_per_period};
 pub use point_solver::PointSolver;
-pub use receptance_errors::{receptance_effects, receptance_errors, receptance_top_m};
+pub use receptance_errors::{
+    TopBeside, receptance_effects, receptance_errors, receptance_top_beside, receptance_top_m,
+};
 pub use receptance_points::{
     EngineRow, linear_peaks_of, receptance_curve, receptance_peak, receptance_plan,
     receptance_state,

@@ -73,6 +73,13 @@ impl EngineModel {
             ..self
         }
     }
+
+    /// The same with twice as many blade shapes.
+    #[must_use]
+    pub fn with_twice_the_shapes(self) -> Self {
+        let shape_factor = 2 * self.shape_factor;
+        self.with_shape_factor(shape_factor)
+    }
 }
 
 /// What an engine is made for.

@@ -337,7 +337,7 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
     entry(
         "accuracy.amplitude_error",
         Number(Range::from_to(0.001, 0.2)),
-        REQUIRED,
+        "0.01",
         "relative error of the peak amplitude that 95 % of the rows are to keep",
     ),
     entry(
