@@ -46,7 +46,7 @@ pub use point_settings::{PointSettings, samples_per_period};
 pub use point_solver::PointSolver;
 pub use receptance_errors::{receptance_effects, receptance_errors, receptance_top_m};
 pub use receptance_points::{
-    EngineRow, linear_peaks_of, receptance_curve, receptance_peak, receptance_plan,
-    receptance_state,
+    EngineRow, linear_peaks_of, receptance_contact_motion, receptance_curve, receptance_peak,
+    receptance_plan, receptance_state,
 };
 pub use refined_peak::{Search, refined, refined_peak};

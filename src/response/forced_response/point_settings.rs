@@ -7,7 +7,9 @@ use super::observed_amplitude::ObservedAmplitude;
 use super::options::{Harmonics, HigherHarmonics, SearchHarmonics, SolverOptions};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
-use crate::response::harmonic_balance::{HarmonicTransform, NewtonBounds, TransformError};
+use crate::response::harmonic_balance::{
+    ContactInterface, HarmonicTransform, NewtonBounds, TransformError,
+};
 use crate::response::mistuning::ContactFactors;
 
 /// Samples per period of the highest harmonic of an automatic set at least.
@@ -132,6 +134,21 @@ impl PointSettings {
             search: Some(search),
             ..self
         })
+    }
+
+    /// The pairs of the wheel under a law and a normal load.
+    #[must_use]
+    pub fn interface(
+        &self,
+        law: ContactLaw,
+        sector: PairParameters,
+        normal_load_n: f64,
+    ) -> ContactInterface {
+        ContactInterface {
+            law,
+            pairs: sector.pairs_under(normal_load_n, &self.geometry, &self.factors),
+            geometry: self.geometry.clone(),
+        }
     }
 
     /// Harmonic set of the nonlinear solution.

@@ -9,7 +9,7 @@ mod blade_shapes;
 mod contact_iteration;
 mod engine;
 mod fields;
-mod krylov;
+mod free_waves;
 mod resonances;
 mod tables;
 mod tuned_wheel;
@@ -21,6 +21,7 @@ mod wheel_solver;
 pub use engine::{
     EngineModel, EngineOptions, EngineWheel, HIGHEST_HARMONIC, Limit, ReceptanceEngine,
 };
+pub use free_waves::{FreeWave, FreeWheel};
 pub use resonances::Resonance;
 pub use wave_force::WaveForce;
 pub use wheel_solver::{SolutionWork, WheelSolution, WheelSolver, embedded};
