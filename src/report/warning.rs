@@ -26,6 +26,15 @@ pub enum Warning {
         /// Largest stated error of a row.
         largest_stated_error: f64,
     },
+    /// Motions at peaks that the wheel does not stay on.
+    Unstable {
+        /// Rows that were looked at.
+        looked_at: u64,
+        /// Those whose motion is unstable.
+        rows: u64,
+        /// Scenarios whose tuned wheel does not stay on its motion.
+        tuned: Vec<usize>,
+    },
     /// The basis is less accurate than the study asks for.
     BasisError {
         /// The basis.
@@ -112,6 +121,21 @@ impl fmt::Display for Warning {
                  solver.harmonic_tolerance",
                 100.0 * largest_stated_error
             ),
+            Self::Unstable {
+                looked_at,
+                rows,
+                tuned,
+            } => {
+                write!(f, "the motions of {rows} of the {looked_at} rows looked at")?;
+                if !tuned.is_empty() {
+                    write!(f, " and of the tuned wheel of scenarios {}", list(tuned))?;
+                }
+                write!(
+                    f,
+                    " are unstable: the wheel does not stay on them, and its amplitude in time differs, by a few per cent \
+                     where that was marched; see the columns stable and tuned_stable"
+                )
+            }
             Self::BasisError {
                 basis,
                 error,

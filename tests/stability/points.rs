@@ -27,6 +27,7 @@ struct Point {
     frequency_hz: f64,
     highest: u32,
     lowest: u32,
+    basis: BasisChoice,
 }
 
 /// Steps per period of both.
@@ -48,7 +49,7 @@ fn deviations(pattern: u32) -> Vec<f64> {
 ///
 /// The march begins beside harmonic balance. What it changes by over a period is the distance of two motions, and moves as a
 /// disturbance does.
-fn both(point: &Point, periods: usize) -> (Multipliers, f64) {
+fn both(point: &Point, periods: usize) -> Option<(Multipliers, f64)> {
     let damping = Damping::StructuralLossFactor(point.loss_factor);
     let (kn, kt) = (8e8, 4e8);
     let springs = ContactStiffness {
@@ -58,7 +59,7 @@ fn both(point: &Point, periods: usize) -> (Multipliers, f64) {
     };
     let sector = bundle::read(&data("wheel8")).unwrap();
     let reduction = Reduction::new(&sector, springs, 25, 0).unwrap();
-    let model = Arc::new(reduction.reduce(BasisChoice::CraigBampton, None).unwrap());
+    let model = Arc::new(reduction.reduce(point.basis, None).unwrap());
     let basis = WheelBasis::new(Arc::clone(&model));
     let pattern = point.mistuned.then(|| Pattern {
         id: 1,
@@ -93,7 +94,10 @@ fn both(point: &Point, periods: usize) -> (Multipliers, f64) {
         frequency_hz: point.frequency_hz,
     };
     let clock = std::time::Instant::now();
-    let solved = case.solved().unwrap();
+    let Ok(solved) = case.solved() else {
+        println!("{point:?}: not solved");
+        return None;
+    };
     println!(
         "{point:?}: solved in {:.1} s, {} modes",
         clock.elapsed().as_secs_f64(),
@@ -120,7 +124,19 @@ fn both(point: &Point, periods: usize) -> (Multipliers, f64) {
         ..StabilityOptions::default()
     };
     let found = multipliers(&free, &solved.interface, &motion, solved.omega, &options).unwrap();
-    println!("  {found:?} in {:.1} s", clock.elapsed().as_secs_f64());
+    let largest = solved
+        .harmonic_balance_m
+        .iter()
+        .copied()
+        .fold(0.0, f64::max);
+    println!(
+        "  {largest:.4e} m, |{:.5}| {found:?} in {:.1} s",
+        found.largest.norm(),
+        clock.elapsed().as_secs_f64()
+    );
+    if periods == 0 {
+        return None;
+    }
     let mut state = solved.motion.start(&marched, STEPS);
     for (place, q) in state.position.iter_mut().enumerate() {
         *q *= 1.0 + 1e-3 * (1.0 + place as f64).sin();
@@ -147,23 +163,32 @@ fn both(point: &Point, periods: usize) -> (Multipliers, f64) {
         largest(&changes[periods - 20..]),
         clock.elapsed().as_secs_f64()
     );
-    (found, ratio)
+    Some((found, ratio))
 }
 
 #[test]
 fn scratch() {
-    for (normal_load_n, mistuned, frequency_hz, lowest, highest) in [
-        (400.0, false, 615.08, 1, 15),
-        (1600.0, false, 617.28, 1, 15),
-    ] {
-        let point = Point {
-            loss_factor: 0.002,
-            normal_load_n,
-            mistuned,
-            frequency_hz,
-            lowest,
-            highest,
-        };
-        both(&point, 60);
+    let chosen = |name: &str, or: &str| std::env::var(name).unwrap_or(or.to_owned());
+    let numbers =
+        |text: String| -> Vec<f64> { text.split(',').map(|x| x.parse().unwrap()).collect() };
+    let basis = match chosen("BASIS", "cb").as_str() {
+        "sa" => BasisChoice::StickAttachment { stick: 4 },
+        _ => BasisChoice::CraigBampton,
+    };
+    for loss_factor in numbers(chosen("ETA", "0.002")) {
+        for normal_load_n in numbers(chosen("LOADS", "400")) {
+            for frequency_hz in numbers(chosen("HZ", "615.08")) {
+                let point = Point {
+                    loss_factor,
+                    normal_load_n,
+                    mistuned: chosen("MISTUNED", "no") == "yes",
+                    frequency_hz,
+                    lowest: chosen("LOW", "0").parse().unwrap(),
+                    highest: chosen("HIGH", "9").parse().unwrap(),
+                    basis,
+                };
+                both(&point, chosen("PERIODS", "0").parse().unwrap());
+            }
+        }
     }
 }

@@ -42,7 +42,7 @@ pub(super) struct ContactPath {
     pub(super) tangential: Vec<f64>,
     /// Step after step, in it pair after pair of the wheel.
     changes: Vec<StepChange>,
-    /// Whether a tangent of a pair sticks throughout the period, t1 then t2, pair after pair.
+    /// Whether a tangent of a pair sticks throughout the period, or is none, t1 then t2, pair after pair.
     pub(super) held: Vec<bool>,
     pub(super) steps: usize,
 }
@@ -87,9 +87,10 @@ impl ContactPath {
                 }
             }
             for tangent in 0..2 {
-                held[2 * pair + tangent] = (0..steps).all(|step| {
+                let sticks = |step: usize| {
                     changes[step * pairs + pair].friction[tangent] == FrictionChange::Stick
-                });
+                };
+                held[2 * pair + tangent] = places[1 + tangent].is_none() || (0..steps).all(sticks);
             }
         }
         Self {

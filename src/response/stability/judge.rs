@@ -96,22 +96,11 @@ pub fn multipliers(
             continue;
         }
         let RitzValue { value, residual } = *arnoldi.largest(1)?.first()?;
-        if std::env::var("SCRATCH").is_ok() {
-            for v in arnoldi.largest(6)? {
-                println!(
-                    "  {periods}: {:.5} turn {:.4} residual {:.1e}",
-                    v.value.norm(),
-                    v.value.arg() / std::f64::consts::TAU,
-                    v.residual
-                );
-            }
-        }
         let size = value.norm();
+        let near = CLEAR * options.growth.max((size - 1.0).abs());
+        let mut earlier = seen.iter().rev().take(LOOKS);
+        let stays = seen.len() >= LOOKS && earlier.all(|own| (own - size).abs() <= near);
         seen.push(size);
-        let stays = seen.len() > LOOKS
-            && seen[seen.len() - 1 - LOOKS..].iter().all(|before| {
-                (before - size).abs() <= CLEAR.mul_add(options.growth, CLEAR * (size - 1.0).abs())
-            });
         let grows = size > 1.0 + options.growth && residual <= CLEAR * (size - 1.0);
         let decays = size + residual <= 1.0 + options.growth && (stays || arnoldi.is_closed());
         let stable = match (grows, decays) {

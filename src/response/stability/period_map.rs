@@ -33,7 +33,7 @@ const MOST_KEPT: usize = 100_000_000;
 
 /// The map of one period.
 #[derive(Debug)]
-pub struct PeriodMap {
+pub(super) struct PeriodMap {
     waves: Vec<WaveStep>,
     transform: SectorWaves,
     contact: ContactPath,
@@ -104,7 +104,7 @@ impl PeriodMap {
 
     /// Number of components of the state.
     #[must_use]
-    pub fn size(&self) -> usize {
+    pub(super) fn size(&self) -> usize {
         self.scale.len()
     }
 
@@ -443,10 +443,10 @@ impl PeriodMap {
         free
     }
 
-    /// Motions of a state that something holds, and the square of all motions at the contact: normal ones, those of tangents
-    /// that stick throughout, and blade strain.
+    /// Motions of a state that something holds, normal ones and those of tangents that stick throughout, and the square of all
+    /// motions at the contact.
     fn held_motion(&self, moving: &Moving) -> (Vec<f64>, f64) {
-        let (forces, motions) = self.channels();
+        let (_, motions) = self.channels();
         let pairs = self.contact.pair_rows.len();
         let mut held = Vec::new();
         let mut all = 0.0;
@@ -461,7 +461,6 @@ impl PeriodMap {
                     }
                 }
             }
-            held.extend_from_slice(&motion[self.contact.sector_rows..forces]);
         }
         (held, all)
     }
@@ -485,7 +484,7 @@ impl PeriodMap {
 
     /// What one period makes of a scaled state; none if the forces of a step are not found.
     #[must_use]
-    pub fn apply(&self, state: &[f64]) -> Option<Vec<f64>> {
+    pub(super) fn apply(&self, state: &[f64]) -> Option<Vec<f64>> {
         let mut moving = self.unpacked(state);
         let rest = self.contact.at_rest();
         self.observe(&mut moving);
