@@ -3,16 +3,22 @@
 use std::f64::consts::TAU;
 
 use super::{ResponseRow, RowSolver, Scenario, TunedReference};
-use crate::response::forced_response::{ContactCondition, EngineRow, receptance_contact_motion};
-use crate::response::friction::Ring;
+use crate::response::forced_response::{
+    ContactCondition, EngineRow, PointSettings, SolverOptions, receptance_contact_motion,
+};
+use crate::response::friction::{ContactLaw, Ring};
 use crate::response::mistuning::Pattern;
 use crate::response::receptance::{
     EngineModel, EngineOptions, EngineWheel, ReceptanceEngine, WaveForce,
 };
 use crate::response::stability::{ContactMotion, StabilityOptions, multipliers};
 
-/// Steps per period of the highest harmonic at least.
-const STEPS_OF_HIGHEST: usize = 32;
+/// Highest harmonic of the motion that is looked at: when pairs slip and open decides, and few harmonics say that badly.
+const HIGHEST: u32 = 31;
+/// Samples per period of its solution.
+const SAMPLES: usize = 512;
+/// Steps per period.
+const STEPS: usize = 1024;
 /// Relative margin of the band of an engine that is made for one frequency.
 const BAND_MARGIN: f64 = 0.1;
 /// Deviation of a blade that such an engine is made for at least.
@@ -62,22 +68,31 @@ impl RowSolver {
             condition: scenario.contact,
         };
         let points = self.points_of(pattern, scenario.engine_order, scenario.contact);
-        let harmonics = receptance_contact_motion(&row, &points, hz).ok()??;
+        let finer = self.finer(&points, law)?;
+        let harmonics = receptance_contact_motion(&row, &points, &finer, hz).ok()??;
         let omega = TAU * hz;
-        let highest = harmonics.iter().map(|(k, _)| *k as usize).max()?;
-        let options = StabilityOptions::default();
-        let steps = options.steps_per_period.max(STEPS_OF_HIGHEST * highest);
         let found = multipliers(
             &engine.free_wheel(&wheel, omega)?,
             &points.interface(law, sector, normal_load_n),
             &ContactMotion { harmonics },
             omega,
             &StabilityOptions {
-                steps_per_period: steps,
-                ..options
+                steps_per_period: STEPS,
+                ..StabilityOptions::default()
             },
         );
         found?.stable
+    }
+
+    /// The settings of a point with all harmonics up to a high one that the law excites.
+    fn finer(&self, points: &PointSettings, law: ContactLaw) -> Option<PointSettings> {
+        let odd = !law.has_variable_load() && points.harmonics().iter().all(|k| k % 2 == 1);
+        let harmonics: Vec<u32> = (0..=HIGHEST).filter(|k| !odd || k % 2 == 1).collect();
+        let solver = SolverOptions {
+            samples_per_period: SAMPLES.max(self.settings.solver.samples_per_period),
+            ..self.settings.solver.clone()
+        };
+        points.with_harmonics(&harmonics, &solver).ok()
     }
 
     /// An engine on the basis that rows are solved on, made for one frequency.

@@ -136,6 +136,19 @@ impl PointSettings {
         })
     }
 
+    /// The same contact in other harmonics.
+    ///
+    /// # Errors
+    /// If these cannot be told apart with the samples asked for.
+    pub fn with_harmonics(
+        &self,
+        harmonics: &[u32],
+        options: &SolverOptions,
+    ) -> Result<Self, TransformError> {
+        let other = Self::new(options, harmonics, self.contact, self.geometry.clone())?;
+        Ok(other.with_ring(self.ring).with_factors(&self.factors))
+    }
+
     /// The pairs of the wheel under a law and a normal load.
     #[must_use]
     pub fn interface(

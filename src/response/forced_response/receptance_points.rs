@@ -336,16 +336,20 @@ pub fn receptance_state(
     Ok((point, states.filter(|_| solver.is_nonlinear)))
 }
 
-/// The motion of every contact row of a row at a frequency, Hz, in every harmonic, sector after sector; none for a linear limit.
+/// The motion of every contact row of a row at a frequency, Hz, in every harmonic of `settings`, sector after sector, solved beside
+/// that in the harmonics of `coarse`; none for a linear limit.
 ///
 /// # Errors
 /// The status of the last attempt, if none converged.
 pub fn receptance_contact_motion(
     row: &EngineRow<'_>,
+    coarse: &PointSettings,
     settings: &PointSettings,
     frequency_hz: f64,
 ) -> Result<Option<Vec<(u32, Vec<Complex64>)>>, Status> {
-    let mut solver = ReceptancePoints::new(row, settings);
+    let mut beside = ReceptancePoints::new(row, coarse);
+    beside.finished(frequency_hz)?;
+    let mut solver = ReceptancePoints::new(row, settings).refining(&beside);
     solver.finished(frequency_hz)?;
     let motion = solver.solver.contact_motion();
     Ok(motion.filter(|_| solver.is_nonlinear))

@@ -5,6 +5,7 @@ mod arnoldi;
 mod contact_path;
 mod contact_tangent;
 mod judge;
+mod neutral;
 mod period_map;
 mod sector_waves;
 mod wave_step;
