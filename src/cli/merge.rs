@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::run_command::Failure;
 use super::{ExitStatus, output};
-use crate::study::merge;
+use crate::study::{ReducedEngineSource, merge};
 
 /// Arguments of the command.
 #[derive(Debug, Args)]
@@ -32,7 +32,7 @@ pub(super) fn command(arguments: &MergeArguments) -> Result<ExitStatus, Failure>
         study,
         json,
     } = arguments;
-    let outcome = merge(shards, out, study.as_deref())?;
+    let outcome = merge(shards, out, study.as_deref(), &ReducedEngineSource)?;
     output::message(&format!(
         "merged {} rows; results in {}",
         outcome.rows_reused,

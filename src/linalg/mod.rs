@@ -3,6 +3,8 @@
 
 mod complex_cholesky;
 mod dense;
+mod exponential;
+mod krylov;
 mod lu;
 mod matrix;
 mod row_blocks;
@@ -15,6 +17,8 @@ pub use dense::{
     NotPositiveDefinite, OrthonormalBasis, eigenvalues, hermitian_eigen, hermitian_pencil,
     householder_qr, orthonormal_basis,
 };
+pub use exponential::exponential;
+pub use krylov::gmres;
 pub use lu::LuWorkspace;
 pub use matrix::{
     Matrix, Scalar, add_times, add_times_vector, add_transpose_times, add_transpose_times_vector,

@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::{NumericalError, RotationFacts, Warning};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{
-    Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics, StopOutcome,
+    Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics, ScenarioStability,
+    StopOutcome,
 };
 use crate::population::table::ScenarioRecord;
 use crate::response::forced_response::Harmonics;
@@ -126,6 +127,9 @@ pub struct ScenarioSummary {
     pub mean_slipping_fraction: Option<f64>,
     /// Share of rows in which a pair separates.
     pub separated_rows: Option<f64>,
+    /// What is known of the stability of its motions; absent: none was looked at.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stability: Option<ScenarioStability>,
 }
 
 impl ScenarioSummary {
@@ -260,6 +264,7 @@ fn scenario_summary(record: &ScenarioRecord, rotation: Option<&RotationFacts>) -
         scenario,
         tuned,
         statistics,
+        stability,
     } = record;
     ScenarioSummary {
         scenario: scenario.index,
@@ -279,6 +284,7 @@ fn scenario_summary(record: &ScenarioRecord, rotation: Option<&RotationFacts>) -
         amplification_factor: statistics.amplification_factor.clone(),
         mean_slipping_fraction: statistics.mean_slipping_fraction,
         separated_rows: statistics.separated_rows,
+        stability: *stability,
     }
 }
 
@@ -346,6 +352,7 @@ fn warnings(
             largest_stated_error: stated.fold(0.0, f64::max),
         });
     }
+    warnings.extend(unstable(records));
     warnings.extend(context.basis.warnings());
     if let Some(error) = context.numerical_error {
         let percent = context
@@ -384,6 +391,22 @@ fn warnings(
     }
     warnings.extend(unestimated(records));
     warnings
+}
+
+/// Motions that are known to be unstable.
+fn unstable(records: &[ScenarioRecord]) -> Option<Warning> {
+    let found = || records.iter().filter_map(|record| record.stability);
+    let rows: u64 = found().map(|own| own.unstable).sum();
+    let tuned = records.iter().filter(|record| {
+        let found = record.stability;
+        found.is_some_and(|own| own.tuned == Some(false))
+    });
+    let tuned: Vec<usize> = tuned.map(|record| record.scenario.index).collect();
+    (rows > 0 || !tuned.is_empty()).then(|| Warning::Unstable {
+        looked_at: found().map(|own| own.rows).sum(),
+        rows,
+        tuned,
+    })
 }
 
 /// Separation needs harmonic 0 and even harmonics; an automatic set has them where the tuned wheel

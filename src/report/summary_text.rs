@@ -7,7 +7,9 @@ use super::words::{
     LengthUnit, excitation, excitation_and_deviation, load_per_sector, load_words, trimmed,
 };
 use super::{BestLoad, NumericalError, ScenarioSummary, StudySummary};
-use crate::population::statistics::{PointStatus, SampleStatistics, ScenarioLook, StopOutcome};
+use crate::population::statistics::{
+    PointStatus, SampleStatistics, ScenarioLook, ScenarioStability, StopOutcome,
+};
 
 impl fmt::Display for StudySummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -40,6 +42,9 @@ impl fmt::Display for StudySummary {
         }
         if let Some(scale) = self.stress_pa_per_m {
             writeln!(f, "{}", stress_line(scale, &self.scenarios))?;
+        }
+        if let Some(line) = stability_line(&self.scenarios) {
+            writeln!(f, "{line}")?;
         }
         let unit = LengthUnit::of_summary(self);
         let groups = self.scenarios.chunk_by(ScenarioSummary::same_group);
@@ -86,6 +91,27 @@ fn numerical_line(error: &NumericalError) -> String {
     format!(
         "settings chosen by an accepted numerical error of {accepted} %: {bound}{worst}, measured on a sample{law}"
     )
+}
+
+/// What is known of the stability of motions, in a line; none where none was looked at.
+fn stability_line(scenarios: &[ScenarioSummary]) -> Option<String> {
+    let found: Vec<_> = scenarios.iter().filter_map(|own| own.stability).collect();
+    if found.is_empty() {
+        return None;
+    }
+    let sum = |of: &dyn Fn(&ScenarioStability) -> u64| found.iter().map(of).sum::<u64>();
+    let tuned = |stable: Option<bool>| sum(&|own| u64::from(own.tuned == stable));
+    let rows = sum(&|own| own.rows);
+    let (stable, unstable) = (sum(&|own| own.stable), sum(&|own| own.unstable));
+    Some(format!(
+        "stability: of {rows} rows {stable} stable, {unstable} unstable, {} not settled; of {} tuned wheels {} stable, {} \
+         unstable, {} not settled",
+        rows - stable - unstable,
+        found.len(),
+        tuned(Some(true)),
+        tuned(Some(false)),
+        tuned(None)
+    ))
 }
 
 /// What the stopping rule came to, in a line.

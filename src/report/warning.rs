@@ -31,6 +31,15 @@ pub enum Warning {
         /// What rows are solved on.
         taken: String,
     },
+    /// Motions at peaks that the wheel does not stay on.
+    Unstable {
+        /// Rows that were looked at.
+        looked_at: u64,
+        /// Those whose motion is unstable.
+        rows: u64,
+        /// Scenarios whose tuned wheel does not stay on its motion.
+        tuned: Vec<usize>,
+    },
     /// The basis is less accurate than the study asks for.
     BasisError {
         /// The basis.
@@ -113,6 +122,21 @@ impl fmt::Display for Warning {
                 "basis = \"stick_attachment\" is replaced: rows are on {taken}, which has no modes to choose; take \
                  basis = \"auto\", or leave it out"
             ),
+            Self::Unstable {
+                looked_at,
+                rows,
+                tuned,
+            } => {
+                write!(f, "the motions of {rows} of the {looked_at} rows looked at")?;
+                if !tuned.is_empty() {
+                    write!(f, " and of the tuned wheel of scenarios {}", list(tuned))?;
+                }
+                write!(
+                    f,
+                    " are unstable: the wheel does not stay on them, and its amplitude in time differs, by a few per cent \
+                     where that was marched; see the columns stable and tuned_stable"
+                )
+            }
             Self::BasisError {
                 basis,
                 error,

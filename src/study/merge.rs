@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::pipeline::{Clock, RowCounts};
 use super::pipeline_tables::{Facts, TableWork};
 use super::results_folder::{ResultsFolder, finished_rows, verify_tables};
-use super::{PipelineError, RunOutcome, StoredStudy, StudyDigest};
+use super::{EngineSource, PipelineError, RunOutcome, StoredStudy, StudyDigest};
 use crate::identity;
 use crate::population::table::{
     Manifest, RowStore, RunState, ScenarioEntry, Shard, TableError, is_folder,
@@ -32,6 +32,7 @@ pub fn merge(
     folders: &[PathBuf],
     results: &Path,
     study_file: Option<&Path>,
+    source: &dyn EngineSource,
 ) -> Result<RunOutcome, PipelineError> {
     let clock = Clock::start();
     let mut parts = Vec::new();
@@ -68,7 +69,10 @@ pub fn merge(
         .flat_map(|part| finished_rows(&part.folder, &part.manifest))
         .collect();
     let store = RowStore::of_files(tables.schema().clone(), files);
-    let (manifest, summary) = tables.publish(&store, results, None)?;
+    let engine = TableWork::wants_engine(&stored.study, None)
+        .then(|| stored.engine(&model, source))
+        .transpose()?;
+    let (manifest, summary) = tables.publish(&store, results, None, engine.as_deref())?;
     let rows = RowCounts {
         solved: 0,
         reused: tables.planned(),

@@ -40,6 +40,7 @@ mod pipeline;
 mod pipeline_error;
 mod pipeline_goal;
 mod pipeline_rows;
+mod pipeline_stability;
 mod pipeline_tables;
 mod plan;
 mod raw;

@@ -209,7 +209,10 @@ pub(super) fn run_in(
     let pool = pool_of(request.threads)?;
     let mut ended = None;
     if let Some((size, facts)) = job.facts_of_stored_rows() {
-        ended = pool.install(|| job.end(&tables(size, facts), 0))?;
+        // Motions are looked at by an engine.
+        if !TableWork::wants_engine(study, shard) {
+            ended = pool.install(|| job.end(&tables(size, facts), 0, None))?;
+        }
     }
     if ended.is_none() {
         progress.stage(Stage::Reduce);
@@ -236,7 +239,7 @@ pub(super) fn run_in(
                     planned: tables.planned(),
                 });
             }
-            ended = pool.install(|| job.end(&tables, solved))?;
+            ended = pool.install(|| job.end(&tables, solved, Some(engine.as_ref())))?;
             if ended.is_some() {
                 break;
             }
@@ -365,6 +368,7 @@ impl Job<'_> {
         &self,
         tables: &TableWork,
         solved: u64,
+        engine: Option<&dyn Engine>,
     ) -> Result<Option<(RunOutcome, Manifest)>, PipelineError> {
         let store = self.store(tables)?;
         let scenarios = tables.schema().scenarios.len();
@@ -373,7 +377,8 @@ impl Job<'_> {
             return Ok(None);
         }
         self.progress.stage(Stage::Tables);
-        let (manifest, summary) = tables.publish(&store, self.request.results, verdict.outcome)?;
+        let results = self.request.results;
+        let (manifest, summary) = tables.publish(&store, results, verdict.outcome, engine)?;
         let outcome = RunOutcome {
             summary,
             rows_solved: solved,

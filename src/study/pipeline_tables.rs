@@ -5,12 +5,15 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use super::pipeline_stability::{Stabilities, StabilityWork};
 use super::results_folder::RESPONSES;
 use super::summary::{context_of, records_of};
 use super::{Engine, PipelineError, Study, StudyDigest};
 use crate::identity;
 use crate::population::monte_carlo::{Scenario, TunedReference};
-use crate::population::statistics::{Accounting, CONFIDENCE, ScenarioAccumulator, StopOutcome};
+use crate::population::statistics::{
+    Accounting, CONFIDENCE, ScenarioAccumulator, ScenarioStability, StopOutcome,
+};
 use crate::population::table::{
     EffectRows, Manifest, RowSchema, RowStore, RunState, SCHEMA_VERSION, ScenarioEntry,
     ScenarioExtras, ScenarioRecord, Shard, Staging, StatusCounts, TableError, TableHeader,
@@ -167,35 +170,43 @@ impl<'a> TableWork<'a> {
     /// Manifest of a run that is not finished.
     pub(super) fn unfinished(&self) -> Manifest {
         let none = vec![Accounting::default(); self.schema.scenarios.len()];
-        self.manifest(RunState::Running, &none, None)
+        self.manifest(RunState::Running, (&none, &vec![None; none.len()]), None)
     }
 
     /// Joins the rows of `store` to the tables of the folder `results`, which appear all together;
-    /// `stop` says why there are no more of them.
+    /// `stop` says why there are no more of them. `engine` looks at the stability of motions, where that [`is asked
+    /// for`](Self::wants_engine).
     pub(super) fn publish(
         &self,
         store: &RowStore,
         results: &Path,
         stop: Option<StopOutcome>,
+        engine: Option<&dyn Engine>,
     ) -> Result<(Manifest, StudySummary), PipelineError> {
         let mut staging = Staging::begin(results)?;
         let mut accumulators = vec![ScenarioAccumulator::default(); self.schema.scenarios.len()];
         let varies = self.shard.is_none() && !self.study.contact_variations.is_empty();
         let mut effects = vec![EffectRows::default(); self.schema.scenarios.len()];
+        let stability = self.stability(store, engine)?;
         store.assemble(&staging.table(RESPONSES), &self.ids, |row| {
             accumulators[row.scenario].add(row);
             if varies {
                 effects[row.scenario].add(row);
             }
+            stability.of_row(row)
         })?;
         let confidence = stop.as_ref().map_or(CONFIDENCE, |stop| stop.confidence);
         let tuned = &self.facts.tuned;
-        let records = records_of(&self.schema.scenarios, tuned, accumulators, confidence);
+        let scenarios = &self.schema.scenarios;
+        let found: Vec<_> = (0..scenarios.len())
+            .map(|own| stability.of_scenario(own))
+            .collect();
+        let records = records_of(scenarios, (tuned, &found), accumulators, confidence);
         let counts: Vec<Accounting> = records
             .iter()
             .map(|record| record.statistics.accounting)
             .collect();
-        let manifest = self.manifest(RunState::Finished, &counts, stop);
+        let manifest = self.manifest(RunState::Finished, (&counts, &found), stop);
         let summary = StudySummary::new(&context_of(&manifest), &records);
         if self.shard.is_none() {
             self.of_population(&mut staging, &records, &summary)?;
@@ -212,6 +223,30 @@ impl<'a> TableWork<'a> {
             )?;
         }
         Ok((staging.publish(manifest)?, summary))
+    }
+
+    /// Whether the tables of a study, or of a shard of it, need its engine.
+    pub(super) fn wants_engine(study: &Study, shard: Option<Shard>) -> bool {
+        study.output.stability > 0 && shard.is_none()
+    }
+
+    fn stability(
+        &self,
+        store: &RowStore,
+        engine: Option<&dyn Engine>,
+    ) -> Result<Stabilities, TableError> {
+        let solver = engine.and_then(Engine::row_solver);
+        let Some(solver) = solver.filter(|_| Self::wants_engine(self.study, self.shard)) else {
+            return Ok(Stabilities::default());
+        };
+        let work = StabilityWork {
+            study: self.study,
+            patterns: self.patterns,
+            ids: &self.ids,
+            scenarios: &self.schema.scenarios,
+            tuned: &self.facts.tuned,
+        };
+        work.find(store, solver)
     }
 
     /// The tables that need all patterns.
@@ -262,7 +297,7 @@ impl<'a> TableWork<'a> {
     fn manifest(
         &self,
         state: RunState,
-        counts: &[Accounting],
+        (counts, stability): (&[Accounting], &[Option<ScenarioStability>]),
         stop: Option<StopOutcome>,
     ) -> Manifest {
         let mut total = Accounting::default();
@@ -275,10 +310,13 @@ impl<'a> TableWork<'a> {
             .iter()
             .zip(&self.facts.tuned)
             .zip(&self.facts.row_digests)
-            .zip(counts)
-            .map(|(((scenario, tuned), row_digest), count)| {
-                ScenarioEntry::new(scenario, tuned, row_digest, count)
-            })
+            .zip(counts.iter().zip(stability))
+            .map(
+                |(((scenario, tuned), row_digest), (count, stability))| ScenarioEntry {
+                    stability: *stability,
+                    ..ScenarioEntry::new(scenario, tuned, row_digest, count)
+                },
+            )
             .collect();
         Manifest {
             schema: SCHEMA_VERSION,

@@ -242,6 +242,7 @@ pub(super) struct RawOutput {
     pub patterns: Option<bool>,
     pub compression: Option<Compression>,
     pub stress_pa_per_m: Option<f64>,
+    pub stability: Option<u64>,
 }
 
 /// A number of newtons or the name of a linear limit.

@@ -44,6 +44,8 @@ pub struct OutputOptions {
     pub compression: Compression,
     /// Stress per amplitude of the observed node, Pa/m.
     pub stress_pa_per_m: Option<f64>,
+    /// Rows round every percentile whose motions are looked at for their stability; 0: none, and no tuned wheel.
+    pub stability: u32,
 }
 
 /// A study that has been read, checked and filled in.
@@ -216,10 +218,14 @@ impl Study {
             patterns,
             compression,
             stress_pa_per_m,
+            stability,
         } = self.output;
         let mut output = json!({ "patterns": patterns, "compression": compression });
         if let Some(scale) = stress_pa_per_m {
             output["stress_pa_per_m"] = json!(scale);
+        }
+        if stability > 0 {
+            output["stability"] = json!(stability);
         }
         output
     }

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::PipelineError;
 use super::results_folder::{finished_rows, verify_tables};
 use crate::population::monte_carlo::{Scenario, TUNED_RECEPTANCES, TunedReference};
-use crate::population::statistics::{CONFIDENCE, ScenarioAccumulator};
+use crate::population::statistics::{CONFIDENCE, ScenarioAccumulator, ScenarioStability};
 use crate::population::table::{
     Compression, Manifest, RowSchema, RowStore, RunState, ScenarioEntry, ScenarioRecord,
     TableHeader,
@@ -89,7 +89,8 @@ pub(super) fn summary_of_rows(
     })?;
     let stop = manifest.stop.as_ref();
     let confidence = stop.map_or(CONFIDENCE, |stop| stop.confidence);
-    let records = records_of(&keys, &tuned, accumulators, confidence);
+    let stability: Vec<_> = entries.iter().map(|entry| entry.stability).collect();
+    let records = records_of(&keys, (&tuned, &stability), accumulators, confidence);
     Ok(StudySummary::new(&context_of(manifest), &records))
 }
 
@@ -120,19 +121,22 @@ pub(super) fn row_store(results: &Path, manifest: &Manifest) -> Result<RowStore,
 /// The scenarios with their statistics, bounds at `confidence`.
 pub(super) fn records_of(
     scenarios: &[Scenario],
-    tuned: &[TunedReference],
+    (tuned, stability): (&[TunedReference], &[Option<ScenarioStability>]),
     accumulators: Vec<ScenarioAccumulator>,
     confidence: f64,
 ) -> Vec<ScenarioRecord> {
     scenarios
         .iter()
-        .zip(tuned)
+        .zip(tuned.iter().zip(stability))
         .zip(accumulators)
-        .map(|((scenario, tuned), accumulator)| ScenarioRecord {
-            scenario: *scenario,
-            tuned: tuned.clone(),
-            statistics: accumulator.finish_at(confidence),
-        })
+        .map(
+            |((scenario, (tuned, stability)), accumulator)| ScenarioRecord {
+                scenario: *scenario,
+                tuned: tuned.clone(),
+                statistics: accumulator.finish_at(confidence),
+                stability: *stability,
+            },
+        )
         .collect()
 }
 

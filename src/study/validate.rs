@@ -245,6 +245,10 @@ fn resolve(
                     "a finite number above 0, in Pa/m",
                 )
             }),
+            stability: raw.output.stability.map_or(0, |rows| {
+                let accepted = "a whole number from 0 to 1000";
+                check.within("output.stability", rows, rows <= 1000, accepted) as u32
+            }),
         },
     };
     let study = study.with_accuracy(accuracy, |key| check.is_written(key));

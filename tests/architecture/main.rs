@@ -33,6 +33,7 @@ const WINGS: &[(&str, &[&str])] = &[
             "forced_response",
             "reference",
             "time_integration",
+            "stability",
         ],
     ),
     ("population", &["monte_carlo", "statistics", "table"]),

@@ -522,6 +522,11 @@ pub const CASES: &[Case] = &[
         "[1]\n[output]\nstress_pa_per_m = 0",
         &["output.stress_pa_per_m = 0", "Pa/m"],
     ),
+    (
+        "[1, 3]",
+        "[1]\n[output]\nstability = 1001",
+        &["output.stability = 1001", "0 to 1000"],
+    ),
     // What does not go together.
     (
         "[1, 3]",

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use blisk::population::table::TableError;
 use blisk::report::html_report;
 use blisk::study::{
-    CompareRequest, PipelineError, ReportRequest, compare, integrity, merge, repair, report,
-    status_of_folder, summarise, summarise_partly,
+    CompareRequest, PipelineError, ReducedEngineSource, ReportRequest, compare, integrity, merge,
+    repair, report, status_of_folder, summarise, summarise_partly,
 };
 use serde_json::{Value, json};
 
@@ -98,7 +98,13 @@ fn carry_out(command: &str, place: &Path) -> Result<(), PipelineError> {
             };
             compare(&request).map(drop)
         }
-        "merge" => merge(&[results], &place.join("out"), Some(&file)).map(drop),
+        "merge" => merge(
+            &[results],
+            &place.join("out"),
+            Some(&file),
+            &ReducedEngineSource,
+        )
+        .map(drop),
         _ => repair(&results, Some(&file), 1, &source, &Silent).map(drop),
     }
 }

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use blisk::population::table::Shard;
 use blisk::study::{
-    PipelineError, RunRequest, Study, merge, run_shard, set_other_builds_aside, status_of_folder,
+    PipelineError, ReducedEngineSource, RunRequest, Study, merge, run_shard,
+    set_other_builds_aside, status_of_folder,
 };
 
 use crate::folder::{Silent, bytes, copy, files, reference, run_in};
@@ -46,12 +47,18 @@ fn every_cut_merges_to_the_same_bytes_in_any_order() {
             if merged == "b" {
                 shards.reverse();
             }
-            let outcome = merge(&shards, &out, None).expect("merged");
+            let outcome = merge(&shards, &out, None, &ReducedEngineSource).expect("merged");
             assert_eq!(outcome.rows_reused, 400);
             assert!(bytes(&out) == expected, "{count} shards");
         }
         // The results folder names all of its shards, and takes their results.
-        merge(&[folder.path().to_owned()], folder.path(), None).expect("merged in place");
+        merge(
+            &[folder.path().to_owned()],
+            folder.path(),
+            None,
+            &ReducedEngineSource,
+        )
+        .expect("merged in place");
         assert!(bytes(folder.path()) == expected, "{count} shards in place");
         let status = status_of_folder(folder.path()).expect("a status");
         assert!(status.missing_shards.is_empty());
@@ -78,7 +85,13 @@ fn more_shards_than_patterns_are_refused() {
     for number in 1..=5 {
         solve(folder.path(), &study, number, 5);
     }
-    merge(&[folder.path().to_owned()], folder.path(), None).expect("merged");
+    merge(
+        &[folder.path().to_owned()],
+        folder.path(),
+        None,
+        &ReducedEngineSource,
+    )
+    .expect("merged");
     assert!(bytes(folder.path()) == reference(5));
 }
 
@@ -101,7 +114,7 @@ fn a_folder_named_like_a_shard_of_billions_is_no_shard() {
 }
 
 fn refused(shards: &[PathBuf], out: &Path, expected: &str) -> PipelineError {
-    let error = merge(shards, out, None).expect_err(expected);
+    let error = merge(shards, out, None, &ReducedEngineSource).expect_err(expected);
     assert!(error.to_string().contains(expected), "{error}");
     assert!(!out.join("manifest.json").exists());
     error

@@ -2,12 +2,18 @@
 
 use std::path::Path;
 
-use blisk::study::{ReducedEngineSource, RunRequest, Study, run};
+use blisk::population::table::{Manifest, Shard};
+use blisk::study::{ReducedEngineSource, RunRequest, Study, merge, run, run_shard};
 
 use crate::folder::{Silent, bytes};
 
 /// The built-in wheel, coarse and of six blades, under friction and stuck.
 fn study(patterns: u32, reduction: &str) -> Study {
+    study_that_looks_at(patterns, reduction, 0)
+}
+
+/// The same that looks at the stability of so many rows round every percentile.
+fn study_that_looks_at(patterns: u32, reduction: &str, stability: u32) -> Study {
     let text = format!(
         r#"schema = 1
 study = {{ name = "solid", seed = 11, patterns = {patterns} }}
@@ -33,6 +39,9 @@ normal_stiffness_n_per_m = 1.0e8
 harmonics = [1, 3]
 samples_per_period = 64
 peak_tolerance = 5e-3
+
+[output]
+stability = {stability}
 "#
     );
     Study::parse(Path::new("solid.toml"), &text).expect("a good study")
@@ -66,6 +75,71 @@ fn same_for_any_threads(patterns: u32, reduction: &str, numbers: &[usize]) {
 fn a_wheel_of_solid_elements_has_the_same_bytes_for_any_number_of_threads() {
     same_for_any_threads(12, STICK_SLIDE, &[3]);
     same_for_any_threads(12, TUNED_RECEPTANCES, &[3]);
+}
+
+/// Whatever way a study is solved, the same rows are looked at, and the same is found.
+#[test]
+fn stability_is_looked_at_in_the_same_rows_however_a_study_is_solved() {
+    let study = study_that_looks_at(8, TUNED_RECEPTANCES, 1);
+    let request = |study, results, threads| RunRequest {
+        study,
+        results,
+        threads,
+    };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    run(
+        request(&study, folder.path(), 1),
+        &ReducedEngineSource,
+        &Silent,
+    )
+    .expect("the run");
+    let expected = bytes(folder.path());
+    let manifest = Manifest::read(folder.path()).expect("read").expect("there");
+    for entry in &manifest.scenarios {
+        let found = entry.stability.expect("looked at");
+        // Of eight patterns only the median has a value.
+        assert_eq!(found.rows, 1);
+        let nonlinear = entry.contact.normal_load_n().is_some();
+        assert_eq!(found.tuned.is_some(), nonlinear);
+        assert_eq!(found.stable + found.unstable == 1, nonlinear);
+    }
+    assert!(results(&study, 2) == expected);
+
+    // First without, of fewer patterns.
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let fewer = study_that_looks_at(5, TUNED_RECEPTANCES, 0);
+    run(
+        request(&fewer, folder.path(), 1),
+        &ReducedEngineSource,
+        &Silent,
+    )
+    .expect("the run");
+    let without = study_that_looks_at(8, TUNED_RECEPTANCES, 0);
+    run(
+        request(&without, folder.path(), 2),
+        &ReducedEngineSource,
+        &Silent,
+    )
+    .expect("the run");
+    assert!(bytes(folder.path()) != expected);
+    run(
+        request(&study, folder.path(), 1),
+        &ReducedEngineSource,
+        &Silent,
+    )
+    .expect("the run");
+    assert!(bytes(folder.path()) == expected);
+
+    // In shards.
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for number in [1, 2] {
+        let shard = Shard { number, count: 2 };
+        let request = request(&study, folder.path(), 1);
+        run_shard(request, shard, &ReducedEngineSource, &Silent).expect("a shard");
+    }
+    let shards = [folder.path().to_owned()];
+    merge(&shards, folder.path(), None, &ReducedEngineSource).expect("merged");
+    assert!(bytes(folder.path()) == expected);
 }
 
 #[test]

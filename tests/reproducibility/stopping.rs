@@ -262,6 +262,7 @@ fn shards_cannot_stop_and_merged_ones_are_all_patterns() {
         ],
         folder.path(),
         None,
+        &ReducedEngineSource,
     )
     .expect("merged");
     assert!(bytes(folder.path()) == reference(400));

@@ -123,7 +123,7 @@ fn columns_are_the_documented_ones_in_order() {
                       slipping_fraction, separated_fraction, shortcut, retries, factorisations, mean_friction_circumferential_n, \
                       mean_friction_axial_n, \
                        sampling_error, harmonic_error, stated_error, error_within_tolerance, basis, \
-                      friction_coefficient_factor, tangential_stiffness_factor, normal_stiffness_factor, normal_load_factor";
+                      friction_coefficient_factor, tangential_stiffness_factor, normal_stiffness_factor, normal_load_factor, stable";
     assert_eq!(names.join(", "), documented);
 }
 

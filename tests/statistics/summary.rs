@@ -84,6 +84,7 @@ fn record(
             errors: None,
         },
         statistics: rows.finish(),
+        stability: None,
     }
 }
 

@@ -40,7 +40,11 @@ pub(super) struct RowEngine {
 }
 
 impl RowEngine {
-    fn force(&self, engine_order: u32) -> Option<&WaveForce> {
+    pub(super) fn receptances(&self) -> &ReceptanceEngine {
+        &self.engine
+    }
+
+    pub(super) fn force(&self, engine_order: u32) -> Option<&WaveForce> {
         let own = self.forces.iter().find(|(order, _)| *order == engine_order);
         own.map(|(_, force)| force)
     }

@@ -13,6 +13,7 @@ mod row;
 mod row_solver;
 mod scenario;
 mod sink;
+mod stability;
 mod surrogate;
 mod time_domain;
 mod wheel_state;

@@ -18,6 +18,7 @@ mod quantity;
 mod resampling;
 mod sample;
 mod scenario;
+mod stability;
 mod stopping;
 mod surrogate_worth;
 mod tail_fit;
@@ -46,6 +47,7 @@ pub use quantity::Quantity;
 pub use resampling::{RESAMPLES, resampling_stream};
 pub use sample::{PERCENTILE_LEVELS, PERCENTILES, SampleStatistics};
 pub use scenario::{ScenarioAccumulator, ScenarioStatistics};
+pub use stability::{ScenarioStability, nearest_rows};
 pub use stopping::{
     Look, MOST_LOOKS, ScenarioLook, StopOptions, StopOutcome, StoppingRule, StudyLook,
 };

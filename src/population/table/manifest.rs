@@ -11,7 +11,7 @@ use super::checked_json::{read_checked_json, write_checked_json};
 use super::manifest_check::check_tables;
 use super::places::is_folder;
 use crate::population::monte_carlo::{LoadCaseName, Scenario, TunedReference};
-use crate::population::statistics::{Accounting, StopOutcome};
+use crate::population::statistics::{Accounting, ScenarioStability, StopOutcome};
 use crate::response::forced_response::{ContactCondition, ErrorEstimate};
 use crate::response::harmonic_balance::Status;
 
@@ -90,6 +90,9 @@ pub struct ScenarioEntry {
     pub row_digest: String,
     /// Rows by status.
     pub counts: StatusCounts,
+    /// What is known of the stability of its motions; absent: none was looked at.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stability: Option<ScenarioStability>,
 }
 
 impl ScenarioEntry {
@@ -116,6 +119,7 @@ impl ScenarioEntry {
             tuned_errors: tuned.errors,
             row_digest: row_digest.to_owned(),
             counts: accounting.into(),
+            stability: None,
         }
     }
 

@@ -20,6 +20,7 @@ mod percentiles;
 mod places;
 mod publication;
 mod reader;
+mod response_columns;
 mod responses;
 mod row_file;
 mod scenarios;
@@ -52,7 +53,8 @@ pub use places::{
     ASIDE, FOLDERS, SIDE_FILES, Standing, TABLES, digest_stored, is_file, is_folder, misplacements,
 };
 pub use publication::{Staging, complete_publication, keep_as_part, set_aside, supersede};
-pub use responses::{RESPONSE_COLUMNS, ResponseReader, ResponseWriter};
+pub use response_columns::RESPONSE_COLUMNS;
+pub use responses::{ResponseReader, ResponseWriter};
 pub use row_file::RowFile;
 pub use scenarios::{SCENARIO_COLUMNS, ScenarioExtras, ScenarioRecord, write_scenarios};
 pub use side_tables::{CHECKSUMS, SideTable, SideTables, write_side_table};

@@ -125,7 +125,7 @@ impl RowStore {
     }
 
     /// Joins all rows to a `responses.parquet` at `path` that holds those of the patterns `ids`
-    /// (ascending) in order, and hands every row to `visit` on the way.
+    /// (ascending) in order, and asks `visit`, which gets every row on the way, whether its motion is stable.
     ///
     /// # Errors
     /// A file cannot be read or written, or a row is missing.
@@ -133,7 +133,7 @@ impl RowStore {
         &self,
         path: &Path,
         ids: &[u32],
-        mut visit: impl FnMut(&ResponseRow),
+        mut visit: impl FnMut(&ResponseRow) -> Option<bool>,
     ) -> Result<(), TableError> {
         let RowSchema {
             scenarios,
@@ -155,8 +155,8 @@ impl RowStore {
                 let reason = format!("no file holds all rows of pattern {missing}");
                 return Err(TableError::damaged(path, reason));
             }
-            visit(&row);
-            writer.write([row])
+            let stable = visit(&row);
+            writer.write_judged(row, stable)
         })?;
         if let Some((pattern, _)) = expected.next() {
             let reason = format!("no file holds all rows of pattern {pattern}");

@@ -2,166 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use super::column::{ColumnKind, ColumnSpec, Values, key};
+use super::column::Values;
 use super::reader::TableReader;
+use super::response_columns::RESPONSE_COLUMNS;
 use super::writer::{ROW_DIGESTS_KEY, TableWriter};
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::{ContactQuantity, PairFactors};
-
-use ColumnKind::{Boolean, Float64, Int32, Int64, String as Text};
-
-/// Columns of `responses.parquet`.
-pub const RESPONSE_COLUMNS: &[ColumnSpec] = &[
-    key::SCENARIO,
-    key::CONTACT,
-    key::ENGINE_ORDER,
-    key::NORMAL_LOAD,
-    key::STANDARD_DEVIATION,
-    key::PATTERN,
-    ColumnSpec::new(
-        "status",
-        Text,
-        "",
-        "How the solution ended; every value but ok is a failure and has nulls",
-    ),
-    ColumnSpec::new(
-        "peak_amplitude_m",
-        Float64,
-        "m",
-        "Largest amplitude over blades and frequency",
-    ),
-    ColumnSpec::new(
-        "peak_frequency_hz",
-        Float64,
-        "Hz",
-        "Excitation frequency of the peak",
-    ),
-    ColumnSpec::new("peak_blade", Int32, "", "Blade of the peak, from 0"),
-    ColumnSpec::new(
-        "amplification_factor",
-        Float64,
-        "1",
-        "Peak amplitude over the tuned peak of the same normal load, engine order and solver settings",
-    ),
-    ColumnSpec::new(
-        "peak_bracketed",
-        Boolean,
-        "",
-        "Lower amplitudes were seen on both sides of the peak",
-    ),
-    ColumnSpec::new(
-        "harmonics",
-        Text,
-        "",
-        "Temporal harmonics of the solution, for instance 1-3",
-    ),
-    ColumnSpec::new("nonlinear_solves", Int64, "1", "Nonlinear solves used"),
-    ColumnSpec::new("newton_iterations", Int64, "1", "Newton iterations used"),
-    ColumnSpec::new(
-        "residual",
-        Float64,
-        "1",
-        "Residual force relative to the excitation at the peak",
-    ),
-    ColumnSpec::new(
-        "slipping_fraction",
-        Float64,
-        "1",
-        "Share of contact pairs that slip in any direction at any instant, at the peak",
-    ),
-    ColumnSpec::new(
-        "separated_fraction",
-        Float64,
-        "1",
-        "Share of contact pairs without normal load at any instant, at the peak",
-    ),
-    ColumnSpec::new(
-        "shortcut",
-        Text,
-        "",
-        "What was left out: linear, stuck, or none; after the simplification of the contact law, if there is one",
-    ),
-    ColumnSpec::new(
-        "retries",
-        Int64,
-        "1",
-        "Nonlinear solves that needed more than the first attempt of the retry ladder",
-    ),
-    ColumnSpec::new(
-        "factorisations",
-        Int64,
-        "1",
-        "Jacobians assembled and factored, all attempts",
-    ),
-    ColumnSpec::new(
-        "mean_friction_circumferential_n",
-        Float64,
-        "N",
-        "Mean friction force on the ring along theta per sector (torque over the mean contact radius) at the peak, mean over the sectors; null for the linear limits",
-    ),
-    ColumnSpec::new(
-        "mean_friction_axial_n",
-        Float64,
-        "N",
-        "Mean friction force on the ring along z per sector at the peak, mean over the sectors; null for the linear limits",
-    ),
-    ColumnSpec::new(
-        "sampling_error",
-        Float64,
-        "1",
-        "Relative change of the peak amplitude by one Newton correction at 4 times the samples per period and under the law of the study",
-    ),
-    ColumnSpec::new(
-        "harmonic_error",
-        Float64,
-        "1",
-        "Relative change of the peak amplitude by the harmonics up to 15 outside of the set",
-    ),
-    ColumnSpec::new(
-        "stated_error",
-        Float64,
-        "1",
-        "Bound on the relative error of the peak amplitude: sampling, harmonics, basis and peak tolerance together",
-    ),
-    ColumnSpec::new(
-        "error_within_tolerance",
-        Boolean,
-        "",
-        "Sampling and harmonic error are within their tolerances",
-    ),
-    ColumnSpec::new(
-        "basis",
-        Text,
-        "",
-        "Basis of the reduced model that the row was solved on",
-    ),
-    ColumnSpec::new(
-        "friction_coefficient_factor",
-        Float64,
-        "1",
-        "Factor on the coefficient of friction of this wheel, mean over its pairs; null where the contact does not vary",
-    ),
-    ColumnSpec::new(
-        "tangential_stiffness_factor",
-        Float64,
-        "1",
-        "Factor on the tangential contact stiffness of this wheel, mean over its pairs; null where the contact does not vary",
-    ),
-    ColumnSpec::new(
-        "normal_stiffness_factor",
-        Float64,
-        "1",
-        "Factor on the normal contact stiffness of this wheel, mean over its pairs; null where the contact does not vary",
-    ),
-    ColumnSpec::new(
-        "normal_load_factor",
-        Float64,
-        "1",
-        "Factor on the normal load of this wheel, mean over its pairs; null where the contact does not vary",
-    ),
-];
 
 /// Rows per row group and per batch in memory.
 const ROW_GROUP: usize = 65_536;
@@ -173,6 +21,7 @@ pub struct ResponseWriter {
     scenarios: Vec<Scenario>,
     writer: TableWriter,
     waiting: Vec<ResponseRow>,
+    stable: Vec<Option<bool>>,
 }
 
 impl ResponseWriter {
@@ -192,6 +41,7 @@ impl ResponseWriter {
             scenarios: scenarios.to_vec(),
             writer: TableWriter::create_with(path, RESPONSE_COLUMNS, header, &digests)?,
             waiting: Vec::new(),
+            stable: Vec::new(),
         })
     }
 
@@ -201,10 +51,24 @@ impl ResponseWriter {
     /// The file cannot be written, or a row belongs to no scenario.
     pub fn write(&mut self, rows: impl IntoIterator<Item = ResponseRow>) -> Result<(), TableError> {
         for row in rows {
-            self.waiting.push(row);
-            if self.waiting.len() == ROW_GROUP {
-                self.flush()?;
-            }
+            self.write_judged(row, None)?;
+        }
+        Ok(())
+    }
+
+    /// Appends a row with what is known of the stability of its motion.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn write_judged(
+        &mut self,
+        row: ResponseRow,
+        stable: Option<bool>,
+    ) -> Result<(), TableError> {
+        self.waiting.push(row);
+        self.stable.push(stable);
+        if self.waiting.len() == ROW_GROUP {
+            self.flush()?;
         }
         Ok(())
     }
@@ -232,11 +96,13 @@ impl ResponseWriter {
         if rows.is_empty() {
             return Ok(());
         }
-        let values = columns_of(&rows, &self.scenarios)?;
+        let mut values = columns_of(&rows, &self.scenarios)?;
+        values.push(Values::Boolean(std::mem::take(&mut self.stable)));
         self.writer.write(values)
     }
 }
 
+/// Values of the columns but the last one.
 fn columns_of(rows: &[ResponseRow], scenarios: &[Scenario]) -> Result<Vec<Values>, TableError> {
     let keys: Vec<&Scenario> = rows
         .iter()
@@ -328,7 +194,8 @@ impl ResponseReader {
     pub fn open(path: &Path) -> Result<Self, TableError> {
         Ok(Self {
             path: path.to_owned(),
-            table: TableReader::open(path, RESPONSE_COLUMNS)?,
+            // Stability is no part of a row, and tables of before have none.
+            table: TableReader::open(path, &RESPONSE_COLUMNS[..RESPONSE_COLUMNS.len() - 1])?,
             next: 0,
         })
     }

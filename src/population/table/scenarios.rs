@@ -6,9 +6,11 @@ use super::column::{ColumnKind, ColumnSpec, Values, key};
 use super::writer::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{Scenario, TunedReference};
-use crate::population::statistics::{PERCENTILES, SampleStatistics, ScenarioStatistics};
+use crate::population::statistics::{
+    PERCENTILES, SampleStatistics, ScenarioStability, ScenarioStatistics,
+};
 
-use ColumnKind::{Float64, Int32, String as Text};
+use ColumnKind::{Boolean, Float64, Int32, String as Text};
 
 /// A scenario with its tuned reference and its statistics.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +21,8 @@ pub struct ScenarioRecord {
     pub tuned: TunedReference,
     /// Statistics over the patterns.
     pub statistics: ScenarioStatistics,
+    /// What is known of the stability of its motions; none where none was looked at.
+    pub stability: Option<ScenarioStability>,
 }
 
 /// Columns of `scenarios.parquet`.
@@ -236,6 +240,18 @@ pub const SCENARIO_COLUMNS: &[ColumnSpec] = &[
         "Relative change of the tuned peak by the harmonics up to 15 outside of the set",
     ),
     ColumnSpec::new(
+        "tuned_stable",
+        Boolean,
+        "",
+        "Small disturbances of the motion at the tuned peak die out; null where that was not looked at, see output.stability, or is not settled",
+    ),
+    ColumnSpec::new(
+        "unstable_rows",
+        Int32,
+        "1",
+        "Rows that were looked at and whose motion is unstable; null where none was looked at",
+    ),
+    ColumnSpec::new(
         "largest_stated_error",
         Float64,
         "1",
@@ -356,6 +372,12 @@ pub fn write_scenarios(
     values.push(floats(&|record| {
         record.tuned.errors.map(|errors| errors.harmonics)
     }));
+    let stability = || records.iter().map(|record| record.stability);
+    values.push(Values::Boolean(
+        stability().map(|found| found?.tuned).collect(),
+    ));
+    let unstable = stability().map(|found| Some(found?.unstable as i32));
+    values.push(Values::Int32(unstable.collect()));
     values.push(floats(&|record| record.statistics.largest_stated_error));
     values.push(ids(&|record| record.statistics.beyond_tolerance));
     let speed = |place: usize| extras.speeds_rpm.get(place).copied().flatten();

@@ -7,7 +7,9 @@ use super::observed_amplitude::ObservedAmplitude;
 use super::options::{Harmonics, SearchHarmonics, SolverOptions};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
-use crate::response::harmonic_balance::{HarmonicTransform, NewtonBounds, TransformError};
+use crate::response::harmonic_balance::{
+    ContactInterface, HarmonicTransform, NewtonBounds, TransformError,
+};
 use crate::response::mistuning::ContactFactors;
 
 /// Samples per period of the highest harmonic of an automatic set at least.
@@ -143,6 +145,34 @@ impl PointSettings {
             transform: Arc::new(transform),
             ..search.clone()
         }))
+    }
+
+    /// The same contact in other harmonics.
+    ///
+    /// # Errors
+    /// If these cannot be told apart with the samples asked for.
+    pub fn with_harmonics(
+        &self,
+        harmonics: &[u32],
+        options: &SolverOptions,
+    ) -> Result<Self, TransformError> {
+        let other = Self::new(options, harmonics, self.contact, self.geometry.clone())?;
+        Ok(other.with_ring(self.ring).with_factors(&self.factors))
+    }
+
+    /// The pairs of the wheel under a law and a normal load.
+    #[must_use]
+    pub fn interface(
+        &self,
+        law: ContactLaw,
+        sector: PairParameters,
+        normal_load_n: f64,
+    ) -> ContactInterface {
+        ContactInterface {
+            law,
+            pairs: sector.pairs_under(normal_load_n, &self.geometry, &self.factors),
+            geometry: self.geometry.clone(),
+        }
     }
 
     /// Harmonic set of the nonlinear solution.

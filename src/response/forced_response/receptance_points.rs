@@ -13,11 +13,10 @@ use super::point_source::PointSource;
 use super::starts::between;
 use crate::linalg::Complex64;
 use crate::response::friction::ContactLaw;
-use crate::response::harmonic_balance::{
-    ContactInterface, HarmonicTransform, PairContact, Status, WheelContact,
-};
+use crate::response::harmonic_balance::{HarmonicTransform, PairContact, Status, WheelContact};
 use crate::response::receptance::{
     EngineWheel, Limit, ReceptanceEngine, Resonance, WaveForce, WheelSolution, WheelSolver,
+    embedded,
 };
 
 /// One wheel on an engine under one excitation and contact condition.
@@ -109,13 +108,9 @@ impl<'a> EngineRow<'a> {
         let load_n = self.condition.normal_load_n();
         let contact = settings.contact.filter(|_| load_n.is_some() || varied);
         contact.map(|(law, sector)| {
-            let geometry = settings.geometry.clone();
-            let own = settings.factors.springs(springs, &geometry.rows);
-            let interface = ContactInterface {
-                law: in_place_of.unwrap_or(law),
-                pairs: sector.pairs_under(load_n.unwrap_or(0.0), &geometry, &settings.factors),
-                geometry,
-            };
+            let own = settings.factors.springs(springs, &settings.geometry.rows);
+            let law = in_place_of.unwrap_or(law);
+            let interface = settings.interface(law, sector, load_n.unwrap_or(0.0));
             let sectors = self.engine.sectors();
             let contact = WheelContact::new(interface, sectors, springs, Arc::clone(transform));
             if load_n.is_some() {
@@ -350,6 +345,26 @@ pub fn receptance_state(
     let point = solver.finished(frequency_hz)?;
     let states = solver.solver.contact_states();
     Ok((point, states.filter(|_| solver.is_nonlinear)))
+}
+
+/// The motion of every contact row of a row at a frequency, Hz, in every harmonic of `settings`, sector after sector, solved beside
+/// that in the harmonics of `coarse`; none for a linear limit.
+///
+/// # Errors
+/// The status of the last attempt, if none converged.
+pub fn receptance_contact_motion(
+    row: &EngineRow<'_>,
+    coarse: &PointSettings,
+    settings: &PointSettings,
+    frequency_hz: f64,
+) -> Result<Option<Vec<(u32, Vec<Complex64>)>>, Status> {
+    let beside = ReceptancePoints::new(row, coarse).finished(frequency_hz)?;
+    let mut solver = ReceptancePoints::new(row, settings);
+    let (few, all) = (&coarse.harmonics, solver.solver.harmonics());
+    let start = embedded(&beside.solution, few, all);
+    solver.solve_from(frequency_hz, &[start], settings.bounds.residual_tolerance)?;
+    let motion = solver.solver.contact_motion();
+    Ok(motion.filter(|_| solver.is_nonlinear))
 }
 
 /// Points of a row at the given frequencies, Hz, in their order.

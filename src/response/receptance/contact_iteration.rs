@@ -12,7 +12,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::linalg::Complex64;
+use crate::linalg::{Complex64, gmres};
 use crate::response::harmonic_balance::{ContactShares, Status, WheelContact};
 
 use super::acceleration::Acceleration;
@@ -20,7 +20,6 @@ use super::contact_forces::ContactForces;
 use super::fields::{
     Field, SectorTransform, flatten, norm_squared, padded, returned, turned, unflatten,
 };
-use super::krylov;
 use super::wheel_harmonic::{Preconditioner, WheelHarmonic};
 
 /// Earlier steps that are combined.
@@ -56,6 +55,8 @@ const BESIDE: Plan = Plan {
 
 /// Newton steps of the last attempt at most.
 const NEWTON_STEPS: usize = 40;
+/// Residual of each, relative to its right-hand side.
+const STEP_ERROR: f64 = 1e-3;
 
 /// The equation of one wheel at one frequency.
 pub(super) struct ContactEquation<'a> {
@@ -378,7 +379,7 @@ impl ContactEquation<'_> {
             let mut right = Vec::new();
             flatten(&self.buffers.residual, -1.0, &mut right);
             precondition(self, &mut right);
-            let (step, products) = krylov::gmres(&right, |direction| {
+            let (step, products) = gmres(&right, STEP_ERROR, |direction| {
                 let mut turned = self.derivative(direction);
                 precondition(self, &mut turned);
                 turned

@@ -309,6 +309,26 @@ impl EngineWheel {
 }
 
 impl Pencil {
+    /// What takes part in all strain coordinates.
+    pub(super) fn strain(&self) -> &Participation {
+        &self.strain
+    }
+
+    /// Motion times spring of the contact rows under the excitation, N.
+    pub(super) fn contact_forces(&self) -> &[f64] {
+        &self.contact_forces
+    }
+
+    /// The excitations.
+    pub(super) fn forces(&self) -> &[WaveForce] {
+        &self.forces
+    }
+
+    /// Largest deviation of a blade that is expected.
+    pub(super) fn deviation(&self) -> f64 {
+        self.deviation
+    }
+
     /// Shapes and receptances of a harmonic, made when first asked for.
     pub(super) fn tables(&self, harmonic: u32) -> Option<&HarmonicTables> {
         let own = self.tables.get(harmonic as usize)?;

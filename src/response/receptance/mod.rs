@@ -10,7 +10,7 @@ mod contact_forces;
 mod contact_iteration;
 mod engine;
 mod fields;
-mod krylov;
+mod free_waves;
 mod resonances;
 mod tables;
 mod tuned_wheel;
@@ -23,6 +23,7 @@ pub use contact_forces::ContactForces;
 pub use engine::{
     EngineModel, EngineOptions, EngineWheel, HIGHEST_HARMONIC, Limit, ReceptanceEngine,
 };
+pub use free_waves::{FreeWave, FreeWheel};
 pub use resonances::Resonance;
 pub use wave_force::WaveForce;
 pub use wheel_solver::{SolutionWork, WheelSolution, WheelSolver, embedded, overlay};

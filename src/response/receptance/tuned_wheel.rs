@@ -106,6 +106,16 @@ impl TunedDiameter {
         self.eigenvalues.len()
     }
 
+    /// Contact-free eigenvalues, (rad/s)^2.
+    pub(super) fn eigenvalues(&self) -> &[f64] {
+        &self.eigenvalues
+    }
+
+    /// Viscous damping of every contact-free mode, 1/s.
+    pub(super) fn viscous(&self) -> &[f64] {
+        &self.viscous
+    }
+
     /// Number of contact rows with springs: all or none.
     pub(super) fn spring_count(&self) -> usize {
         self.springs.len()

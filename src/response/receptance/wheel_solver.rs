@@ -263,6 +263,28 @@ impl<'a> WheelSolver<'a> {
         Some(self.contact.as_mut()?.contact_states())
     }
 
+    /// Motion of every contact row in every harmonic at the solution last solved, sector after sector; none for a linear limit.
+    #[must_use]
+    pub fn contact_motion(&self) -> Option<Vec<(u32, Vec<Complex64>)>> {
+        let contact = self.contact.as_ref()?;
+        let rows = contact.sector_rows() * contact.sectors();
+        let mut parts = contact.motion().chunks_exact(rows.max(1));
+        self.set
+            .iter()
+            .map(|&harmonic| {
+                let re = parts.next()?;
+                let im = if harmonic == 0 {
+                    None
+                } else {
+                    Some(parts.next()?)
+                };
+                let row =
+                    |(row, &re): (usize, &f64)| Complex64::new(re, im.map_or(0.0, |im| im[row]));
+                Some((harmonic, re.iter().enumerate().map(row).collect()))
+            })
+            .collect()
+    }
+
     /// Number of sectors.
     #[must_use]
     pub fn sectors(&self) -> usize {

@@ -139,24 +139,15 @@ pub fn compare_point(
     case: &PointCase<'_>,
     options: &TimeOptions,
 ) -> Result<PointComparison, Status> {
-    let omega = TAU * case.frequency_hz;
-    let modes = case.modes()?;
-    let wheel = case.wheel(&modes, omega);
-    let interface = case.interface();
-    let marched = MarchedWheel {
-        structure: &wheel.linear.structure,
-        interface: &interface,
-        force: &wheel.force,
-        omega,
-    };
-    let (harmonic_balance_m, motion) = case.harmonic_balance(&modes, &wheel)?;
-    let start = motion.start(&marched, options.steps_per_period);
+    let solved = case.solved()?;
+    let marched = solved.marched();
+    let start = solved.motion.start(&marched, options.steps_per_period);
     let (steps, settled, status) = case.march(&marched, start.clone(), options);
     let motion = (settled.status == Status::WorkBudget)
         .then(|| periodic_motion(&marched, &start, options.steps_per_period));
     Ok(PointComparison {
         frequency_hz: case.frequency_hz,
-        harmonic_balance_m,
+        harmonic_balance_m: solved.harmonic_balance_m,
         time_m: case.measured(&settled).to_vec(),
         status,
         steps,
@@ -174,23 +165,60 @@ pub fn periodic_point(
     case: &PointCase<'_>,
     steps_per_period: usize,
 ) -> Result<(Vec<f64>, PeriodicMotion), Status> {
-    let omega = TAU * case.frequency_hz;
-    let modes = case.modes()?;
-    let wheel = case.wheel(&modes, omega);
-    let interface = case.interface();
-    let marched = MarchedWheel {
-        structure: &wheel.linear.structure,
-        interface: &interface,
-        force: &wheel.force,
-        omega,
-    };
-    let (harmonic_balance_m, motion) = case.harmonic_balance(&modes, &wheel)?;
-    let start = motion.start(&marched, steps_per_period);
+    let solved = case.solved()?;
+    let marched = solved.marched();
+    let start = solved.motion.start(&marched, steps_per_period);
     let found = periodic_motion(&marched, &start, steps_per_period);
-    Ok((harmonic_balance_m, found))
+    Ok((solved.harmonic_balance_m, found))
+}
+
+/// The harmonic balance solution of a point, on the whole wheel.
+#[derive(Debug)]
+pub struct SolvedPoint {
+    /// The wheel with viscous damping.
+    pub wheel: Excited,
+    /// Its contact.
+    pub interface: ContactInterface,
+    /// Angular frequency, rad/s.
+    pub omega: f64,
+    /// Amplitude of every blade, m.
+    pub harmonic_balance_m: Vec<f64>,
+    /// The motion.
+    pub motion: Motion,
+}
+
+impl SolvedPoint {
+    /// What is marched.
+    #[must_use]
+    pub fn marched(&self) -> MarchedWheel<'_> {
+        MarchedWheel {
+            structure: &self.wheel.linear.structure,
+            interface: &self.interface,
+            force: &self.wheel.force,
+            omega: self.omega,
+        }
+    }
 }
 
 impl PointCase<'_> {
+    /// The harmonic balance solution.
+    ///
+    /// # Errors
+    /// Its status; `invalid_pattern`.
+    pub fn solved(&self) -> Result<SolvedPoint, Status> {
+        let omega = TAU * self.frequency_hz;
+        let modes = self.modes()?;
+        let wheel = self.wheel(&modes, omega);
+        let (harmonic_balance_m, motion) = self.harmonic_balance(&modes, &wheel)?;
+        Ok(SolvedPoint {
+            interface: self.interface(),
+            wheel,
+            omega,
+            harmonic_balance_m,
+            motion,
+        })
+    }
+
     fn modes(&self) -> Result<StructuralModes, Status> {
         let size = self.basis.size();
         let none = Matrix::zeros(size, size);

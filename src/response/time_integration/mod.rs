@@ -15,7 +15,7 @@ mod state;
 mod stepper;
 
 pub use compare::{
-    PointCase, PointComparison, Stability, StepStudy, compare_point, periodic_point,
+    PointCase, PointComparison, SolvedPoint, Stability, StepStudy, compare_point, periodic_point,
 };
 pub use contact_march::{PairMemory, march};
 pub use motion::Motion;

@@ -10,6 +10,7 @@ use super::stepper::MarchedWheel;
 use crate::linalg::Complex64;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::response::forced_response::{Excited, Point};
+use crate::response::harmonic_balance::Structure;
 use crate::response::mistuning::{StructuralModes, WheelBasis};
 
 /// Periods in which sliders find their places on the motion of a harmonic-balance solution.
@@ -50,6 +51,23 @@ impl Motion {
             })
             .collect();
         Self { harmonics }
+    }
+
+    /// Motion of every contact row of the wheel in every harmonic, m, sector after sector.
+    #[must_use]
+    pub fn contact_rows(&self, structure: &Structure) -> Vec<(u32, Vec<Complex64>)> {
+        let rows = &structure.contact().real;
+        let harmonics = self.harmonics.iter().map(|(harmonic, amplitudes)| {
+            let parts = [|z: &Complex64| z.re, |z: &Complex64| z.im]
+                .map(|part| rows.times_vector(&amplitudes.iter().map(part).collect::<Vec<f64>>()));
+            let [re, im] = parts;
+            let both = re.into_iter().zip(im);
+            (
+                *harmonic,
+                both.map(|(re, im)| Complex64::new(re, im)).collect(),
+            )
+        });
+        harmonics.collect()
     }
 
     /// Position and velocity at `turn` of a period, modal.

@@ -389,4 +389,10 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "none",
         "stress per amplitude of the observed node, Pa/m: amplitudes are told as stress too",
     ),
+    entry(
+        "output.stability",
+        Whole(0, 1000),
+        "0",
+        "rows nearest to P5, P50, P95 and P99 of the amplitude of every scenario whose motions, and those of the tuned wheel, are looked at for their stability; seconds each ([formulation.md](formulation.md))",
+    ),
 ];

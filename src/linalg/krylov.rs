@@ -1,15 +1,15 @@
-//! Generalised minimal residuals (Saad & Schultz 1986, SIAM J. Sci. Stat. Comput. 7(3)) for the steps of Newton's method.
+//! Generalised minimal residuals (Saad & Schultz 1986, SIAM J. Sci. Stat. Comput. 7(3)).
 
-use crate::linalg::dot;
+use super::dot;
 
 /// Products with the matrix at most.
 const PRODUCTS: usize = 120;
-/// Residual relative to the right-hand side at which a step is good enough.
-const ENOUGH: f64 = 1e-3;
 
-/// `x` with `A x` near `right`, and the number of products with A that it took.
-pub(super) fn gmres(
+/// `x` with `A x` near `right`, until the residual is `enough` of `right` or 120 products are spent, and the number of products
+/// with A that it took.
+pub fn gmres(
     right: &[f64],
+    enough: f64,
     mut product: impl FnMut(&[f64]) -> Vec<f64>,
 ) -> (Vec<f64>, usize) {
     let size = dot(right, right).sqrt();
@@ -49,7 +49,7 @@ pub(super) fn gmres(
         let rest = left[last];
         left[last] = cosine * rest;
         left.push(-sine * rest);
-        if (sine * rest).abs() <= ENOUGH * size || norm == 0.0 {
+        if (sine * rest).abs() <= enough * size || norm == 0.0 {
             break;
         }
         basis.push(vector.iter().map(|v| v / norm).collect());
@@ -78,7 +78,7 @@ mod tests {
             let row = |row: &[f64; 3]| row.iter().zip(x).map(|(a, x)| a * x).sum();
             a.iter().map(row).collect()
         };
-        let (x, products) = gmres(&[1.0, 2.0, 3.0], product);
+        let (x, products) = gmres(&[1.0, 2.0, 3.0], 1e-3, product);
         let back = product(&x);
         assert!(products <= 3);
         for (b, own) in [1.0, 2.0, 3.0].iter().zip(&back) {
