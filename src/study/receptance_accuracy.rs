@@ -235,7 +235,7 @@ pub(super) fn on_receptances(
             operations: mean_operations(&compared.own),
         });
         let known = SETTLED * compared.own.len() as f64;
-        let met = amplitude.p95_upper <= accepted && amplitude.rows as f64 >= known;
+        let met = amplitude.worst <= accepted && amplitude.rows as f64 >= known;
         // The bound of few rows is wide, and what does not settle settles no better by smaller tolerances: neither asks for more.
         if amplitude.worst <= accepted || left.len() == 0 {
             let evidence = compared.evidence(&setting, amplitude, operations, tried);
