@@ -88,7 +88,7 @@ fn deviations(pattern: u32) -> Vec<f64> {
 ///
 /// The march begins beside harmonic balance. What it changes by over a period is the distance of two motions, and moves as a
 /// disturbance does.
-fn both(point: &Point, periods: usize) -> (Multipliers, f64) {
+fn both(point: &Point, periods: usize) -> (Option<Multipliers>, f64) {
     let damping = Damping::StructuralLossFactor(point.loss_factor);
     let (kn, kt) = (8e8, 4e8);
     let springs = ContactStiffness {
@@ -161,18 +161,18 @@ fn both(point: &Point, periods: usize) -> (Multipliers, f64) {
     let fine: Vec<u32> = (0..=HIGHEST).collect();
     let fine = coarse.with_harmonics(&fine, &solver).unwrap();
     let harmonics = receptance_contact_motion(&row, &coarse, &fine, point.frequency_hz);
-    let motion = ContactMotion {
-        harmonics: harmonics.unwrap().unwrap(),
-    };
     let wanted = StabilityOptions {
         steps_per_period: STEPS,
         ..StabilityOptions::default()
     };
     let clock = std::time::Instant::now();
-    let found = multipliers(&free, &solved.interface, &motion, solved.omega, &wanted).unwrap();
+    // Where so many harmonics are not solved for, nothing is known.
+    let found = harmonics.ok().flatten().and_then(|harmonics| {
+        let motion = ContactMotion { harmonics };
+        multipliers(&free, &solved.interface, &motion, solved.omega, &wanted)
+    });
     println!(
-        "{point:?}: |{:.5}| {found:?} in {:.1} s",
-        found.largest.norm(),
+        "{point:?}: {found:?} in {:.1} s",
         clock.elapsed().as_secs_f64()
     );
     let marched = solved.marched();
@@ -221,7 +221,7 @@ fn at_400_n_the_wheel_leaves_its_motion_and_at_1600_n_it_stays() {
     for (point, stable) in [(&POINTS[0], false), (&POINTS[1], true)] {
         let (found, ratio) = both(point, 60);
         assert_eq!(dies_out(ratio), Some(stable), "{ratio}");
-        assert_eq!(found.stable, Some(stable));
+        assert_eq!(found.unwrap().stable, Some(stable));
     }
 }
 
@@ -232,7 +232,7 @@ fn at_twenty_points_multipliers_say_what_the_march_does() {
         .iter()
         .map(|point| {
             let (found, ratio) = both(point, 120);
-            (found.stable, dies_out(ratio))
+            (found.and_then(|found| found.stable), dies_out(ratio))
         })
         .collect();
     for (point, told) in POINTS.iter().zip(&told) {
