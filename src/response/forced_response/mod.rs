@@ -49,7 +49,7 @@ pub use receptance_errors::{
     TopBeside, receptance_effects, receptance_errors, receptance_top_beside, receptance_top_m,
 };
 pub use receptance_points::{
-    EngineRow, linear_peaks_of, receptance_contact_motion, receptance_curve, receptance_peak,
-    receptance_plan, receptance_state,
+    ContactMotion, EngineRow, linear_peaks_of, receptance_contact_motion, receptance_curve,
+    receptance_peak, receptance_plan, receptance_state,
 };
 pub use refined_peak::{Search, refined, refined_peak};

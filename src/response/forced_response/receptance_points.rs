@@ -347,6 +347,9 @@ pub fn receptance_state(
     Ok((point, states.filter(|_| solver.is_nonlinear)))
 }
 
+/// A harmonic and its complex motion of every contact row, m, sector after sector.
+pub type ContactMotion = (u32, Vec<Complex64>);
+
 /// The motion of every contact row of a row at a frequency, Hz, in every harmonic of `settings`, sector after sector, solved beside
 /// that in the harmonics of `coarse`; none for a linear limit.
 ///
@@ -357,7 +360,7 @@ pub fn receptance_contact_motion(
     coarse: &PointSettings,
     settings: &PointSettings,
     frequency_hz: f64,
-) -> Result<Option<Vec<(u32, Vec<Complex64>)>>, Status> {
+) -> Result<Option<Vec<ContactMotion>>, Status> {
     let beside = ReceptancePoints::new(row, coarse).finished(frequency_hz)?;
     let mut solver = ReceptancePoints::new(row, settings);
     let (few, all) = (&coarse.harmonics, solver.solver.harmonics());

@@ -68,7 +68,9 @@ impl Arnoldi {
         }
         self.columns.push(column);
         self.closed = left <= CLOSED * size;
-        next.iter_mut().for_each(|x| *x /= left);
+        for x in &mut next {
+            *x /= left;
+        }
         self.vectors.push(next);
         Some(())
     }
@@ -113,7 +115,9 @@ fn last_of_vector(small: &Matrix<f64>, value: Complex64) -> Option<f64> {
     for _ in 0..INVERSE_STEPS {
         factors.solve(&mut vector);
         let norm = vector.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
-        vector.iter_mut().for_each(|x| *x /= norm);
+        for x in &mut vector {
+            *x /= norm;
+        }
     }
     vector.last().map(|x| x.norm()).filter(|x| x.is_finite())
 }

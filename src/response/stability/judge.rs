@@ -84,7 +84,9 @@ pub fn multipliers(
         if norm <= f64::MIN_POSITIVE || !norm.is_finite() {
             return None;
         }
-        first.iter_mut().for_each(|x| *x /= norm);
+        for x in &mut first {
+            *x /= norm;
+        }
     }
     let mut arnoldi = Arnoldi::new(first);
     let mut seen: Vec<f64> = Vec::new();

@@ -79,7 +79,9 @@ impl PeriodMap {
                     .for_each(|(x, o)| *x -= share * o);
             }
             let norm = dot(&state, &state).sqrt();
-            state.iter_mut().for_each(|x| *x /= norm);
+            for x in &mut state {
+                *x /= norm;
+            }
             free.push(state);
         }
         free
