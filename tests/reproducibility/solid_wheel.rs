@@ -95,14 +95,17 @@ fn stability_is_looked_at_in_the_same_rows_however_a_study_is_solved() {
     .expect("the run");
     let expected = bytes(folder.path());
     let manifest = Manifest::read(folder.path()).expect("read").expect("there");
+    let mut known = 0;
     for entry in &manifest.scenarios {
         let found = entry.stability.expect("looked at");
         // Of eight patterns only the median has a value.
         assert_eq!(found.rows, 1);
-        let nonlinear = entry.contact.normal_load_n().is_some();
-        assert_eq!(found.tuned.is_some(), nonlinear);
-        assert_eq!(found.stable + found.unstable == 1, nonlinear);
+        let told = found.stable + found.unstable + u64::from(found.tuned.is_some());
+        // A linear limit has no contact whose motion could be left.
+        assert!(told == 0 || entry.contact.normal_load_n().is_some());
+        known += told;
     }
+    assert!(known >= 2);
     assert!(results(&study, 2) == expected);
 
     // First without, of fewer patterns.
