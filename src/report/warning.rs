@@ -127,14 +127,18 @@ impl fmt::Display for Warning {
                 rows,
                 tuned,
             } => {
-                write!(f, "the motions of {rows} of the {looked_at} rows looked at")?;
+                let mut motions = Vec::new();
+                if *rows > 0 {
+                    motions.push(format!("of {rows} of the {looked_at} rows looked at"));
+                }
                 if !tuned.is_empty() {
-                    write!(f, " and of the tuned wheel of scenarios {}", list(tuned))?;
+                    motions.push(format!("of the tuned wheel of scenarios {}", list(tuned)));
                 }
                 write!(
                     f,
-                    " are unstable: the wheel does not stay on them, and its amplitude in time differs, by a few per cent \
-                     where that was marched; see the columns stable and tuned_stable"
+                    "the motions {} are unstable: the wheel does not stay on them, and its amplitude in time differs, by a few per cent \
+                     where that was marched; see the columns stable and tuned_stable",
+                    motions.join(" and ")
                 )
             }
             Self::BasisError {

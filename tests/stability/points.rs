@@ -16,7 +16,7 @@ use blisk::response::receptance::{
     EngineModel, EngineOptions, EngineWheel, ReceptanceEngine, WaveForce,
 };
 use blisk::response::stability::{ContactMotion, Multipliers, StabilityOptions, multipliers};
-use blisk::response::time_integration::{PointCase, TimeStepper};
+use blisk::response::time_integration::{PointCase, SolvedPoint, TimeStepper};
 
 const ENGINE_ORDER: u32 = 3;
 
@@ -84,10 +84,8 @@ fn deviations(pattern: u32) -> Vec<f64> {
     own.map(|cells| cells[2].parse().unwrap()).collect()
 }
 
-/// What the multipliers say, and the change of the motion from one period to the next at the end of a march over its first ones.
-///
-/// The march begins beside harmonic balance. What it changes by over a period is the distance of two motions, and moves as a
-/// disturbance does.
+/// What the multipliers say, and what a march that begins beside harmonic balance does, see [`change_of_march`]: what it changes by
+/// over a period is the distance of two motions, and moves as a disturbance does.
 fn both(point: &Point, periods: usize) -> (Option<Multipliers>, f64) {
     let damping = Damping::StructuralLossFactor(point.loss_factor);
     let (kn, kt) = (8e8, 4e8);
@@ -175,6 +173,12 @@ fn both(point: &Point, periods: usize) -> (Option<Multipliers>, f64) {
         "{point:?}: {found:?} in {:.1} s",
         clock.elapsed().as_secs_f64()
     );
+    (found, change_of_march(&solved, periods))
+}
+
+/// Change of the marched motion from one period to the next in the last ones, over that in the first ones: the march begins beside
+/// harmonic balance.
+fn change_of_march(solved: &SolvedPoint, periods: usize) -> f64 {
     let marched = solved.marched();
     let mut state = solved.motion.start(&marched, STEPS);
     for (place, q) in state.position.iter_mut().enumerate() {
@@ -202,7 +206,7 @@ fn both(point: &Point, periods: usize) -> (Option<Multipliers>, f64) {
         largest(&changes[periods - 20..]),
         clock.elapsed().as_secs_f64()
     );
-    (found, ratio)
+    ratio
 }
 
 /// What the march says: whether what changes from one period to the next dies out. Every disturbance that is seen to die out is

@@ -192,6 +192,42 @@ fn every_row_is_as_true_as_the_accepted_error_says() {
     }
 }
 
+/// Rows of the truth, of four wheels, with friction and without: wheel, pattern, with friction.
+const SOLVED_AGAIN: [(&str, usize, bool); 5] = [
+    ("wheel8", 4, false),
+    ("odd", 6, true),
+    ("half", 7, true),
+    ("heavy-ring", 7, true),
+    ("heavy-ring", 5, false),
+];
+
+/// What is stored is what these equations give: each peak found again, modes doubled until it stays.
+#[test]
+fn five_rows_of_the_truth_are_solved_again() {
+    faer::set_global_parallelism(faer::Par::Seq);
+    SOLVED_AGAIN
+        .par_iter()
+        .for_each(|&(name, pattern, with_friction)| {
+            let wheel = Wheel::read(name);
+            let condition = wheel.condition(pattern, with_friction);
+            let known = stored(name);
+            let known = known
+                .iter()
+                .find(|row| row.pattern == pattern && row.condition == condition.to_string());
+            let known = known.expect("a row that is stored");
+            // From beside the peak: half a thousandth is about half of its half-bandwidth.
+            let hint_hz = 1.0005 * known.frequency_hz;
+            let again = solve_row(&Sectors::new(&wheel), &wheel, pattern, condition, hint_hz);
+            let ratio = again.amplitude_m.expect("a peak") / known.amplitude_m.expect("a peak");
+            println!(
+                "{name}, pattern {pattern}, {condition}: {:.1e}",
+                ratio - 1.0
+            );
+            assert!((ratio - 1.0).abs() < 2e-4, "{name}, {pattern}: {ratio}");
+            assert_eq!(again.blade, known.blade);
+        });
+}
+
 /// The load under which every pair of the tuned wheel sticks at its stuck peak, N per sector.
 fn sticking_n(wheel: &Wheel) -> f64 {
     let sector = Sector::new(&wheel.model, 80);
