@@ -50,8 +50,8 @@ pub struct AccuracyChoice {
     pub setting: ChosenSetting,
     /// Fixed-interface modes.
     pub craig_bampton_modes: usize,
-    /// Whether the upper bound of the 95th percentile of the amplitude error is accepted; on tuned receptances, whether no row of the
-    /// sample is further off than is accepted, and most of them are known.
+    /// Whether the upper bound of the 95th percentile of the amplitude error is accepted, and on tuned receptances most rows of the
+    /// sample are known at the enlarged settings.
     pub met: bool,
     /// Errors on the sample; none where nothing was to be measured.
     pub evidence: Option<AccuracyEvidence>,

@@ -1,9 +1,9 @@
 //! Settings on tuned receptances by an accepted error, held against enlarged ones on mistuned wheels.
 //!
 //! Every tolerance of the engine is a fixed share of the accepted error. Rows of the study at these settings are compared with the
-//! same rows in harmonics up to 15, with twice the blade shapes and twice the samples, each climbed from its own peak. Where one
-//! of them is further off than is accepted, the tolerances of harmonics and peak are halved; where that does not do either, every
-//! harmonic is taken. What the study says itself stays. Modes and shapes stay too: their error was
+//! same rows in harmonics up to 15, with twice the blade shapes and twice the samples, each climbed from its own peak. Where the
+//! upper bound of the 95th percentile of their errors is not accepted, the tolerances of harmonics and peak are halved; where that does
+//! not do either, every harmonic is taken. What the study says itself stays. Modes and shapes stay too: their error was
 //! measured when they were chosen.
 
 use std::path::Path;
@@ -235,9 +235,10 @@ pub(super) fn on_receptances(
             operations: mean_operations(&compared.own),
         });
         let known = SETTLED * compared.own.len() as f64;
-        let met = amplitude.worst <= accepted && amplitude.rows as f64 >= known;
-        // The bound of few rows is wide, and what does not settle settles no better by smaller tolerances: neither asks for more.
-        if amplitude.worst <= accepted || left.len() == 0 {
+        let unsettled = (amplitude.rows as f64) < known;
+        let met = amplitude.p95_upper <= accepted && !unsettled;
+        // What does not settle settles no better by smaller tolerances: it asks for no more.
+        if met || (unsettled && amplitude.worst <= accepted) || left.len() == 0 {
             let evidence = compared.evidence(&setting, amplitude, operations, tried);
             return Ok(choice(met, Some(evidence)));
         }

@@ -8,6 +8,7 @@ mod acceleration;
 mod blade_shapes;
 mod contact_forces;
 mod contact_iteration;
+mod contact_places;
 mod engine;
 mod fields;
 mod free_waves;

@@ -145,7 +145,7 @@ mod tests {
             Some(turned.collect())
         };
         let mut arnoldi = Arnoldi::new((0..82).map(|i| 1.0 + f64::from(i % 7)).collect());
-        for _ in 0..60 {
+        for _ in 0..76 {
             arnoldi.extend(map).unwrap_or(());
         }
         let found = arnoldi.largest(2).unwrap_or_default();
