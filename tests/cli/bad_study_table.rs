@@ -655,15 +655,6 @@ pub const CASES: &[Case] = &[
     ),
     // [accuracy] and the keys of a basis, of which it has a ladder.
     (
-        "harmonics = [1, 3]",
-        "harmonics = [1, 3]\nhigher_harmonics = \"tuned\"\n[accuracy]\namplitude_error = 0.01",
-        &[
-            "study.toml:43:",
-            "solver.higher_harmonics",
-            "accuracy.amplitude_error chooses it",
-        ],
-    ),
-    (
         "[solver]\nharmonics = [1, 3]",
         "[reduction]\nbasis = \"stick_slide\"\nslide_modes = 4\nstick_modes = 4\n[accuracy]",
         &[
