@@ -56,6 +56,11 @@ impl Row {
         self.condition.parse().ok()
     }
 
+    /// Whether twice as many modes no longer change the peak.
+    pub fn is_settled(&self) -> bool {
+        self.change_by_modes < CHANGE_BY_MODES
+    }
+
     fn line(&self) -> String {
         let shown = |value: Option<f64>| value.map_or(String::new(), |own| format!("{own:e}"));
         let mut line = format!("{},{}", self.pattern, self.condition);
