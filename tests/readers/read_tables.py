@@ -18,10 +18,10 @@ import polars
 import pyarrow.parquet
 
 INT32 = {"scenario", "engine_order", "pattern", "peak_blade", "planned", "ok", "failed", "blade", "mode", "beyond_tolerance", "rank_lower", "rank_upper"}
-INT32 |= {"resamples", "failed_resamples", "failures_left_out"}
+INT32 |= {"unstable_rows", "resamples", "failed_resamples", "failures_left_out"}
 INT64 = {"rows", "nonlinear_solves", "newton_iterations", "factorisations", "retries"}
 BOOLEAN = {"peak_bracketed", "error_within_tolerance", "estimable"}
-BOOLEAN |= {"outside_interval", "extrapolates", "few_values", "rejected"}
+BOOLEAN |= {"stable", "tuned_stable", "outside_interval", "extrapolates", "few_values", "rejected"}
 STRING = {"contact", "load_case", "status", "tuned_status", "harmonics", "shortcut", "basis", "quantity", "law", "fit_status", "input"}
 
 # Name of each type in pyarrow, Polars, DuckDB and (without nulls) pandas.
