@@ -284,18 +284,23 @@ impl ContactEquation<'_> {
         self.contact.evaluate(false);
         let places = Places::of(self.contact);
         for place in 0..places.harmonics.len() {
-            let Buffers {
-                forces, sectors, ..
-            } = &mut *self.buffers;
-            let correction = self.contact.correction();
-            places.to_waves(
-                self.transform,
-                place,
-                correction,
-                sectors,
-                &mut forces[place],
-            );
+            self.correct_forces(&places, place);
         }
+    }
+
+    /// The correction last evaluated in one harmonic, over the waves; left in the buffers.
+    fn correct_forces(&mut self, places: &Places, place: usize) {
+        let Buffers {
+            forces, sectors, ..
+        } = &mut *self.buffers;
+        let correction = self.contact.correction();
+        places.to_waves(
+            self.transform,
+            place,
+            correction,
+            sectors,
+            &mut forces[place],
+        );
     }
 
     /// Gives the contact the motions of every sector.
@@ -316,21 +321,13 @@ impl ContactEquation<'_> {
         let mut square = 0.0;
         let motion: f64 = self.buffers.motions.iter().map(norm_squared).sum();
         for place in 0..places.harmonics.len() {
+            self.correct_forces(&places, place);
             let Buffers {
                 motions,
                 residual,
                 forces,
-                sectors,
                 ..
             } = &mut *self.buffers;
-            let correction = self.contact.correction();
-            places.to_waves(
-                self.transform,
-                place,
-                correction,
-                sectors,
-                &mut forces[place],
-            );
             if let Some(load) = self.load {
                 forces[place].add(1.0, &load.fields[place]);
             }
