@@ -177,6 +177,7 @@ impl TunedWheel<'_> {
             contact: self.contact,
             harmonics: harmonics.to_vec(),
             remainder: None,
+            sampling: None,
         }
     }
 

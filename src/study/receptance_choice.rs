@@ -9,7 +9,7 @@ use crate::model::cyclic::ContactGeometry;
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings};
 use crate::response::forced_response::{
     ContactCondition, EngineRow, ErrorEstimate, Peak, Point, PointSettings, SolverOptions, Window,
-    receptance_effects, receptance_errors, receptance_peak, receptance_plan, receptance_top_m,
+    receptance_errors, receptance_peak, receptance_plan, receptance_top_m,
 };
 use crate::response::harmonic_balance::{Status, TransformError};
 use crate::response::mistuning::{ContactFactors, Pattern};
@@ -19,22 +19,8 @@ use crate::response::receptance::{EngineWheel, ReceptanceEngine, WaveForce};
 const PEAK_TOLERANCE: f64 = 1e-3;
 /// Relative tolerance of the solutions whose tops are compared on two engines.
 const COMPARED_TOLERANCE: f64 = 1e-4;
-/// Relative tolerance of the solutions that tell the effects of harmonics.
-const EFFECT_TOLERANCE: f64 = 1e-4;
-/// Share of the wanted tolerance that the judged wheels keep to: those of the population are more, and some of them worse.
-const JUDGED_SHARE: f64 = 0.2;
-/// Harmonics that are added each time that a set is not enough.
-const MORE: usize = 2;
-/// Times that this is done at most.
-const ROUNDS: usize = 4;
-/// What may be left, over the tolerance, where more harmonics leave no less.
-const GOOD_ENOUGH: f64 = 2.0;
-/// Harmonics that are added at once at most.
-const MOST_AT_ONCE: usize = 7;
 /// Distance of the points by which a top is climbed, in half-bandwidths of a linear resonance.
 const NEIGHBOURS: f64 = 0.35;
-/// Harmonics up to this one are taken where no wheel says which are needed.
-const FIRST_HARMONICS: u32 = 5;
 
 /// The wheels that judge under one force vector, on one engine.
 pub(super) struct Judges<'a> {
@@ -57,16 +43,6 @@ pub(super) struct JudgedTop {
     point: Point,
     step_hz: f64,
     amplitude_m: f64,
-}
-
-/// What the peaks of a set say of it.
-struct Verdict {
-    /// Whether every wheel has a peak.
-    found: bool,
-    /// Whether contacts separate at one of them.
-    separates: bool,
-    /// Largest change by harmonics outside of the set; none where it is not known of a wheel.
-    remainder: Option<f64>,
 }
 
 impl<'a> Judges<'a> {
@@ -97,52 +73,27 @@ impl<'a> Judges<'a> {
         }
     }
 
-    /// Harmonic set of every engine order and nonlinear condition: `first`, enlarged until harmonics outside of it change no judged
-    /// peak by more than a share of `tolerance`; without a tolerance the set stays, and its remainder is measured.
+    /// `set` under every engine order and nonlinear condition, with what it leaves out of the peaks of these wheels.
     ///
     /// # Errors
     /// If the samples per period cannot tell the harmonics apart.
     pub(super) fn harmonics(
         &self,
         conditions: &[ContactCondition],
-        first: &[u32],
-        tolerance: Option<f64>,
+        set: &[u32],
     ) -> Result<Vec<HarmonicChoice>, TransformError> {
         let nonlinear = |own: &&ContactCondition| own.normal_load_n().is_some();
+        let conditions: Vec<ContactCondition> =
+            conditions.iter().filter(nonlinear).copied().collect();
         let cases: Vec<(u32, ContactCondition)> = self
             .forces
             .iter()
-            .flat_map(|(order, _)| {
-                let conditions = conditions.iter().filter(nonlinear);
-                conditions.map(|&condition| (*order, condition))
-            })
+            .flat_map(|(order, _)| conditions.iter().map(|&condition| (*order, condition)))
             .collect();
-        let choices = cases.into_par_iter().map(|case| {
-            let choice = choice_of(case, first);
-            match tolerance {
-                None => Ok(self.judged(choice)?.0),
-                Some(tolerance) => self.chosen(choice, JUDGED_SHARE * tolerance),
-            }
-        });
-        choices.collect()
-    }
-
-    /// The choices with the harmonics that separation needs.
-    ///
-    /// # Errors
-    /// If the samples per period cannot tell the harmonics apart.
-    pub(super) fn admitting_separation(
-        &self,
-        choices: Vec<HarmonicChoice>,
-    ) -> Result<Vec<HarmonicChoice>, TransformError> {
-        let admitted = choices.into_par_iter().map(|mut choice| {
-            if choice.admits_separation() {
-                return Ok(choice);
-            }
-            choice.admit_separation();
-            Ok(self.judged(choice)?.0)
-        });
-        admitted.collect()
+        let judged = cases
+            .into_par_iter()
+            .map(|case| self.judged(choice_of(case, set)));
+        judged.collect()
     }
 
     /// The peaks of these wheels with their harmonics, under some of `conditions`.
@@ -255,105 +206,29 @@ impl<'a> Judges<'a> {
         let peaks = (0..self.wheels.len()).filter_map(|wheel| {
             let row = self.row(wheel, choice.engine_order, choice.contact)?;
             let points = points.with_factors(&self.wheels[wheel].1);
-            let peak = receptance_peak(&row, &points, points.search(), self.window(), tolerance);
-            Some((row, points, peak))
+            let found = receptance_peak(&row, &points, points.search(), self.window(), tolerance);
+            Some((row, points, found.peak))
         });
         Ok(peaks.collect())
     }
 
-    /// The set with its remainder, what else the peaks say, and these.
-    fn judged(
-        &self,
-        mut choice: HarmonicChoice,
-    ) -> Result<(HarmonicChoice, Verdict, Vec<JudgedPeak<'_>>), TransformError> {
-        let mut verdict = Verdict {
-            found: true,
-            separates: false,
-            remainder: Some(0.0),
+    /// The set with what it leaves out of these wheels: none where that is not known of one of them.
+    fn judged(&self, choice: HarmonicChoice) -> Result<HarmonicChoice, TransformError> {
+        let errors = self.peaks(&choice)?.into_iter().map(|(row, points, peak)| {
+            let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok)?;
+            receptance_errors(&row, &points, point, PEAK_TOLERANCE)
+        });
+        let errors: Option<Vec<ErrorEstimate>> = errors.collect();
+        let largest = |of: fn(&ErrorEstimate) -> f64| {
+            let errors = errors.as_ref()?.iter();
+            Some(errors.map(of).fold(0.0, f64::max))
         };
-        let peaks = self.peaks(&choice)?;
-        for (row, points, peak) in &peaks {
-            let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok);
-            let errors =
-                point.and_then(|point| receptance_errors(row, points, point, PEAK_TOLERANCE));
-            verdict.found &= point.is_some();
-            verdict.separates |= point.is_some_and(|point| point.shares.separated > 0.0);
-            let own = errors.map(|errors: ErrorEstimate| errors.harmonics.abs() + errors.unsettled);
-            verdict.remainder = verdict.remainder.zip(own).map(|(a, b)| a.max(b));
-        }
-        choice.remainder = verdict.remainder;
-        Ok((choice, verdict, peaks))
+        Ok(HarmonicChoice {
+            remainder: largest(|own| own.harmonics.abs() + own.unsettled),
+            sampling: largest(|own| own.sampling.abs()),
+            ..choice
+        })
     }
-
-    /// `choice`, enlarged by the harmonics that change one of the wheels by themselves, then by more of them, until what is left
-    /// is within `tolerance`.
-    fn chosen(
-        &self,
-        choice: HarmonicChoice,
-        tolerance: f64,
-    ) -> Result<HarmonicChoice, TransformError> {
-        let (mut choice, mut verdict, peaks) = self.judged(choice)?;
-        let mut best = (choice.clone(), verdict.left_out(&choice));
-        if best.1 <= tolerance {
-            return Ok(choice);
-        }
-        let mut effects = effects(&peaks, &choice);
-        let mut wanted = effects
-            .iter()
-            .filter(|own| own.1 > tolerance)
-            .count()
-            .clamp(1, MOST_AT_ONCE);
-        for _ in 0..ROUNDS {
-            if effects.is_empty() {
-                break;
-            }
-            if verdict.separates {
-                choice.admit_separation();
-            }
-            for (harmonic, _) in effects.drain(..wanted.min(effects.len())) {
-                add(&mut choice, harmonic);
-            }
-            wanted = MORE;
-            (choice, verdict, _) = self.judged(choice)?;
-            let left_out = verdict.left_out(&choice);
-            let better = left_out < best.1;
-            if better {
-                best = (choice.clone(), left_out);
-            }
-            // Where more harmonics no longer help, they only cost, most of all where contacts separate.
-            let good_enough = best.1 <= GOOD_ENOUGH * tolerance && !better;
-            if left_out <= tolerance || !verdict.found || good_enough {
-                break;
-            }
-        }
-        if best.1.is_infinite() && verdict.separates {
-            best.0.admit_separation();
-        }
-        Ok(best.0)
-    }
-}
-
-/// The harmonics outside of `choice` with the largest effect that each has on one of the wheels, the largest first.
-fn effects(peaks: &[JudgedPeak<'_>], choice: &HarmonicChoice) -> Vec<(u32, f64)> {
-    let mut effects: Vec<(u32, f64)> = Vec::new();
-    for (row, points, peak) in peaks {
-        let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok);
-        let own = point.and_then(|point| receptance_effects(row, points, point, EFFECT_TOLERANCE));
-        for (k, effect) in own.into_iter().flatten() {
-            match effects.iter_mut().find(|known| known.0 == k) {
-                Some(known) => known.1 = known.1.max(effect),
-                None => effects.push((k, effect)),
-            }
-        }
-    }
-    if effects.is_empty() {
-        let all = peaks.iter().take(1);
-        let all = all.flat_map(|(_, points, _)| points.errors().harmonics().iter().copied());
-        let first = all.filter(|k| *k <= FIRST_HARMONICS && !choice.harmonics.contains(k));
-        effects = first.map(|k| (k, f64::INFINITY)).collect();
-    }
-    effects.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-    effects
 }
 
 /// The linear limits, and of the loads the lowest, one in the middle and the highest.
@@ -371,16 +246,6 @@ fn spread(conditions: &[ContactCondition]) -> Vec<ContactCondition> {
     spread
 }
 
-impl Verdict {
-    /// What a set leaves out; more than anything else where a wheel has no peak, or contacts separate and it lacks what that needs.
-    fn left_out(&self, choice: &HarmonicChoice) -> f64 {
-        let lacks_separation = self.separates && !choice.admits_separation();
-        self.remainder
-            .filter(|_| self.found && !lacks_separation)
-            .unwrap_or(f64::INFINITY)
-    }
-}
-
 /// A set not yet judged.
 fn choice_of(
     (engine_order, contact): (u32, ContactCondition),
@@ -391,11 +256,6 @@ fn choice_of(
         contact,
         harmonics: harmonics.to_vec(),
         remainder: None,
+        sampling: None,
     }
-}
-
-fn add(choice: &mut HarmonicChoice, harmonic: u32) {
-    choice.harmonics.push(harmonic);
-    choice.harmonics.sort_unstable();
-    choice.harmonics.dedup();
 }

@@ -10,7 +10,6 @@ use super::basis_choice::{
 use super::fixed_interface::FixedInterface;
 use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::load_cases::{Excitation, solver_under};
-use super::receptance_choice::Judges;
 use super::reduced_engine::row_settings;
 use super::sector_model::judging_patterns;
 use super::tuned_receptances::{COMPANION_MODES, Refined, engine_of, engine_options, refined};
@@ -20,6 +19,8 @@ use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
 use crate::response::forced_response::{Harmonics, RowsBeyondTolerance};
+use crate::response::friction::ContactLaw;
+use crate::response::harmonic_balance::EnlargedSet;
 use crate::response::receptance::{EngineModel, ReceptanceEngine};
 
 /// Share of the harmonic tolerance by which the set for rows beyond it is chosen.
@@ -51,6 +52,7 @@ impl Stored {
         let enlarged = |choice: &HarmonicChoice| HarmonicChoice {
             harmonics: harmonics.to_vec(),
             remainder: None,
+            sampling: None,
             ..choice.clone()
         };
         let engine = self.engine.clone();
@@ -207,17 +209,21 @@ fn admitting_separation(cases: &[Case<'_>], sets: Vec<Sets>) -> Result<Vec<Sets>
         .collect()
 }
 
-/// What rows on tuned receptances are solved on: fixed-interface modes and harmonics by the tuned wheel and some mistuned ones, and a
-/// small companion model besides, for what is not solved there.
+/// What rows on tuned receptances are solved on: fixed-interface modes by the tuned wheel and some mistuned ones, all harmonics up to
+/// 15 or those of the study, and a small companion model besides, for what is not solved there.
 pub(super) fn reduced_on_receptances(
     study: &Study,
     sector: &SectorModel,
 ) -> Result<Stored, PipelineError> {
     let excitations = study.excitations();
     let patterns = judging_patterns(study, sector)?;
-    let automatic = study.solver.harmonics == Harmonics::Auto;
-    let tolerance = automatic.then_some(study.solver.harmonic_tolerance);
-    let first = row_settings(study).harmonics;
+    let set = match &study.solver.harmonics {
+        Harmonics::Auto => {
+            let law = study.contact.as_ref().map(|contact| contact.law);
+            EnlargedSet::everything(law.is_some_and(ContactLaw::has_variable_load))
+        }
+        Harmonics::Set(_) => row_settings(study).harmonics,
+    };
     let Refined {
         reduction,
         engine,
@@ -225,32 +231,8 @@ pub(super) fn reduced_on_receptances(
         evidence,
         harmonics,
     } = refined(study, sector, &excitations, &patterns, |judges| {
-        judges.harmonics(&study.contacts, &first, tolerance)
+        judges.harmonics(&study.contacts, &set)
     })?;
-    let resolves = automatic && study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
-    let separates = automatic
-        && study
-            .contact
-            .as_ref()
-            .is_some_and(|contact| contact.law.has_variable_load());
-    let judges = engine.judges(&excitations, &patterns);
-    let further = |(judges, own): (&Judges<'_>, &Sets)| {
-        let sets = if resolves {
-            let larger = tolerance.map(|own| BEYOND_TOLERANCE * own);
-            judges.harmonics(&study.contacts, &first, larger)?
-        } else {
-            own.clone()
-        };
-        if separates {
-            judges.admitting_separation(sets)
-        } else {
-            Ok(sets)
-        }
-    };
-    let beyond = (study.has_friction() && (resolves || separates))
-        .then(|| judges.iter().zip(&harmonics).map(further).collect());
-    let beyond: Option<Vec<Sets>> = beyond.transpose()?;
-    drop(judges);
     let modes = study.mistuning.cantilever_mode_count;
     let model = if reduction.is_whole_space() {
         engine.own.model.clone()
@@ -262,11 +244,7 @@ pub(super) fn reduced_on_receptances(
         reduction.reduce(choice, modes)?
     };
     Ok(Stored {
-        beyond: beyond.map(|harmonics| StoredBeyond {
-            model: model.clone(),
-            basis_error: basis_error(&evidence),
-            harmonics: harmonics.concat(),
-        }),
+        beyond: None,
         model,
         evidence,
         fixed_interface,

@@ -376,7 +376,8 @@ fn linear_change(
                         force,
                         condition,
                     };
-                    receptance_peak(&row, &points, None, window, PEAK_TOLERANCE).amplitude_m()
+                    let found = receptance_peak(&row, &points, None, window, PEAK_TOLERANCE);
+                    found.peak.amplitude_m()
                 });
                 error = match (error, peaks) {
                     (Some(error), [Some(a), Some(b)]) => Some(error.max((a / b - 1.0).abs())),

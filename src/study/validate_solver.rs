@@ -21,6 +21,7 @@ pub(super) fn solver(check: &mut Check, raw: RawSolver) -> SolverOptions {
     let instants = raw.time_samples.unwrap_or(default.time_samples);
     let left_out = raw.harmonic_tolerance.unwrap_or(default.harmonic_tolerance);
     SolverOptions {
+        residual_is_stated: raw.residual_tolerance.is_some(),
         search_harmonics: search_harmonics(check, raw.search_harmonics),
         harmonic_tolerance: check.within(
             "solver.harmonic_tolerance",

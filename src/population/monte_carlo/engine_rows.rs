@@ -6,11 +6,12 @@ use super::mistuned_peak::MistunedPeak;
 use super::{ResponseRow, RowSolver, Scenario, TunedReference, harmonics_name};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
-    ContactCondition, EngineRow, FrequencyBand, LinearPeak, Peak, SearchPlan, TopBeside, Window,
-    linear_peaks_of, mistuned_window, receptance_curve, receptance_errors, receptance_peak,
-    receptance_plan, receptance_state, receptance_top_beside, tuned_span_of,
+    ContactCondition, EngineRow, ErrorEstimate, FrequencyBand, LinearPeak, PointSettings,
+    ReceptancePeak, SearchPlan, TopBeside, Window, linear_peaks_of, mistuned_window,
+    receptance_curve, receptance_errors, receptance_peak, receptance_plan, receptance_state,
+    receptance_top_beside, tuned_span_of,
 };
-use crate::response::harmonic_balance::{PairContact, Status, TransformError};
+use crate::response::harmonic_balance::{ContactShares, PairContact, Status, TransformError};
 use crate::response::mistuning::{ContactFactors, Pattern};
 use crate::response::receptance::{EngineWheel, ReceptanceEngine, WaveForce, embedded};
 
@@ -22,6 +23,10 @@ pub const TUNED_RECEPTANCES: &str = "tuned_receptances";
 
 /// Samples per period of a search with few harmonics: what it finds is only where to look.
 const SEARCH_SAMPLES: usize = 32;
+
+/// Share of what all harmonics up to 15 change of a row beside those that led to its top that may be left beyond them: a contact force
+/// that slips has a part k^-2 in harmonic k.
+const LEFT_OF_CHANGE: f64 = 0.05;
 
 /// Steps by which a top is climbed beside another solution, in half-bandwidths of a linear resonance.
 const CLIMBED: f64 = 0.1;
@@ -152,6 +157,8 @@ impl RowSolver {
             receptance_peak(&row, points, points.search(), window, tolerance)
         });
         let found = found.ok()?;
+        let errors = solver.errors_on_engine(&row, points, &found, scenario);
+        let found = found.peak;
         let point = found.point.as_ref().filter(|_| found.status == Status::Ok);
         Some(TunedReference {
             scenario: scenario.index,
@@ -161,10 +168,35 @@ impl RowSolver {
             separated_fraction: point.map(|point| point.shares.separated),
             slipping_fraction: point.map(|point| point.shares.slipping),
             harmonics: harmonics_name(points.harmonics()),
-            errors: point.and_then(|point| {
-                receptance_errors(&row, points, point, solver.settings.solver.peak_tolerance)
-            }),
+            errors,
         })
+    }
+
+    /// What a row leaves out, of which `settings` has the points: where all harmonics were solved beside those that led to the top, what
+    /// is left of the wheels that judge under the same load, and not less than a share of what these harmonics brought; else by further
+    /// solutions.
+    fn errors_on_engine(
+        &self,
+        row: &EngineRow<'_>,
+        settings: &PointSettings,
+        found: &ReceptancePeak,
+        scenario: &Scenario,
+    ) -> Option<ErrorEstimate> {
+        let peak = &found.peak;
+        let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok)?;
+        let judged = self.chosen(scenario.engine_order, scenario.contact);
+        let judged = judged.and_then(|(choice, _)| choice.remainder.zip(choice.sampling));
+        match (found.by_harmonics, judged) {
+            (Some(_), _) if point.shares == ContactShares::default() => {
+                Some(ErrorEstimate::default())
+            }
+            (Some(change), Some((remainder, sampling))) => Some(ErrorEstimate {
+                sampling,
+                harmonics: remainder.max(LEFT_OF_CHANGE * change.abs()),
+                unsettled: point.residual,
+            }),
+            _ => receptance_errors(row, settings, point, self.settings.solver.peak_tolerance),
+        }
     }
 
     /// [`RowSolver::rows`] on the engine; none without one.
@@ -204,11 +236,10 @@ impl RowSolver {
             self.engine_window(Some(pattern), engine_order, condition, tuned.frequency_hz)?;
         let points = self.points_of(pattern, engine_order, condition);
         let tolerance = self.settings.solver.peak_tolerance;
-        let peak: Peak = receptance_peak(&row, &points, points.search(), window, tolerance);
-        let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok);
+        let found = receptance_peak(&row, &points, points.search(), window, tolerance);
         Ok(MistunedPeak {
-            errors: point.and_then(|point| receptance_errors(&row, &points, point, tolerance)),
-            peak,
+            errors: self.errors_on_engine(&row, &points, &found, scenario),
+            peak: found.peak,
         })
     }
 

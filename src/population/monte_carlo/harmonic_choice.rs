@@ -13,9 +13,11 @@ pub struct HarmonicChoice {
     pub contact: ContactCondition,
     /// The set, ascending, with 1.
     pub harmonics: Vec<u32>,
-    /// What the set leaves out of the tuned peak of the full contact model, by
-    /// [`ErrorEstimate::harmonics`] and its doubt; none where there is no tuned peak.
+    /// What the set leaves out of the tuned peak of the full contact model, on tuned receptances of that of every judging wheel, by
+    /// [`ErrorEstimate::harmonics`] and its doubt; none where one has no peak.
     pub remainder: Option<f64>,
+    /// The largest of [`ErrorEstimate::sampling`] there; none on a basis, whose rows are asked themselves.
+    pub sampling: Option<f64>,
 }
 
 /// Harmonics that intermittent contact excites first of all.

@@ -238,7 +238,7 @@ impl RowSolver {
             .collect()
     }
 
-    fn chosen(
+    pub(super) fn chosen(
         &self,
         engine_order: u32,
         contact: ContactCondition,

@@ -45,20 +45,24 @@ const APART: f64 = 0.4;
 /// Points that a force is interpolated between at most.
 const NODES: usize = 3;
 
-/// The peak of `row` by `plan` with the settings of few harmonics and of all of them.
+/// The peak of `row` by `plan` with the settings of few harmonics, and of sets each within the next, the last with all of them.
+///
+/// The amplitude with all of them over that with the set before, less 1, stands beside it.
 ///
 /// # Errors
 /// The work done, where few harmonics find no peak, a contact opens, or a top is lost.
 pub(super) fn corrected_peak(
     row: &EngineRow<'_>,
     plan: &SearchPlan,
-    [of_few, of_all]: [&PointSettings; 2],
+    of_few: &PointSettings,
+    sets: &[&PointSettings],
     peak_tolerance: f64,
-) -> Result<Peak, Work> {
+) -> Result<(Peak, f64), Work> {
     let mut few = ReceptancePoints::new(row, of_few);
     let tops = tops_of_few(plan, &mut few, peak_tolerance)?;
     // What samples change jumps over frequency, and is no part of what harmonics leave.
-    let Ok(Some(as_fine)) = of_all.search_at_own_samples() else {
+    let as_fine = sets.first().map(|own| own.search_at_own_samples());
+    let Some(Ok(Some(as_fine))) = as_fine else {
         return Err(few.work());
     };
     let mut corrected = ReceptancePoints::new(row, &as_fine);
@@ -66,96 +70,159 @@ pub(super) fn corrected_peak(
     let mut search = CorrectedSearch {
         few: corrected,
         uncorrected: few,
-        all: ReceptancePoints::new(row, of_all),
+        sets: sets
+            .iter()
+            .map(|own| ReceptancePoints::new(row, own))
+            .collect(),
         envelope: plan.envelope,
         tolerance: peak_tolerance,
     };
-    let highest = search.highest(&tops);
-    let point = highest.and_then(|frequency_hz| search.finished(frequency_hz));
+    let found = search.highest(&tops);
+    let found = found.and_then(|highest| Ok((search.finished(highest.frequency_hz)?, highest)));
     let work = search.work();
-    let point = point.map_err(|_| work)?;
+    let (point, highest) = found.map_err(|_| work)?;
+    let all = search.sets.last_mut().ok_or(work)?;
     let peak = Peak {
         status: Status::Ok,
         blade: point.largest_blade(),
-        mean_friction_n: search.all.mean_friction_n(&point),
+        mean_friction_n: all.mean_friction_n(&point),
         point: Some(point),
         bracketed: true,
         work,
     };
-    inside_of_band(plan, peak)
+    Ok((inside_of_band(plan, peak)?, highest.last_change()))
 }
 
 struct CorrectedSearch<'a> {
     few: ReceptancePoints<'a>,
     /// The points of the first search.
     uncorrected: ReceptancePoints<'a>,
-    all: ReceptancePoints<'a>,
+    /// The sets of harmonics, each within the next.
+    sets: Vec<ReceptancePoints<'a>>,
     envelope: Envelope,
     tolerance: f64,
 }
 
-/// A frequency that is solved with all harmonics.
+/// A frequency that is solved with the harmonics of a set.
 struct Known {
     frequency_hz: f64,
     height_m: f64,
-    /// What all harmonics leave on few of them.
+    /// What the set leaves on few harmonics beyond what the sets before it do.
     force: ContactForces,
-    /// Amplitude of every blade with all harmonics over that of few of them in the same solution: 1 for that of the fundamental.
+    /// Amplitude of every blade with the set over that of few harmonics in the same solution, over the same by the sets before it.
     growth: Vec<f64>,
 }
 
 /// A top that is searched.
 struct Climb {
-    known: Vec<Known>,
+    /// Of every set so far.
+    known: Vec<Vec<Known>>,
     /// Distance of points beside the top, Hz.
     beside_hz: f64,
+}
+
+/// The highest top so far: its frequency, Hz, and its height, m, with few harmonics and with each of the sets.
+struct Highest {
+    frequency_hz: f64,
+    heights_m: Vec<f64>,
+}
+
+impl Highest {
+    fn height_m(&self) -> f64 {
+        self.heights_m.last().copied().unwrap_or(0.0)
+    }
+
+    /// What the last set changes of what the one before it has, relative.
+    fn last_change(&self) -> f64 {
+        let before = self.heights_m.iter().rev().nth(1);
+        before.map_or(0.0, |before| self.height_m() / before - 1.0)
+    }
+
+    /// Height, m, that all harmonics give a top that has this one with so many sets, if they do what they do here.
+    fn grown_m(&self, height_m: f64, sets: usize) -> f64 {
+        height_m * self.height_m() / self.heights_m[sets]
+    }
 }
 
 impl CorrectedSearch<'_> {
     fn work(&self) -> Work {
         let few = self.few.work().plus(self.uncorrected.work());
-        few.plus(self.all.work())
+        self.sets.iter().fold(few, |sum, own| sum.plus(own.work()))
     }
 
-    /// The point with all harmonics to the tolerance of the residual; an error where a contact opens beside it.
+    /// The point with all harmonics, to the tolerance of the residual but where several sets led to it and none was asked for; an error
+    /// where a contact opens beside it.
     fn finished(&mut self, frequency_hz: f64) -> Result<Point, Status> {
-        let mut points = self.all.points.iter();
+        let mut points = self.sets.iter().flat_map(|own| &own.points);
         if points.any(|point| point.shares.separated > 0.0) {
             return Err(Status::SweepIncomplete);
         }
-        self.all.finished(frequency_hz)
+        let is_guided = self.sets.len() > 1;
+        let all = self.sets.last_mut().ok_or(Status::NotBracketed)?;
+        if is_guided && !all.residual_is_stated() {
+            let same = |own: &&Point| own.frequency_hz.total_cmp(&frequency_hz).is_eq();
+            return all
+                .points
+                .iter()
+                .find(same)
+                .cloned()
+                .ok_or(Status::NotBracketed);
+        }
+        all.finished(frequency_hz)
     }
 
-    /// Frequency of the highest of several tops, Hz.
-    fn highest(&mut self, tops: &[Top]) -> Result<f64, Status> {
-        // Height and place of the highest so far, and its height over that with few harmonics.
-        let mut best: Option<(f64, f64, f64)> = None;
+    /// The highest of several tops.
+    fn highest(&mut self, tops: &[Top]) -> Result<Highest, Status> {
+        let mut best: Option<Highest> = None;
         for top in tops {
-            let lower =
-                |height: f64| best.is_some_and(|(highest, ..)| height * (1.0 + MADE_UP) < highest);
-            if best.is_some_and(|(.., grown)| lower(top.amplitude_m * grown)) {
-                continue;
-            }
-            self.few.points.clone_from(&self.uncorrected.points);
-            let mut climb = Climb {
-                known: Vec::new(),
-                beside_hz: self.distance_beside(top),
-            };
-            self.solve_all(&mut climb, top.frequency_hz, AT_TOP)?;
-            self.few
-                .points
-                .retain(|point| point.frequency_hz.total_cmp(&top.frequency_hz).is_eq());
-            if lower(climb.known[0].height_m) {
-                continue;
-            }
-            let floor_m = best.map_or(0.0, |(highest, ..)| highest);
-            let (height, frequency_hz) = self.climb(&mut climb, top, floor_m)?;
-            if best.is_none_or(|(highest, ..)| height > highest) {
-                best = Some((height, frequency_hz, height / top.amplitude_m));
+            if let Some(own) = self.heights(top, best.as_ref())?
+                && best
+                    .as_ref()
+                    .is_none_or(|best| own.height_m() > best.height_m())
+            {
+                best = Some(own);
             }
         }
-        best.map(|(_, frequency_hz, _)| frequency_hz)
-            .ok_or(Status::NotBracketed)
+        best.ok_or(Status::NotBracketed)
+    }
+
+    /// A top with one set after the other; none where it cannot be higher than `best`.
+    fn heights(&mut self, top: &Top, best: Option<&Highest>) -> Result<Option<Highest>, Status> {
+        let is_lower = |height_m: f64, sets: usize| {
+            best.is_some_and(|best| {
+                best.grown_m(height_m, sets) * (1.0 + MADE_UP) < best.height_m()
+            })
+        };
+        if is_lower(top.amplitude_m, 0) {
+            return Ok(None);
+        }
+        self.few.points.clone_from(&self.uncorrected.points);
+        let mut climb = Climb {
+            known: Vec::new(),
+            beside_hz: self.distance_beside(top),
+        };
+        let mut own = Highest {
+            frequency_hz: top.frequency_hz,
+            heights_m: vec![top.amplitude_m],
+        };
+        let reach_hz = NEIGHBOURS * top.half_bandwidth_hz;
+        for set in 0..self.sets.len() {
+            climb.known.push(Vec::new());
+            self.solve(&mut climb, own.frequency_hz, AT_TOP)?;
+            if set == 0 {
+                let is_top =
+                    |point: &Point| point.frequency_hz.total_cmp(&top.frequency_hz).is_eq();
+                self.few.points.retain(is_top);
+            }
+            if is_lower(climb.known[set][0].height_m, set + 1) {
+                return Ok(None);
+            }
+            let floor_m = best.map_or(0.0, |best| best.heights_m[set + 1]);
+            let (height_m, frequency_hz) = self.climb(&mut climb, reach_hz, floor_m)?;
+            own.frequency_hz = frequency_hz;
+            own.heights_m.push(height_m);
+        }
+        Ok(Some(own))
     }
 
     fn distance_beside(&self, top: &Top) -> f64 {
@@ -166,18 +233,24 @@ impl CorrectedSearch<'_> {
         )
     }
 
-    /// Height, m, and frequency, Hz, of a top with all harmonics; of the highest point so far where it cannot reach `floor_m`.
-    fn climb(&mut self, climb: &mut Climb, top: &Top, floor_m: f64) -> Result<(f64, f64), Status> {
-        let reach = NEIGHBOURS * top.half_bandwidth_hz;
-        let mut band = (top.frequency_hz - reach, top.frequency_hz + reach);
+    /// Height, m, and frequency, Hz, of a top with the last set of the climb; of the highest point so far where it cannot reach
+    /// `floor_m`. It is first sought within `reach_hz`.
+    fn climb(
+        &mut self,
+        climb: &mut Climb,
+        reach_hz: f64,
+        floor_m: f64,
+    ) -> Result<(f64, f64), Status> {
+        let first = climb.best().frequency_hz;
+        let mut band = (first - reach_hz, first + reach_hz);
         let settings = SearchSettings {
             tolerance: self.tolerance * ABOVE / VERTEX_SHARE,
             evaluations: POINTS_OF_TOP,
             extensions: EXTENSIONS,
             rivals_from: 1.0,
         };
-        while climb.known.len() < POINTS {
-            let starts: Vec<f64> = climb.known.iter().map(|own| own.frequency_hz).collect();
+        while climb.own().len() < POINTS {
+            let starts: Vec<f64> = climb.own().iter().map(|own| own.frequency_hz).collect();
             let found = find_peak(band, &starts, self.envelope, settings, |hz| {
                 self.corrected(climb, hz)
             });
@@ -192,9 +265,9 @@ impl CorrectedSearch<'_> {
             if is_lower {
                 return Ok((best.height_m, best.frequency_hz));
             } else if summit.largest > above {
-                self.solve_all(climb, summit.frequency_hz, AT_TOP)?;
+                self.solve(climb, summit.frequency_hz, AT_TOP)?;
             } else if let Some(side_hz) = climb.unseen_beside(best.frequency_hz) {
-                self.solve_all(climb, side_hz, AT_SIDE)?;
+                self.solve(climb, side_hz, AT_SIDE)?;
             } else {
                 return Ok((best.height_m, best.frequency_hz));
             }
@@ -202,60 +275,80 @@ impl CorrectedSearch<'_> {
         Err(Status::SweepIncomplete)
     }
 
-    /// Amplitudes at a frequency, Hz, as few harmonics have them under the force of all.
+    /// Amplitudes at a frequency, Hz, as few harmonics have them under the forces of the sets of the climb.
     fn corrected(&mut self, climb: &Climb, frequency_hz: f64) -> Option<Vec<f64>> {
         let same = |hz: f64| hz.total_cmp(&frequency_hz).is_eq();
-        if climb.known.iter().any(|own| same(own.frequency_hz)) {
-            return self.all.amplitudes_at(frequency_hz);
+        if climb.own().iter().any(|own| same(own.frequency_hz)) {
+            return self.sets[climb.known.len() - 1].amplitudes_at(frequency_hz);
         }
         self.few.points.retain(|point| !same(point.frequency_hz));
-        let nodes = climb.nodes(frequency_hz);
-        let forces: Vec<(f64, &ContactForces)> = nodes
-            .iter()
-            .map(|(share, own)| (*share, &own.force))
-            .collect();
-        self.few
-            .solver
-            .load_contact(ContactForces::combined(&forces)?);
+        let (force, growth) = climb.left(climb.known.len(), frequency_hz)?;
+        self.few.solver.load_contact(force);
         let mut amplitudes_m = self.few.amplitudes_at(frequency_hz)?;
-        for (blade, amplitude_m) in amplitudes_m.iter_mut().enumerate() {
-            let growth = nodes.iter().map(|(share, own)| share * own.growth[blade]);
-            *amplitude_m *= growth.sum::<f64>();
+        for (amplitude_m, growth) in amplitudes_m.iter_mut().zip(growth) {
+            *amplitude_m *= growth;
         }
         Some(amplitudes_m)
     }
 
-    /// Solves all harmonics at a frequency, Hz, beside what few of them have there; to a share of the tolerance of the peak.
-    fn solve_all(
+    /// Motions to solve the last of `sets` sets from, at a frequency, Hz: by its own points, or by those of the set before it.
+    fn start(&self, sets: usize, frequency_hz: f64) -> Option<Vec<f64>> {
+        let few = between(&self.few.points, frequency_hz).into_iter().next()?;
+        let few_set = self.few.solver.harmonics();
+        if sets == 0 {
+            return Some(few);
+        }
+        let own = &self.sets[sets - 1];
+        let set = own.solver.harmonics();
+        match between(&own.points, frequency_hz).into_iter().next() {
+            Some(mut start) => {
+                overlay(&mut start, &few, few_set, set);
+                Some(start)
+            }
+            None => {
+                let smaller = match sets {
+                    1 => few_set,
+                    _ => self.sets[sets - 2].solver.harmonics(),
+                };
+                let start = self.start(sets - 1, frequency_hz)?;
+                Some(embedded(&start, smaller, set))
+            }
+        }
+    }
+
+    /// Solves the last set of the climb at a frequency, Hz, to a share of the tolerance of the peak.
+    fn solve(
         &mut self,
         climb: &mut Climb,
         frequency_hz: f64,
         precision: f64,
     ) -> Result<(), Status> {
-        let (few_set, all_set) = (
-            self.few.solver.harmonics().to_vec(),
-            self.all.solver.harmonics().to_vec(),
+        let sets = climb.known.len();
+        let start = self.start(sets, frequency_hz).ok_or(Status::NotBracketed)?;
+        let own = &mut self.sets[sets - 1];
+        let tolerance = (precision * self.tolerance).max(own.least_tolerance());
+        let point = own.solve_from(frequency_hz, &[start], tolerance)?;
+        let force = own.solver.contact_forces();
+        let mut growth = own.growth_over(&self.few);
+        let part = embedded(
+            &point.solution,
+            own.solver.harmonics(),
+            self.few.solver.harmonics(),
         );
-        let few = between(&self.few.points, frequency_hz).into_iter().next();
-        let few = few.ok_or(Status::NotBracketed)?;
-        let known = between(&self.all.points, frequency_hz).into_iter().next();
-        let start = match known {
-            Some(mut start) => {
-                overlay(&mut start, &few, &few_set, &all_set);
-                start
-            }
-            None => embedded(&few, &few_set, &all_set),
-        };
-        let tolerance = (precision * self.tolerance).max(self.all.least_tolerance());
-        let point = self.all.solve_from(frequency_hz, &[start], tolerance)?;
-        let force = self.all.solver.contact_forces();
-        let growth = self.all.growth_over(&self.few);
-        let part = embedded(&point.solution, &all_set, &few_set);
         let few_force = self.few.solver.contact_forces_at(&part);
+        let mut force = force.beyond(&few_force.ok_or(Status::NotBracketed)?);
+        if let Some((before, grown)) = climb.left(sets - 1, frequency_hz) {
+            force = ContactForces::combined(&[(1.0, &force), (-1.0, &before)])
+                .ok_or(Status::NotBracketed)?;
+            growth
+                .iter_mut()
+                .zip(grown)
+                .for_each(|(own, before)| *own /= before);
+        }
         let known = Known {
             frequency_hz,
             height_m: point.largest_amplitude_m(),
-            force: force.beyond(&few_force.ok_or(Status::NotBracketed)?),
+            force,
             growth,
         };
         let same = |own: &Point| own.frequency_hz.total_cmp(&frequency_hz).is_eq();
@@ -264,34 +357,70 @@ impl CorrectedSearch<'_> {
             solution: part,
             ..point.clone()
         });
-        self.all.points.push(point);
-        climb.known.push(known);
+        own.points.push(point);
+        climb.known[sets - 1].push(known);
         Ok(())
     }
 }
 
 impl Climb {
+    /// Of the last set so far.
+    fn own(&self) -> &[Known] {
+        self.known.last().map_or(&[], Vec::as_slice)
+    }
+
     /// The highest so far.
     fn best(&self) -> &Known {
         let highest = |a: &&Known, b: &&Known| a.height_m.total_cmp(&b.height_m);
-        let best = self.known.iter().max_by(highest);
-        best.unwrap_or(&self.known[0])
+        let best = self.own().iter().max_by(highest);
+        best.unwrap_or(&self.own()[0])
     }
 
-    /// A frequency beside the top, Hz, on a side on which no point serves.
+    /// A frequency beside the top, Hz, on a side on which no point serves; beyond the first set one side is enough.
     fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
         let sides = [-self.beside_hz, self.beside_hz];
-        let unseen = sides.into_iter().find(|side| {
+        let is_unseen = |side: &f64| {
             let way = |own: &Known| (own.frequency_hz - top_hz) / side;
             let serves = |own: &Known| (SERVES.0..=SERVES.1).contains(&way(own));
-            !self.known.iter().any(serves)
-        });
+            !self.own().iter().any(serves)
+        };
+        if self.known.len() > 1 && !sides.iter().all(is_unseen) {
+            return None;
+        }
+        let unseen = sides.into_iter().find(is_unseen);
         unseen.map(|side| top_hz + side)
     }
 
+    /// What the first `sets` sets leave on few harmonics at a frequency, Hz, and the growth of every blade's amplitude by them.
+    fn left(&self, sets: usize, frequency_hz: f64) -> Option<(ContactForces, Vec<f64>)> {
+        let mut forces = Vec::new();
+        let mut growth: Vec<f64> = Vec::new();
+        for known in &self.known[..sets] {
+            let nodes = self.nodes(known, frequency_hz);
+            let of_set: Vec<f64> = (0..known.first()?.growth.len())
+                .map(|blade| {
+                    nodes
+                        .iter()
+                        .map(|(share, own)| share * own.growth[blade])
+                        .sum()
+                })
+                .collect();
+            if growth.is_empty() {
+                growth = of_set;
+            } else {
+                growth
+                    .iter_mut()
+                    .zip(of_set)
+                    .for_each(|(all, own)| *all *= own);
+            }
+            forces.extend(nodes.into_iter().map(|(share, own)| (share, &own.force)));
+        }
+        Some((ContactForces::combined(&forces)?, growth))
+    }
+
     /// The nearest known points to a frequency, Hz, each with its share in the polynomial through them there.
-    fn nodes(&self, frequency_hz: f64) -> Vec<(f64, &Known)> {
-        let mut near: Vec<&Known> = self.known.iter().collect();
+    fn nodes<'a>(&self, known: &'a [Known], frequency_hz: f64) -> Vec<(f64, &'a Known)> {
+        let mut near: Vec<&Known> = known.iter().collect();
         let distance = |own: &Known| (own.frequency_hz - frequency_hz).abs();
         near.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         let mut nodes: Vec<&Known> = Vec::new();

@@ -46,10 +46,10 @@ pub use point::{Point, Slope, Work};
 pub use point_settings::{PointSettings, samples_per_period};
 pub use point_solver::PointSolver;
 pub use receptance_errors::{
-    TopBeside, receptance_effects, receptance_errors, receptance_top_beside, receptance_top_m,
+    TopBeside, receptance_errors, receptance_top_beside, receptance_top_m,
 };
 pub use receptance_points::{
-    ContactMotion, EngineRow, linear_peaks_of, receptance_contact_motion, receptance_curve,
-    receptance_peak, receptance_plan, receptance_state,
+    ContactMotion, EngineRow, ReceptancePeak, linear_peaks_of, receptance_contact_motion,
+    receptance_curve, receptance_peak, receptance_plan, receptance_state,
 };
 pub use refined_peak::{Search, refined, refined_peak};

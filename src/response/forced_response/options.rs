@@ -72,6 +72,9 @@ pub struct SolverOptions {
     pub samples_per_period: usize,
     /// Bound on the residual force relative to the excitation. Default 1e-8.
     pub residual_tolerance: f64,
+    /// Whether it was asked for. Where it was not, the peak of a row with an automatic harmonic set on tuned receptances is solved to
+    /// a fifth of the tolerance of the peak.
+    pub residual_is_stated: bool,
     /// Relative tolerance of the peak amplitude in the peak search. Default 1e-3.
     pub peak_tolerance: f64,
     /// Measure called amplitude. Default fundamental.
@@ -91,6 +94,7 @@ impl Default for SolverOptions {
             rows_beyond_tolerance: RowsBeyondTolerance::Flag,
             samples_per_period: 128,
             residual_tolerance: 1e-8,
+            residual_is_stated: false,
             peak_tolerance: 1e-3,
             amplitude: AmplitudeMeasure::Fundamental,
             time_samples: 1024,

@@ -14,6 +14,10 @@ use crate::response::mistuning::ContactFactors;
 
 /// Samples per period of the highest harmonic of an automatic set at least.
 const SAMPLES_OF_HIGHEST: usize = 12;
+/// Harmonics that lead to the top before all of an automatic set are solved there.
+const GUIDE: [u32; 2] = [1, 3];
+/// Share of the samples asked for that they are sampled with.
+const SAMPLES_OF_GUIDE: (usize, usize) = (1, 2);
 /// A number of samples is a multiple of this one: quarters of a period are whole vectors of the machine.
 const SAMPLES_STEP: usize = 16;
 
@@ -25,12 +29,16 @@ pub struct PointSettings {
     pub(super) amplitude: ObservedAmplitude,
     errors: Arc<ErrorSettings>,
     pub(super) bounds: NewtonBounds,
+    /// Whether the tolerance of the residual was asked for.
+    pub(super) residual_is_stated: bool,
     pub(super) contact: Option<(ContactLaw, PairParameters)>,
     pub(super) ring: Ring,
     pub(super) geometry: ContactGeometry,
     pub(super) factors: ContactFactors,
     /// The same with the harmonics of the search, where these are fewer.
     search: Option<Box<Self>>,
+    /// The same with the harmonics that lead to the top before all of them are solved there, where there are such.
+    guide: Option<Box<Self>>,
 }
 
 impl PointSettings {
@@ -56,13 +64,22 @@ impl PointSettings {
             }
             _ => None,
         };
+        let guided = options.harmonics == Harmonics::Auto && contact.is_some();
+        let guided = guided && search.is_some() && has_more_than_guide(harmonics);
+        let guide = guided.then(|| {
+            let own = Self::new(options, &GUIDE, contact, geometry.clone())?;
+            let (share, whole) = SAMPLES_OF_GUIDE;
+            own.at_samples(share * options.samples_per_period / whole)
+        });
         Ok(Self {
             search,
+            guide: guide.transpose()?.map(Box::new),
             harmonics: harmonics.to_vec(),
             transform: Arc::new(HarmonicTransform::new(&set, samples)?),
             amplitude: ObservedAmplitude::new(options.amplitude, harmonics, options.time_samples)?,
             errors: Arc::new(ErrorSettings::new(options, harmonics, law)?),
             bounds: NewtonBounds::with_tolerance(options.residual_tolerance),
+            residual_is_stated: options.residual_is_stated,
             contact,
             ring: Ring::Locked,
             geometry,
@@ -73,9 +90,11 @@ impl PointSettings {
     /// The same with what a free ring does under mean friction; locked at first.
     #[must_use]
     pub fn with_ring(self, ring: Ring) -> Self {
+        let same = |own: Option<Box<Self>>| own.map(|own| Box::new(own.with_ring(ring)));
         Self {
             ring,
-            search: self.search.map(|search| Box::new(search.with_ring(ring))),
+            search: same(self.search),
+            guide: same(self.guide),
             ..self
         }
     }
@@ -83,12 +102,14 @@ impl PointSettings {
     /// The same for a wheel whose contact differs from the nominal one by `factors`.
     #[must_use]
     pub fn with_factors(&self, factors: &ContactFactors) -> Self {
+        let same = |own: &Option<Box<Self>>| {
+            let own = own.as_ref();
+            own.map(|own| Box::new(own.with_factors(factors)))
+        };
         Self {
             factors: factors.clone(),
-            search: self
-                .search
-                .as_ref()
-                .map(|search| Box::new(search.with_factors(factors))),
+            search: same(&self.search),
+            guide: same(&self.guide),
             ..self.clone()
         }
     }
@@ -136,15 +157,19 @@ impl PointSettings {
     /// # Errors
     /// If the harmonics cannot be told apart with them.
     pub(super) fn search_at_own_samples(&self) -> Result<Option<Self>, TransformError> {
-        let Some(search) = self.search() else {
-            return Ok(None);
-        };
-        let set = search.transform.harmonics();
-        let transform = HarmonicTransform::new(set, self.transform.n_samples())?;
-        Ok(Some(Self {
+        let search = self.search().cloned();
+        search
+            .map(|search| search.at_samples(self.transform.n_samples()))
+            .transpose()
+    }
+
+    /// The same with so many samples per period.
+    fn at_samples(self, samples: usize) -> Result<Self, TransformError> {
+        let transform = HarmonicTransform::new(self.transform.harmonics(), samples)?;
+        Ok(Self {
             transform: Arc::new(transform),
-            ..search.clone()
-        }))
+            ..self
+        })
     }
 
     /// The same contact in other harmonics.
@@ -187,6 +212,13 @@ impl PointSettings {
         self.search.as_deref()
     }
 
+    /// Settings with the harmonics that lead to the top before all of them are solved there, if there are such: an automatic set on
+    /// tuned receptances.
+    #[must_use]
+    pub fn guide(&self) -> Option<&Self> {
+        self.guide.as_deref()
+    }
+
     /// How the errors of a solution are estimated.
     #[must_use]
     pub fn errors(&self) -> &ErrorSettings {
@@ -205,6 +237,11 @@ fn sought(search: &SearchHarmonics, harmonics: &[u32]) -> Option<Vec<u32>> {
         }
     };
     (sought.len() < harmonics.len()).then_some(sought)
+}
+
+/// Whether a set has the harmonics that lead to a top, and more of them than one.
+fn has_more_than_guide(harmonics: &[u32]) -> bool {
+    GUIDE.iter().all(|k| harmonics.contains(k)) && harmonics.len() > GUIDE.len() + 1
 }
 
 /// Samples per period of a solution in `harmonics`: those asked for; where the set is automatic, at least 12 per period of

@@ -1,6 +1,4 @@
-//! What a row on the receptances of the tuned wheel leaves out: errors, effects of single harmonics, its top on another engine.
-
-use std::sync::Arc;
+//! What a row on the receptances of the tuned wheel leaves out: errors, and its top on another engine.
 
 use super::a_posteriori::{ErrorEstimate, ErrorSettings};
 use super::observed_amplitude::ObservedHarmonic;
@@ -8,14 +6,14 @@ use super::point::Point;
 use super::point_settings::PointSettings;
 use super::receptance_points::{EngineRow, observed};
 use crate::linalg::Complex64;
-use crate::response::harmonic_balance::{ContactShares, HarmonicTransform};
+use crate::response::harmonic_balance::ContactShares;
 use crate::response::receptance::{WheelSolver, embedded};
 
 /// Tolerance of the solutions that tell the errors of another one, over that of the peak, and its bounds.
 const ERROR_SHARE: f64 = 0.1;
 const ERROR_TOLERANCES: (f64, f64) = (1e-6, 3e-4);
 
-/// What the amplitude of `point` would change by with finer sampling, and with the harmonics up to 15 that are not in its set; on
+/// What the amplitude of `point` would change by with finer sampling, and with the harmonics that its errors look at beyond its set; on
 /// the engine of `row`, which may have more blade shapes than that of the point. None where one of these solutions is not found.
 #[must_use]
 pub fn receptance_errors(
@@ -64,60 +62,6 @@ pub fn receptance_errors(
         harmonics: change(&after) - sampling,
         unsettled: own_unsettled + unsettled,
     })
-}
-
-/// What the amplitude of `point` would change by without each of the harmonics that its errors look at and its set does not have,
-/// beside all of them; none where the solution with all of them is not found, infinite where one without a harmonic is not.
-#[must_use]
-pub fn receptance_effects(
-    row: &EngineRow<'_>,
-    settings: &PointSettings,
-    point: &Point,
-    tolerance: f64,
-) -> Option<Vec<(u32, f64)>> {
-    if point.shares == ContactShares::default() {
-        return Some(Vec::new());
-    }
-    let ErrorSettings { set, amplitude, .. } = settings.errors();
-    let [_, enlarged, tangents] = set.transforms();
-    let solver = row
-        .solver(settings, enlarged, None)
-        .with_tangents(row.contact(settings, tangents, None));
-    let start = embedded(&point.solution, settings.harmonics(), set.harmonics());
-    let solved = |mut solver: WheelSolver<'_>, start: &[f64]| {
-        let (motions, _) = solver.settle(point.frequency_hz, start, tolerance)?;
-        let observed = observed(&mut solver, amplitude);
-        Some((
-            motions,
-            in_harmonics(&observed, set.harmonics(), row.engine.sectors()),
-        ))
-    };
-    let (motions, with_all) = solved(solver, &start)?;
-    let largest = |amplitudes: Vec<f64>| amplitudes.into_iter().fold(0.0, f64::max);
-    let height = largest(amplitude.of_observed(&with_all));
-    let size = motions.len() / set.harmonics().len();
-    let largest_motion = |part: &[f64]| part.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let whole = largest_motion(&motions);
-    let outside = set.harmonics().iter().zip(motions.chunks_exact(size));
-    let outside = outside.filter(|(k, _)| !settings.harmonics().contains(k));
-    let effects = outside.map(|(&k, motion)| {
-        if largest_motion(motion) < NO_MOTION * whole {
-            return (k, 0.0);
-        }
-        let others = set.harmonics().iter().copied().filter(|&own| own != k);
-        let others: Vec<u32> = others.collect();
-        let numbers: Vec<usize> = others.iter().map(|&own| own as usize).collect();
-        let without = HarmonicTransform::new(&numbers, enlarged.n_samples()).ok();
-        let without = without.and_then(|without| {
-            let solver = row.solver(settings, &Arc::new(without), None);
-            solved(solver, &embedded(&motions, set.harmonics(), &others))
-        });
-        let change = without.map_or(f64::INFINITY, |(_, without)| {
-            (largest(amplitude.changed_observed(&with_all, &without)) / height - 1.0).abs()
-        });
-        (k, change)
-    });
-    Some(effects.collect())
 }
 
 /// Largest amplitude, m, of a row near `point`, a solution of the same wheel on this or on another engine: the top of a parabola
@@ -217,9 +161,6 @@ pub fn receptance_top_beside(
     }
     None
 }
-
-/// Share of the largest motion at the contact below which that of a harmonic is without effect.
-const NO_MOTION: f64 = 1e-5;
 
 /// What is observed in the harmonics of a larger set.
 fn in_harmonics(

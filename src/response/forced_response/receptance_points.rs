@@ -125,6 +125,7 @@ impl<'a> EngineRow<'a> {
 /// Solver of the points of one row; keeps the converged points as starts for others.
 pub(super) struct ReceptancePoints<'a> {
     pub(super) solver: WheelSolver<'a>,
+    row: EngineRow<'a>,
     settings: &'a PointSettings,
     pub(super) points: Vec<Point>,
     failures: Vec<(f64, Status)>,
@@ -137,6 +138,7 @@ impl<'a> ReceptancePoints<'a> {
     pub(super) fn new(row: &EngineRow<'a>, settings: &'a PointSettings) -> Self {
         Self {
             solver: row.solver(settings, &settings.transform, None),
+            row: *row,
             settings,
             points: Vec::new(),
             failures: Vec::new(),
@@ -149,6 +151,18 @@ impl<'a> ReceptancePoints<'a> {
     fn solve(&mut self, frequency_hz: f64, tolerance: f64) -> Result<Point, Status> {
         let mut starts = between(&self.points, frequency_hz);
         starts.truncate(1);
+        if let Some(guide) = self
+            .settings
+            .guide()
+            .filter(|_| starts.is_empty() && self.is_nonlinear)
+        {
+            // From the linear response all harmonics at once are hard to find.
+            let mut few = Self::new(&self.row, guide);
+            let led = few.solve_from(frequency_hz, &[], tolerance);
+            self.work = self.work.plus(few.work);
+            let set = self.solver.harmonics();
+            starts.extend(led.map(|led| embedded(&led.solution, &guide.harmonics, set)));
+        }
         self.solve_from(frequency_hz, &starts, tolerance)
     }
 
@@ -198,6 +212,10 @@ impl<'a> ReceptancePoints<'a> {
         let of_few = few.settings.amplitude.of_observed(&counted);
         let amplitudes = self.settings.amplitude.of_observed(&own).into_iter();
         amplitudes.zip(of_few).map(|(own, few)| own / few).collect()
+    }
+
+    pub(super) fn residual_is_stated(&self) -> bool {
+        self.settings.residual_is_stated
     }
 
     /// Tolerance of the residual that is asked for.
@@ -293,6 +311,15 @@ pub fn receptance_plan(row: &EngineRow<'_>, window: Window) -> Result<SearchPlan
     search_plan_of(&limits, window)
 }
 
+/// The peak of a row on tuned receptances.
+#[derive(Debug, Clone)]
+pub struct ReceptancePeak {
+    /// The peak.
+    pub peak: Peak,
+    /// Relative change of its amplitude from the harmonics that led to it to all of them; none where all were searched with.
+    pub by_harmonics: Option<f64>,
+}
+
 /// Finds the peak of one row: with few harmonics over the band and with all of them at its tops, where `search` has few, or with
 /// all of them alone.
 #[must_use]
@@ -302,34 +329,44 @@ pub fn receptance_peak(
     search: Option<&PointSettings>,
     window: Window,
     peak_tolerance: f64,
-) -> Peak {
+) -> ReceptancePeak {
+    let alone = |peak| ReceptancePeak {
+        peak,
+        by_harmonics: None,
+    };
     let plan = match receptance_plan(row, window) {
         Ok(plan) => plan,
         Err(status) => {
-            return Peak {
+            return alone(Peak {
                 status,
                 point: None,
                 blade: 0,
                 bracketed: false,
                 mean_friction_n: None,
                 work: Work::default(),
-            };
+            });
         }
     };
     let nonlinear = row.condition.normal_load_n().is_some();
     let mut wasted = Work::default();
     if let Some(search) = search.filter(|_| nonlinear) {
-        match corrected_peak(row, &plan, [search, settings], peak_tolerance) {
-            Ok(peak) => return peak,
+        let sets: Vec<&PointSettings> = settings.guide().into_iter().chain([settings]).collect();
+        match corrected_peak(row, &plan, search, &sets, peak_tolerance) {
+            Ok((peak, change)) => {
+                return ReceptancePeak {
+                    peak,
+                    by_harmonics: settings.guide().map(|_| change),
+                };
+            }
             Err(work) => wasted = work,
         }
     }
     let solver = ReceptancePoints::new(row, settings);
     let found = peak_by(&plan, row.condition, solver, peak_tolerance);
-    Peak {
+    alone(Peak {
         work: found.work.plus(wasted),
         ..found
-    }
+    })
 }
 
 /// The point of a row at a frequency, Hz, with the state of every contact pair; none for a linear limit.

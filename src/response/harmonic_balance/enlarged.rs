@@ -27,8 +27,9 @@ use super::{
 };
 use crate::linalg::{Complex64, LuWorkspace};
 
-/// Highest harmonic that is looked at.
+/// Highest harmonic that is looked at, and where a set has all up to that one.
 const HIGHEST_HARMONIC: u32 = 15;
+const HIGHEST_BEYOND: u32 = 25;
 /// Unknowns of a wheel up to which the whole Jacobian is factored.
 const SMALL_WHEEL: usize = 1200;
 /// Samples per period of the enlarged set at least, and per period of its highest harmonic.
@@ -58,16 +59,23 @@ pub struct EnlargedSet {
 }
 
 impl EnlargedSet {
-    /// The harmonics 0 to 15 (odd ones where the normal load is constant, since no law then
-    /// excites the others) and those of `set`, whose sampling is checked with `samples` per period.
+    /// Those up to 15 that a law excites: odd ones alone where the normal load is constant.
+    #[must_use]
+    pub fn everything(variable_load: bool) -> Vec<u32> {
+        excited_up_to(HIGHEST_HARMONIC, variable_load)
+    }
+
+    /// [`Self::everything`], or the same up to 25 where `set` has it, and the harmonics of `set`, whose sampling is checked with
+    /// `samples` per period.
     ///
     /// # Errors
     /// If the harmonics cannot be told apart with the samples asked for.
     pub fn new(set: &[u32], variable_load: bool, samples: usize) -> Result<Self, TransformError> {
-        let mut harmonics: Vec<u32> = (0..=HIGHEST_HARMONIC)
-            .filter(|k| variable_load || k % 2 == 1)
-            .chain(set.iter().copied())
-            .collect();
+        let mut harmonics = Self::everything(variable_load);
+        if harmonics.iter().all(|k| set.contains(k)) {
+            harmonics = excited_up_to(HIGHEST_BEYOND, variable_load);
+        }
+        harmonics.extend(set);
         harmonics.sort_unstable();
         harmonics.dedup();
         let transform = |harmonics: &[u32], samples: usize| {
@@ -101,6 +109,12 @@ impl EnlargedSet {
     pub fn transforms(&self) -> [&Arc<HarmonicTransform>; 3] {
         [&self.alone, &self.enlarged, &self.tangents]
     }
+}
+
+/// Harmonics that a law excites, ascending.
+fn excited_up_to(highest: u32, variable_load: bool) -> Vec<u32> {
+    let excited = |k: &u32| variable_load || k % 2 == 1;
+    (0..=highest).filter(excited).collect()
 }
 
 /// A solution corrected, in the unknowns of the enlarged system.

@@ -33,6 +33,8 @@ pub(super) struct Acceleration {
     latest: Vec<f64>,
     /// Scalar products of the changes, a row of growing length each.
     products: Vec<Vec<f64>>,
+    /// What is added to the squares of the changes, each of length 1.
+    damping: f64,
     /// Scalar products of the changes with the step.
     along: Vec<f64>,
     shares: Vec<f64>,
@@ -43,11 +45,13 @@ impl Acceleration {
     pub(super) fn resize(&mut self, unknowns: usize) {
         self.unknowns = unknowns;
         self.last = None;
-        self.begin();
+        self.begin(0.0);
     }
 
-    /// Forgets the steps: another function follows.
-    pub(super) fn begin(&mut self) {
+    /// Forgets the steps: another function follows, whose shares are damped by so much of the square of a change. Without damping
+    /// changes that are almost one another are combined with large shares, which a function with kinks does not follow.
+    pub(super) fn begin(&mut self, damping: f64) {
+        self.damping = damping;
         self.begun = false;
         self.forget();
     }
@@ -151,7 +155,7 @@ impl Acceleration {
                 let known: f64 = (0..i)
                     .map(|k| factor[i * count + k] * factor[j * count + k])
                     .sum();
-                let rest = at(i, j) - known;
+                let rest = at(i, j) + if i == j { self.damping } else { 0.0 } - known;
                 factor[j * count + i] = if i < j {
                     let pivot = factor[i * count + i];
                     if pivot > 0.0 { rest / pivot } else { 0.0 }

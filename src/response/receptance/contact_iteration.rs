@@ -23,6 +23,8 @@ use super::wheel_harmonic::{Preconditioner, WheelHarmonic};
 
 /// Earlier steps that are combined.
 const DEPTH: usize = 80;
+/// Damping of their shares, over the tolerance that is asked for.
+const DAMPING: f64 = 0.5;
 
 /// When tangents are renewed, and how many steps are taken at most.
 struct Plan {
@@ -204,7 +206,7 @@ impl ContactEquation<'_> {
             step: f64::INFINITY,
             shares: ContactShares::default(),
         };
-        self.buffers.acceleration.begin();
+        self.buffers.acceleration.begin(DAMPING * tolerance);
         let mut first = f64::INFINITY;
         for iteration in 0..plan.iterations {
             let renew = plan.renewals.contains(&iteration);
@@ -224,7 +226,7 @@ impl ContactEquation<'_> {
             if renew {
                 preconditioners = self.preconditioners();
                 outcome.tangents += 1;
-                self.buffers.acceleration.begin();
+                self.buffers.acceleration.begin(DAMPING * tolerance);
             }
             for (own, residual) in preconditioners.iter_mut().zip(&mut self.buffers.residual) {
                 own.apply(self.transform, residual);
