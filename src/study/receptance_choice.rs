@@ -73,7 +73,8 @@ impl<'a> Judges<'a> {
         }
     }
 
-    /// `set` under every engine order and nonlinear condition, with what it leaves out of the peaks of these wheels.
+    /// `set` under every engine order and nonlinear condition, or `reserve` where a wheel has no peak with the set; with what it leaves
+    /// out of the peaks of these wheels.
     ///
     /// # Errors
     /// If the samples per period cannot tell the harmonics apart.
@@ -81,6 +82,7 @@ impl<'a> Judges<'a> {
         &self,
         conditions: &[ContactCondition],
         set: &[u32],
+        reserve: Option<&[u32]>,
     ) -> Result<Vec<HarmonicChoice>, TransformError> {
         let nonlinear = |own: &&ContactCondition| own.normal_load_n().is_some();
         let conditions: Vec<ContactCondition> =
@@ -90,9 +92,13 @@ impl<'a> Judges<'a> {
             .iter()
             .flat_map(|(order, _)| conditions.iter().map(|&condition| (*order, condition)))
             .collect();
-        let judged = cases
-            .into_par_iter()
-            .map(|case| self.judged(choice_of(case, set)));
+        let judged = cases.into_par_iter().map(|case| {
+            let (choice, found) = self.judged(choice_of(case, set))?;
+            match reserve.filter(|_| !found) {
+                Some(reserve) => Ok(self.judged(choice_of(case, reserve))?.0),
+                None => Ok(choice),
+            }
+        });
         judged.collect()
     }
 
@@ -212,9 +218,11 @@ impl<'a> Judges<'a> {
         Ok(peaks.collect())
     }
 
-    /// The set with what it leaves out of these wheels: none where that is not known of one of them.
-    fn judged(&self, choice: HarmonicChoice) -> Result<HarmonicChoice, TransformError> {
-        let errors = self.peaks(&choice)?.into_iter().map(|(row, points, peak)| {
+    /// The set with what it leaves out of these wheels, none where that is not known of one of them; and whether all have a peak.
+    fn judged(&self, choice: HarmonicChoice) -> Result<(HarmonicChoice, bool), TransformError> {
+        let peaks = self.peaks(&choice)?;
+        let found = peaks.iter().all(|(.., peak)| peak.status == Status::Ok);
+        let errors = peaks.into_iter().map(|(row, points, peak)| {
             let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok)?;
             receptance_errors(&row, &points, point, PEAK_TOLERANCE)
         });
@@ -223,11 +231,12 @@ impl<'a> Judges<'a> {
             let errors = errors.as_ref()?.iter();
             Some(errors.map(of).fold(0.0, f64::max))
         };
-        Ok(HarmonicChoice {
+        let judged = HarmonicChoice {
             remainder: largest(|own| own.harmonics.abs() + own.unsettled),
             sampling: largest(|own| own.sampling.abs()),
             ..choice
-        })
+        };
+        Ok((judged, found))
     }
 }
 
@@ -247,7 +256,7 @@ fn spread(conditions: &[ContactCondition]) -> Vec<ContactCondition> {
 }
 
 /// A set not yet judged.
-fn choice_of(
+pub(super) fn choice_of(
     (engine_order, contact): (u32, ContactCondition),
     harmonics: &[u32],
 ) -> HarmonicChoice {

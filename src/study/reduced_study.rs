@@ -10,6 +10,7 @@ use super::basis_choice::{
 use super::fixed_interface::FixedInterface;
 use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::load_cases::{Excitation, solver_under};
+use super::receptance_choice::choice_of;
 use super::reduced_engine::row_settings;
 use super::sector_model::judging_patterns;
 use super::tuned_receptances::{COMPANION_MODES, Refined, engine_of, engine_options, refined};
@@ -23,6 +24,8 @@ use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::EnlargedSet;
 use crate::response::receptance::{EngineModel, ReceptanceEngine};
 
+/// Highest harmonic of the rows that are not found with all of them: light loads, where contacts open.
+const HIGHEST_OF_RESERVE: u32 = 5;
 /// Share of the harmonic tolerance by which the set for rows beyond it is chosen.
 const BEYOND_TOLERANCE: f64 = 0.25;
 
@@ -217,12 +220,19 @@ pub(super) fn reduced_on_receptances(
 ) -> Result<Stored, PipelineError> {
     let excitations = study.excitations();
     let patterns = judging_patterns(study, sector)?;
-    let set = match &study.solver.harmonics {
+    let law = study.contact.as_ref().map(|contact| contact.law);
+    let separates = law.is_some_and(ContactLaw::has_variable_load);
+    let (set, reserve) = match &study.solver.harmonics {
         Harmonics::Auto => {
-            let law = study.contact.as_ref().map(|contact| contact.law);
-            EnlargedSet::everything(law.is_some_and(ContactLaw::has_variable_load))
+            let everything = EnlargedSet::everything(separates);
+            let few = everything
+                .iter()
+                .copied()
+                .filter(|&k| k <= HIGHEST_OF_RESERVE);
+            let reserve: Vec<u32> = few.collect();
+            (everything, Some(reserve))
         }
-        Harmonics::Set(_) => row_settings(study).harmonics,
+        Harmonics::Set(set) => (set.clone(), None),
     };
     let Refined {
         reduction,
@@ -231,8 +241,14 @@ pub(super) fn reduced_on_receptances(
         evidence,
         harmonics,
     } = refined(study, sector, &excitations, &patterns, |judges| {
-        judges.harmonics(&study.contacts, &set)
+        judges.harmonics(&study.contacts, &set, reserve.as_deref())
     })?;
+    let harmonics = harmonics.concat();
+    let of_reserve = |set: &Vec<u32>| {
+        let choices = harmonics.iter();
+        let case = |own: &HarmonicChoice| choice_of((own.engine_order, own.contact), set);
+        choices.map(case).collect()
+    };
     let modes = study.mistuning.cantilever_mode_count;
     let model = if reduction.is_whole_space() {
         engine.own.model.clone()
@@ -244,11 +260,18 @@ pub(super) fn reduced_on_receptances(
         reduction.reduce(choice, modes)?
     };
     Ok(Stored {
-        beyond: None,
+        beyond: reserve
+            .as_ref()
+            .filter(|_| study.has_friction())
+            .map(|set| StoredBeyond {
+                model: model.clone(),
+                basis_error: basis_error(&evidence),
+                harmonics: of_reserve(set),
+            }),
         model,
         evidence,
         fixed_interface,
-        harmonics: harmonics.concat(),
+        harmonics,
         engine: Some(engine.own),
         receptances: Some(engine.receptances),
     })

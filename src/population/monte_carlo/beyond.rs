@@ -17,8 +17,8 @@ pub(super) struct Beyond {
 }
 
 impl RowSolver {
-    /// The same solver, whose rows are solved again by `solver` where contacts separate and, with
-    /// `inexact_rows`, where the harmonic error exceeds its tolerance, each with the tuned
+    /// The same solver, whose rows are solved again by `solver` where contacts separate, on tuned receptances where they have no peak
+    /// in their place, and, with `inexact_rows`, where the harmonic error exceeds its tolerance, each with the tuned
     /// reference of `solver`. Only scenarios for which `solver` has a chosen set are solved again.
     #[must_use]
     pub fn with_beyond(mut self, solver: Self, inexact_rows: bool) -> Self {
@@ -44,7 +44,11 @@ impl RowSolver {
         row: &ResponseRow,
     ) -> Option<ResponseRow> {
         let beyond = self.beyond.as_ref()?;
-        let separates = row.separated_fraction.is_some_and(|share| share > 0.0);
+        let failed = row.status != Status::Ok;
+        let separates = match &self.engine {
+            Some(_) => failed,
+            None => row.separated_fraction.is_some_and(|share| share > 0.0),
+        };
         let inexact = row.error_within_tolerance == Some(false);
         if !(separates || inexact && beyond.inexact_rows) {
             return None;
@@ -63,7 +67,7 @@ impl RowSolver {
         };
         let again = beyond.solver.rows(pattern, &[(scenario, &tuned)]).pop()?;
         let solved = again.status == Status::Ok && again.amplification_factor.is_some();
-        solved.then(|| ResponseRow {
+        (solved || failed).then(|| ResponseRow {
             nonlinear_solves: row.nonlinear_solves + again.nonlinear_solves,
             newton_iterations: row.newton_iterations + again.newton_iterations,
             factorisations: row.factorisations + again.factorisations,

@@ -53,6 +53,18 @@ pub struct Peak {
 }
 
 impl Peak {
+    /// No peak, and why.
+    pub(super) fn without(status: Status, work: Work) -> Self {
+        Self {
+            status,
+            point: None,
+            blade: 0,
+            bracketed: false,
+            mean_friction_n: None,
+            work,
+        }
+    }
+
     /// Largest amplitude, m; none unless the search succeeded.
     #[must_use]
     pub fn amplitude_m(&self) -> Option<f64> {
@@ -213,14 +225,7 @@ pub fn peak(
     let plan = match search_plan(excited, condition, window) {
         Ok(plan) => plan,
         Err(status) => {
-            return Peak {
-                status,
-                point: None,
-                blade: 0,
-                bracketed: false,
-                mean_friction_n: None,
-                work: Work::default(),
-            };
+            return Peak::without(status, Work::default());
         }
     };
     let nonlinear = matches!(condition, ContactCondition::Full { .. });

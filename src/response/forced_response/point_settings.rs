@@ -8,7 +8,7 @@ use super::options::{Harmonics, SearchHarmonics, SolverOptions};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{
-    ContactInterface, HarmonicTransform, NewtonBounds, TransformError,
+    ContactInterface, EnlargedSet, HarmonicTransform, NewtonBounds, TransformError,
 };
 use crate::response::mistuning::ContactFactors;
 
@@ -65,7 +65,7 @@ impl PointSettings {
             _ => None,
         };
         let guided = options.harmonics == Harmonics::Auto && contact.is_some();
-        let guided = guided && search.is_some() && has_more_than_guide(harmonics);
+        let guided = guided && search.is_some() && is_everything(harmonics);
         let guide = guided.then(|| {
             let own = Self::new(options, &GUIDE, contact, geometry.clone())?;
             let (share, whole) = SAMPLES_OF_GUIDE;
@@ -239,9 +239,10 @@ fn sought(search: &SearchHarmonics, harmonics: &[u32]) -> Option<Vec<u32>> {
     (sought.len() < harmonics.len()).then_some(sought)
 }
 
-/// Whether a set has the harmonics that lead to a top, and more of them than one.
-fn has_more_than_guide(harmonics: &[u32]) -> bool {
-    GUIDE.iter().all(|k| harmonics.contains(k)) && harmonics.len() > GUIDE.len() + 1
+/// Whether a set has everything that a law without separation excites, up to the highest that is looked at.
+fn is_everything(harmonics: &[u32]) -> bool {
+    let everything = EnlargedSet::everything(false);
+    everything.iter().all(|k| harmonics.contains(k))
 }
 
 /// Samples per period of a solution in `harmonics`: those asked for; where the set is automatic, at least 12 per period of

@@ -321,7 +321,7 @@ pub struct ReceptancePeak {
 }
 
 /// Finds the peak of one row: with few harmonics over the band and with all of them at its tops, where `search` has few, or with
-/// all of them alone.
+/// all of them alone; where an automatic set of all harmonics is led to the top by some of them, in this way or not at all.
 #[must_use]
 pub fn receptance_peak(
     row: &EngineRow<'_>,
@@ -337,14 +337,7 @@ pub fn receptance_peak(
     let plan = match receptance_plan(row, window) {
         Ok(plan) => plan,
         Err(status) => {
-            return alone(Peak {
-                status,
-                point: None,
-                blade: 0,
-                bracketed: false,
-                mean_friction_n: None,
-                work: Work::default(),
-            });
+            return alone(Peak::without(status, Work::default()));
         }
     };
     let nonlinear = row.condition.normal_load_n().is_some();
@@ -357,6 +350,10 @@ pub fn receptance_peak(
                     peak,
                     by_harmonics: settings.guide().map(|_| change),
                 };
+            }
+            Err(work) if settings.guide().is_some() => {
+                // All harmonics over the whole band are not to be had: fewer of them have to do.
+                return alone(Peak::without(Status::SweepIncomplete, work));
             }
             Err(work) => wasted = work,
         }
