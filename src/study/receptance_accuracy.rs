@@ -2,9 +2,9 @@
 //!
 //! Every tolerance of the engine is a fixed share of the accepted error. Rows of the study at these settings are compared with the
 //! same rows in harmonics up to 15, with twice the blade shapes and twice the samples, each climbed from its own peak. Where the
-//! upper bound of the 95th percentile of their errors is not accepted, the tolerances of harmonics and peak are halved; where that does
-//! not do either, every harmonic is taken. What the study says itself stays. Modes and shapes stay too: their error was
-//! measured when they were chosen.
+//! upper bound of the 95th percentile of their errors is not accepted, the tolerance of the peak is halved; where that does not do
+//! either, halved once more, with twice the samples. What the study says itself stays. Modes and shapes stay too: their error
+//! was measured when they were chosen.
 
 use std::path::Path;
 
@@ -29,7 +29,7 @@ use crate::response::forced_response::{
 };
 use crate::response::mistuning::PatternSource;
 
-/// Tolerance of the harmonics over the accepted error; judged wheels are held to a fifth of it.
+/// Tolerance of the harmonics over the accepted error, beyond which rows are marked.
 const HARMONICS: f64 = 2.0;
 /// Tolerance of fixed-interface modes and blade shapes over the accepted error.
 const REDUCTION: f64 = 0.1;
@@ -38,8 +38,6 @@ const PEAK: f64 = 0.1;
 /// Samples per period, and an error below which twice as many are taken.
 const SAMPLES: usize = 128;
 const FINER_SAMPLES_BELOW: f64 = 0.004;
-/// Samples of a period over the highest harmonic at least.
-const SAMPLES_PER_HARMONIC: usize = 4;
 /// Harmonics that rows are compared with go to this one; those that the study says are among them.
 const ENLARGED_HARMONIC: u32 = 15;
 /// Samples of these rows at least.
@@ -55,9 +53,9 @@ const SETTLED: f64 = 0.5;
 pub struct ReceptanceSetting {
     /// `reduction.error`, by which fixed-interface modes and blade shapes are chosen.
     pub reduction_error: f64,
-    /// `solver.harmonic_tolerance`, by which harmonics are chosen.
+    /// `solver.harmonic_tolerance`.
     pub harmonic_tolerance: f64,
-    /// `solver.harmonics`, where no tolerance of them was enough.
+    /// `solver.harmonics`, where the study says them.
     pub harmonics: Option<Vec<u32>>,
     /// `solver.samples_per_period`, at least.
     pub samples_per_period: usize,
@@ -103,26 +101,22 @@ impl ReceptanceSetting {
         self
     }
 
-    /// The settings tried for `amplitude_error`, in order: those for it, then half the tolerances of harmonics and peak, then all of
-    /// `harmonics` besides. Where `study` says what a step would change, there is no such step.
-    fn tried_for(amplitude_error: f64, study: &Study, harmonics: &[u32]) -> Vec<Self> {
+    /// The settings tried for `amplitude_error`, in order: those for it, then half the tolerance of the peak, then a quarter and twice
+    /// the samples. Where `study` says what a step would change, there is no such step.
+    fn tried_for(amplitude_error: f64, study: &Study) -> Vec<Self> {
         let first = Self::within(amplitude_error);
         let second = Self {
-            harmonic_tolerance: 0.5 * first.harmonic_tolerance,
             peak_tolerance: 0.5 * first.peak_tolerance,
             ..first.clone()
         };
         let third = Self {
-            harmonics: Some(harmonics.to_vec()),
+            peak_tolerance: 0.5 * second.peak_tolerance,
+            samples_per_period: 2 * second.samples_per_period,
             ..second.clone()
         };
         let mut tried: Vec<Self> = Vec::new();
         for setting in [first, second, third] {
-            let mut setting = setting.but_for_those_of(study);
-            let most = (setting.samples_per_period / SAMPLES_PER_HARMONIC) as u32;
-            if let Some(set) = &mut setting.harmonics {
-                set.retain(|&harmonic| harmonic <= most);
-            }
+            let setting = setting.but_for_those_of(study);
             if tried.last() != Some(&setting) {
                 tried.push(setting);
             }
@@ -204,8 +198,7 @@ pub(super) fn on_receptances(
     (patterns, ids): (&PatternSource, Vec<u32>),
     cache: Option<&Path>,
 ) -> Result<AccuracyChoice, PipelineError> {
-    let harmonics = enlarged_harmonics(study);
-    let mut left = ReceptanceSetting::tried_for(accepted, study, &harmonics).into_iter();
+    let mut left = ReceptanceSetting::tried_for(accepted, study).into_iter();
     let mut setting = ReceptanceSetting::within(accepted).but_for_those_of(study);
     let mut tried = Vec::new();
     let mut operations = 0.0;
@@ -409,7 +402,7 @@ mod tests {
     }
 
     fn tried(study: &Study) -> Vec<ReceptanceSetting> {
-        ReceptanceSetting::tried_for(0.01, study, &enlarged_harmonics(study))
+        ReceptanceSetting::tried_for(0.01, study)
     }
 
     #[test]
@@ -431,10 +424,9 @@ mod tests {
     fn what_the_study_says_stays_at_every_step() {
         let free = tried(&study(""));
         assert_eq!(free.len(), 3);
-        assert_eq!(free[2].harmonics, Some((0..=15).collect()));
-        // With few samples every harmonic that they can tell.
+        assert_eq!(free[2].samples_per_period, 256);
+        assert_eq!(free[2].peak_tolerance.to_bits(), 2.5e-4_f64.to_bits());
         let coarse = tried(&study("[solver]\nsamples_per_period = 40"));
-        assert_eq!(coarse[2].harmonics, Some((0..=10).collect()));
         assert!(coarse.iter().all(|own| own.samples_per_period == 40));
         let stated = study(
             "[reduction]\nerror = 3e-3\n[solver]\nharmonics = [1, 3, 5]\nharmonic_tolerance = 0.1\npeak_tolerance = 2e-4",

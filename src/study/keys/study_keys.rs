@@ -272,7 +272,7 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "solver.harmonics",
         Either(&[Name(&["auto"]), Ascending(&Whole(0, 100), None)]),
         "`\"auto\"`",
-        "`auto`: per engine order and load, by the tuned full contact model ([formulation.md](formulation.md)); a list has 1 among them",
+        "`auto`: 0 to 15, on a basis per engine order and load by the tuned full contact model ([formulation.md](formulation.md)); a list has 1 among them",
     ),
     entry(
         "solver.search_harmonics",
@@ -284,13 +284,13 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "solver.harmonic_tolerance",
         Number(Range::from_to(1e-6, 1.0)),
         "0.02",
-        "wanted relative error of the amplitude by the harmonics left out; `auto` chooses by it, rows beyond it are marked",
+        "wanted relative error of the amplitude by the harmonics left out; on a basis `auto` chooses by it; rows beyond it are marked",
     ),
     entry(
         "solver.rows_beyond_tolerance",
         Name(&["flag", "resolve"]),
         "`\"flag\"`",
-        "`resolve`: with automatic harmonics, such rows are solved again with the set of a quarter of the tolerance",
+        "`resolve`: with automatic harmonics on a basis, such rows are solved again with the set of a quarter of the tolerance",
     ),
     entry(
         "solver.samples_per_period",
@@ -302,7 +302,7 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "solver.residual_tolerance",
         Number(Range::from_to(1e-13, 1e-2)),
         "1e-8",
-        "residual force relative to the excitation",
+        "residual force relative to the excitation; where nothing is said, peaks with automatic harmonics on tuned receptances are solved to a fifth of `peak_tolerance`",
     ),
     entry(
         "solver.peak_tolerance",
