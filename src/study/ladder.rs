@@ -192,6 +192,7 @@ impl LadderSetting {
         solver.rows_beyond_tolerance = RowsBeyondTolerance::Flag;
         solver.samples_per_period = self.samples_per_period;
         solver.residual_tolerance = self.residual_tolerance;
+        solver.residual_is_stated = true;
         solver.peak_tolerance = self.peak_tolerance;
         if let Some(contact) = &mut own.contact {
             // Errors beside a law with other springs would be those of another equation.

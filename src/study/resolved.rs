@@ -190,6 +190,10 @@ impl Study {
             },
             "output": self.output_value(),
         });
+        // A number would be taken for one that was asked for.
+        if !self.solver.residual_is_stated {
+            without(&mut study, ["solver.residual_tolerance"].into_iter());
+        }
         if let Some(accuracy) = &self.accuracy {
             study["accuracy"] = json!(accuracy);
             let chosen = KEYS_OF_ACCURACY.into_iter();
