@@ -10,6 +10,9 @@
 //! few harmonics have the curve of all, exactly at these frequencies (full approximation scheme, Brandt 1977). So the top is
 //! sought with few harmonics; all of them are solved where it is found, until it is found no higher than they say, and on either
 //! side of it, where another harmonic that meets a resonance of its own would show.
+//!
+//! Between few and all may stand a set that is cheap and close: then the same is done with that set first, and what all harmonics
+//! leave beyond it is one more force, that takes two or three solutions with all of them to know.
 
 use super::peak::{Peak, SearchPlan};
 use super::peak_search::{Envelope, SearchSettings, VERTEX_SHARE, find_peak};
@@ -291,29 +294,24 @@ impl CorrectedSearch<'_> {
         Some(amplitudes_m)
     }
 
-    /// Motions to solve the last of `sets` sets from, at a frequency, Hz: by its own points, or by those of the set before it.
+    /// Motions to solve the last of the first `sets` sets from, at a frequency, Hz: those of few harmonics, and of every set on the way
+    /// what its own points have beside them.
     fn start(&self, sets: usize, frequency_hz: f64) -> Option<Vec<f64>> {
         let few = between(&self.few.points, frequency_hz).into_iter().next()?;
         let few_set = self.few.solver.harmonics();
-        if sets == 0 {
-            return Some(few);
+        let (mut start, mut set) = (few.clone(), few_set);
+        for own in &self.sets[..sets] {
+            let larger = own.solver.harmonics();
+            let known = between(&own.points, frequency_hz).into_iter().next();
+            start = if let Some(mut known) = known {
+                overlay(&mut known, &few, few_set, larger);
+                known
+            } else {
+                embedded(&start, set, larger)
+            };
+            set = larger;
         }
-        let own = &self.sets[sets - 1];
-        let set = own.solver.harmonics();
-        match between(&own.points, frequency_hz).into_iter().next() {
-            Some(mut start) => {
-                overlay(&mut start, &few, few_set, set);
-                Some(start)
-            }
-            None => {
-                let smaller = match sets {
-                    1 => few_set,
-                    _ => self.sets[sets - 2].solver.harmonics(),
-                };
-                let start = self.start(sets - 1, frequency_hz)?;
-                Some(embedded(&start, smaller, set))
-            }
-        }
+        Some(start)
     }
 
     /// Solves the last set of the climb at a frequency, Hz, to a share of the tolerance of the peak.
