@@ -190,10 +190,11 @@ impl RowSolver {
             (Some(_), _) if point.shares == ContactShares::default() => {
                 Some(ErrorEstimate::default())
             }
+            // The change by harmonics beyond has no sign that a row could be corrected by.
             (Some(change), Some((remainder, sampling))) => Some(ErrorEstimate {
                 sampling,
-                harmonics: remainder.max(LEFT_OF_CHANGE * change.abs()),
-                unsettled: point.residual,
+                harmonics: 0.0,
+                unsettled: remainder.max(LEFT_OF_CHANGE * change.abs()) + point.residual,
             }),
             _ => receptance_errors(row, settings, point, self.settings.solver.peak_tolerance),
         }
