@@ -45,12 +45,12 @@ impl RowSolver {
     ) -> Option<ResponseRow> {
         let beyond = self.beyond.as_ref()?;
         let failed = row.status != Status::Ok;
-        let separates = match &self.engine {
+        let wanted = match &self.engine {
             Some(_) => failed,
             None => row.separated_fraction.is_some_and(|share| share > 0.0),
         };
         let inexact = row.error_within_tolerance == Some(false);
-        if !(separates || inexact && beyond.inexact_rows) {
+        if !(wanted || inexact && beyond.inexact_rows) {
             return None;
         }
         let place = beyond.solver.chosen.iter().position(|(choice, _)| {
