@@ -429,7 +429,7 @@ mod tests {
         let coarse = tried(&study("[solver]\nsamples_per_period = 40"));
         assert!(coarse.iter().all(|own| own.samples_per_period == 40));
         let stated = study(
-            "[reduction]\nerror = 3e-3\n[solver]\nharmonics = [1, 3, 5]\nharmonic_tolerance = 0.1\npeak_tolerance = 2e-4",
+            "[reduction]\nerror = 3e-3\n[solver]\nharmonics = [1, 3, 5]\nharmonic_tolerance = 0.1\npeak_tolerance = 2e-4\nsamples_per_period = 64",
         );
         let [only] = tried(&stated).try_into().expect("one setting");
         assert_eq!(only.harmonics, Some(vec![1, 3, 5]));
