@@ -228,6 +228,10 @@ impl<'a> ReceptancePoints<'a> {
     }
 
     fn added(&mut self, frequency_hz: f64) -> Result<&Point, Status> {
+        let lost = self.failures.first().map(|(_, status)| *status);
+        if let Some(status) = lost.filter(|_| self.settings.guide().is_some()) {
+            return Err(status);
+        }
         match self.solve(frequency_hz, self.tolerance()) {
             Ok(point) => {
                 self.points.push(point);
@@ -321,7 +325,8 @@ pub struct ReceptancePeak {
 }
 
 /// Finds the peak of one row: with few harmonics over the band and with all of them at its tops, where `search` has few, or with
-/// all of them alone; where an automatic set of all harmonics is led to the top by some of them, in this way or not at all.
+/// all of them alone. With an automatic set of all harmonics a search with these ends at the first point that is not found: fewer of
+/// them have to do there.
 #[must_use]
 pub fn receptance_peak(
     row: &EngineRow<'_>,
@@ -350,10 +355,6 @@ pub fn receptance_peak(
                     peak,
                     by_harmonics: settings.guide().map(|_| change),
                 };
-            }
-            Err(work) if settings.guide().is_some() => {
-                // All harmonics over the whole band are not to be had: fewer of them have to do.
-                return alone(Peak::without(Status::SweepIncomplete, work));
             }
             Err(work) => wasted = work,
         }
