@@ -93,9 +93,9 @@ impl<'a> Judges<'a> {
             .flat_map(|(order, _)| conditions.iter().map(|&condition| (*order, condition)))
             .collect();
         let judged = cases.into_par_iter().map(|case| {
-            let (choice, found) = self.judged(choice_of(case, set))?;
+            let (choice, found) = self.judged(choice_of(case, set), reserve.is_some())?;
             match reserve.filter(|_| !found) {
-                Some(reserve) => Ok(self.judged(choice_of(case, reserve))?.0),
+                Some(reserve) => Ok(self.judged(choice_of(case, reserve), false)?.0),
                 None => Ok(choice),
             }
         });
@@ -121,7 +121,7 @@ impl<'a> Judges<'a> {
             }
         }
         let tops = choices.into_par_iter().map(|choice| {
-            let peaks = self.peaks(&choice)?.into_iter().enumerate();
+            let peaks = self.peaks(&choice, false)?.into_iter().enumerate();
             let tops = peaks.filter_map(|(wheel, own)| self.top_of(own, wheel, &choice));
             Ok(tops.collect())
         });
@@ -201,26 +201,42 @@ impl<'a> Judges<'a> {
         }
     }
 
-    /// The peak of every wheel with the harmonics of `choice`, beside the settings of its points.
-    fn peaks(&self, choice: &HarmonicChoice) -> Result<Vec<JudgedPeak<'_>>, TransformError> {
+    /// The peak of every wheel with the harmonics of `choice`, beside the settings of its points; up to the first that has none where that
+    /// is enough to know.
+    fn peaks(
+        &self,
+        choice: &HarmonicChoice,
+        ends_where_lost: bool,
+    ) -> Result<Vec<JudgedPeak<'_>>, TransformError> {
         let tolerance = self.settings.solver.peak_tolerance.min(PEAK_TOLERANCE);
         let options = SolverOptions {
             peak_tolerance: tolerance,
             ..self.settings.solver.clone()
         };
         let points = self.points(&options, &choice.harmonics)?;
-        let peaks = (0..self.wheels.len()).filter_map(|wheel| {
-            let row = self.row(wheel, choice.engine_order, choice.contact)?;
-            let points = points.with_factors(&self.wheels[wheel].1);
+        let mut peaks = Vec::new();
+        for (wheel, (_, factors)) in self.wheels.iter().enumerate() {
+            let Some(row) = self.row(wheel, choice.engine_order, choice.contact) else {
+                continue;
+            };
+            let points = points.with_factors(factors);
             let found = receptance_peak(&row, &points, points.search(), self.window(), tolerance);
-            Some((row, points, found.peak))
-        });
-        Ok(peaks.collect())
+            let is_lost = found.peak.status != Status::Ok;
+            peaks.push((row, points, found.peak));
+            if is_lost && ends_where_lost {
+                break;
+            }
+        }
+        Ok(peaks)
     }
 
     /// The set with what it leaves out of these wheels, none where that is not known of one of them; and whether all have a peak.
-    fn judged(&self, choice: HarmonicChoice) -> Result<(HarmonicChoice, bool), TransformError> {
-        let peaks = self.peaks(&choice)?;
+    fn judged(
+        &self,
+        choice: HarmonicChoice,
+        has_reserve: bool,
+    ) -> Result<(HarmonicChoice, bool), TransformError> {
+        let peaks = self.peaks(&choice, has_reserve)?;
         let found = peaks.iter().all(|(.., peak)| peak.status == Status::Ok);
         let errors = peaks.into_iter().map(|(row, points, peak)| {
             let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok)?;
