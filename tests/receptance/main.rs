@@ -6,6 +6,8 @@
     reason = "a test that cannot go on fails, and what is measured is shown by `--nocapture`"
 )]
 
+mod automatic_harmonics;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

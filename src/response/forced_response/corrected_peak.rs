@@ -37,34 +37,22 @@ struct Care {
     of_few: f64,
     /// Share of the tolerance that a summit found with few harmonics may lie above the points of a set.
     above: f64,
-    /// Sides of a top that are looked at with the first set, and with every set beyond it.
-    sides: (usize, usize),
 }
 
-/// Of harmonics that the study says: the peak is theirs.
-const STATED: Care = Care {
+/// Where the study says the harmonics, or no set leads to them.
+const ONE_SET: Care = Care {
     at_top: 0.2,
     at_side: 0.5,
     of_few: 0.02,
     above: 0.15,
-    sides: (2, 1),
 };
-/// Of automatic harmonics.
-const CLOSE: Care = Care {
-    at_top: 1.0,
+/// Where one set leads to the next: what a residual and a top take off the peak are together as much as was asked for.
+const LED: Care = Care {
+    at_top: 0.5,
     at_side: 3.0,
     of_few: 0.1,
-    above: 1.0,
-    sides: (2, 1),
+    above: 0.5,
 };
-/// The same where the tolerance is larger than [`BESIDE_UP_TO`]: harmonics beyond the first set hardly move a top, but for one that meets a
-/// resonance of its own beside it. Of 72 rows of the quickstart this took 0.42 % off one, and less than 0.3 % off the others.
-const COARSE: Care = Care {
-    sides: (1, 0),
-    ..CLOSE
-};
-/// Tolerance of the peak up to which every set looks beside its tops.
-const BESIDE_UP_TO: f64 = 5e-4;
 /// Points of one top with all harmonics at most.
 const POINTS: usize = 20;
 /// Points beside a top, in its half-bandwidths: where it has fallen by a hundredth. Nearer than this a hump of that size shows.
@@ -99,11 +87,7 @@ pub(super) fn corrected_peak(
         return Err(few.work());
     };
     let mut corrected = ReceptancePoints::new(row, &as_fine);
-    let care = match sets.len() {
-        1 => STATED,
-        _ if peak_tolerance <= BESIDE_UP_TO => CLOSE,
-        _ => COARSE,
-    };
+    let care = if sets.len() > 1 { LED } else { ONE_SET };
     corrected.set_precision(care.of_few * peak_tolerance);
     let mut search = CorrectedSearch {
         few: corrected,
@@ -306,27 +290,13 @@ impl CorrectedSearch<'_> {
                 return Ok((best.height_m, best.frequency_hz));
             } else if summit.largest > above {
                 self.solve(climb, summit.frequency_hz, self.care.at_top)?;
-            } else if let Some(side_hz) = self.unseen_beside(climb, best.frequency_hz) {
+            } else if let Some(side_hz) = climb.unseen_beside(best.frequency_hz) {
                 self.solve(climb, side_hz, self.care.at_side)?;
             } else {
                 return Ok((best.height_m, best.frequency_hz));
             }
         }
         Err(Status::SweepIncomplete)
-    }
-
-    /// A frequency beside the top, Hz, on a side on which no point of the last set serves; none where it has looked at enough of them.
-    fn unseen_beside(&self, climb: &Climb, top_hz: f64) -> Option<f64> {
-        let is_unseen = |side: &f64| {
-            let way = |own: &Known| (own.frequency_hz - top_hz) / side;
-            let serves = |own: &Known| (SERVES.0..=SERVES.1).contains(&way(own));
-            !climb.own().iter().any(serves)
-        };
-        let sides = [-climb.beside_hz, climb.beside_hz].into_iter();
-        let unseen: Vec<f64> = sides.filter(is_unseen).collect();
-        let (first, beyond) = self.care.sides;
-        let wanted = if climb.known.len() > 1 { beyond } else { first };
-        (2 - unseen.len() < wanted).then(|| top_hz + unseen[0])
     }
 
     /// Amplitudes at a frequency, Hz, as few harmonics have them under the forces of the sets of the climb.
@@ -423,6 +393,21 @@ impl Climb {
         let highest = |a: &&Known, b: &&Known| a.height_m.total_cmp(&b.height_m);
         let best = self.own().iter().max_by(highest);
         best.unwrap_or(&self.own()[0])
+    }
+
+    /// A frequency beside the top, Hz, on a side on which no point serves; beyond the first set one side is enough.
+    fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
+        let sides = [-self.beside_hz, self.beside_hz];
+        let is_unseen = |side: &f64| {
+            let way = |own: &Known| (own.frequency_hz - top_hz) / side;
+            let serves = |own: &Known| (SERVES.0..=SERVES.1).contains(&way(own));
+            !self.own().iter().any(serves)
+        };
+        if self.known.len() > 1 && !sides.iter().all(is_unseen) {
+            return None;
+        }
+        let unseen = sides.into_iter().find(is_unseen);
+        unseen.map(|side| top_hz + side)
     }
 
     /// What the first `sets` sets leave on few harmonics at a frequency, Hz, and the growth of every blade's amplitude by them.

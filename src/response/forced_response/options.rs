@@ -73,7 +73,7 @@ pub struct SolverOptions {
     /// Bound on the residual force relative to the excitation. Default 1e-8.
     pub residual_tolerance: f64,
     /// Whether it was asked for. Where it was not, the peak of a row with an automatic harmonic set on tuned receptances is solved to
-    /// the tolerance of the peak.
+    /// half of the tolerance of the peak.
     pub residual_is_stated: bool,
     /// Relative tolerance of the peak amplitude in the peak search. Default 1e-3.
     pub peak_tolerance: f64,

@@ -302,7 +302,7 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "solver.residual_tolerance",
         Number(Range::from_to(1e-13, 1e-2)),
         "1e-8",
-        "residual force relative to the excitation; where nothing is said, peaks with automatic harmonics on tuned receptances are solved to `peak_tolerance`",
+        "residual force relative to the excitation; where nothing is said, peaks with automatic harmonics on tuned receptances are solved to half of `peak_tolerance`",
     ),
     entry(
         "solver.peak_tolerance",

@@ -1,0 +1,75 @@
+//! Rows of mistuned wheels at default settings, whose tops few harmonics lead to, against a search of the whole band with all of them.
+
+use std::path::Path;
+
+use blisk::population::monte_carlo::ResponseRow;
+use blisk::response::mistuning::{Pattern, PatternSource};
+use blisk::study::{EngineSource, ReducedEngineSource, Study, load_sector_model, pattern_source};
+use rayon::prelude::*;
+
+/// First patterns of the quickstart.
+const PATTERNS: u32 = 12;
+/// Loads at which harmonics beyond 3 change the highest amplitude most, and change where it is.
+const LOADS: &str = "[320, 1600]";
+/// Every point with harmonics 0 to 15.
+const WHOLE: &str = "
+[solver]
+harmonics = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]
+search_harmonics = \"all\"
+samples_per_period = 256\npeak_tolerance = 1e-4\n";
+
+/// Rows of the quickstart at [`LOADS`], pattern after pattern, with more settings after its own.
+fn rows(settings: &str) -> Vec<ResponseRow> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies/quickstart.toml");
+    let text = std::fs::read_to_string(&path).expect("a study");
+    let lines = text.lines().map(|line| {
+        if line.starts_with("normal_load_n") {
+            format!("normal_load_n = {LOADS}")
+        } else {
+            line.to_owned()
+        }
+    });
+    let lines: Vec<String> = lines.collect();
+    let study = Study::parse(&path, &format!("{}\n{settings}", lines.join("\n")));
+    let study = study.expect("a good study");
+    let model = load_sector_model(&study).expect("a model");
+    let patterns: PatternSource = pattern_source(&study, &model).expect("patterns");
+    let engine = ReducedEngineSource
+        .build(&study, &model, None)
+        .expect("an engine");
+    let scenarios = study.scenarios();
+    let tuned: Vec<_> = scenarios.iter().map(|own| engine.tuned(own)).collect();
+    let conditions: Vec<_> = scenarios.iter().zip(&tuned).collect();
+    let of_pattern = |id: u32| {
+        let pattern: Pattern = patterns
+            .pattern(id, scenarios[0].standard_deviation)
+            .expect("a pattern");
+        engine.rows(&pattern, &conditions)
+    };
+    let ids: Vec<u32> = (0..PATTERNS).collect();
+    ids.into_par_iter().flat_map_iter(of_pattern).collect()
+}
+
+/// `cargo test --release --test receptance automatic -- --nocapture`
+#[test]
+fn automatic_harmonics_miss_no_more_than_rows_state() {
+    faer::set_global_parallelism(faer::Par::Seq);
+    let (own, whole) = (rows(""), rows(WHOLE));
+    assert_eq!(own.len(), 2 * PATTERNS as usize);
+    let mut largest: f64 = 0.0;
+    for (own, whole) in own.iter().zip(&whole) {
+        assert_eq!((own.pattern, own.scenario), (whole.pattern, whole.scenario));
+        assert_eq!(own.harmonics, whole.harmonics);
+        let amplitude_m = |row: &ResponseRow| row.peak_amplitude_m.expect("a peak");
+        let error = amplitude_m(own) / amplitude_m(whole) - 1.0;
+        let stated = own.stated_error.expect("an error");
+        println!(
+            "pattern {}, scenario {}: {error:.2e}, stated {stated:.2e}",
+            own.pattern, own.scenario
+        );
+        assert!(error.abs() <= stated, "{error:.2e}, stated {stated:.2e}");
+        largest = largest.max(error.abs());
+    }
+    println!("largest {largest:.2e}");
+    assert!(largest <= 3e-3, "{largest:.2e}");
+}
