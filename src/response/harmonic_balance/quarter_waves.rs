@@ -22,6 +22,9 @@ use crate::linalg::{Loops, vectorized};
 /// Groups of [`LANES`] signals that are transformed at once.
 pub(super) const WIDTH: usize = 3;
 
+/// Points of a quarter of the period that are folded at once: they stay in the nearest cache.
+const TILE: usize = 16;
+
 /// One coefficient or sample of all signals.
 type Column = [[f64; LANES]; WIDTH];
 
@@ -147,32 +150,40 @@ impl Loops for Projected<'_> {
         let coefficients = self.coefficients.as_chunks_mut::<LANES>().0;
         let coefficients = coefficients.as_chunks_mut::<WIDTH>().0;
         coefficients.fill([[0.0; LANES]; WIDTH]);
-        let [ce, co, se, so] = &self.waves.parts;
         if !self.waves.quarters {
-            for (j, sample) in samples.iter().enumerate() {
-                ce.add(j, sample, coefficients);
-            }
+            self.waves.parts[0].add(0, samples, coefficients);
             return;
         }
-        for j in 0..=count / 4 {
-            let [plus, minus, mirrored, turned] = points_of(count, j);
-            let (x, y) = (&samples[plus], &samples[minus]);
-            let (z, w) = (&samples[mirrored], &samples[turned]);
-            let mut parts = [[[0.0; LANES]; WIDTH]; 4];
-            for group in 0..WIDTH {
-                for lane in 0..LANES {
-                    let (x, y) = (x[group][lane], y[group][lane]);
-                    let (z, w) = (z[group][lane], w[group][lane]);
-                    parts[0][group][lane] = (x + y) + (z + w);
-                    parts[1][group][lane] = (x + y) - (z + w);
-                    parts[2][group][lane] = (x - y) - (z - w);
-                    parts[3][group][lane] = (x - y) + (z - w);
-                }
+        let mut folded = [[[[0.0; LANES]; WIDTH]; TILE]; 4];
+        let end = count / 4 + 1;
+        let mut first = 0;
+        while first < end {
+            let tile = TILE.min(end - first);
+            for at in 0..tile {
+                fold(samples, points_of(count, first + at), at, &mut folded);
             }
-            ce.add(j, &parts[0], coefficients);
-            co.add(j, &parts[1], coefficients);
-            se.add(j, &parts[2], coefficients);
-            so.add(j, &parts[3], coefficients);
+            for (part, folded) in self.waves.parts.iter().zip(&folded) {
+                part.add(first, &folded[..tile], coefficients);
+            }
+            first += tile;
+        }
+    }
+}
+
+/// What the four parts are at the four points that stand for one.
+#[inline(always)]
+fn fold(samples: &[Column], points: [usize; 4], at: usize, folded: &mut [[Column; TILE]; 4]) {
+    let [plus, minus, mirrored, turned] = points;
+    let (x, y) = (&samples[plus], &samples[minus]);
+    let (z, w) = (&samples[mirrored], &samples[turned]);
+    for group in 0..WIDTH {
+        for lane in 0..LANES {
+            let (x, y) = (x[group][lane], y[group][lane]);
+            let (z, w) = (z[group][lane], w[group][lane]);
+            folded[0][at][group][lane] = (x + y) + (z + w);
+            folded[1][at][group][lane] = (x + y) - (z + w);
+            folded[2][at][group][lane] = (x - y) - (z - w);
+            folded[3][at][group][lane] = (x - y) + (z - w);
         }
     }
 }
@@ -211,18 +222,42 @@ impl Part {
         sums
     }
 
-    /// Adds what sample j of the signals is of these coefficients.
+    /// Adds what the signals are of these coefficients over samples from `first` on.
     #[inline(always)]
-    fn add(&self, j: usize, sample: &Column, coefficients: &mut [Column]) {
+    fn add(&self, first: usize, signals: &[Column], coefficients: &mut [Column]) {
+        let mut at = 0;
+        while at + 1 < self.coefficients.len() {
+            self.add_to([at, at + 1], first, signals, coefficients);
+            at += 2;
+        }
+        if at < self.coefficients.len() {
+            self.add_to([at], first, signals, coefficients);
+        }
+    }
+
+    #[inline(always)]
+    fn add_to<const N: usize>(
+        &self,
+        places: [usize; N],
+        first: usize,
+        signals: &[Column],
+        coefficients: &mut [Column],
+    ) {
         let count = self.coefficients.len();
-        let projection = &self.projection[j * count..(j + 1) * count];
-        for (&c, &psi) in self.coefficients.iter().zip(projection) {
-            let sums = &mut coefficients[c];
-            for group in 0..WIDTH {
-                for lane in 0..LANES {
-                    sums[group][lane] += psi * sample[group][lane];
+        let projection = self.projection[first * count..].chunks_exact(count);
+        let mut sums = places.map(|at| coefficients[self.coefficients[at]]);
+        for (signal, projection) in signals.iter().zip(projection) {
+            for (sum, &at) in sums.iter_mut().zip(&places) {
+                let psi = projection[at];
+                for group in 0..WIDTH {
+                    for lane in 0..LANES {
+                        sum[group][lane] += psi * signal[group][lane];
+                    }
                 }
             }
+        }
+        for (sum, at) in sums.into_iter().zip(places) {
+            coefficients[self.coefficients[at]] = sum;
         }
     }
 

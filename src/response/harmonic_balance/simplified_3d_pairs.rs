@@ -30,6 +30,10 @@ pub(super) struct Simplified3dPairs {
     pairs: Vec<usize>,
     /// Sum of the amplitudes of the harmonics of every contact row, m.
     excursions: Vec<f64>,
+    /// Contact row of every row of the matrices, and its spring, N/m; one of 0 N/m where there is none.
+    rows: Vec<(usize, f64)>,
+    /// Rows of the matrices of a block that have a correction, each with its contact row: of n, and of t1 and t2.
+    corrected: [Vec<(usize, usize)>; 2],
     /// `N0`, N, and `mu` of each lane.
     normal_load: Vec<f64>,
     friction: Vec<f64>,
@@ -72,6 +76,8 @@ impl Simplified3dPairs {
             waves: QuarterWaves::new(transform),
             pairs: Vec::with_capacity(pairs),
             excursions: Vec::new(),
+            rows: Vec::with_capacity(3 * lanes),
+            corrected: Default::default(),
             normal_load: vec![0.0; lanes],
             friction: vec![0.0; lanes],
             coefficients: vec![0.0; 3 * lanes * transform.n_coefficients()],
@@ -111,10 +117,51 @@ impl Simplified3dPairs {
         }
     }
 
-    /// Place of a coefficient of a lane.
-    fn place(&self, lane: usize, coefficient: usize, direction: usize) -> usize {
-        let block = lane / LANES * self.transform.n_coefficients();
-        (block + coefficient) * HEIGHT + direction * LANES + lane % LANES
+    /// Takes the springs of `kn g`, `kt x1` and `kt x2` over displacements, a column of contact rows per coefficient. Tangents have no
+    /// mean, which is the first of the coefficients where there is one.
+    fn load(&mut self, displacement: &[f64], contact_rows: usize) {
+        let (coefficients, mean) = (self.transform.n_coefficients(), self.transform.has_mean());
+        let blocks = self.coefficients.chunks_exact_mut(HEIGHT * coefficients);
+        for (rows, block) in self.rows.chunks_exact(HEIGHT).zip(blocks) {
+            let from = displacement.chunks_exact(contact_rows.max(1));
+            for (column, own) in block.chunks_exact_mut(HEIGHT).zip(from) {
+                for (force, &(row, spring)) in column.iter_mut().zip(rows) {
+                    *force = spring * own[row];
+                }
+            }
+            if mean {
+                block[LANES..HEIGHT].fill(0.0);
+            }
+        }
+    }
+
+    /// The corrections of what slips or separates, a column of contact rows per coefficient; what sticks has none.
+    fn unload(&mut self, correction: &mut [f64], contact_rows: usize) {
+        let (coefficients, mean) = (self.transform.n_coefficients(), self.transform.has_mean());
+        let blocks = self.coefficients.chunks_exact(HEIGHT * coefficients);
+        for (block, (rows, from)) in self.rows.chunks_exact(HEIGHT).zip(blocks).enumerate() {
+            let [normal, tangents] = &mut self.corrected;
+            normal.clear();
+            tangents.clear();
+            for (at, &(row, spring)) in rows.iter().enumerate() {
+                let (direction, lane) = (at / LANES, block * LANES + at % LANES);
+                if spring > 0.0 && self.states[lane][direction] {
+                    let list = if direction == 0 {
+                        &mut *normal
+                    } else {
+                        &mut *tangents
+                    };
+                    list.push((at, row));
+                }
+            }
+            let to = correction.chunks_exact_mut(contact_rows.max(1));
+            for (c, (column, own)) in from.chunks_exact(HEIGHT).zip(to).enumerate() {
+                let of_tangents = if mean && c == 0 { &[][..] } else { &**tangents };
+                for &(at, row) in normal.iter().chain(of_tangents) {
+                    own[row] = column[at];
+                }
+            }
+        }
     }
 }
 
@@ -283,7 +330,6 @@ impl HarmonicSystem {
         let count = workspace.active.len();
         let geometry = &self.interface.geometry;
         let (per_sector, sector_rows) = (self.interface.per_sector(), geometry.row_count());
-        let coefficients = self.transform.n_coefficients();
         let mean = usize::from(self.transform.has_mean());
         let places = |pair: usize| {
             let base = pair / per_sector * sector_rows;
@@ -293,7 +339,6 @@ impl HarmonicSystem {
             .together_3d
             .get_or_insert_with(|| Simplified3dPairs::new(count, &self.transform));
         let displacement = &workspace.displacement;
-        let columns = || displacement.chunks_exact(self.rows.max(1));
         together.pairs.clear();
         together.excursions.clear();
         together.excursions.resize(self.rows, 0.0);
@@ -320,26 +365,26 @@ impl HarmonicSystem {
         // An idle lane rests under no load: it has no correction.
         together.normal_load[..lanes].fill(0.0);
         together.friction[..lanes].fill(0.0);
-        together.coefficients[..3 * lanes * coefficients].fill(0.0);
+        together.rows.clear();
+        together.rows.resize(3 * lanes, (0, 0.0));
         for (lane, &pair) in together.pairs.iter().enumerate() {
             let parameters = self.interface.pair(pair);
             together.normal_load[lane] = parameters.normal_load_n;
             together.friction[lane] = parameters.friction_coefficient;
             for (direction, row) in places(pair).into_iter().enumerate() {
-                let Some(row) = row else { continue };
-                let (stiffness, first) = if direction == 0 {
-                    (parameters.normal_stiffness_n_per_m, 0)
+                let spring = if direction == 0 {
+                    parameters.normal_stiffness_n_per_m
                 } else {
-                    (parameters.tangential_stiffness_n_per_m, mean)
+                    parameters.tangential_stiffness_n_per_m
                 };
-                for (c, column) in columns().enumerate().skip(first) {
-                    let place = together.place(lane, c, direction);
-                    together.coefficients[place] = stiffness * column[row];
-                }
+                let at = lane / LANES * HEIGHT + direction * LANES + lane % LANES;
+                together.rows[at] = row.map_or((0, 0.0), |row| (row, spring));
             }
         }
         if lanes > 0 {
+            together.load(displacement, self.rows);
             together.respond(derivative);
+            together.unload(&mut workspace.correction, self.rows);
         }
         let (mut slipping, mut separated) = (0_usize, 0_usize);
         for (lane, &pair) in together.pairs.iter().enumerate() {
@@ -361,16 +406,6 @@ impl HarmonicSystem {
                     sliders,
                     &mut workspace.jacobians[pair],
                 );
-            }
-            for (direction, row) in places(pair).into_iter().enumerate() {
-                let Some(row) = row.filter(|_| state[direction]) else {
-                    continue;
-                };
-                let first = if direction == 0 { 0 } else { mean };
-                for c in first..coefficients {
-                    let place = together.place(lane, c, direction);
-                    workspace.correction[c * self.rows + row] = together.coefficients[place];
-                }
             }
         }
         workspace.separated = separated > 0;
