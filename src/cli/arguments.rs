@@ -11,6 +11,7 @@ use super::explain::{CompletionsArguments, ExplainArguments, SchemaArguments};
 use super::fidelity::FidelityArguments;
 use super::import::ImportArguments;
 use super::init::InitArguments;
+use super::interrupt::Kept;
 use super::man::ManArguments;
 use super::merge::MergeArguments;
 use super::optimum::OptimumArguments;
@@ -214,4 +215,48 @@ pub enum Command {
     /// Write the manual pages: one of the program, and one of every command.
     #[command(after_help = "Example:\n  blisk man --out ~/.local/share/man/man1")]
     Man(ManArguments),
+}
+
+impl Command {
+    /// What it leaves when a signal ends it.
+    pub(super) fn kept(&self) -> Kept {
+        match self {
+            Self::Run(_) | Self::Estimate(_) | Self::Optimum(_) => {
+                Kept::Rows("what was solved is stored; the same command continues")
+            }
+            Self::Verify { repair: true, .. } => {
+                Kept::Rows("what was solved is stored; `blisk run` continues")
+            }
+            Self::Merge(_) => {
+                Kept::Else("the shards are as they were; the same command merges them")
+            }
+            Self::Import(_)
+            | Self::Model {
+                export: Some(_), ..
+            } => Kept::Else("the sector bundle is not complete; the same command writes it"),
+            Self::Tradeoff(_) => Kept::Else(
+                "no table was written, and what was measured so far is not kept; the same command begins again",
+            ),
+            Self::Init(_)
+            | Self::Check { .. }
+            | Self::Model { .. }
+            | Self::Campbell(_)
+            | Self::Plan(_)
+            | Self::Slurm(_)
+            | Self::Status(_)
+            | Self::Response { .. }
+            | Self::Replay(_)
+            | Self::Verify { .. }
+            | Self::Compare(_)
+            | Self::Stats(_)
+            | Self::Report(_)
+            | Self::Plot(_)
+            | Self::Explain(_)
+            | Self::Schema(_)
+            | Self::Completions(_)
+            | Self::Man(_) => {
+                Kept::Else("nothing of this command is kept; the same command begins again")
+            }
+        }
+    }
 }

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::Args;
 
-use super::run_command::Failure;
+use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::model::sector::bundle;
 use crate::study::{CampbellRequest, PipelineError, Study, campbell, load_sector_model};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::run_command::Failure;
+use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::study::{RotationLoad, Study, StudyDigest, echo, load_sector_model, pattern_source};
 

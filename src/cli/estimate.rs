@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use clap::Args;
 
+use super::exit::Failure;
 use super::progress::RunProgress;
-use super::run_command::Failure;
 use super::scheduler::threads;
 use super::{ExitStatus, output};
 use crate::population::statistics::EstimateTarget;

@@ -1,5 +1,6 @@
-//! Exit codes, the same for every command.
+//! How a command ends: exit codes, the same for every command, and what a failed one says.
 
+use std::io::{self, ErrorKind};
 use std::process::ExitCode;
 
 use crate::model::sector::ModelError;
@@ -106,5 +107,71 @@ impl From<&TableError> for ExitStatus {
             TableError::Io { .. } | TableError::Encoding { .. } => Self::InputOutput,
             TableError::Damaged { .. } => Self::StoreDamaged,
         }
+    }
+}
+
+/// A command that failed: what to say and how to exit.
+#[derive(Debug)]
+pub(super) struct Failure {
+    pub(super) status: ExitStatus,
+    pub(super) message: String,
+}
+
+impl Failure {
+    pub(super) fn usage(message: String) -> Self {
+        Self {
+            status: ExitStatus::Usage,
+            message,
+        }
+    }
+}
+
+impl<E> From<E> for Failure
+where
+    E: std::error::Error + 'static,
+    for<'a> ExitStatus: From<&'a E>,
+{
+    fn from(error: E) -> Self {
+        let status = ExitStatus::from(&error);
+        let remedy = match status {
+            ExitStatus::InputOutput => remedy(&error),
+            _ => "",
+        };
+        Self {
+            status,
+            message: format!("{error}{remedy}"),
+        }
+    }
+}
+
+/// What can be done about an error of the file system, as the end of a sentence.
+fn remedy(error: &(dyn std::error::Error + 'static)) -> &'static str {
+    let mut cause = Some(error);
+    let kind = loop {
+        match cause {
+            None => return "",
+            Some(error) => {
+                if let Some(error) = error.downcast_ref::<io::Error>() {
+                    break error.kind();
+                }
+                cause = error.source();
+            }
+        }
+    };
+    match kind {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            "; free some space, or choose another --out, and run again: what is stored stays stored"
+        }
+        ErrorKind::PermissionDenied => {
+            "; grant this user access to it, or choose another --out, and run again"
+        }
+        ErrorKind::ReadOnlyFilesystem => {
+            "; make the file system writable, or choose another --out, and run again"
+        }
+        ErrorKind::NotFound
+        | ErrorKind::NotADirectory
+        | ErrorKind::IsADirectory
+        | ErrorKind::AlreadyExists => "; check the path",
+        _ => "; check the disk and run again: what is stored stays stored",
     }
 }

@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::Shell;
 use serde::Serialize;
 
-use super::run_command::Failure;
-use super::{Arguments, ExitStatus, output};
+use super::exit::Failure;
+use super::{ExitStatus, output};
 use crate::input::nearest_key_names;
 use crate::model::sector::import::{import_keys, import_schema};
 use crate::study::{KeySpec, keys_about, keys_below, nearest_keys, study_schema, terms_about};
@@ -153,14 +153,12 @@ pub(super) fn schema(arguments: &SchemaArguments) -> Result<ExitStatus, Failure>
     Ok(ExitStatus::Done)
 }
 
-pub(super) fn completions(arguments: &CompletionsArguments) -> Result<ExitStatus, Failure> {
+pub(super) fn completions(
+    arguments: &CompletionsArguments,
+    mut program: clap::Command,
+) -> Result<ExitStatus, Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(
-        arguments.shell,
-        &mut Arguments::command(),
-        "blisk",
-        &mut script,
-    );
+    clap_complete::generate(arguments.shell, &mut program, "blisk", &mut script);
     output::text(&String::from_utf8_lossy(&script))?;
     Ok(ExitStatus::Done)
 }

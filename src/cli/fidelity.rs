@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
-use super::run_command::Failure;
+use super::exit::Failure;
 use crate::response::forced_response::Harmonics;
 use crate::response::reference::ReferenceSettings;
 use crate::study::{FullSettings, Study};

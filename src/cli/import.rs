@@ -8,7 +8,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use super::run_command::Failure;
+use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::model::cyclic::contact_free_frequencies_hz;
 use crate::model::sector::import::{

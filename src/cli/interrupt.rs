@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-use super::{Command, ExitStatus, output};
+use super::{ExitStatus, output};
 use crate::platform;
 use crate::population::table::abandon_unfinished;
 
@@ -22,7 +22,7 @@ const PATIENCE: Duration = Duration::from_secs(4);
 
 /// What a command that is ended by a signal leaves, and what to do then.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kept {
+pub(super) enum Kept {
     /// The rows solved, and what these words say.
     Rows(&'static str),
     /// What these words say.
@@ -30,47 +30,6 @@ enum Kept {
 }
 
 impl Kept {
-    fn by(command: &Command) -> Self {
-        match command {
-            Command::Run(_) | Command::Estimate(_) | Command::Optimum(_) => {
-                Self::Rows("what was solved is stored; the same command continues")
-            }
-            Command::Verify { repair: true, .. } => {
-                Self::Rows("what was solved is stored; `blisk run` continues")
-            }
-            Command::Merge(_) => {
-                Self::Else("the shards are as they were; the same command merges them")
-            }
-            Command::Import(_)
-            | Command::Model {
-                export: Some(_), ..
-            } => Self::Else("the sector bundle is not complete; the same command writes it"),
-            Command::Tradeoff(_) => Self::Else(
-                "no table was written, and what was measured so far is not kept; the same command begins again",
-            ),
-            Command::Init(_)
-            | Command::Check { .. }
-            | Command::Model { .. }
-            | Command::Campbell(_)
-            | Command::Plan(_)
-            | Command::Slurm(_)
-            | Command::Status(_)
-            | Command::Response { .. }
-            | Command::Replay(_)
-            | Command::Verify { .. }
-            | Command::Compare(_)
-            | Command::Stats(_)
-            | Command::Report(_)
-            | Command::Plot(_)
-            | Command::Explain(_)
-            | Command::Schema(_)
-            | Command::Completions(_)
-            | Command::Man(_) => {
-                Self::Else("nothing of this command is kept; the same command begins again")
-            }
-        }
-    }
-
     fn words(self) -> &'static str {
         match self {
             Self::Rows(words) | Self::Else(words) => words,
@@ -91,15 +50,15 @@ pub(super) struct Signals {
 /// Set up once in a process.
 static SIGNALS: OnceLock<Signals> = OnceLock::new();
 
-/// Watches for signals while `command` is carried out; those that whoever started the process has it
+/// Watches for signals while a command is carried out that leaves `kept`; those that whoever started the process has it
 /// ignore stay ignored.
 ///
 /// A command that does not end in time after a signal is ended: what is stored is complete at any instant.
-pub(super) fn watch(command: &Command) -> io::Result<()> {
+pub(super) fn watch(kept: Kept) -> io::Result<()> {
     let came = Arc::new(AtomicUsize::new(0));
     let signals = Signals {
         came: Arc::clone(&came),
-        kept: Kept::by(command),
+        kept,
         storing: AtomicBool::new(false),
     };
     if SIGNALS.set(signals).is_err() {

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_mangen::Man;
 
-use super::run_command::Failure;
-use super::{Arguments, ExitStatus, output};
+use super::exit::Failure;
+use super::{ExitStatus, output};
 use crate::population::table::write_atomically;
 
 /// Arguments of `blisk man`.
@@ -17,9 +17,12 @@ pub struct ManArguments {
     out: PathBuf,
 }
 
-pub(super) fn command(arguments: &ManArguments) -> Result<ExitStatus, Failure> {
+pub(super) fn command(
+    arguments: &ManArguments,
+    program: clap::Command,
+) -> Result<ExitStatus, Failure> {
     let out = &arguments.out;
-    let mut program = Arguments::command().disable_help_subcommand(true);
+    let mut program = program.disable_help_subcommand(true);
     program.build();
     let commands = program.get_subcommands().cloned();
     let pages: Vec<_> = std::iter::once(program.clone()).chain(commands).collect();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::run_command::Failure;
+use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::model::sector::bundle;
 use crate::study::{

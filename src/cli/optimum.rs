@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::compare::percent;
+use super::exit::Failure;
 use super::progress::RunProgress;
-use super::run_command::Failure;
 use super::scheduler::threads;
 use super::{ExitStatus, output};
 use crate::population::statistics::Quantity;

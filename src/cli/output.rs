@@ -9,7 +9,7 @@ use std::io::{ErrorKind, IsTerminal, Write};
 use serde::Serialize;
 
 use super::ExitStatus;
-use super::run_command::Failure;
+use super::exit::Failure;
 use crate::report::{visible, with_orders_escaped};
 
 /// Prints a result as text, or as JSON if asked for.

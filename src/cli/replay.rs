@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::exit::Failure;
 use super::fidelity::{Fidelity, FidelityArguments};
-use super::run_command::Failure;
 use super::{ExitStatus, output, verify};
 use crate::population::monte_carlo::{ResponseRow, harmonics_name};
 use crate::report::LengthUnit;

@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use serde_json::json;
 
+use super::exit::Failure;
 use super::fidelity::{Fidelity, FidelityArguments};
-use super::run_command::Failure;
 use super::{ExitStatus, output};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::table::{CurveFormat, TableHeader, write_curve, write_traced_curve};

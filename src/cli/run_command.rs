@@ -1,10 +1,10 @@
 //! From the command line to an exit code.
 
 use std::ffi::OsString;
-use std::io::{self, ErrorKind};
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 
+use super::exit::Failure;
 use super::{
     Arguments, Command, ExitStatus, campbell, check, compare, estimate, explain, import, init,
     interrupt, man, merge, model, optimum, output, plan, replay, report, response, run, slurm,
@@ -17,7 +17,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Ok(arguments) => arguments,
         Err(error) => return output::of_clap(&error).unwrap_or_else(|failure| failed(&failure)),
     };
-    if let Err(error) = interrupt::watch(&arguments.command) {
+    if let Err(error) = interrupt::watch(arguments.command.kept()) {
         return failed(&Failure {
             status: ExitStatus::InternalError,
             message: format!("cannot watch for signals: {error}"),
@@ -108,73 +108,7 @@ fn carry_out(command: Command) -> Result<ExitStatus, Failure> {
         Command::Plot(arguments) => report::plot(&arguments),
         Command::Explain(arguments) => explain::explain(&arguments),
         Command::Schema(arguments) => explain::schema(&arguments),
-        Command::Completions(arguments) => explain::completions(&arguments),
-        Command::Man(arguments) => man::command(&arguments),
-    }
-}
-
-/// A command that failed: what to say and how to exit.
-#[derive(Debug)]
-pub(super) struct Failure {
-    pub(super) status: ExitStatus,
-    pub(super) message: String,
-}
-
-impl Failure {
-    pub(super) fn usage(message: String) -> Self {
-        Self {
-            status: ExitStatus::Usage,
-            message,
-        }
-    }
-}
-
-impl<E> From<E> for Failure
-where
-    E: std::error::Error + 'static,
-    for<'a> ExitStatus: From<&'a E>,
-{
-    fn from(error: E) -> Self {
-        let status = ExitStatus::from(&error);
-        let remedy = match status {
-            ExitStatus::InputOutput => remedy(&error),
-            _ => "",
-        };
-        Self {
-            status,
-            message: format!("{error}{remedy}"),
-        }
-    }
-}
-
-/// What can be done about an error of the file system, as the end of a sentence.
-fn remedy(error: &(dyn std::error::Error + 'static)) -> &'static str {
-    let mut cause = Some(error);
-    let kind = loop {
-        match cause {
-            None => return "",
-            Some(error) => {
-                if let Some(error) = error.downcast_ref::<io::Error>() {
-                    break error.kind();
-                }
-                cause = error.source();
-            }
-        }
-    };
-    match kind {
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
-            "; free some space, or choose another --out, and run again: what is stored stays stored"
-        }
-        ErrorKind::PermissionDenied => {
-            "; grant this user access to it, or choose another --out, and run again"
-        }
-        ErrorKind::ReadOnlyFilesystem => {
-            "; make the file system writable, or choose another --out, and run again"
-        }
-        ErrorKind::NotFound
-        | ErrorKind::NotADirectory
-        | ErrorKind::IsADirectory
-        | ErrorKind::AlreadyExists => "; check the path",
-        _ => "; check the disk and run again: what is stored stays stored",
+        Command::Completions(arguments) => explain::completions(&arguments, Arguments::command()),
+        Command::Man(arguments) => man::command(&arguments, Arguments::command()),
     }
 }

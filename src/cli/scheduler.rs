@@ -3,7 +3,7 @@
 use std::num::NonZero;
 use std::str::FromStr;
 
-use super::run_command::Failure;
+use super::exit::Failure;
 use crate::population::table::Shard;
 
 /// `--shard`.

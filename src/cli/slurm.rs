@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::run_command::Failure;
+use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::population::table::{Shard, write_atomically};
 use crate::study::{Study, can_be_cut, is_shard_of};

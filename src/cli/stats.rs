@@ -6,7 +6,7 @@ use clap::Args;
 
 use serde::Serialize;
 
-use super::run_command::Failure;
+use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::report::{StatisticsReport, StudySummary};
 use crate::study::{PartialSummary, fit_result_tails, summarise, summarise_partly};

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::exit::Failure;
 use super::progress::RunProgress;
-use super::run_command::Failure;
 use super::scheduler::threads;
 use super::{ExitStatus, output};
 use crate::study::{Study, TradeoffRequest, tradeoff};

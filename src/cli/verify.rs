@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde_json::json;
 
+use super::exit::Failure;
 use super::progress::RunProgress;
-use super::run_command::Failure;
 use super::scheduler::threads;
 use super::{ExitStatus, output};
 use crate::identity;

@@ -48,11 +48,11 @@ pub use optimum::{OptimumExcitation, OptimumReport};
 pub use peak_audit::PeakAuditReport;
 pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};
 pub use rotation::RotationFacts;
-pub use stated_errors::{ErrorRows, ErrorSpread, StatedErrors};
+pub use stated_errors::{ErrorRows, ErrorSpread, PercentileError, StatedErrors};
 pub use study_echo::{EchoedExcitation, EchoedLoad, EchoedModel, Remark, StudyEcho, Travel};
 pub use study_report::{
-    CommonErrors, DistributionReport, GroupReport, LoadChoice, PercentileError, Provenance,
-    ScenarioErrors, StudyReport, Wheels,
+    CommonErrors, DistributionReport, GroupReport, LoadChoice, Provenance, ScenarioErrors,
+    StudyReport, Wheels,
 };
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use tail_report::StatisticsReport;

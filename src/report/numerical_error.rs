@@ -4,7 +4,6 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::Warning;
 use crate::population::statistics::Percentile;
 use crate::response::friction::ContactLaw;
 
@@ -71,7 +70,7 @@ impl NumericalError {
     /// What there is to say of it beside the intervals of the wanted percentile of the amplitude, one of
     /// each scenario.
     #[must_use]
-    pub fn warnings(&self, percentiles: &[Percentile]) -> Vec<Warning> {
+    pub fn findings(&self, percentiles: &[Percentile]) -> Vec<NumericalFinding> {
         let mut found = Vec::new();
         if !self.met {
             found.push(NumericalFinding::Missed {
@@ -98,7 +97,7 @@ impl NumericalError {
                 });
             }
         }
-        found.into_iter().map(Warning::NumericalError).collect()
+        found
     }
 }
 

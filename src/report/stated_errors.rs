@@ -2,9 +2,8 @@
 
 use serde::Serialize;
 
-use super::PercentileError;
 use crate::population::monte_carlo::ResponseRow;
-use crate::population::statistics::percentile_at;
+use crate::population::statistics::{Percentile, percentile_at};
 use crate::response::harmonic_balance::Status;
 
 /// Median, 95th percentile and largest of the magnitudes of an error.
@@ -30,6 +29,35 @@ impl ErrorSpread {
             p95: at(0.95),
             largest: at(1.0),
         })
+    }
+}
+
+/// Statistical and numerical error of one percentile, side by side.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PercentileError {
+    /// The percentile of the delivered rows with its statistical interval.
+    pub percentile: Percentile,
+    /// The same percentile if every row is as much too high as it states; none where rows state no
+    /// bound that matters to it.
+    pub lowest: Option<f64>,
+    /// The same if every row is as much too low as it states.
+    pub highest: Option<f64>,
+    /// The same with every row corrected by its sampling and harmonic error.
+    pub corrected: Option<f64>,
+}
+
+impl PercentileError {
+    /// Width of the statistical interval over the value.
+    #[must_use]
+    pub fn statistical_width(&self) -> Option<f64> {
+        let found = &self.percentile;
+        Some((found.upper? - found.lower?) / found.value?)
+    }
+
+    /// Width of the numerical bounds over the value.
+    #[must_use]
+    pub fn numerical_width(&self) -> Option<f64> {
+        Some((self.highest? - self.lowest?) / self.percentile.value?)
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::{AccuracyTrials, BestLoads, StatedErrors, StudySummary, WheelReport};
+use super::{AccuracyTrials, BestLoads, PercentileError, StatedErrors, StudySummary, WheelReport};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{Percentile, Quantity, TailFit};
 use crate::population::table::AccuracyLadder;
@@ -106,35 +106,6 @@ pub struct CommonErrors {
     pub harmonics: Option<f64>,
     /// Tolerance of the peak search.
     pub peak: Option<f64>,
-}
-
-/// Statistical and numerical error of one percentile, side by side.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PercentileError {
-    /// The percentile of the delivered rows with its statistical interval.
-    pub percentile: Percentile,
-    /// The same percentile if every row is as much too high as it states; none where rows state no
-    /// bound that matters to it.
-    pub lowest: Option<f64>,
-    /// The same if every row is as much too low as it states.
-    pub highest: Option<f64>,
-    /// The same with every row corrected by its sampling and harmonic error.
-    pub corrected: Option<f64>,
-}
-
-impl PercentileError {
-    /// Width of the statistical interval over the value.
-    #[must_use]
-    pub fn statistical_width(&self) -> Option<f64> {
-        let found = &self.percentile;
-        Some((found.upper? - found.lower?) / found.value?)
-    }
-
-    /// Width of the numerical bounds over the value.
-    #[must_use]
-    pub fn numerical_width(&self) -> Option<f64> {
-        Some((self.highest? - self.lowest?) / self.percentile.value?)
-    }
 }
 
 /// The distribution of a quantity in one scenario.

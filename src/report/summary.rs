@@ -371,7 +371,8 @@ fn warnings(
             })
             .copied()
             .collect();
-        warnings.extend(error.warnings(&found));
+        let findings = error.findings(&found).into_iter();
+        warnings.extend(findings.map(Warning::NumericalError));
     }
     if rows.failed() > 0 {
         warnings.push(Warning::Failures {

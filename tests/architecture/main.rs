@@ -5,6 +5,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod circles;
 mod links;
 mod long_tests;
 mod paths;

@@ -132,12 +132,10 @@ fn rows_on_tuned_receptances_are_as_true_as_they_state() {
                 near += usize::from(error.abs() < 0.01);
                 continue;
             }
-            let found_hz = row.peak_frequency_hz.expect("a peak");
-            let apart = (found_hz / truth.frequency_hz - 1.0).abs();
-            let same_blade = row.peak_blade.expect("a peak") as usize == truth.blade;
+            let is_elsewhere = is_at_another_top(&truth, &row);
             if !truth.is_settled() {
                 unsettled += 1;
-            } else if apart > HALF_BANDWIDTH || !same_blade {
+            } else if is_elsewhere {
                 assert!(error >= -stated, "{name}: {error:.2e} at another top");
                 elsewhere += 1;
             } else {
@@ -160,7 +158,16 @@ fn rows_on_tuned_receptances_are_as_true_as_they_state() {
     );
 }
 
-/// Errors of rows at the settings for an accepted error, each beyond what the truth itself is uncertain by.
+/// Whether a row without friction has its peak elsewhere than the truth, which climbs from a hint.
+fn is_at_another_top(truth: &Row, row: &ResponseRow) -> bool {
+    let found_hz = row.peak_frequency_hz.expect("a peak");
+    let apart = (found_hz / truth.frequency_hz - 1.0).abs();
+    let same_blade = row.peak_blade.expect("a peak") as usize == truth.blade;
+    apart > HALF_BANDWIDTH || !same_blade
+}
+
+/// Errors of rows at the settings for an accepted error, each beyond what the truth itself is uncertain by. Rows without friction whose
+/// modes were not enough are left out; at another top than that of the truth they are held not to be lower.
 fn errors_within(wheel: &str, accepted: f64, wanted: impl Fn(&Row) -> bool) -> Vec<f64> {
     let harmonics = stored(wheel);
     let harmonics = harmonics.iter().filter_map(|row| row.change_by_harmonics);
@@ -172,6 +179,10 @@ fn errors_within(wheel: &str, accepted: f64, wanted: impl Fn(&Row) -> bool) -> V
             .peak_amplitude_m
             .map_or(f64::INFINITY, |own| own / amplitude_m - 1.0);
         let uncertain = truth.change_by_modes.abs() + by_harmonics;
+        let linear = truth.load_n().is_none();
+        let is_elsewhere =
+            linear && row.peak_amplitude_m.is_some() && is_at_another_top(&truth, &row);
+        let error = if is_elsewhere { error.min(0.0) } else { error };
         println!(
             "{wheel}, pattern {}, {}, within {accepted}: {error:.2e}, truth {uncertain:.1e}, stated {:.1e}, {}",
             truth.pattern,
@@ -181,7 +192,8 @@ fn errors_within(wheel: &str, accepted: f64, wanted: impl Fn(&Row) -> bool) -> V
         );
         (error.abs() - uncertain).max(0.0)
     };
-    rows.into_iter().map(error).collect()
+    let settled = |(truth, _): &(Row, ResponseRow)| truth.load_n().is_some() || truth.is_settled();
+    rows.into_iter().filter(settled).map(error).collect()
 }
 
 /// Rows of a wheel of eight sectors with friction, each load at another state of the contact.
@@ -195,6 +207,35 @@ fn rows_are_as_true_as_the_accepted_error_says() {
     let errors = errors_within("wheel8", accepted, wanted);
     assert_eq!(errors.len(), 3);
     assert!(errors.iter().all(|&error| error <= accepted), "{errors:?}");
+}
+
+/// Every row that has a truth, beyond what that is uncertain by: 95 of 100 within the accepted error, and all within three times 0.1 %
+/// or twice 1 %. Linear limits are held to 0.1 %.
+/// `cargo test --release --test truth every_row -- --ignored --nocapture`
+#[test]
+#[ignore = "minutes: settings chosen for six wheels, twice"]
+fn every_row_is_as_true_as_the_accepted_error_says() {
+    for (accepted, most) in [(0.001, 0.003), (0.01, 0.02)] {
+        let of_wheels = |wanted: fn(&Row) -> bool| -> Vec<f64> {
+            let errors = WHEELS.map(|wheel| errors_within(wheel, accepted, wanted));
+            errors.concat()
+        };
+        let errors = of_wheels(|row| row.load_n().is_some());
+        let within = errors.iter().filter(|&&error| error <= accepted).count();
+        let worst = errors.iter().copied().fold(0.0, f64::max);
+        println!(
+            "{accepted}: {within} of {} rows within, worst {worst:.2e}",
+            errors.len()
+        );
+        assert!(
+            within * 100 >= 95 * errors.len(),
+            "{within} of {}",
+            errors.len()
+        );
+        assert!(worst <= most, "{worst:.2e}");
+        let linear = of_wheels(|row| row.load_n().is_none());
+        assert!(linear.iter().all(|&error| error <= 1e-3), "{linear:?}");
+    }
 }
 
 /// Rows of the truth, of four wheels, with friction and without: wheel, pattern, with friction.

@@ -2,19 +2,10 @@
 
 use std::sync::OnceLock;
 
+use super::row_solver::Beyond;
 use super::{ResponseRow, RowSolver, Scenario, TunedReference, harmonics_name};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
-
-/// What solves the rows that this solver is not good enough for.
-#[derive(Debug)]
-pub(super) struct Beyond {
-    solver: Box<RowSolver>,
-    /// Whether rows beyond the harmonic tolerance go there, or only those that separate.
-    inexact_rows: bool,
-    /// Tuned peaks on that solver, for each of its chosen sets, found when first asked for.
-    tuned: Vec<OnceLock<TunedReference>>,
-}
 
 impl RowSolver {
     /// The same solver, whose rows are solved again by `solver` where contacts separate, on tuned receptances where they have no peak

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::mistuned_peak::MistunedPeak;
+use super::row::MistunedPeak;
+use super::row_engine::RowEngine;
 use super::{ResponseRow, RowSolver, Scenario, TunedReference, harmonics_name};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
@@ -33,27 +34,6 @@ const CLIMBED: f64 = 0.1;
 /// Tolerance of these solutions over that of the peak, and its bounds.
 const BESIDE_SHARE: f64 = 0.1;
 const BESIDE_TOLERANCES: (f64, f64) = (1e-6, 3e-4);
-
-/// The engine of a study with the excitations of one of its force vectors.
-#[derive(Debug)]
-pub(super) struct RowEngine {
-    engine: Arc<ReceptanceEngine>,
-    /// The tuned wheel on it.
-    tuned: EngineWheel,
-    /// By engine order.
-    forces: Vec<(u32, WaveForce)>,
-}
-
-impl RowEngine {
-    pub(super) fn receptances(&self) -> &ReceptanceEngine {
-        &self.engine
-    }
-
-    pub(super) fn force(&self, engine_order: u32) -> Option<&WaveForce> {
-        let own = self.forces.iter().find(|(order, _)| *order == engine_order);
-        own.map(|(_, force)| force)
-    }
-}
 
 impl RowSolver {
     /// The same solver whose rows are solved on `engine`, under the force vector of `model`.

@@ -1,5 +1,6 @@
 //! The peak of a mistuned wheel: where it is sought, with which harmonics, and its errors.
 
+use super::row::MistunedPeak;
 use super::{RowSolver, Scenario, TunedReference};
 use crate::response::forced_response::{
     ContactCondition, ErrorEstimate, Excited, FrequencyBand, Peak, PointSettings, Search,
@@ -8,12 +9,6 @@ use crate::response::forced_response::{
 };
 use crate::response::harmonic_balance::{LARGEST_WHOLE_JACOBIAN, Status};
 use crate::response::mistuning::{ContactFactors, Pattern, StructuralModes};
-
-/// A peak as a row states it.
-pub(super) struct MistunedPeak {
-    pub(super) peak: Peak,
-    pub(super) errors: Option<ErrorEstimate>,
-}
 
 impl RowSolver {
     /// Where the peak of a mistuned wheel is sought.

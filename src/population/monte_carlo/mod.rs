@@ -10,6 +10,7 @@ mod mistuned_peak;
 mod operations;
 mod parallel;
 mod row;
+mod row_engine;
 mod row_solver;
 mod scenario;
 mod sink;
@@ -27,8 +28,8 @@ pub use harmonic_choice::{
 };
 pub use operations::{RowWork, SystemSize};
 pub use parallel::{Interruption, solve_blocks};
-pub use row::{ResponseRow, TunedReference};
-pub use row_solver::{RowSettings, RowSolver, amplification_factor, harmonics_name};
+pub use row::{ResponseRow, TunedReference, amplification_factor, harmonics_name};
+pub use row_solver::{RowSettings, RowSolver};
 pub use scenario::{LoadCaseName, Scenario};
 pub use sink::{MemorySink, RowSink};
 pub use surrogate::{Surrogate, SurrogatePeak};

@@ -1,6 +1,6 @@
 //! One row of `responses.parquet`: what became of one (scenario, pattern).
 
-use crate::response::forced_response::ErrorEstimate;
+use crate::response::forced_response::{ErrorEstimate, Peak};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::PairFactors;
 
@@ -78,4 +78,24 @@ pub struct TunedReference {
     pub harmonics: String,
     /// Errors of the solution at the peak.
     pub errors: Option<ErrorEstimate>,
+}
+
+/// A peak as a row states it.
+pub(super) struct MistunedPeak {
+    pub(super) peak: Peak,
+    pub(super) errors: Option<ErrorEstimate>,
+}
+
+/// Largest amplitude over blades and frequency of the mistuned wheel over that of the tuned wheel
+/// with the same normal load, engine order and settings.
+#[must_use]
+pub fn amplification_factor(mistuned_m: Option<f64>, tuned_m: Option<f64>) -> Option<f64> {
+    Some(mistuned_m? / tuned_m?)
+}
+
+/// Harmonic set in the column `harmonics`, like `1-3`.
+#[must_use]
+pub fn harmonics_name(harmonics: &[u32]) -> String {
+    let names: Vec<String> = harmonics.iter().map(u32::to_string).collect();
+    names.join("-")
 }

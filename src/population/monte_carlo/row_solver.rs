@@ -1,14 +1,14 @@
 //! One (scenario, pattern) -> one row, and the tuned reference of a scenario.
 
 use std::borrow::Cow;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use super::beyond::Beyond;
-use super::engine_rows::RowEngine;
-use super::mistuned_peak::MistunedPeak;
+use super::row::MistunedPeak;
+use super::row_engine::RowEngine;
 use super::{
     ErrorTolerance, HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, HarmonicChoice, LoadCaseName,
-    ResponseRow, Scenario, ScenarioError, TunedReference, stated_error,
+    ResponseRow, Scenario, ScenarioError, TunedReference, amplification_factor, harmonics_name,
+    stated_error,
 };
 use crate::linalg::Matrix;
 use crate::model::ReducedModel;
@@ -86,6 +86,16 @@ pub struct RowSolver {
     pub(super) engine: Option<RowEngine>,
     /// Solvers of the further load cases of the study.
     pub(super) load_cases: Vec<(LoadCaseName, RowSolver)>,
+}
+
+/// What solves the rows that this solver is not good enough for.
+#[derive(Debug)]
+pub(super) struct Beyond {
+    pub(super) solver: Box<RowSolver>,
+    /// Whether rows beyond the harmonic tolerance go there, or only those that separate.
+    pub(super) inexact_rows: bool,
+    /// Tuned peaks on that solver, for each of its chosen sets, found when first asked for.
+    pub(super) tuned: Vec<OnceLock<TunedReference>>,
 }
 
 impl RowSolver {
@@ -442,20 +452,6 @@ impl RowSolver {
             ),
         }
     }
-}
-
-/// Largest amplitude over blades and frequency of the mistuned wheel over that of the tuned wheel
-/// with the same normal load, engine order and settings.
-#[must_use]
-pub fn amplification_factor(mistuned_m: Option<f64>, tuned_m: Option<f64>) -> Option<f64> {
-    Some(mistuned_m? / tuned_m?)
-}
-
-/// Harmonic set in the column `harmonics`, like `1-3`.
-#[must_use]
-pub fn harmonics_name(harmonics: &[u32]) -> String {
-    let names: Vec<String> = harmonics.iter().map(u32::to_string).collect();
-    names.join("-")
 }
 
 /// `linear` for a linear limit; `stuck` where every pair sticks at the peak, so that the linear

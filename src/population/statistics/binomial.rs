@@ -1,7 +1,9 @@
 //! Tails of the binomial law, exact to rounding up to millions of trials.
 
-use super::CONFIDENCE;
 use statrs::function::gamma::ln_gamma;
+
+/// Two-sided confidence of the intervals; each tail has half of the rest.
+pub const CONFIDENCE: f64 = 0.95;
 
 /// `P(B <= k)` for `B ~ Binomial(n, p)`, `0 < p < 1`.
 #[must_use]

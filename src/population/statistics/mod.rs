@@ -8,6 +8,7 @@ mod distribution_band;
 mod error_bound;
 mod extreme_value;
 mod extreme_value_fit;
+mod joint_law;
 mod main_effects;
 mod multiplicity;
 mod order_statistics;
@@ -26,7 +27,7 @@ mod two_phase_design;
 mod two_phase_estimate;
 
 pub use accounting::Accounting;
-pub use binomial::{proportion_interval, proportion_upper_bound};
+pub use binomial::{CONFIDENCE, proportion_interval, proportion_upper_bound};
 pub use comparison::{
     Expansion, IntervalEstimate, PercentileComparison, compare_independent, compare_paired,
 };
@@ -37,7 +38,7 @@ pub use extreme_value_fit::{FEWEST_VALUES, FitStatus, SHAPE_RANGE, fit_extreme_v
 pub use main_effects::{FEWEST_ROWS, MainEffects, VarianceShare, main_effects};
 pub use multiplicity::{best_set, best_set_at, holm, holm_with_origins};
 pub use order_statistics::{
-    CONFIDENCE, Percentile, PercentileRanks, PointStatus, failure_gate, percentile, percentile_at,
+    Percentile, PercentileRanks, PointStatus, failure_gate, percentile, percentile_at,
     percentile_ranks, percentile_ranks_at, point_rank, smallest_sample, wilks_sample,
 };
 pub use pairs::{Deterioration, PairFacts};

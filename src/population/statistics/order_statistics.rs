@@ -7,10 +7,8 @@
 
 use serde::Serialize;
 
+use super::CONFIDENCE;
 use super::binomial::{lower_tail, upper_tail};
-
-/// Two-sided confidence of the intervals; each tail has half of the rest.
-pub const CONFIDENCE: f64 = 0.95;
 
 /// Ranks of an equal-tailed interval, from 1; none where n values are too few.
 #[derive(Debug, Clone, Copy, PartialEq)]

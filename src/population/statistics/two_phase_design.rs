@@ -12,8 +12,8 @@ use rand::RngExt;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 
+use super::joint_law::JointLaw;
 use super::resampling_stream;
-use super::surrogate_worth::JointLaw;
 
 /// Topic of the stream of the permanent random numbers.
 const SELECTION: u32 = 0x2b1d;
@@ -26,11 +26,9 @@ const TOP_SHARE: f64 = 0.75;
 /// Share of the solves that the pilot has.
 const PILOT_SHARE: f64 = 0.3;
 /// Rows of a pilot, and of the whole sample, at least.
-pub(super) const FEWEST_PILOT: usize = 30;
+const FEWEST_PILOT: usize = 30;
 /// Rows of a stratum at least, as far as it has as many patterns.
 pub(super) const FEWEST_OF_STRATUM: usize = 2;
-/// Factor on the spread about the surrogate that the pilot shows: it may be larger in the tail.
-pub(super) const SPREAD_SAFETY: f64 = 1.25;
 /// Predicted gain over crude sampling from which on two-phase sampling is taken.
 pub(super) const LEAST_GAIN: f64 = 1.2;
 

@@ -6,17 +6,18 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::TableError;
 use super::checked_json::{read_checked_json, write_checked_json};
-use super::manifest_check::check_tables;
-use super::places::is_folder;
+use super::places::{check_tables, is_folder};
+use super::{MANIFEST, SCHEMA_VERSION, TableError};
 use crate::population::monte_carlo::{LoadCaseName, Scenario, TunedReference};
 use crate::population::statistics::{Accounting, ScenarioStability, StopOutcome};
 use crate::response::forced_response::{ContactCondition, ErrorEstimate};
 use crate::response::harmonic_balance::Status;
 
-/// Name of the manifest in its folder.
-pub const MANIFEST: &str = "manifest.json";
+/// Amplitudes of tuned peaks are below it, m; what is computed with them then stays finite.
+const MOST_AMPLITUDE_M: f64 = 1e100;
+/// Frequencies of tuned peaks are below it, Hz.
+const MOST_FREQUENCY_HZ: f64 = 1e30;
 /// Name of the folder of the records of runs.
 pub(super) const RUNS: &str = "runs";
 
@@ -276,6 +277,51 @@ impl Manifest {
         Ok(manifest)
     }
 
+    /// Checks that it says what a run could have written into the file `path`.
+    pub(super) fn check(&self, path: &Path) -> Result<(), TableError> {
+        check_tables(path, &self.tables)?;
+        match self.wrong() {
+            Some(reason) => Err(TableError::damaged(path, reason)),
+            None => Ok(()),
+        }
+    }
+
+    /// The first thing that no run writes.
+    fn wrong(&self) -> Option<String> {
+        if self.schema != SCHEMA_VERSION {
+            return Some(format!(
+                "schema is {}; accepted: {SCHEMA_VERSION}",
+                self.schema
+            ));
+        }
+        let patterns = u64::from(u32::MAX);
+        if !(1..=patterns).contains(&self.patterns) {
+            return Some(format!(
+                "patterns is {}; accepted: 1 to {patterns}",
+                self.patterns
+            ));
+        }
+        if let Some(shard) = self.shard.filter(|shard| !shard.is_of(self.patterns)) {
+            let most = Shard::most(self.patterns);
+            return Some(format!(
+                "shard is {shard}; accepted: k/n with n up to {most} and k from 1 to n"
+            ));
+        }
+        if let Some(stop) = &self.stop
+            && !(stop.confidence > 0.0 && stop.confidence < 1.0)
+        {
+            return Some(format!(
+                "stop.confidence is {}; accepted: above 0 and below 1",
+                stop.confidence
+            ));
+        }
+        if self.scenarios.is_empty() {
+            return Some("it has no scenarios".to_owned());
+        }
+        let mut all = self.scenarios.iter().enumerate();
+        all.find_map(|(index, entry)| wrong_of(index, entry))
+    }
+
     /// Writes `manifest.json` into the folder `results`.
     ///
     /// # Errors
@@ -283,6 +329,46 @@ impl Manifest {
     pub fn write(&self, results: &Path) -> Result<(), TableError> {
         write_checked_json(&results.join(MANIFEST), self)
     }
+}
+
+/// The first thing that no run writes of the scenario at `index`.
+fn wrong_of(index: usize, entry: &ScenarioEntry) -> Option<String> {
+    if entry.scenario != index {
+        return Some(format!(
+            "scenario {} stands in place {index}",
+            entry.scenario
+        ));
+    }
+    let numbers = [
+        (
+            "tuned_amplitude_m",
+            entry.tuned_amplitude_m,
+            MOST_AMPLITUDE_M,
+        ),
+        (
+            "tuned_frequency_hz",
+            entry.tuned_frequency_hz,
+            MOST_FREQUENCY_HZ,
+        ),
+        (
+            "tuned_slipping_fraction",
+            entry.tuned_slipping_fraction,
+            1.0,
+        ),
+        (
+            "tuned_separated_fraction",
+            entry.tuned_separated_fraction,
+            1.0,
+        ),
+        ("standard_deviation", entry.standard_deviation, f64::MAX),
+        ("normal_load_n", entry.contact.normal_load_n(), f64::MAX),
+    ];
+    numbers.into_iter().find_map(|(name, value, most)| {
+        let value = value.filter(|value| !(0.0..=most).contains(value))?;
+        Some(format!(
+            "{name} of scenario {index} is {value:e}; accepted: 0 to {most:e}"
+        ))
+    })
 }
 
 /// Content of `runs/<n>.json`: what a run took and where; never part of the results.

@@ -10,7 +10,6 @@ mod error;
 mod estimate_rows;
 mod main_effects;
 mod manifest;
-mod manifest_check;
 mod part_header;
 mod parts;
 mod pattern_file;
@@ -40,7 +39,7 @@ pub use distribution::{DISTRIBUTION_COLUMNS, write_distribution};
 pub use error::TableError;
 pub use estimate_rows::{ESTIMATE_ROW_COLUMNS, EstimateRow, write_estimate_rows, write_sample};
 pub use main_effects::{EffectRows, MAIN_EFFECT_COLUMNS, write_main_effects};
-pub use manifest::{MANIFEST, Manifest, RunRecord, RunState, ScenarioEntry, Shard, StatusCounts};
+pub use manifest::{Manifest, RunRecord, RunState, ScenarioEntry, Shard, StatusCounts};
 pub use part_header::{
     PartHeader, check_parts, holds_results, part_files, renew_header, unlisted_parts,
 };
@@ -50,7 +49,8 @@ pub use patterns::{PATTERN_COLUMNS, StoredPatterns, read_patterns, write_pattern
 pub use peak_audit::{PEAK_AUDIT_COLUMNS, PeakAuditRecord, write_peak_audit};
 pub use percentiles::{PERCENTILE_COLUMNS, write_percentiles};
 pub use places::{
-    ASIDE, FOLDERS, SIDE_FILES, Standing, TABLES, digest_stored, is_file, is_folder, misplacements,
+    ASIDE, FOLDERS, MANIFEST, SIDE_FILES, Standing, TABLES, digest_stored, is_file, is_folder,
+    misplacements,
 };
 pub use publication::{Staging, complete_publication, keep_as_part, set_aside, supersede};
 pub use response_columns::RESPONSE_COLUMNS;

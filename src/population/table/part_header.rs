@@ -10,13 +10,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::checked_json::{read_checked_json, write_checked_json};
-use super::places::{Standing, TABLES, is_digest, is_folder};
-use super::publication::NEXT;
+use super::places::{NEXT, PARTS, Standing, TABLES, is_digest, is_folder};
 use super::{MANIFEST, RowFile, RunRecord, TableError};
 use crate::identity;
 
-/// Name of the folder of the parts.
-pub(super) const PARTS: &str = "parts";
 /// Name of the header in that folder.
 const HEADER: &str = "header.json";
 

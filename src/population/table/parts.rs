@@ -8,7 +8,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::part_header::{PARTS, PartHeader, part_files};
+use super::part_header::{PartHeader, part_files};
+use super::places::PARTS;
 use super::responses::ResponseWriter;
 use super::row_file::{RowCursor, RowFile};
 use super::{TableError, TableHeader};

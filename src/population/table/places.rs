@@ -3,11 +3,15 @@
 //! Whatever a stored file says, nothing outside of its folder is read, moved or removed for it: names are those of the
 //! lists here, and a link in the place of a file or folder is damage, as everything but a plain file or folder is.
 
+use std::collections::BTreeMap;
 use std::fs::FileType;
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
 use super::{TableError, digest_file};
+
+/// Name of the manifest in its folder.
+pub const MANIFEST: &str = "manifest.json";
 
 /// Files that a manifest lists with their digests.
 pub const TABLES: [&str; 7] = [
@@ -36,6 +40,10 @@ pub const SIDE_FILES: [&str; 9] = [
 /// Folders of a results folder that a run writes to.
 pub const FOLDERS: [&str; 4] = ["parts", "runs", "next", "model"];
 
+/// Name of the folder of the parts.
+pub(super) const PARTS: &str = "parts";
+/// The folder that finished tables wait in.
+pub(super) const NEXT: &str = "next";
 /// Folders that files are moved to.
 pub const ASIDE: [&str; 2] = [DAMAGED, SUPERSEDED];
 
@@ -161,7 +169,7 @@ pub fn digest_stored(path: &Path) -> Result<Option<String>, TableError> {
 /// The file system refused.
 pub fn misplacements(results: &Path) -> Result<Vec<TableError>, TableError> {
     let folders = FOLDERS.iter().chain(&ASIDE).chain(&["shards"]);
-    let files = TABLES.iter().chain(&[super::MANIFEST, ".lock"]);
+    let files = TABLES.iter().chain(&[MANIFEST, ".lock"]);
     let wanted = folders
         .map(|name| (*name, Standing::Folder))
         .chain(files.map(|name| (*name, Standing::File)));
@@ -180,4 +188,29 @@ pub fn misplacements(results: &Path) -> Result<Vec<TableError>, TableError> {
 pub(super) fn is_digest(text: &str) -> bool {
     let digit = |byte: u8| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte);
     text.len() == 2 * blake3::OUT_LEN && text.bytes().all(digit)
+}
+
+/// Checks that `tables`, which the file `path` lists, are those of a results folder.
+pub(super) fn check_tables(
+    path: &Path,
+    tables: &BTreeMap<String, String>,
+) -> Result<(), TableError> {
+    for (name, digest) in tables {
+        if !TABLES.contains(&name.as_str()) {
+            let accepted = TABLES.join(", ");
+            let reason = format!("it lists a table {name:?}; accepted: {accepted}");
+            return Err(TableError::damaged(path, reason));
+        }
+        check_digest(path, name, digest)?;
+    }
+    Ok(())
+}
+
+/// Checks that what the file `path` lists as the digest of `name` is one.
+pub(super) fn check_digest(path: &Path, name: &str, digest: &str) -> Result<(), TableError> {
+    if is_digest(digest) {
+        return Ok(());
+    }
+    let reason = format!("the digest of {name} is {digest:?}; accepted: 64 hexadecimal digits");
+    Err(TableError::damaged(path, reason))
 }

@@ -8,12 +8,11 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::atomic::{move_file, writer_of_temporary};
-use super::part_header::{PARTS, PartHeader};
-use super::places::{DAMAGED, SIDE_FILES, SUPERSEDED, Standing, TABLES, is_file, is_folder};
+use super::part_header::PartHeader;
+use super::places::{
+    DAMAGED, NEXT, PARTS, SIDE_FILES, SUPERSEDED, Standing, TABLES, is_file, is_folder,
+};
 use super::{MANIFEST, Manifest, RowFile, TableError, digest_file, remove_parts};
-
-/// The folder that finished tables wait in.
-pub(super) const NEXT: &str = "next";
 
 /// Tables on their way into the results folder.
 #[derive(Debug)]

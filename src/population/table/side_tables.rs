@@ -8,11 +8,11 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::TableError;
 use super::atomic::move_file;
 use super::checked_json::{read_checked_json, write_checked_json};
-use super::places::{SIDE_FILES, digest_stored, is_file};
-use super::publication::{NEXT, discard};
-use super::{TableError, manifest_check::check_digest};
+use super::places::{NEXT, SIDE_FILES, check_digest, digest_stored, is_file};
+use super::publication::discard;
 use crate::identity;
 
 /// Name of the file.

@@ -4,30 +4,16 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
+use super::error_settings::ErrorSettings;
 use super::excited::Excited;
-use super::observed_amplitude::{ObservedAmplitude, ObservedBlock};
-use super::options::{ContactCondition, SolverOptions};
+use super::observed_amplitude::ObservedBlock;
+use super::options::ContactCondition;
 use super::point::Point;
-use super::point_settings::{PointSettings, samples_per_period};
+use super::point_settings::PointSettings;
 use super::point_solver::PointSolver;
-use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{
-    ContactShares, Effects, EnlargedSet, HarmonicBlock, NewtonWorkspace, TransformError, enlarge,
+    ContactShares, Effects, HarmonicBlock, NewtonWorkspace, enlarge,
 };
-
-/// Samples per period of the check, over those of the solution.
-const FINER: usize = 4;
-/// Samples per period of the check at least.
-const FINEST: usize = 256;
-
-/// The enlarged set of a study with the amplitude in it.
-#[derive(Debug, Clone)]
-pub struct ErrorSettings {
-    pub(super) set: EnlargedSet,
-    pub(super) amplitude: ObservedAmplitude,
-    /// Law of the equations beside which solutions are held, where it is not the one that they were solved with.
-    pub(super) law: Option<ContactLaw>,
-}
 
 /// Relative changes of the largest amplitude; positive where it would grow.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -46,42 +32,6 @@ impl ErrorEstimate {
     #[must_use]
     pub fn bound(&self) -> f64 {
         self.sampling.abs() + self.harmonics.abs() + self.unsettled
-    }
-}
-
-impl ErrorSettings {
-    /// For solutions with `harmonics` under `options`.
-    ///
-    /// # Errors
-    /// If the harmonics cannot be told apart with the samples asked for.
-    pub fn new(
-        options: &SolverOptions,
-        harmonics: &[u32],
-        law: Option<ContactLaw>,
-    ) -> Result<Self, TransformError> {
-        let variable_load = law.is_some_and(ContactLaw::has_variable_load);
-        let samples = FINEST.max(FINER * samples_per_period(options, harmonics));
-        let set = EnlargedSet::new(harmonics, variable_load, samples)?;
-        let instants = options.time_samples.max(samples);
-        Ok(Self {
-            amplitude: ObservedAmplitude::new(options.amplitude, set.harmonics(), instants)?,
-            set,
-            law: None,
-        })
-    }
-
-    /// The same of solutions under another law that was taken in the place of `law`.
-    pub(super) fn in_place_of(self, law: ContactLaw) -> Self {
-        Self {
-            law: Some(law),
-            ..self
-        }
-    }
-
-    /// Harmonics of the enlarged set, ascending.
-    #[must_use]
-    pub fn harmonics(&self) -> &[u32] {
-        self.set.harmonics()
     }
 }
 

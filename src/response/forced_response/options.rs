@@ -2,6 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Samples per period of the highest harmonic of an automatic set at least.
+const SAMPLES_OF_HIGHEST: usize = 12;
+/// A number of samples is a multiple of this one: quarters of a period are whole vectors of the machine.
+const SAMPLES_STEP: usize = 16;
+
 /// Temporal harmonics of the solution.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Harmonics {
@@ -100,6 +105,20 @@ impl Default for SolverOptions {
             time_samples: 1024,
             frequency_band: FrequencyBand::Auto,
         }
+    }
+}
+
+/// Samples per period of a solution in `harmonics`: those asked for; where the set is automatic, at least 12 per period of
+/// the highest.
+#[must_use]
+pub fn samples_per_period(options: &SolverOptions, harmonics: &[u32]) -> usize {
+    let highest = harmonics.last().map_or(1, |&k| k as usize);
+    match options.harmonics {
+        Harmonics::Auto => {
+            let wanted = (SAMPLES_OF_HIGHEST * highest).next_multiple_of(SAMPLES_STEP);
+            options.samples_per_period.max(wanted)
+        }
+        Harmonics::Set(_) => options.samples_per_period,
     }
 }
 

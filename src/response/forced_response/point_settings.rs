@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::a_posteriori::ErrorSettings;
+use super::error_settings::ErrorSettings;
 use super::observed_amplitude::ObservedAmplitude;
-use super::options::{Harmonics, SearchHarmonics, SolverOptions};
+use super::options::{Harmonics, SearchHarmonics, SolverOptions, samples_per_period};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{
@@ -12,14 +12,10 @@ use crate::response::harmonic_balance::{
 };
 use crate::response::mistuning::ContactFactors;
 
-/// Samples per period of the highest harmonic of an automatic set at least.
-const SAMPLES_OF_HIGHEST: usize = 12;
 /// Harmonics that lead to the top before all of an automatic set are solved there.
 const GUIDE: [u32; 2] = [1, 3];
 /// Share of the samples asked for that they are sampled with.
 const SAMPLES_OF_GUIDE: (usize, usize) = (1, 2);
-/// A number of samples is a multiple of this one: quarters of a period are whole vectors of the machine.
-const SAMPLES_STEP: usize = 16;
 
 /// Everything of a study that the solution of a point needs besides the structure.
 #[derive(Debug, Clone)]
@@ -243,18 +239,4 @@ fn sought(search: &SearchHarmonics, harmonics: &[u32]) -> Option<Vec<u32>> {
 fn is_everything(harmonics: &[u32]) -> bool {
     let everything = EnlargedSet::everything(false);
     everything.iter().all(|k| harmonics.contains(k))
-}
-
-/// Samples per period of a solution in `harmonics`: those asked for; where the set is automatic, at least 12 per period of
-/// the highest.
-#[must_use]
-pub fn samples_per_period(options: &SolverOptions, harmonics: &[u32]) -> usize {
-    let highest = harmonics.last().map_or(1, |&k| k as usize);
-    match options.harmonics {
-        Harmonics::Auto => {
-            let wanted = (SAMPLES_OF_HIGHEST * highest).next_multiple_of(SAMPLES_STEP);
-            options.samples_per_period.max(wanted)
-        }
-        Harmonics::Set(_) => options.samples_per_period,
-    }
 }

@@ -1,6 +1,7 @@
 //! What a row on the receptances of the tuned wheel leaves out: errors, and its top on another engine.
 
-use super::a_posteriori::{ErrorEstimate, ErrorSettings};
+use super::a_posteriori::ErrorEstimate;
+use super::error_settings::ErrorSettings;
 use super::observed_amplitude::ObservedHarmonic;
 use super::point::Point;
 use super::point_settings::PointSettings;

@@ -1,53 +1,9 @@
 //! One pair of contact nodes: its parameters, its displacement history and what the chosen law
 //! makes of it.
 
-use super::{
-    ContactLaw, ContactOptions, CoupledSlider, PeriodicSlider, coulomb_3d, macro_slip,
-    simplified_3d,
-};
+use super::{ContactLaw, ContactOptions, CoupledSlider, PeriodicSlider};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::mistuning::{ContactFactors, PairFactors};
-
-impl ContactLaw {
-    /// Whether the normal load follows the normal displacement.
-    #[must_use]
-    pub fn has_variable_load(self) -> bool {
-        match self {
-            Self::MacroSlip1d | Self::MacroSlip2d => false,
-            Self::Simplified3d | Self::Coulomb3d => true,
-        }
-    }
-
-    /// Name in a study.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::MacroSlip1d => "macro_slip_1d",
-            Self::MacroSlip2d => "macro_slip_2d",
-            Self::Simplified3d => "simplified_3d",
-            Self::Coulomb3d => "coulomb_3d",
-        }
-    }
-
-    /// Tangents along which there is friction, and a spring of the linear limits: t1, or both.
-    #[must_use]
-    pub fn tangents(self) -> usize {
-        match self {
-            Self::MacroSlip1d => 1,
-            Self::MacroSlip2d | Self::Simplified3d | Self::Coulomb3d => 2,
-        }
-    }
-
-    /// Springs along n, t1, t2 of a pair with these stiffnesses, N/m.
-    #[must_use]
-    pub fn springs(self, normal_n_per_m: f64, tangential_n_per_m: f64) -> [f64; 3] {
-        let second = match self.tangents() {
-            1 => 0.0,
-            _ => tangential_n_per_m,
-        };
-        [normal_n_per_m, tangential_n_per_m, second]
-    }
-}
 
 /// Parameters of one pair: the per-sector values of the study times the weight of the pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -210,48 +166,6 @@ impl ContactHistory {
             law: ContactLaw::Simplified3d,
             state: PairState::default(),
         }
-    }
-
-    /// Applies `law` to the displacement.
-    ///
-    /// # Panics
-    /// A history does not have `n_samples` samples.
-    pub fn respond(
-        &mut self,
-        law: ContactLaw,
-        parameters: &PairParameters,
-        displacement: PairDisplacement<'_>,
-    ) -> PairState {
-        self.respond_drifting(law, parameters, displacement, [0.0; 2])
-    }
-
-    /// Applies `law` to a displacement that besides grows steadily by `drift_m` per period along t1
-    /// and t2; the forces are periodic all the same.
-    ///
-    /// # Panics
-    /// As [`Self::respond`].
-    pub fn respond_drifting(
-        &mut self,
-        law: ContactLaw,
-        parameters: &PairParameters,
-        displacement: PairDisplacement<'_>,
-        drift_m: [f64; 2],
-    ) -> PairState {
-        self.drift_m = drift_m;
-        assert_eq!(
-            displacement.normal.len(),
-            self.normal_load.len(),
-            "samples of the closing"
-        );
-        self.law = law;
-        match law {
-            ContactLaw::MacroSlip1d | ContactLaw::MacroSlip2d => {
-                macro_slip::respond(self, parameters, displacement);
-            }
-            ContactLaw::Simplified3d => simplified_3d::respond(self, parameters, displacement),
-            ContactLaw::Coulomb3d => coulomb_3d::respond(self, parameters, displacement),
-        }
-        self.state
     }
 
     /// State of a pair known to stick with zero offset throughout, without looking at its history.

@@ -6,6 +6,7 @@ mod coupled_slider;
 mod macro_slip;
 mod options;
 mod periodic_slider;
+mod respond;
 mod simplified_3d;
 
 pub use contact_pair::{ContactHistory, PairDisplacement, PairParameters, PairState};

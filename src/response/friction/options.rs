@@ -20,6 +20,47 @@ pub enum ContactLaw {
     Coulomb3d,
 }
 
+impl ContactLaw {
+    /// Whether the normal load follows the normal displacement.
+    #[must_use]
+    pub fn has_variable_load(self) -> bool {
+        match self {
+            Self::MacroSlip1d | Self::MacroSlip2d => false,
+            Self::Simplified3d | Self::Coulomb3d => true,
+        }
+    }
+
+    /// Name in a study.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::MacroSlip1d => "macro_slip_1d",
+            Self::MacroSlip2d => "macro_slip_2d",
+            Self::Simplified3d => "simplified_3d",
+            Self::Coulomb3d => "coulomb_3d",
+        }
+    }
+
+    /// Tangents along which there is friction, and a spring of the linear limits: t1, or both.
+    #[must_use]
+    pub fn tangents(self) -> usize {
+        match self {
+            Self::MacroSlip1d => 1,
+            Self::MacroSlip2d | Self::Simplified3d | Self::Coulomb3d => 2,
+        }
+    }
+
+    /// Springs along n, t1, t2 of a pair with these stiffnesses, N/m.
+    #[must_use]
+    pub fn springs(self, normal_n_per_m: f64, tangential_n_per_m: f64) -> [f64; 3] {
+        let second = match self.tangents() {
+            1 => 0.0,
+            _ => tangential_n_per_m,
+        };
+        [normal_n_per_m, tangential_n_per_m, second]
+    }
+}
+
 /// What a free ring does under mean friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

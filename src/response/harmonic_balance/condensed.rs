@@ -15,9 +15,10 @@
 use std::sync::Arc;
 
 use super::contact_couplings::ContactCouplings;
+use super::jacobian::LARGEST_WHOLE_JACOBIAN;
 use super::linear_factors::LinearFactors;
 use super::structure::{ContactStiffnessMatrix, Structure};
-use super::{HarmonicSystem, LARGEST_WHOLE_JACOBIAN, SystemWorkspace};
+use super::{HarmonicSystem, SystemWorkspace};
 use crate::linalg::{LuWorkspace, add_times};
 use crate::response::friction::ContactLaw;
 
@@ -118,14 +119,17 @@ impl CondensedJacobian {
             Arc::ptr_eq(structure, &block.structure) && Arc::ptr_eq(stuck, &block.stuck)
         });
         if !same {
-            let stuck = block.structure.contact_coordinates().stuck(&block.stuck);
+            let stuck = block
+                .structure
+                .contact_coordinates()
+                .stuck(&block.stuck.springs);
             let stuck = Arc::new(stuck);
             let places = system.blocks().iter().zip(&system.coefficient);
             self.linear = places
                 .map(|(block, &at)| LinearFactors::new(block, Arc::clone(&stuck), at))
                 .collect();
             self.of = Some((Arc::clone(&block.structure), Arc::clone(&block.stuck)));
-            self.stiffness = super::contact_motions::residual_of_motion(system);
+            self.stiffness = residual_of_motion(system);
         }
         let parts = self.linear.iter_mut().zip(system.blocks());
         parts.fold(true, |regular, (part, block)| {
@@ -200,6 +204,63 @@ impl CondensedJacobian {
             rest = beyond;
         }
     }
+
+    /// `forces -= y` with the last y.
+    pub(super) fn subtract_answer(&self, forces: &mut [f64]) {
+        for (force, y) in forces.iter_mut().zip(&self.motion) {
+            *force -= y;
+        }
+    }
+
+    /// `x = S^-1 f - A forces`.
+    pub(super) fn response_of(&self, system: &HarmonicSystem, forces: &[f64]) -> Vec<f64> {
+        let mut x = vec![0.0; system.unknowns()];
+        self.each_harmonic(&mut x, forces, |part, x, forces| part.response(forces, x));
+        x
+    }
+
+    /// `left = motion - C (S^-1 f - A forces)`.
+    pub(super) fn motion_left(&self, motion: &[f64], forces: &[f64], left: &mut [f64]) {
+        left.copy_from_slice(motion);
+        self.each_harmonic(left, forces, |part, left, forces| {
+            for (left, alone) in left.iter_mut().zip(&part.motion) {
+                *left -= alone;
+            }
+            part.add_motion(left, 1.0, forces);
+        });
+    }
+
+    /// The residual that a motion amounts to at most, relative to the excitation.
+    pub(super) fn force_of(&self, motion: &[f64]) -> f64 {
+        let columns = motion.chunks_exact(self.stiffness.len());
+        let forces = columns.flat_map(|column| column.iter().zip(&self.stiffness));
+        let square: f64 = forces.map(|(motion, k)| (k * motion).powi(2)).sum();
+        square.sqrt()
+    }
+
+    /// `(I + R G')^-1 left`, in place.
+    pub(super) fn solve_motion(&mut self, left: &mut [f64]) {
+        self.motion.clear();
+        self.motion.extend_from_slice(left);
+        self.answer(self.linear.iter().map(|part| part.parts).sum());
+        self.each_harmonic(left, &self.motion, |part, left, forces| {
+            part.add_motion(left, -1.0, forces);
+        });
+    }
+}
+
+/// What a motion of every contact row changes the residual by at most, relative to the excitation, 1/m: its correction
+/// changes by no more than its spring times the motion.
+fn residual_of_motion(system: &HarmonicSystem) -> Vec<f64> {
+    let contact = &system.blocks()[0].structure.contact().real;
+    let square = contact.times(&contact.adjoint());
+    let sum = |i: usize| -> f64 { (0..square.columns()).map(|j| square[(i, j)].abs()).sum() };
+    // |C^T|^2, the largest eigenvalue of C C^T, is at most this.
+    let largest = (0..square.rows()).map(sum).fold(0.0, f64::max);
+    let springs = system.blocks()[0].stuck.springs.iter();
+    springs
+        .map(|spring| spring * largest.sqrt() / system.force_norm())
+        .collect()
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 //! With `C^T = Q R` and the columns of Q in the opposite order, `C Q = [0 L]`: row i of C moves with the last i + 1
 //! coordinates, and contact springs couple no more than the last m.
 
-use super::structure::ContactStiffnessMatrix;
 use crate::linalg::{BlockVector, Matrix, RowBlocks, householder_qr};
 
 /// A structure in these coordinates.
@@ -47,9 +46,9 @@ impl ContactCoordinates {
         &self.rows
     }
 
-    /// `Q^T (diag(lambda) + C^T k C) Q`.
-    pub(super) fn stuck(&self, contact: &ContactStiffnessMatrix) -> RowBlocks {
-        let (rows, springs) = (&self.rows, &contact.springs);
+    /// `Q^T (diag(lambda) + C^T k C) Q` for the springs k of the contact rows, N/m.
+    pub(super) fn stuck(&self, springs: &[f64]) -> RowBlocks {
+        let rows = &self.rows;
         let first = rows.columns().saturating_sub(rows.rows());
         let moving = rows.column_range(first, rows.columns());
         let scaled = Matrix::from_fn(moving.rows(), moving.columns(), |i, j| {

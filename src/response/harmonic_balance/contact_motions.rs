@@ -11,31 +11,15 @@
 //! it is taken for `|C^T| k_c |F|`; what is delivered has one step more and is judged by the residual of the whole
 //! equation.
 
-use super::condensed::CondensedJacobian;
 use super::kept_jacobian::KeptJacobian;
-use super::newton::{
+use super::newton_iteration::{
     DEPTH, Equation, NewtonBuffers, NewtonOutcome, Settled, Steps, iterate, norm_of,
 };
-use super::newton_workspace::NewtonWorkspace;
-use super::{
-    ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace, linear_response,
-};
-use crate::linalg::LuWorkspace;
+use super::newton_workspace::{MotionStart, NewtonWorkspace};
+use super::{ContactShares, HarmonicSystem, NewtonBounds, Status, SystemWorkspace};
 
 /// A step of the motions that is longer than this share of them leaves no amplitude as it is.
 const FAR_FROM_SETTLED: f64 = 0.02;
-
-/// A start with what its choice has found.
-pub(super) struct MotionStart {
-    omega: f64,
-    /// In the unknowns of the whole equation.
-    x: Vec<f64>,
-    motion: Vec<f64>,
-    correction: Vec<f64>,
-    left: Vec<f64>,
-    norm: f64,
-    shares: ContactShares,
-}
 
 /// F at one frequency, whose linear part is at hand.
 struct ContactMotions<'a> {
@@ -152,81 +136,6 @@ impl Equation for ContactMotions<'_> {
         });
         let step: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
         settled(before, &step)
-    }
-}
-
-impl CondensedJacobian {
-    /// `forces -= y` with the last y.
-    pub(super) fn subtract_answer(&self, forces: &mut [f64]) {
-        for (force, y) in forces.iter_mut().zip(&self.motion) {
-            *force -= y;
-        }
-    }
-
-    /// `x = S^-1 f - A forces`.
-    fn response_of(&self, system: &HarmonicSystem, forces: &[f64]) -> Vec<f64> {
-        let mut x = vec![0.0; system.unknowns()];
-        self.each_harmonic(&mut x, forces, |part, x, forces| part.response(forces, x));
-        x
-    }
-
-    /// `left = motion - C (S^-1 f - A forces)`.
-    pub(super) fn motion_left(&self, motion: &[f64], forces: &[f64], left: &mut [f64]) {
-        left.copy_from_slice(motion);
-        self.each_harmonic(left, forces, |part, left, forces| {
-            for (left, alone) in left.iter_mut().zip(&part.motion) {
-                *left -= alone;
-            }
-            part.add_motion(left, 1.0, forces);
-        });
-    }
-
-    /// The residual that a motion amounts to at most, relative to the excitation.
-    pub(super) fn force_of(&self, motion: &[f64]) -> f64 {
-        let columns = motion.chunks_exact(self.stiffness.len());
-        let forces = columns.flat_map(|column| column.iter().zip(&self.stiffness));
-        let square: f64 = forces.map(|(motion, k)| (k * motion).powi(2)).sum();
-        square.sqrt()
-    }
-
-    /// `(I + R G')^-1 left`, in place.
-    pub(super) fn solve_motion(&mut self, left: &mut [f64]) {
-        self.motion.clear();
-        self.motion.extend_from_slice(left);
-        self.answer(self.linear.iter().map(|part| part.parts).sum());
-        self.each_harmonic(left, &self.motion, |part, left, forces| {
-            part.add_motion(left, -1.0, forces);
-        });
-    }
-}
-
-/// What a motion of every contact row changes the residual by at most, relative to the excitation, 1/m: its correction
-/// changes by no more than its spring times the motion.
-pub(super) fn residual_of_motion(system: &HarmonicSystem) -> Vec<f64> {
-    let contact = &system.blocks()[0].structure.contact().real;
-    let square = contact.times(&contact.adjoint());
-    let sum = |i: usize| -> f64 { (0..square.columns()).map(|j| square[(i, j)].abs()).sum() };
-    // |C^T|^2, the largest eigenvalue of C C^T, is at most this.
-    let largest = (0..square.rows()).map(sum).fold(0.0, f64::max);
-    let springs = system.blocks()[0].stuck.springs.iter();
-    springs
-        .map(|spring| spring * largest.sqrt() / system.force_norm())
-        .collect()
-}
-
-impl HarmonicSystem {
-    /// The linear response with every pair stuck, harmonic 1 and nothing else; none if it has none.
-    fn stuck_response(&self, omega: f64) -> Option<Vec<f64>> {
-        let (at, block) = (self.fundamental(), &self.blocks()[self.fundamental()]);
-        let mut factors = LuWorkspace::new(block.structure.size());
-        let (structure, stuck) = (&block.structure, Some(&*block.stuck));
-        let response = linear_response(structure, stuck, omega, self.force(), &mut factors)?;
-        let mut x = vec![0.0; self.unknowns()];
-        let (real, imaginary) = x[self.start[at]..self.start[at + 1]].split_at_mut(response.len());
-        for ((real, imaginary), z) in real.iter_mut().zip(imaginary).zip(&response) {
-            (*real, *imaginary) = (z.re, z.im);
-        }
-        Some(x)
     }
 }
 

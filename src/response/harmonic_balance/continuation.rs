@@ -18,7 +18,7 @@
 //! (Allgower & Georg 1990, Numerical Continuation Methods, section 2.1 and chapter 15).
 
 use super::curve::{AtFrequency, Curve, distance, dot};
-use super::newton::{Equation, NewtonBuffers, iterate, norm_of};
+use super::newton_iteration::{Equation, NewtonBuffers, iterate, norm_of};
 use super::{ContactShares, HarmonicSystem, NewtonBounds, NewtonOutcome, Status};
 
 /// Wanted distance from predicted to corrected point over the step.

@@ -7,7 +7,7 @@
 //! relative to the excitation. The kernel of `DR` is that of `A t = (0, 1)`, the shortest step
 //! `DR^+ R` any solution of `A v = (R, 0)` less its part along t.
 
-use super::newton::Equation;
+use super::newton_iteration::Equation;
 use super::{ContactShares, HarmonicSystem, SystemWorkspace};
 use crate::linalg::LuWorkspace;
 

@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 use super::anderson::Anderson;
 use super::kept_jacobian::{KeptJacobian, solve_complex};
-use super::newton::norm_of;
+use super::newton_iteration::norm_of;
 use super::{
     HarmonicBlock, HarmonicSystem, HarmonicTransform, LARGEST_WHOLE_JACOBIAN, NewtonWorkspace,
     SystemWorkspace, TransformError,

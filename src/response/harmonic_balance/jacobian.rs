@@ -12,6 +12,9 @@ use std::ops::Range;
 use super::system::{HarmonicSystem, Link, SystemWorkspace};
 use crate::linalg::{Complex64, Matrix, add_transpose_times};
 
+/// Unknowns up to which accelerated steps take the whole Jacobian: it costs next to nothing there.
+pub const LARGEST_WHOLE_JACOBIAN: usize = 400;
+
 impl HarmonicSystem {
     /// Derivative of the residual at the point last given to [`Self::residual`] with `derivative`,
     /// column-major `n x n` into `jacobian`.

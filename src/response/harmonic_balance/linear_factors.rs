@@ -218,7 +218,7 @@ mod tests {
 
     fn linear(block: &HarmonicBlock) -> LinearFactors {
         let coordinates = block.structure.contact_coordinates();
-        LinearFactors::new(block, Arc::new(coordinates.stuck(&block.stuck)), 0)
+        LinearFactors::new(block, Arc::new(coordinates.stuck(&block.stuck.springs)), 0)
     }
 
     fn numbers(count: usize, phase: f64) -> Vec<f64> {

@@ -3,10 +3,24 @@
 //! A wheel leaves the stuck springs to the contact forces: where contact is stiff and slips, these are far smaller than
 //! spring and correction by themselves, whose rounding would be left.
 
-use super::HarmonicSystem;
-use crate::linalg::add_times_vector;
+use super::{HarmonicSystem, linear_response};
+use crate::linalg::{LuWorkspace, add_times_vector};
 
 impl HarmonicSystem {
+    /// The linear response with every pair stuck, harmonic 1 and nothing else; none if it has none.
+    pub(super) fn stuck_response(&self, omega: f64) -> Option<Vec<f64>> {
+        let (at, block) = (self.fundamental(), &self.blocks()[self.fundamental()]);
+        let mut factors = LuWorkspace::new(block.structure.size());
+        let (structure, stuck) = (&block.structure, Some(&*block.stuck));
+        let response = linear_response(structure, stuck, omega, self.force(), &mut factors)?;
+        let mut x = vec![0.0; self.unknowns()];
+        let (real, imaginary) = x[self.start[at]..self.start[at + 1]].split_at_mut(response.len());
+        for ((real, imaginary), z) in real.iter_mut().zip(imaginary).zip(&response) {
+            (*real, *imaginary) = (z.re, z.im);
+        }
+        Some(x)
+    }
+
     /// `(Z + C^H k_c C) x - f` of every harmonic, `Z x - f` where all share the matrices of a wheel.
     pub(super) fn linear_part(
         &self,

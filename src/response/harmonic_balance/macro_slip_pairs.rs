@@ -14,10 +14,11 @@
 
 use std::sync::Arc;
 
+use super::HarmonicTransform;
 use super::clip_slopes::wanted;
 use super::lanes::LANES;
 use super::slider_march::SliderMarch;
-use super::{ContactShares, HarmonicSystem, HarmonicTransform, SystemWorkspace};
+use super::wheel_pairs::{ContactShares, WheelPairs};
 use crate::linalg::{add_times, vectorized};
 use crate::response::friction::{ContactLaw, PairParameters};
 
@@ -88,6 +89,75 @@ impl MacroSlipPairs {
     /// Lanes in use, whole blocks.
     fn lanes(&self) -> usize {
         self.sliders.len().next_multiple_of(LANES)
+    }
+
+    /// The corrections of all pairs, with their derivatives where these are wanted.
+    pub(super) fn correct(&mut self, derivative: bool, wheel: WheelPairs<'_>) -> ContactShares {
+        let (pairs, rows) = (wheel.active.len(), wheel.rows);
+        let (tangents, count) = (
+            wheel.interface.law.tangents(),
+            self.transform.n_coefficients(),
+        );
+        self.sliders.clear();
+        let mut separated = 0_usize;
+        for pair in 0..pairs {
+            let parameters = wheel.interface.pair(pair);
+            let open = parameters.normal_load_n <= 0.0;
+            separated += usize::from(open);
+            wheel.active[pair] = open;
+            let [_, along @ ..] = wheel.rows_of(pair);
+            for (tangent, row) in along.into_iter().enumerate().take(tangents) {
+                let Some(row) = row else { continue };
+                let motion = wheel.displacement.chunks_exact(rows.max(1));
+                let excursion = self.transform.excursion(motion.map(|column| column[row]));
+                // By itself, whatever the law.
+                if !parameters.surely_sticks(ContactLaw::MacroSlip1d, [0.0, excursion, 0.0]) {
+                    self.sliders.push(Slider { pair, tangent, row });
+                }
+            }
+            if derivative {
+                wheel.jacobians[pair].clear();
+            }
+        }
+        let lanes = self.lanes();
+        let stiffness = |parameters: &PairParameters| parameters.tangential_stiffness_n_per_m;
+        self.limit[..lanes].fill(0.0);
+        self.coefficients[..lanes * count].fill(0.0);
+        for (lane, &Slider { pair, row, .. }) in self.sliders.iter().enumerate() {
+            let parameters = wheel.interface.pair(pair);
+            self.limit[lane] = parameters.friction_coefficient * parameters.normal_load_n;
+            let kt = stiffness(parameters);
+            for c in usize::from(self.transform.has_mean())..count {
+                self.coefficients[c * lanes + lane] = kt * wheel.displacement[c * rows + row];
+            }
+        }
+        if lanes > 0 {
+            self.respond();
+            self.project();
+        }
+        let (mut slipping, mut last) = (0_usize, None);
+        for (lane, &Slider { pair, tangent, row }) in self.sliders.iter().enumerate() {
+            if !self.slips(lane) {
+                continue;
+            }
+            slipping += usize::from(last != Some(pair));
+            last = Some(pair);
+            wheel.active[pair] = true;
+            for c in 0..count {
+                wheel.correction[c * rows + row] = self.coefficients[c * lanes + lane];
+            }
+            if derivative {
+                let block = &mut wheel.jacobians[pair].tangential_tangential[tangent];
+                let kt = stiffness(wheel.interface.pair(pair));
+                self.differentiate(lane, kt, wheel.one.coupled_first(), block);
+            }
+        }
+        let share = |count: usize| count as f64 / pairs as f64;
+        ContactShares {
+            slipping: share(slipping),
+            separated: share(separated),
+            unclosed: 0.0,
+        }
     }
 
     /// Histories of `kt x` and of the offsets from the coefficients of `kt x`.
@@ -221,101 +291,6 @@ impl MacroSlipPairs {
                 row[other] += held * self.basis[clip * count + other];
             }
         }
-    }
-}
-
-impl HarmonicSystem {
-    /// Whether the elements can be evaluated side by side.
-    pub(super) fn marches_together(&self) -> bool {
-        let drifts = self.ring_drift_m().iter().any(|drift| drift.abs() > 0.0);
-        !self.interface.law.has_variable_load() && !drifts
-    }
-
-    /// [`Self::contact_correction`] of all pairs at once.
-    pub(super) fn correction_together(
-        &self,
-        derivative: bool,
-        workspace: &mut SystemWorkspace,
-    ) -> ContactShares {
-        let pairs = workspace.active.len();
-        let (tangents, count) = (
-            self.interface.law.tangents(),
-            self.transform.n_coefficients(),
-        );
-        let together = workspace
-            .together
-            .get_or_insert_with(|| MacroSlipPairs::new(tangents * pairs, &self.transform));
-        let rows = workspace.displacement.len() / count.max(1);
-        together.sliders.clear();
-        let mut separated = 0_usize;
-        for pair in 0..pairs {
-            let parameters = self.interface.pair(pair);
-            let open = parameters.normal_load_n <= 0.0;
-            separated += usize::from(open);
-            workspace.active[pair] = open;
-            for tangent in 0..tangents {
-                let Some(row) = self.tangential_row(pair, tangent) else {
-                    continue;
-                };
-                let motion = workspace.displacement.chunks_exact(rows.max(1));
-                let excursion = self.transform.excursion(motion.map(|column| column[row]));
-                // By itself, whatever the law.
-                if !parameters.surely_sticks(ContactLaw::MacroSlip1d, [0.0, excursion, 0.0]) {
-                    together.sliders.push(Slider { pair, tangent, row });
-                }
-            }
-            if derivative {
-                workspace.jacobians[pair].clear();
-            }
-        }
-        let lanes = together.lanes();
-        let stiffness = |parameters: &PairParameters| parameters.tangential_stiffness_n_per_m;
-        together.limit[..lanes].fill(0.0);
-        together.coefficients[..lanes * count].fill(0.0);
-        for (lane, &Slider { pair, row, .. }) in together.sliders.iter().enumerate() {
-            let parameters = self.interface.pair(pair);
-            together.limit[lane] = parameters.friction_coefficient * parameters.normal_load_n;
-            let kt = stiffness(parameters);
-            for c in usize::from(self.transform.has_mean())..count {
-                together.coefficients[c * lanes + lane] =
-                    kt * workspace.displacement[c * rows + row];
-            }
-        }
-        if lanes > 0 {
-            together.respond();
-            together.project();
-        }
-        let (mut slipping, mut last) = (0_usize, None);
-        for (lane, &Slider { pair, tangent, row }) in together.sliders.iter().enumerate() {
-            if !together.slips(lane) {
-                continue;
-            }
-            slipping += usize::from(last != Some(pair));
-            last = Some(pair);
-            workspace.active[pair] = true;
-            for c in 0..count {
-                workspace.correction[c * rows + row] = together.coefficients[c * lanes + lane];
-            }
-            if derivative {
-                let block = &mut workspace.jacobians[pair].tangential_tangential[tangent];
-                let kt = stiffness(self.interface.pair(pair));
-                together.differentiate(lane, kt, workspace.pairs.coupled_first(), block);
-            }
-        }
-        workspace.separated = separated > 0;
-        let share = |count: usize| count as f64 / pairs as f64;
-        ContactShares {
-            slipping: share(slipping),
-            separated: share(separated),
-            unclosed: 0.0,
-        }
-    }
-
-    /// Contact row along t1 or t2 of a pair of the wheel.
-    fn tangential_row(&self, pair: usize, tangent: usize) -> Option<usize> {
-        let geometry = &self.interface.geometry;
-        let (sector, own) = (pair / geometry.rows.len(), pair % geometry.rows.len());
-        geometry.rows[own][1 + tangent].map(|row| sector * geometry.row_count() + row)
     }
 }
 

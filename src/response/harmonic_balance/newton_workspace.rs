@@ -1,8 +1,7 @@
 //! Buffers of Newton's method for one system, and the choice of where it starts.
 
-use super::contact_motions::MotionStart;
 use super::kept_jacobian::KeptJacobian;
-use super::newton::{DEPTH, DEPTH_OF_ONCE, NewtonBuffers, Steps};
+use super::newton_iteration::{DEPTH, DEPTH_OF_ONCE, NewtonBuffers, Steps};
 use super::{ContactShares, HarmonicSystem, SystemWorkspace};
 
 /// Buffers of Newton's method for one system.
@@ -23,6 +22,18 @@ pub(super) struct Start {
     pub(super) omega: f64,
     pub(super) x: Vec<f64>,
     pub(super) residual: Vec<f64>,
+    pub(super) norm: f64,
+    pub(super) shares: ContactShares,
+}
+
+/// The same in motions at the contact rows.
+pub(super) struct MotionStart {
+    pub(super) omega: f64,
+    /// In the unknowns of the whole equation.
+    pub(super) x: Vec<f64>,
+    pub(super) motion: Vec<f64>,
+    pub(super) correction: Vec<f64>,
+    pub(super) left: Vec<f64>,
     pub(super) norm: f64,
     pub(super) shares: ContactShares,
 }

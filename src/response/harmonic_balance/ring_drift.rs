@@ -15,7 +15,8 @@
 //! that its sticking pairs hold: the solution is then that of the locked ring. Otherwise s is found
 //! by Broyden's method on M, every value of it from a full solution of `R(x, s) = 0`.
 
-use super::newton::{NewtonOutcome, solve};
+use super::newton::solve;
+use super::newton_iteration::NewtonOutcome;
 use super::newton_workspace::NewtonWorkspace;
 use super::{HarmonicSystem, NewtonBounds, Status};
 use crate::response::friction::PairParameters;

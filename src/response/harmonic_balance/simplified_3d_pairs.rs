@@ -14,7 +14,8 @@ use std::sync::Arc;
 
 use super::lanes::{LANES, clip, larger, smaller};
 use super::quarter_waves::{QuarterWaves, WIDTH};
-use super::{ContactShares, HarmonicSystem, HarmonicTransform, SystemWorkspace};
+use super::wheel_pairs::{ContactShares, WheelPairs};
+use super::{HarmonicTransform, PairJacobian};
 use crate::linalg::{Loops, vectorized};
 use crate::response::friction::ContactLaw;
 
@@ -70,7 +71,7 @@ struct Clips {
 }
 
 impl Simplified3dPairs {
-    fn new(pairs: usize, transform: &Arc<HarmonicTransform>) -> Self {
+    pub(super) fn new(pairs: usize, transform: &Arc<HarmonicTransform>) -> Self {
         let lanes = pairs.next_multiple_of(LANES);
         Self {
             waves: QuarterWaves::new(transform),
@@ -92,6 +93,91 @@ impl Simplified3dPairs {
     /// Lanes in use, whole blocks.
     fn lanes(&self) -> usize {
         self.pairs.len().next_multiple_of(LANES)
+    }
+
+    /// The corrections of all pairs, with their derivatives where these are wanted.
+    pub(super) fn correct(&mut self, derivative: bool, wheel: WheelPairs<'_>) -> ContactShares {
+        self.choose(&wheel);
+        wheel.active.fill(false);
+        if derivative {
+            wheel.jacobians.iter_mut().for_each(PairJacobian::clear);
+        }
+        if !self.pairs.is_empty() {
+            self.load(wheel.displacement, wheel.rows);
+            self.respond(derivative);
+            self.unload(wheel.correction, wheel.rows);
+        }
+        let (mut slipping, mut separated) = (0_usize, 0_usize);
+        for (lane, &pair) in self.pairs.iter().enumerate() {
+            let state = self.states[lane];
+            separated += usize::from(state[0]);
+            slipping += usize::from(state[1] || state[2]);
+            wheel.active[pair] = state.contains(&true);
+            if derivative && wheel.active[pair] {
+                let clips = &mut self.clips;
+                let samples = self.transform.n_samples();
+                clips.gather(&self.bounds, samples, lane, state);
+                let sliders = [0, 1].map(|tangent| {
+                    let clips = (&*clips.samples[tangent], &*clips.signs[tangent]);
+                    state[1 + tangent].then_some(clips)
+                });
+                wheel.one.differentiate_clips(
+                    wheel.interface.pair(pair),
+                    state[0].then_some(&clips.normal_load),
+                    sliders,
+                    &mut wheel.jacobians[pair],
+                );
+            }
+        }
+        let share = |number: usize| number as f64 / wheel.active.len() as f64;
+        ContactShares {
+            slipping: share(slipping),
+            separated: share(separated),
+            unclosed: 0.0,
+        }
+    }
+
+    /// Gives every pair that may slip or separate a lane, with its load, its friction, and its contact rows and springs.
+    fn choose(&mut self, wheel: &WheelPairs<'_>) {
+        let mean = usize::from(self.transform.has_mean());
+        self.pairs.clear();
+        self.excursions.clear();
+        self.excursions.resize(wheel.rows, 0.0);
+        vectorized(Excursions {
+            oscillation: &wheel.displacement[mean * wheel.rows..],
+            sums: &mut self.excursions,
+        });
+        for pair in 0..wheel.active.len() {
+            let places = wheel.rows_of(pair);
+            let mut excursions = places.map(|row| row.map_or(0.0, |row| self.excursions[row]));
+            if let (Some(row), 1) = (places[0], mean) {
+                excursions[0] += wheel.displacement[row].abs();
+            }
+            let parameters = wheel.interface.pair(pair);
+            if !parameters.surely_sticks(ContactLaw::Simplified3d, excursions) {
+                self.pairs.push(pair);
+            }
+        }
+        let lanes = self.lanes();
+        // An idle lane rests under no load: it has no correction.
+        self.normal_load[..lanes].fill(0.0);
+        self.friction[..lanes].fill(0.0);
+        self.rows.clear();
+        self.rows.resize(3 * lanes, (0, 0.0));
+        for (lane, &pair) in self.pairs.iter().enumerate() {
+            let parameters = wheel.interface.pair(pair);
+            self.normal_load[lane] = parameters.normal_load_n;
+            self.friction[lane] = parameters.friction_coefficient;
+            for (direction, row) in wheel.rows_of(pair).into_iter().enumerate() {
+                let spring = if direction == 0 {
+                    parameters.normal_stiffness_n_per_m
+                } else {
+                    parameters.tangential_stiffness_n_per_m
+                };
+                let at = lane / LANES * HEIGHT + direction * LANES + lane % LANES;
+                self.rows[at] = row.map_or((0, 0.0), |row| (row, spring));
+            }
+        }
     }
 
     /// The corrections in the place of the displacements; with the bounds where the `derivative` is wanted.
@@ -312,110 +398,6 @@ fn attained(y: &[f64; LANES], limit: &[f64; LANES], elastic: &[f64; LANES]) -> [
             (false, false) => Bound::NEITHER,
         }
     })
-}
-
-impl HarmonicSystem {
-    /// Whether the forces of the pairs can be found side by side.
-    pub(super) fn responds_together(&self) -> bool {
-        let drifts = self.ring_drift_m().iter().any(|drift| drift.abs() > 0.0);
-        self.interface.law == ContactLaw::Simplified3d && !drifts
-    }
-
-    /// [`Self::contact_correction`] of all pairs at once.
-    pub(super) fn response_together(
-        &self,
-        derivative: bool,
-        workspace: &mut SystemWorkspace,
-    ) -> ContactShares {
-        let count = workspace.active.len();
-        let geometry = &self.interface.geometry;
-        let (per_sector, sector_rows) = (self.interface.per_sector(), geometry.row_count());
-        let mean = usize::from(self.transform.has_mean());
-        let places = |pair: usize| {
-            let base = pair / per_sector * sector_rows;
-            geometry.rows[pair % per_sector].map(|row| row.map(|row| base + row))
-        };
-        let together = workspace
-            .together_3d
-            .get_or_insert_with(|| Simplified3dPairs::new(count, &self.transform));
-        let displacement = &workspace.displacement;
-        together.pairs.clear();
-        together.excursions.clear();
-        together.excursions.resize(self.rows, 0.0);
-        vectorized(Excursions {
-            oscillation: &displacement[mean * self.rows..],
-            sums: &mut together.excursions,
-        });
-        for pair in 0..count {
-            let places = places(pair);
-            let mut excursions = places.map(|row| row.map_or(0.0, |row| together.excursions[row]));
-            if let (Some(row), 1) = (places[0], mean) {
-                excursions[0] += displacement[row].abs();
-            }
-            let parameters = self.interface.pair(pair);
-            workspace.active[pair] = false;
-            if derivative {
-                workspace.jacobians[pair].clear();
-            }
-            if !parameters.surely_sticks(ContactLaw::Simplified3d, excursions) {
-                together.pairs.push(pair);
-            }
-        }
-        let lanes = together.lanes();
-        // An idle lane rests under no load: it has no correction.
-        together.normal_load[..lanes].fill(0.0);
-        together.friction[..lanes].fill(0.0);
-        together.rows.clear();
-        together.rows.resize(3 * lanes, (0, 0.0));
-        for (lane, &pair) in together.pairs.iter().enumerate() {
-            let parameters = self.interface.pair(pair);
-            together.normal_load[lane] = parameters.normal_load_n;
-            together.friction[lane] = parameters.friction_coefficient;
-            for (direction, row) in places(pair).into_iter().enumerate() {
-                let spring = if direction == 0 {
-                    parameters.normal_stiffness_n_per_m
-                } else {
-                    parameters.tangential_stiffness_n_per_m
-                };
-                let at = lane / LANES * HEIGHT + direction * LANES + lane % LANES;
-                together.rows[at] = row.map_or((0, 0.0), |row| (row, spring));
-            }
-        }
-        if lanes > 0 {
-            together.load(displacement, self.rows);
-            together.respond(derivative);
-            together.unload(&mut workspace.correction, self.rows);
-        }
-        let (mut slipping, mut separated) = (0_usize, 0_usize);
-        for (lane, &pair) in together.pairs.iter().enumerate() {
-            let state = together.states[lane];
-            separated += usize::from(state[0]);
-            slipping += usize::from(state[1] || state[2]);
-            workspace.active[pair] = state.contains(&true);
-            if derivative && workspace.active[pair] {
-                let clips = &mut together.clips;
-                let samples = self.transform.n_samples();
-                clips.gather(&together.bounds, samples, lane, state);
-                let sliders = [0, 1].map(|tangent| {
-                    let clips = (&*clips.samples[tangent], &*clips.signs[tangent]);
-                    state[1 + tangent].then_some(clips)
-                });
-                workspace.pairs.differentiate_clips(
-                    self.interface.pair(pair),
-                    state[0].then_some(&clips.normal_load),
-                    sliders,
-                    &mut workspace.jacobians[pair],
-                );
-            }
-        }
-        workspace.separated = separated > 0;
-        let share = |number: usize| number as f64 / count as f64;
-        ContactShares {
-            slipping: share(slipping),
-            separated: share(separated),
-            unclosed: 0.0,
-        }
-    }
 }
 
 #[cfg(test)]

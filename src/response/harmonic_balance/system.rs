@@ -15,11 +15,12 @@ use std::sync::Arc;
 
 use super::macro_slip_pairs::MacroSlipPairs;
 use super::simplified_3d_pairs::Simplified3dPairs;
+use super::wheel_pairs::{ContactShares, WheelPairs};
 use super::{ContactInterface, HarmonicBlock, HarmonicTransform, PairHarmonics, PairJacobian};
 use crate::linalg::{
     Complex64, Matrix, add_times, add_times_vector, add_transpose_times, add_transpose_times_vector,
 };
-use crate::response::friction::PairParameters;
+use crate::response::friction::{ContactLaw, PairParameters};
 
 /// The nonlinear equation at any frequency.
 #[derive(Debug, Clone)]
@@ -40,17 +41,6 @@ pub struct HarmonicSystem {
     pub(super) shared: bool,
     /// Drift of the ring along its rigid motions, m per period.
     ring_drift_m: [f64; 2],
-}
-
-/// Share of contact pairs in a state at any sample.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ContactShares {
-    /// Pairs slipping in any direction.
-    pub slipping: f64,
-    /// Pairs with no normal load.
-    pub separated: f64,
-    /// Pairs whose periodic state was not found; a solution with such pairs is none.
-    pub unclosed: f64,
 }
 
 /// Buffers of one thread for one [`HarmonicSystem`].
@@ -345,11 +335,9 @@ impl HarmonicSystem {
             let zero = PairJacobian::new(self.transform.n_coefficients());
             workspace.jacobians = vec![zero; workspace.active.len()];
         }
-        if self.marches_together() {
-            return self.correction_together(derivative, workspace);
-        }
-        if self.responds_together() {
-            return self.response_together(derivative, workspace);
+        if let Some(shares) = self.correction_side_by_side(derivative, workspace) {
+            workspace.separated = shares.separated > 0.0;
+            return shares;
         }
         let coefficients = self.transform.n_coefficients();
         let per_sector = self.interface.per_sector();
@@ -386,6 +374,43 @@ impl HarmonicSystem {
             slipping: slipping as f64 / count as f64,
             separated: separated as f64 / count as f64,
             unclosed: unclosed as f64 / count as f64,
+        }
+    }
+
+    /// The corrections of all pairs at once; none where the law has no such form, or the ring drifts.
+    fn correction_side_by_side(
+        &self,
+        derivative: bool,
+        workspace: &mut SystemWorkspace,
+    ) -> Option<ContactShares> {
+        let law = self.interface.law;
+        if self.ring_drift_m.iter().any(|drift| drift.abs() > 0.0) {
+            return None;
+        }
+        let count = workspace.active.len();
+        let wheel = WheelPairs {
+            interface: &self.interface,
+            rows: self.rows,
+            displacement: &workspace.displacement,
+            correction: &mut workspace.correction,
+            one: &mut workspace.pairs,
+            active: &mut workspace.active,
+            jacobians: &mut workspace.jacobians,
+        };
+        match law {
+            ContactLaw::MacroSlip1d | ContactLaw::MacroSlip2d => {
+                let together = workspace.together.get_or_insert_with(|| {
+                    MacroSlipPairs::new(law.tangents() * count, &self.transform)
+                });
+                Some(together.correct(derivative, wheel))
+            }
+            ContactLaw::Simplified3d => {
+                let together = workspace
+                    .together_3d
+                    .get_or_insert_with(|| Simplified3dPairs::new(count, &self.transform));
+                Some(together.correct(derivative, wheel))
+            }
+            ContactLaw::Coulomb3d => None,
         }
     }
 

@@ -111,7 +111,7 @@ impl ContactVariation {
             FactorLaw::Relative(distribution) => distribution,
             FactorLaw::Lognormal => Distribution::Normal,
         };
-        let mut stream = contact_stream(seed, self.quantity, pattern);
+        let mut stream = contact_stream(seed, self.quantity as usize, pattern);
         distribution.unit_draws(&mut stream, count)
     }
 }

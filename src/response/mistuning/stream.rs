@@ -3,8 +3,6 @@
 use chacha20::ChaCha8Rng;
 use rand::SeedableRng;
 
-use super::ContactQuantity;
-
 /// Name of the generator in manifests; a change of the numbers it gives changes the name.
 pub const GENERATOR: &str = "ChaCha8, seed_from_u64(seed), stream = pattern id; rand_distr 0.6";
 
@@ -20,11 +18,11 @@ pub fn pattern_stream(seed: u64, pattern: u32) -> ChaCha8Rng {
     stream
 }
 
-/// The stream of one contact parameter of `pattern`: streams of blades have numbers below 2^32, these
-/// the second highest bit and the place of the parameter in [`ContactQuantity::ALL`] above the id.
+/// The stream of the contact parameter at `place` of all (`ContactQuantity::ALL`), of `pattern`: streams of blades have numbers below
+/// 2^32, these the second highest bit and the place above the id.
 #[must_use]
-pub fn contact_stream(seed: u64, quantity: ContactQuantity, pattern: u32) -> ChaCha8Rng {
+pub fn contact_stream(seed: u64, place: usize, pattern: u32) -> ChaCha8Rng {
     let mut stream = ChaCha8Rng::seed_from_u64(seed);
-    stream.set_stream(1 << 62 | (quantity as u64) << 32 | u64::from(pattern));
+    stream.set_stream(1 << 62 | (place as u64) << 32 | u64::from(pattern));
     stream
 }

@@ -8,8 +8,7 @@ use super::motion::Motion;
 use super::options::TimeOptions;
 use super::settle::{Settled, settle};
 use super::stability::{PeriodicMotion, periodic_motion};
-use super::state::WheelState;
-use super::stepper::MarchedWheel;
+use super::state::{MarchedWheel, WheelState};
 use crate::linalg::Matrix;
 use crate::response::forced_response::{
     AmplitudeMeasure, ContactCondition, Excited, LimitsWanted, Point, PointSettings, PointSolver,

@@ -22,5 +22,5 @@ pub use motion::Motion;
 pub use options::TimeOptions;
 pub use settle::{Settled, settle};
 pub use stability::{PeriodicMotion, periodic_motion};
-pub use state::WheelState;
-pub use stepper::{MarchedWheel, TimeStepper};
+pub use state::{MarchedWheel, WheelState};
+pub use stepper::TimeStepper;

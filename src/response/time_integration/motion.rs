@@ -5,8 +5,7 @@ use std::f64::consts::TAU;
 
 use super::contact_march::PairMemory;
 use super::contact_rows::ContactRows;
-use super::state::WheelState;
-use super::stepper::MarchedWheel;
+use super::state::{MarchedWheel, WheelState};
 use crate::linalg::Complex64;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::response::forced_response::{Excited, Point};

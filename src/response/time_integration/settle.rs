@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 use super::contact_rows::ContactRows;
 use super::options::TimeOptions;
 use super::periods::{Period, blade_norms};
-use super::state::WheelState;
-use super::stepper::{MarchedWheel, TimeStepper};
+use super::state::{MarchedWheel, WheelState};
+use super::stepper::TimeStepper;
 use crate::linalg::Complex64;
 use crate::response::harmonic_balance::{ContactShares, Status};
 

@@ -1,8 +1,22 @@
-//! The state of a wheel at one instant.
+//! The wheel that is marched, and its state at one instant.
 
 use super::contact_march::PairMemory;
 use super::contact_rows::ContactRows;
-use super::stepper::MarchedWheel;
+use crate::linalg::Complex64;
+use crate::response::harmonic_balance::{ContactInterface, Structure};
+
+/// What is marched: a whole wheel with its contact law under one excitation.
+#[derive(Debug, Clone, Copy)]
+pub struct MarchedWheel<'a> {
+    /// Structure with a damping that has a time-domain form, all sectors, real rows.
+    pub structure: &'a Structure,
+    /// Law and pairs of one sector, the normal load included.
+    pub interface: &'a ContactInterface,
+    /// Modal force of the excitation, `n_modes`.
+    pub force: &'a [Complex64],
+    /// Angular frequency of the excitation, rad/s.
+    pub omega: f64,
+}
 
 /// Everything that the motion after an instant depends on, besides the phase of the excitation.
 #[derive(Debug, Clone, PartialEq)]

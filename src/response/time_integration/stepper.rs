@@ -18,27 +18,14 @@ use std::f64::consts::TAU;
 use super::contact_march::PairMemory;
 use super::contact_rows::ContactRows;
 use super::propagator::Propagator;
-use super::state::WheelState;
+use super::state::{MarchedWheel, WheelState};
 use crate::linalg::{Complex64, LuWorkspace, Matrix, add_times_vector, add_transpose_times_vector};
-use crate::response::harmonic_balance::{ContactInterface, Status, Structure};
+use crate::response::harmonic_balance::Status;
 
 /// Change of the corrections, relative to the largest spring force, at which they count as found.
 const CORRECTION_TOLERANCE: f64 = 1e-12;
 /// Most iterations of one step.
 const MOST_ITERATIONS: u64 = 400;
-
-/// What is marched: a whole wheel with its contact law under one excitation.
-#[derive(Debug, Clone, Copy)]
-pub struct MarchedWheel<'a> {
-    /// Structure with a damping that has a time-domain form, all sectors, real rows.
-    pub structure: &'a Structure,
-    /// Law and pairs of one sector, the normal load included.
-    pub interface: &'a ContactInterface,
-    /// Modal force of the excitation, `n_modes`.
-    pub force: &'a [Complex64],
-    /// Angular frequency of the excitation, rad/s.
-    pub omega: f64,
-}
 
 /// Marches a wheel with a fixed number of steps per period.
 pub struct TimeStepper<'a> {

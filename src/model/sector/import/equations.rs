@@ -8,7 +8,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::build::{cyclic_faces, face_sets};
-use super::import_file::{ImportFile, missing};
+use super::files::missing;
+use super::import_file::ImportFile;
 use super::problem::body_name;
 use super::run::Run;
 use crate::model::sector::error::ModelError;

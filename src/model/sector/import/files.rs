@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use super::import_file::missing;
 use super::matrices::{MatrixFiles, MatrixFormat};
 use super::tables::{BliskTable, RingTable};
 use crate::input::Problem;
@@ -176,4 +175,10 @@ fn with_suffix(job: &Path, suffix: &str) -> PathBuf {
     name.push(".");
     name.push(suffix);
     PathBuf::from(name)
+}
+
+/// A finding of a key that is not there.
+pub(super) fn missing(key: impl Into<String>, accepted: &str) -> (String, Problem) {
+    let accepted = accepted.to_owned();
+    (key.into(), Problem::Missing { accepted })
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toml::Table;
 
-use super::files::{RunFiles, files};
+use super::files::{RunFiles, files, missing};
 use super::keys::import_keys;
 use super::matrices::{MatrixFiles, MatrixFormat};
 use super::source::Source;
@@ -123,12 +123,6 @@ impl ImportFile {
     pub fn written(&self, key: &str) -> String {
         self.map.value(key)
     }
-}
-
-/// A finding of a key that is not there.
-pub(super) fn missing(key: impl Into<String>, accepted: &str) -> (String, Problem) {
-    let accepted = accepted.to_owned();
-    (key.into(), Problem::Missing { accepted })
 }
 
 /// What keys have to do with each other.

@@ -1,0 +1,41 @@
+//! What the laws of all pairs of a wheel read and write, and what they say of their states.
+
+use super::{ContactInterface, PairHarmonics, PairJacobian};
+
+/// The contact pairs of a wheel, sector after sector, with their vectors of one evaluation.
+pub(super) struct WheelPairs<'a> {
+    pub(super) interface: &'a ContactInterface,
+    /// Number of contact rows over all sectors.
+    pub(super) rows: usize,
+    /// Displacement, m, and correction of the force, N, at the contact rows, coefficient after coefficient
+    /// (`n_coefficients x rows`); corrections are zero at first.
+    pub(super) displacement: &'a [f64],
+    pub(super) correction: &'a mut [f64],
+    /// The law of one pair, for derivatives.
+    pub(super) one: &'a mut PairHarmonics,
+    /// Whether a pair slips or separates.
+    pub(super) active: &'a mut [bool],
+    /// Of every pair where derivatives are wanted.
+    pub(super) jacobians: &'a mut [PairJacobian],
+}
+
+impl WheelPairs<'_> {
+    /// Contact rows of the wheel along n, t1 and t2 of a pair.
+    pub(super) fn rows_of(&self, pair: usize) -> [Option<usize>; 3] {
+        let geometry = &self.interface.geometry;
+        let (sector, own) = (pair / geometry.rows.len(), pair % geometry.rows.len());
+        let base = sector * geometry.row_count();
+        geometry.rows[own].map(|row| row.map(|row| base + row))
+    }
+}
+
+/// Share of contact pairs in a state at any sample.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ContactShares {
+    /// Pairs slipping in any direction.
+    pub slipping: f64,
+    /// Pairs with no normal load.
+    pub separated: f64,
+    /// Pairs whose periodic state was not found; a solution with such pairs is none.
+    pub unclosed: f64,
+}
