@@ -145,7 +145,6 @@ impl fmt::Display for NumericalFinding {
 mod tests {
     use super::{NumericalError, NumericalFinding};
     use crate::population::statistics::percentile;
-    use crate::report::Warning;
 
     #[test]
     fn an_error_is_large_or_needless_beside_the_interval() {
@@ -161,20 +160,20 @@ mod tests {
                 met,
                 simpler_law: None,
             };
-            error.warnings(&[found])
+            error.findings(&[found])
         };
         assert!(matches!(
             warned(0.11, true)[..],
-            [Warning::NumericalError(NumericalFinding::Large { .. })]
+            [NumericalFinding::Large { .. }]
         ));
         assert!(warned(0.09, true).is_empty() && warned(0.011, true).is_empty());
         assert!(matches!(
             warned(0.009, true)[..],
-            [Warning::NumericalError(NumericalFinding::Needless { .. })]
+            [NumericalFinding::Needless { .. }]
         ));
         assert!(matches!(
             warned(0.09, false)[..],
-            [Warning::NumericalError(NumericalFinding::Missed { .. })]
+            [NumericalFinding::Missed { .. }]
         ));
     }
 }

@@ -21,6 +21,13 @@ impl ContactInterface {
         self.geometry.rows.len()
     }
 
+    /// Contact rows of the wheel along n, t1 and t2 of a pair, which is counted sector after sector.
+    pub(super) fn rows_of(&self, pair: usize) -> [Option<usize>; 3] {
+        let (sector, own) = (pair / self.per_sector(), pair % self.per_sector());
+        let base = sector * self.geometry.row_count();
+        self.geometry.rows[own].map(|row| row.map(|row| base + row))
+    }
+
     /// Parameters of a pair of the wheel.
     #[must_use]
     pub fn pair(&self, pair: usize) -> &PairParameters {

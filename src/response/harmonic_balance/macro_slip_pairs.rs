@@ -105,7 +105,7 @@ impl MacroSlipPairs {
             let open = parameters.normal_load_n <= 0.0;
             separated += usize::from(open);
             wheel.active[pair] = open;
-            let [_, along @ ..] = wheel.rows_of(pair);
+            let [_, along @ ..] = wheel.interface.rows_of(pair);
             for (tangent, row) in along.into_iter().enumerate().take(tangents) {
                 let Some(row) = row else { continue };
                 let motion = wheel.displacement.chunks_exact(rows.max(1));
@@ -339,7 +339,7 @@ mod tests {
                 assert_eq!(workspace.active[pair], state.slipping || state.separated);
                 let rows = workspace.correction.len() / count;
                 for tangent in 0..2 {
-                    let row = system.tangential_row(pair, tangent).expect("a row");
+                    let row = system.interface.rows_of(pair)[1 + tangent].expect("a row");
                     let expected = correction[(1 + tangent) * count..].iter().take(count);
                     for (c, expected) in expected.enumerate() {
                         let found = workspace.correction[c * rows + row];

@@ -148,7 +148,7 @@ impl Simplified3dPairs {
             sums: &mut self.excursions,
         });
         for pair in 0..wheel.active.len() {
-            let places = wheel.rows_of(pair);
+            let places = wheel.interface.rows_of(pair);
             let mut excursions = places.map(|row| row.map_or(0.0, |row| self.excursions[row]));
             if let (Some(row), 1) = (places[0], mean) {
                 excursions[0] += wheel.displacement[row].abs();
@@ -168,7 +168,7 @@ impl Simplified3dPairs {
             let parameters = wheel.interface.pair(pair);
             self.normal_load[lane] = parameters.normal_load_n;
             self.friction[lane] = parameters.friction_coefficient;
-            for (direction, row) in wheel.rows_of(pair).into_iter().enumerate() {
+            for (direction, row) in wheel.interface.rows_of(pair).into_iter().enumerate() {
                 let spring = if direction == 0 {
                     parameters.normal_stiffness_n_per_m
                 } else {

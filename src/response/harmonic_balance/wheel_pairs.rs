@@ -19,16 +19,6 @@ pub(super) struct WheelPairs<'a> {
     pub(super) jacobians: &'a mut [PairJacobian],
 }
 
-impl WheelPairs<'_> {
-    /// Contact rows of the wheel along n, t1 and t2 of a pair.
-    pub(super) fn rows_of(&self, pair: usize) -> [Option<usize>; 3] {
-        let geometry = &self.interface.geometry;
-        let (sector, own) = (pair / geometry.rows.len(), pair % geometry.rows.len());
-        let base = sector * geometry.row_count();
-        geometry.rows[own].map(|row| row.map(|row| base + row))
-    }
-}
-
 /// Share of contact pairs in a state at any sample.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ContactShares {
