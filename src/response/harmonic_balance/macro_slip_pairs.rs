@@ -92,7 +92,11 @@ impl MacroSlipPairs {
     }
 
     /// The corrections of all pairs, with their derivatives where these are wanted.
-    pub(super) fn correct(&mut self, derivative: bool, wheel: WheelPairs<'_>) -> ContactShares {
+    pub(super) fn correct(
+        &mut self,
+        derivative: bool,
+        wheel: &mut WheelPairs<'_>,
+    ) -> ContactShares {
         let (pairs, rows) = (wheel.active.len(), wheel.rows);
         let (tangents, count) = (
             wheel.interface.law.tangents(),

@@ -96,8 +96,12 @@ impl Simplified3dPairs {
     }
 
     /// The corrections of all pairs, with their derivatives where these are wanted.
-    pub(super) fn correct(&mut self, derivative: bool, wheel: WheelPairs<'_>) -> ContactShares {
-        self.choose(&wheel);
+    pub(super) fn correct(
+        &mut self,
+        derivative: bool,
+        wheel: &mut WheelPairs<'_>,
+    ) -> ContactShares {
+        self.choose(wheel);
         wheel.active.fill(false);
         if derivative {
             wheel.jacobians.iter_mut().for_each(PairJacobian::clear);

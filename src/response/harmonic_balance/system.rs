@@ -388,7 +388,7 @@ impl HarmonicSystem {
             return None;
         }
         let count = workspace.active.len();
-        let wheel = WheelPairs {
+        let wheel = &mut WheelPairs {
             interface: &self.interface,
             rows: self.rows,
             displacement: &workspace.displacement,
