@@ -13,7 +13,7 @@ pub enum Steps {
     /// large) that is renewed where they shrink too slowly.
     Accelerated,
     /// The same with a Jacobian that is renewed as soon as steps do not shrink fast: for a system that
-    /// [`HarmonicSystem::condenses`].
+    /// [`super::HarmonicSystem::condenses`].
     Renewed,
     /// From a good start: the acceleration alone, with the derivatives of harmonic 1 and of every other one by
     /// themselves, found once. Steps may grow on the way.
