@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::row::MistunedPeak;
 use super::row_engine::RowEngine;
+use super::row_solver::MistunedPeak;
 use super::{ResponseRow, RowSolver, Scenario, TunedReference, harmonics_name};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{

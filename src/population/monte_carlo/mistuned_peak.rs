@@ -1,6 +1,6 @@
 //! The peak of a mistuned wheel: where it is sought, with which harmonics, and its errors.
 
-use super::row::MistunedPeak;
+use super::row_solver::MistunedPeak;
 use super::{RowSolver, Scenario, TunedReference};
 use crate::response::forced_response::{
     ContactCondition, ErrorEstimate, Excited, FrequencyBand, Peak, PointSettings, Search,

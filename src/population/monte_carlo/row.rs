@@ -1,6 +1,6 @@
-//! One row of `responses.parquet`: what became of one (scenario, pattern).
+//! One row of `responses.parquet`: what became of one (scenario, pattern), and its amplification factor.
 
-use crate::response::forced_response::{ErrorEstimate, Peak};
+use crate::response::forced_response::ErrorEstimate;
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::PairFactors;
 
@@ -78,12 +78,6 @@ pub struct TunedReference {
     pub harmonics: String,
     /// Errors of the solution at the peak.
     pub errors: Option<ErrorEstimate>,
-}
-
-/// A peak as a row states it.
-pub(super) struct MistunedPeak {
-    pub(super) peak: Peak,
-    pub(super) errors: Option<ErrorEstimate>,
 }
 
 /// Largest amplitude over blades and frequency of the mistuned wheel over that of the tuned wheel

@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use super::row::MistunedPeak;
 use super::row_engine::RowEngine;
 use super::{
     ErrorTolerance, HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, HarmonicChoice, LoadCaseName,
@@ -13,8 +12,8 @@ use super::{
 use crate::linalg::Matrix;
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
-    ContactCondition, Excited, LimitsWanted, Peak, Point, PointSettings, Screening, SolverOptions,
-    Wheel, Window, peak, screen, wheel_force,
+    ContactCondition, ErrorEstimate, Excited, LimitsWanted, Peak, Point, PointSettings, Screening,
+    SolverOptions, Wheel, Window, peak, screen, wheel_force,
 };
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{Damping, Status, TransformError};
@@ -86,6 +85,12 @@ pub struct RowSolver {
     pub(super) engine: Option<RowEngine>,
     /// Solvers of the further load cases of the study.
     pub(super) load_cases: Vec<(LoadCaseName, RowSolver)>,
+}
+
+/// A peak as a row states it.
+pub(super) struct MistunedPeak {
+    pub(super) peak: Peak,
+    pub(super) errors: Option<ErrorEstimate>,
 }
 
 /// What solves the rows that this solver is not good enough for.

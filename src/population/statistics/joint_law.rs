@@ -1,7 +1,7 @@
 //! The joint law of a surrogate and the value that it stands for, as a pilot shows it.
 
-/// Pairs of a surrogate and a value at least.
-const FEWEST_PAIRS: usize = 15;
+/// Rows of a pilot, and of the whole sample, at least.
+pub(super) const FEWEST_PILOT: usize = 30;
 /// Factor on the spread about the surrogate that the pilot shows: it may be larger in the tail.
 const SPREAD_SAFETY: f64 = 1.25;
 
@@ -22,7 +22,7 @@ impl JointLaw {
     /// None where pairs are too few, or the surrogate does not vary with the value.
     pub(super) fn of(pairs: impl Iterator<Item = (f64, f64)>) -> Option<Self> {
         let pairs: Vec<(f64, f64)> = pairs.collect();
-        if pairs.len() < FEWEST_PAIRS {
+        if pairs.len() < FEWEST_PILOT / 2 {
             return None;
         }
         let count = pairs.len() as f64;

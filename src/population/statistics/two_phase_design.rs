@@ -12,7 +12,7 @@ use rand::RngExt;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use super::joint_law::JointLaw;
+use super::joint_law::{FEWEST_PILOT, JointLaw};
 use super::resampling_stream;
 
 /// Topic of the stream of the permanent random numbers.
@@ -25,8 +25,6 @@ const EDGES: [f64; 15] = [
 const TOP_SHARE: f64 = 0.75;
 /// Share of the solves that the pilot has.
 const PILOT_SHARE: f64 = 0.3;
-/// Rows of a pilot, and of the whole sample, at least.
-const FEWEST_PILOT: usize = 30;
 /// Rows of a stratum at least, as far as it has as many patterns.
 pub(super) const FEWEST_OF_STRATUM: usize = 2;
 /// Predicted gain over crude sampling from which on two-phase sampling is taken.

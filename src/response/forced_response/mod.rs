@@ -1,4 +1,4 @@
-//! Linear limits, sweep, peak search, and the one definition of the amplification factor.
+//! Linear limits, sweep, peak search, and the errors of a peak.
 
 mod a_posteriori;
 mod attempt;
