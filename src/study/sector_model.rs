@@ -100,17 +100,17 @@ pub(super) fn judging_patterns(
 /// A refused option is a mistake of the study file, which has its line.
 fn refused(study: &Study, error: ModelError) -> StudyError {
     match error {
-        ModelError::Option { ref key, .. } | ModelError::NeedsMass { ref key, .. } => {
-            StudyError::Invalid {
-                path: study.path.clone(),
-                findings: vec![study.map.finding(
-                    key,
-                    Problem::Conflict {
-                        reason: error.to_string(),
-                    },
-                )],
-            }
-        }
+        ModelError::Option { ref key, .. }
+        | ModelError::NeedsMass { ref key, .. }
+        | ModelError::Chain { ref key, .. } => StudyError::Invalid {
+            path: study.path.clone(),
+            findings: vec![study.map.finding(
+                key,
+                Problem::Conflict {
+                    reason: error.to_string(),
+                },
+            )],
+        },
         error => StudyError::Model(Box::new(error)),
     }
 }

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use blisk::linalg::{Complex64, Matrix, SymmetricSparse};
 use blisk::model::cyclic::ContactGeometry;
 use blisk::model::reduction::BasisChoice;
-use blisk::model::sector::{Body, Component, ContactPair, Dof, ObservedNode, SectorModel, lumped};
+use blisk::model::sector::{
+    Body, Component, ContactPair, ContactSide, Dof, ObservedNode, SectorModel, lumped,
+};
 use blisk::response::forced_response::{PointSettings, PointSolver, ResponseTrace, SolverOptions};
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{
@@ -217,8 +219,8 @@ fn oscillator_wheel() -> Wheel {
         dofs: vec![dof(0, Body::Blisk), dof(1, Body::Ring)],
         cyclic_pairs: Vec::new(),
         contact_pairs: vec![ContactPair {
-            blisk_node: 0,
-            ring_node: 1,
+            first: ContactSide::Node(0),
+            second: ContactSide::Node(1),
             normal: [1.0, 0.0, 0.0],
             weight: 1.0,
             load_weight: None,

@@ -9,6 +9,7 @@ mod condensation;
 mod contact;
 mod contact_variation;
 mod continuation;
+mod dampers;
 mod error_columns;
 mod extremes;
 mod finite_element;

@@ -32,7 +32,7 @@ fn spring_states(sector: &CyclicSector<'_>) -> [Vec<f64>; 3] {
 fn unreduced(sector: &CyclicSector<'_>, h: usize, springs: &[f64], count: usize) -> Vec<f64> {
     let stiffness = sector
         .stiffness(h)
-        .plus(1.0, &sector.contact_stiffness(springs));
+        .plus(1.0, &sector.contact_stiffness(springs, h));
     let factor = stiffness.factor().unwrap();
     lowest_modes(&factor, &sector.mass(h), 0.0, count)
         .unwrap()

@@ -6,7 +6,8 @@ use std::path::Path;
 use blisk::linalg::{Complex64, SymmetricSparse};
 use blisk::model::cyclic::{CentrifugalError, Hoop, centrifugal_contact};
 use blisk::model::sector::{
-    Body, Component, ContactPair, Dof, ObservedNode, ParametricOptions, SectorModel, parametric,
+    Body, Component, ContactPair, ContactSide, Dof, ObservedNode, ParametricOptions, SectorModel,
+    parametric,
 };
 use blisk::response::forced_response::ContactCondition;
 use blisk::study::{Study, load_sector_model};
@@ -82,8 +83,8 @@ fn thin_ring(foundations: &[Foundation]) -> SectorModel {
         contact_pairs: on
             .iter()
             .map(|&(node, _)| ContactPair {
-                blisk_node: node,
-                ring_node: low.0,
+                first: ContactSide::Node(node),
+                second: ContactSide::Node(low.0),
                 normal: [-1.0, 0.0, 0.0],
                 weight: 1.0 / count,
                 load_weight: None,

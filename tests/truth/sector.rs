@@ -52,7 +52,7 @@ impl Sector {
         let nodes: Vec<usize> = model
             .contact_pairs
             .iter()
-            .flat_map(|pair| [pair.blisk_node, pair.ring_node])
+            .flat_map(|pair| [pair.first.node().unwrap(), pair.second.node().unwrap()])
             .chain([tip])
             .collect();
         let forced = |dof: usize| model.force.iter().any(|own| own.0 == dof);
@@ -101,8 +101,8 @@ impl Sector {
         let pairs = model.contact_pairs.iter().map(|pair| {
             let [t1, t2] = tangents(pair.normal);
             let row = |direction| {
-                let mut row = along(pair.blisk_node, direction, 1.0);
-                row.extend(along(pair.ring_node, direction, -1.0));
+                let mut row = along(pair.first.node().unwrap(), direction, 1.0);
+                row.extend(along(pair.second.node().unwrap(), direction, -1.0));
                 row
             };
             Pair {

@@ -248,10 +248,10 @@ impl Equilibrium {
             rows[row.pair] = row
                 .entries
                 .iter()
-                .flat_map(|&(dof, factor)| {
-                    self.coordinates[dof]
-                        .iter()
-                        .map(move |&(place, own)| (place, own * factor))
+                .flat_map(|entry| {
+                    // In nodal diameter 0 the next sector moves as this one.
+                    let places = self.coordinates[entry.dof].iter();
+                    places.map(move |&(place, own)| (place, own * entry.factor))
                 })
                 .collect();
         }

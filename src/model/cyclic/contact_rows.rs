@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::sector::{Body, Component, ContactPair, Dof, SectorModel};
+use crate::model::sector::{Body, Component, ContactPair, ContactSide, Dof, SectorModel};
 
 /// Direction of a relative motion at a pair, in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Direction {
-    /// Along the outward normal of the blisk's surface; positive = pressed together.
+    /// Along the outward normal of the first side's surface; positive = pressed together.
     Normal,
     /// First tangent: the normalised projection of `e_theta` (of `e_z` if the normal is nearly `e_theta`).
     Tangent1,
@@ -20,15 +20,26 @@ impl Direction {
     pub const ALL: [Self; 3] = [Self::Normal, Self::Tangent1, Self::Tangent2];
 }
 
-/// Relative displacement `d = u_blisk - u_ring` of one pair along one direction.
+/// Relative displacement `d = u_first - u_second` of one pair along one direction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactRow {
     /// Index of the pair in the sector.
     pub pair: usize,
     /// Direction.
     pub direction: Direction,
-    /// `(dof, factor)` over the sector's dofs.
-    pub entries: Vec<(usize, f64)>,
+    /// Its entries over the dofs of the sector and of the next one.
+    pub entries: Vec<RowEntry>,
+}
+
+/// An entry of a contact row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RowEntry {
+    /// Dof of the sector model.
+    pub dof: usize,
+    /// Whether the dof is that of the next sector.
+    pub is_next: bool,
+    /// Factor on its displacement.
+    pub factor: f64,
 }
 
 /// The contact interface of one sector.
@@ -93,19 +104,25 @@ fn frame(pair: &ContactPair) -> [[f64; 3]; 3] {
     [n, t1, t2]
 }
 
-/// Tangential components of the ring's rigid motions at each pair.
+/// Tangential components of the ring's rigid motions at each pair, none where the second side is not on the ring.
 fn ring_motion(model: &SectorModel) -> Vec<[[f64; 2]; 2]> {
     let radius = |pair: &ContactPair| {
-        let dof = model.dofs.iter().find(|dof| dof.node == pair.ring_node);
-        dof.map_or(0.0, |dof| dof.position_m[0].hypot(dof.position_m[1]))
+        let node = pair.second.node()?;
+        let dof = model.dofs.iter().find(|dof| dof.node == node)?;
+        let [x, y, _] = dof.position_m;
+        (dof.body == Body::Ring).then(|| x.hypot(y))
     };
     let pairs = &model.contact_pairs;
-    let mean: f64 = pairs.iter().map(|pair| pair.weight * radius(pair)).sum();
+    let lever = |pair: &ContactPair| pair.weight * radius(pair).unwrap_or(0.0);
+    let mean: f64 = pairs.iter().map(lever).sum();
     pairs
         .iter()
         .map(|pair| {
+            let Some(radius) = radius(pair) else {
+                return [[0.0; 2]; 2];
+            };
             let [_, t1, t2] = frame(pair);
-            let lever = if mean > 0.0 { radius(pair) / mean } else { 1.0 };
+            let lever = if mean > 0.0 { radius / mean } else { 1.0 };
             [[lever * t1[1], lever * t2[1]], [t1[2], t2[2]]]
         })
         .collect()
@@ -165,12 +182,16 @@ pub fn contact_rows(model: &SectorModel) -> (Vec<ContactRow>, ContactGeometry) {
             Direction::ALL.into_iter().zip(frame(pair)).zip(&mut places)
         {
             let mut entries = Vec::new();
-            for (node, sign) in [(pair.blisk_node, 1.0), (pair.ring_node, -1.0)] {
+            for (side, sign) in [(pair.first, 1.0), (pair.second, -1.0)] {
                 for (component, factor) in COMPONENTS.into_iter().zip(vector) {
-                    if let Some(dof) = model.dof_of(node, component)
+                    if let Some(dof) = side.node().and_then(|node| model.dof_of(node, component))
                         && factor != 0.0
                     {
-                        entries.push((dof, sign * factor));
+                        entries.push(RowEntry {
+                            dof,
+                            is_next: matches!(side, ContactSide::NextSector(_)),
+                            factor: sign * factor,
+                        });
                     }
                 }
             }
@@ -195,8 +216,8 @@ mod tests {
     #[test]
     fn the_frame_of_a_ring_under_a_flange_is_theta_and_minus_z() {
         let pair = ContactPair {
-            blisk_node: 0,
-            ring_node: 1,
+            first: ContactSide::Node(0),
+            second: ContactSide::Node(1),
             normal: [-1.0, 0.0, 0.0],
             weight: 1.0,
             load_weight: None,

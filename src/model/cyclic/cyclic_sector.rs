@@ -1,6 +1,6 @@
 //! A sector under cyclic symmetry: its independent dofs and its matrices per nodal diameter.
 
-use super::contact_rows::{ContactGeometry, ContactRow, contact_rows};
+use super::contact_rows::{ContactGeometry, ContactRow, RowEntry, contact_rows};
 use super::nodal_diameter::phase;
 use crate::linalg::{Complex64, HermitianSparse, Matrix, SymmetricSparse};
 use crate::model::sector::{Component, SectorModel};
@@ -133,31 +133,29 @@ impl<'a> CyclicSector<'a> {
         &self.geometry
     }
 
-    /// Relative-motion rows C of the sector's contact, `rows x dimension`, as sparse rows of
-    /// `(independent dof, factor)`.
+    /// Relative-motion rows of the sector's contact in nodal diameter h, `C_h = C_0 + C_1 e^{i h alpha}` with
+    /// `C_1` what moves in the next sector; `rows x dimension`, as sparse rows of `(independent dof, factor)`.
     #[must_use]
-    pub fn contact_rows(&self) -> Vec<Vec<(usize, f64)>> {
-        self.rows
-            .iter()
-            .map(|row| {
-                row.entries
-                    .iter()
-                    .map(|&(dof, factor)| (self.independent[dof].0, factor))
-                    .collect()
-            })
+    pub fn contact_rows(&self, h: usize) -> Vec<Vec<(usize, Complex64)>> {
+        let next = phase(h, 1, self.model.sectors);
+        let entry = |entry: &RowEntry| {
+            let wave = if entry.is_next { next } else { Complex64::ONE };
+            (self.independent[entry.dof].0, wave * entry.factor)
+        };
+        let rows = self.rows.iter();
+        rows.map(|row| row.entries.iter().map(entry).collect())
             .collect()
     }
 
-    /// `C^T diag(springs) C` over the independent dofs.
+    /// `C_h^H diag(springs) C_h` over the independent dofs.
     #[must_use]
-    pub fn contact_stiffness(&self, springs: &[f64]) -> HermitianSparse {
-        let rows = self.contact_rows();
+    pub fn contact_stiffness(&self, springs: &[f64], h: usize) -> HermitianSparse {
+        let rows = self.contact_rows(h);
         HermitianSparse::from_triplets(
             self.dimension(),
             rows.iter().zip(springs).flat_map(|(row, &spring)| {
                 row.iter().flat_map(move |&(i, a)| {
-                    row.iter()
-                        .map(move |&(j, b)| (i, j, Complex64::new(spring * a * b, 0.0)))
+                    row.iter().map(move |&(j, b)| (i, j, spring * a.conj() * b))
                 })
             }),
         )
@@ -172,10 +170,10 @@ impl<'a> CyclicSector<'a> {
             .iter()
             .enumerate()
             .filter(|(_, dof)| {
-                self.model
-                    .contact_pairs
-                    .iter()
-                    .any(|pair| pair.blisk_node == dof.node || pair.ring_node == dof.node)
+                let pairs = self.model.contact_pairs.iter();
+                pairs
+                    .flat_map(|pair| [pair.first.node(), pair.second.node()])
+                    .any(|node| node == Some(dof.node))
             })
             .map(|(index, _)| self.independent[index].0)
             .collect();

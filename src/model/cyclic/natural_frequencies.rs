@@ -31,9 +31,10 @@ pub fn natural_frequencies_hz(
     count: usize,
 ) -> Result<Vec<Vec<f64>>, ModelError> {
     let sector = CyclicSector::new(model);
-    let contact = sector.contact_stiffness(&sector.contact().springs(per_sector));
+    let springs = sector.contact().springs(per_sector);
     (0..=model.sectors / 2)
         .map(|h| {
+            let contact = sector.contact_stiffness(&springs, h);
             let stiffness = sector.stiffness(h).plus(1.0, &contact);
             let mass = sector.mass(h);
             if mass.factor().is_err() {

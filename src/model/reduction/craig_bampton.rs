@@ -175,7 +175,7 @@ impl CraigBampton {
         });
         let stiffness = sector.stiffness(h);
         let mass = sector.mass(h);
-        let stuck = stiffness.plus(1.0, &sector.contact_stiffness(stick_springs));
+        let stuck = stiffness.plus(1.0, &sector.contact_stiffness(stick_springs, h));
         let factor = stuck
             .factor()
             .map_err(|_| ModelError::StiffnessNotPositiveDefinite {
@@ -312,11 +312,11 @@ impl CraigBampton {
     ) -> Self {
         let reduced_stiffness = recovery.adjoint_times(&stiffness.times(&recovery));
         let reduced_mass = recovery.adjoint_times(&mass.times(&recovery));
-        let rows = sector.contact_rows();
+        let rows = sector.contact_rows(nodal_diameter);
         let contact = Matrix::from_fn(rows.len(), recovery.columns(), |i, j| {
             rows[i]
                 .iter()
-                .map(|&(dof, factor)| recovery[(dof, j)] * factor)
+                .map(|&(dof, factor)| factor * recovery[(dof, j)])
                 .sum()
         });
         Self {

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use super::chain_problem::ChainProblem;
+use super::contact_problem::ContactProblem;
 use super::error_place::{Accepted, Item, Matrix, Place, StiffnessKind};
 use super::import::ImportProblem;
 use super::line_problem::LineProblem;
@@ -22,6 +24,14 @@ pub enum ModelError {
         value: f64,
         /// What is accepted.
         accepted: Accepted,
+    },
+    /// A named mass of a lumped sector, or what joins two of them, is refused.
+    #[error("`{key}`: {problem}")]
+    Chain {
+        /// Full key, such as `model.lumped.spring[1].between`.
+        key: String,
+        /// What is wrong with it.
+        problem: ChainProblem,
     },
     /// A lumped spring or the ring hangs on a mass that the model does not have.
     #[error(
@@ -381,59 +391,21 @@ pub enum ModelError {
         /// Its component.
         component: Component,
     },
-    /// A contact node belongs to the wrong body.
-    #[error(
-        "contact pair {pair} has node {node} on the wrong body; accepted: the blisk node on the blisk, the ring node on the ring"
-    )]
-    ContactBody {
+    /// Something is wrong with a contact pair.
+    #[error("contact pair {pair}: {problem}")]
+    Contact {
         /// The pair.
         pair: usize,
-        /// The node.
+        /// What is wrong with it.
+        problem: ContactProblem,
+    },
+    /// A damper body that no contact pair touches.
+    #[error(
+        "node {node} belongs to a damper that no contact pair touches; accepted: dampers held by contact"
+    )]
+    DamperWithoutContact {
+        /// A node of the damper.
         node: usize,
-    },
-    /// The nodes of a contact pair have different components.
-    #[error(
-        "contact pair {pair}: nodes {blisk_node} and {ring_node} have different components; accepted: the same components on both"
-    )]
-    ContactComponents {
-        /// The pair.
-        pair: usize,
-        /// Node on the blisk.
-        blisk_node: usize,
-        /// Node on the ring.
-        ring_node: usize,
-    },
-    /// The nodes of a contact pair stand at different angles.
-    #[error(
-        "contact pair {pair}: nodes {blisk_node} and {ring_node} are {difference_rad:e} rad apart; accepted: the same theta within {tolerance_rad:e} rad"
-    )]
-    ContactAngle {
-        /// The pair.
-        pair: usize,
-        /// Node on the blisk.
-        blisk_node: usize,
-        /// Node on the ring.
-        ring_node: usize,
-        /// Difference of their angles, rad.
-        difference_rad: f64,
-        /// Largest difference accepted, rad.
-        tolerance_rad: f64,
-    },
-    /// A contact normal is not of unit length.
-    #[error("contact pair {pair}: the normal has length {length}; accepted: 1 within 1e-6")]
-    ContactNormal {
-        /// The pair.
-        pair: usize,
-        /// Length of the normal.
-        length: f64,
-    },
-    /// A contact weight is not positive.
-    #[error("contact pair {pair}: weight is {weight}; accepted: above 0")]
-    ContactWeight {
-        /// The pair.
-        pair: usize,
-        /// The weight.
-        weight: f64,
     },
     /// The contact weights do not sum to one.
     #[error("the contact weights sum to {sum}; accepted: 1 within 1e-6")]

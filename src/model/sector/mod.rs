@@ -2,10 +2,14 @@
 
 mod assembly;
 pub mod bundle;
+mod chain;
+mod chain_problem;
+mod contact_problem;
 mod error;
 mod error_place;
 pub mod hexahedron20;
 pub mod import;
+mod layout;
 mod line_problem;
 pub mod lumped;
 pub mod matrix_market;
@@ -14,14 +18,17 @@ mod parametric_mesh;
 mod parametric_options;
 mod sector_model;
 mod validate;
+mod validate_contact;
 mod validate_couplings;
 
 pub use assembly::{AssembledMesh, SolidElement, SolidMesh};
+pub use chain_problem::ChainProblem;
+pub use contact_problem::ContactProblem;
 pub use error::ModelError;
 pub use error_place::{Accepted, Item, Matrix, Place, StiffnessKind};
 pub use hexahedron20::Material;
 pub use line_problem::{LinePart, LineProblem};
-pub use lumped::LumpedOptions;
+pub use lumped::{LumpedOptions, NamedContact, NamedMass, NamedSpring};
 pub use parametric_options::ParametricOptions;
-pub use sector_model::{Body, Component, ContactPair, Dof, ObservedNode, SectorModel};
+pub use sector_model::{Body, Component, ContactPair, ContactSide, Dof, ObservedNode, SectorModel};
 pub use validate::{validate, validate_force};

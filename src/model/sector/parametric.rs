@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use super::error::ModelError;
 use super::parametric_mesh::ParametricMesh;
 use super::parametric_options::ParametricOptions;
-use super::sector_model::{Body, Component, ContactPair, ObservedNode, SectorModel};
+use super::sector_model::{Body, Component, ContactPair, ContactSide, ObservedNode, SectorModel};
 use super::validate::validate;
 use crate::linalg::{Complex64, SymmetricSparse};
 
@@ -49,8 +49,8 @@ pub fn build(options: &ParametricOptions) -> Result<SectorModel, ModelError> {
         .facing_nodes()
         .into_iter()
         .map(|facing| ContactPair {
-            blisk_node: facing.blisk_node,
-            ring_node: facing.ring_node,
+            first: ContactSide::Node(facing.blisk_node),
+            second: ContactSide::Node(facing.ring_node),
             normal: [-1.0, 0.0, 0.0],
             weight: facing.weight,
             load_weight: None,

@@ -1,4 +1,6 @@
-//! One cyclic sector of a bladed disk with ring damper, in physical degrees of freedom.
+//! One cyclic sector of a bladed disk with its dampers, in physical degrees of freedom.
+
+use serde::{Deserialize, Serialize};
 
 use crate::linalg::{Complex64, SymmetricSparse};
 
@@ -17,12 +19,15 @@ pub enum Component {
 }
 
 /// The body a node belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Body {
     /// Disk and blade.
     Blisk,
     /// Ring damper.
     Ring,
+    /// Damper body of one sector, for instance a wedge between the platforms of neighbouring blades.
+    Damper,
 }
 
 /// A degree of freedom: one component of one node.
@@ -38,14 +43,36 @@ pub struct Dof {
     pub body: Body,
 }
 
-/// A pair of facing nodes of blisk and ring.
+/// One of the two sides that meet in a contact pair of sector n.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum ContactSide {
+    /// A node of sector n.
+    Node(usize),
+    /// The copy of a node in the next sector, n + 1.
+    NextSector(usize),
+    /// What does not move.
+    Ground,
+}
+
+impl ContactSide {
+    /// The node of the sector model, none for the ground.
+    #[must_use]
+    pub fn node(self) -> Option<usize> {
+        match self {
+            Self::Node(node) | Self::NextSector(node) => Some(node),
+            Self::Ground => None,
+        }
+    }
+}
+
+/// A pair of facing points in contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactPair {
-    /// Node on the blisk.
-    pub blisk_node: usize,
-    /// Node on the ring.
-    pub ring_node: usize,
-    /// Unit outward normal of the blisk's surface (pointing into the ring), in (r, theta, z).
+    /// Side whose surface has the normal: the blisk of a ring damper.
+    pub first: ContactSide,
+    /// Side that it presses on: the ring of a ring damper. Only this one may be the ground.
+    pub second: ContactSide,
+    /// Unit outward normal of the first side's surface (pointing into the second), in (r, theta, z).
     pub normal: [f64; 3],
     /// Share of the sector's contact stiffness; the shares of a sector sum to 1.
     pub weight: f64,
@@ -90,7 +117,7 @@ pub struct SectorModel {
     pub dofs: Vec<Dof>,
     /// `(low_dof, high_dof)`: the same component on the two cyclic faces.
     pub cyclic_pairs: Vec<(usize, usize)>,
-    /// Contact pairs; no node on the high face. Empty for a model without ring.
+    /// Contact pairs; no node on the high face. Empty for a model without contact.
     pub contact_pairs: Vec<ContactPair>,
     /// Complex force amplitude on sector 0 as `(dof, newton)`.
     pub force: Vec<(usize, Complex64)>,

@@ -1,63 +1,20 @@
 //! Checks of a sector model before anything is computed with it: refused or untouched, never repaired.
 
-use std::collections::HashMap;
-use std::f64::consts::TAU;
+use std::collections::{HashMap, HashSet};
 
 use super::error::ModelError;
 use super::error_place::{Item, Matrix, Place};
-use super::sector_model::{Component, Dof, MAX_SECTORS, SectorModel};
+use super::layout::{Layout, advanced, distance, finite, position_tolerance_of};
+use super::sector_model::{Dof, MAX_SECTORS, SectorModel};
+use super::validate_contact::{check_contact, touching_one_sector_on};
 use super::validate_couplings::check_couplings;
 use crate::linalg::{Complex64, SymmetricSparse};
 
-/// Tolerance on positions, as a fraction of the largest distance from the origin.
-const POSITION_TOLERANCE: f64 = 1e-6;
-/// Tolerance on the angle of contact nodes, rad.
-const ANGLE_TOLERANCE_RAD: f64 = 1e-6;
-/// Tolerance on the length of normals and the sum of weights.
-const UNIT_TOLERANCE: f64 = 1e-6;
 /// How much the blade's diagonal may exceed K's, relative: K of a rotating sector holds spin softening,
 /// which the elastic stiffness of the blade does not.
 const SOFTENING: f64 = 0.01;
 /// Relative tolerance of entry-wise tests on matrices that were rounded when written.
 const ROUNDING: f64 = 1e-9;
-
-/// Where the dofs of a node begin, and what the faces hold.
-struct Layout {
-    /// Dofs of each node, by component.
-    node_dofs: HashMap<usize, Vec<usize>>,
-    /// Whether a dof lies on the high face.
-    high: Vec<bool>,
-}
-
-impl Layout {
-    /// Components of a node, sorted.
-    fn components(&self, dofs: &[Dof], node: usize) -> Vec<Component> {
-        let mut components: Vec<Component> = self
-            .node_dofs
-            .get(&node)
-            .into_iter()
-            .flatten()
-            .map(|&dof| dofs[dof].component)
-            .collect();
-        components.sort_unstable();
-        components
-    }
-
-    /// The first dof of a node that must exist and lie off the high face.
-    fn low_or_inner(&self, place: Place, node: usize) -> Result<usize, ModelError> {
-        let dofs = self
-            .node_dofs
-            .get(&node)
-            .ok_or(ModelError::NodeUnknown { place, node })?;
-        if dofs.iter().any(|&dof| self.high[dof]) {
-            return Err(ModelError::OnHighFace {
-                place,
-                item: Item::Node(node),
-            });
-        }
-        Ok(dofs[0])
-    }
-}
 
 /// Checks a sector model as the rest of the library expects it.
 ///
@@ -171,7 +128,7 @@ fn check_cyclic(model: &SectorModel) -> Result<Vec<bool>, ModelError> {
     let count = model.dofs.len();
     let mut pair_of = vec![None; count];
     let mut is_high = vec![false; count];
-    let tolerance_m = position_tolerance_m(&model.dofs);
+    let tolerance_m = position_tolerance_of(model.dofs.iter().map(|dof| dof.position_m));
     for (pair, &(low, high)) in model.cyclic_pairs.iter().enumerate() {
         for dof in [low, high] {
             in_range(Place::CyclicPair(pair), dof, count)?;
@@ -200,7 +157,7 @@ fn check_cyclic(model: &SectorModel) -> Result<Vec<bool>, ModelError> {
 }
 
 /// Every dof of a face is paired: where a node and its image one sector on both exist, each
-/// component of both must stand in a cyclic pair.
+/// component of both must stand in a cyclic pair. Nodes that touch one sector on are in contact, not joined.
 fn check_faces_complete(model: &SectorModel, layout: &Layout) -> Result<(), ModelError> {
     let mut paired = vec![false; model.dofs.len()];
     for &(low, high) in &model.cyclic_pairs {
@@ -223,13 +180,18 @@ fn check_faces_complete(model: &SectorModel, layout: &Layout) -> Result<(), Mode
         return Ok(());
     }
     // Nodes sorted by z, so that the image of a node is sought among those at its height.
-    let tolerance_m = position_tolerance_m(&model.dofs);
+    let tolerance_m = position_tolerance_of(model.dofs.iter().map(|dof| dof.position_m));
     let mut by_height: Vec<usize> = layout.node_dofs.values().map(|dofs| dofs[0]).collect();
     by_height.sort_by(|&a, &b| {
         model.dofs[a].position_m[2]
             .total_cmp(&model.dofs[b].position_m[2])
             .then(a.cmp(&b))
     });
+    let touching: HashSet<[usize; 2]> = model
+        .contact_pairs
+        .iter()
+        .filter_map(touching_one_sector_on)
+        .collect();
     for &dof in &by_height {
         let image = advanced(model.dofs[dof].position_m, model.sectors);
         let start = by_height
@@ -240,6 +202,7 @@ fn check_faces_complete(model: &SectorModel, layout: &Layout) -> Result<(), Mode
             .find(|&&other| {
                 model.dofs[other].body == model.dofs[dof].body
                     && model.dofs[other].node != model.dofs[dof].node
+                    && !touching.contains(&[model.dofs[dof].node, model.dofs[other].node])
                     && distance(model.dofs[other].position_m, image) <= tolerance_m
             });
         if let Some(&other) = found {
@@ -283,69 +246,6 @@ fn check_blade_stiffness(model: &SectorModel, layout: &Layout) -> Result<(), Mod
                 whole: share,
             });
         }
-    }
-    Ok(())
-}
-
-/// Nodes, bodies, angles, normals and weights of the contact pairs.
-fn check_contact(model: &SectorModel, layout: &Layout) -> Result<(), ModelError> {
-    let mut seen: HashMap<(usize, usize), usize> = HashMap::new();
-    let mut sum = 0.0;
-    for (pair, contact) in model.contact_pairs.iter().enumerate() {
-        let place = Place::ContactPair(pair);
-        let (blisk_node, ring_node) = (contact.blisk_node, contact.ring_node);
-        let blisk = &model.dofs[layout.low_or_inner(place, blisk_node)?];
-        let ring = &model.dofs[layout.low_or_inner(place, ring_node)?];
-        for (dof, body) in [(blisk, super::Body::Blisk), (ring, super::Body::Ring)] {
-            if dof.body != body {
-                return Err(ModelError::ContactBody {
-                    pair,
-                    node: dof.node,
-                });
-            }
-        }
-        if let Some(&first) = seen.get(&(blisk_node, ring_node)) {
-            return Err(ModelError::ContactDuplicate {
-                first,
-                second: pair,
-            });
-        }
-        seen.insert((blisk_node, ring_node), pair);
-        if layout.components(&model.dofs, blisk_node) != layout.components(&model.dofs, ring_node) {
-            return Err(ModelError::ContactComponents {
-                pair,
-                blisk_node,
-                ring_node,
-            });
-        }
-        let difference_rad = angle_between(blisk.position_m, ring.position_m);
-        if difference_rad > ANGLE_TOLERANCE_RAD {
-            return Err(ModelError::ContactAngle {
-                pair,
-                blisk_node,
-                ring_node,
-                difference_rad,
-                tolerance_rad: ANGLE_TOLERANCE_RAD,
-            });
-        }
-        for value in contact.normal {
-            finite(place, value)?;
-        }
-        let length = contact.normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-        if (length - 1.0).abs() > UNIT_TOLERANCE {
-            return Err(ModelError::ContactNormal { pair, length });
-        }
-        finite(place, contact.weight)?;
-        if contact.weight <= 0.0 {
-            return Err(ModelError::ContactWeight {
-                pair,
-                weight: contact.weight,
-            });
-        }
-        sum += contact.weight;
-    }
-    if !model.contact_pairs.is_empty() && (sum - 1.0).abs() > UNIT_TOLERANCE {
-        return Err(ModelError::ContactWeightSum { sum });
     }
     Ok(())
 }
@@ -425,47 +325,10 @@ fn check_observed(model: &SectorModel, layout: &Layout) -> Result<(), ModelError
     Ok(())
 }
 
-fn finite(place: Place, value: f64) -> Result<(), ModelError> {
-    if value.is_finite() {
-        Ok(())
-    } else {
-        Err(ModelError::NotFinite { place, value })
-    }
-}
-
 fn in_range(place: Place, dof: usize, dofs: usize) -> Result<(), ModelError> {
     if dof < dofs {
         Ok(())
     } else {
         Err(ModelError::DofOutOfRange { place, dof, dofs })
     }
-}
-
-fn position_tolerance_m(dofs: &[Dof]) -> f64 {
-    position_tolerance_of(dofs.iter().map(|dof| dof.position_m))
-}
-
-/// The tolerance on the positions of a model, m.
-pub(super) fn position_tolerance_of(positions_m: impl Iterator<Item = [f64; 3]>) -> f64 {
-    let largest = positions_m
-        .map(|position| distance(position, [0.0; 3]))
-        .fold(0.0, f64::max);
-    POSITION_TOLERANCE * largest
-}
-
-/// A position turned by one sector in +theta.
-fn advanced([x, y, z]: [f64; 3], sectors: usize) -> [f64; 3] {
-    let (sin, cos) = (TAU / sectors as f64).sin_cos();
-    [x * cos - y * sin, x * sin + y * cos, z]
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
-}
-
-/// Magnitude of the difference in theta, rad.
-fn angle_between(a: [f64; 3], b: [f64; 3]) -> f64 {
-    let cross = a[0] * b[1] - a[1] * b[0];
-    let dot = a[0] * b[0] + a[1] * b[1];
-    cross.atan2(dot).abs()
 }

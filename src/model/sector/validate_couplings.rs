@@ -15,7 +15,7 @@ pub(super) fn check_couplings(model: &SectorModel) -> Result<(), ModelError> {
         (Matrix::BladeStiffness, &model.blade_stiffness),
     ];
     for (matrix, values) in matrices {
-        for body in [Body::Blisk, Body::Ring] {
+        for body in [Body::Blisk, Body::Ring, Body::Damper] {
             let nodes = solid_nodes(model, values, body);
             if nodes.len() > 1 && !couples(model, values, &nodes) {
                 let nodes = nodes.len();

@@ -1,10 +1,11 @@
 //! The keys of the models of a study file.
 
-use super::Value::{Name, Number, Table, Text, Whole};
+use super::Value::{Flag, List, Name, Number, Table, Tables, Text, Whole};
 use super::{Range, Value};
 use crate::input::{Entry, REQUIRED, entry};
 
 const ABOVE_ZERO: Value = Number(Range::above(0.0));
+const ENDS: Value = List(&Text("name of a mass, `next.NAME`, or `ground`"));
 const AT_LEAST_ZERO: Value = Number(Range::at_least(0.0));
 
 /// The table `[model]` and those below it.
@@ -38,7 +39,7 @@ pub(super) const MODEL_KEYS: &[Entry] = &[
     entry(
         "model.lumped.blade_mass_kg",
         ABOVE_ZERO,
-        "required, checked with the model",
+        "required without `mass`, checked with the model",
         "blade, kg",
     ),
     entry(
@@ -56,7 +57,7 @@ pub(super) const MODEL_KEYS: &[Entry] = &[
     entry(
         "model.lumped.blade_stiffness_n_per_m",
         ABOVE_ZERO,
-        "required, checked with the model",
+        "required without `mass`, checked with the model",
         "blade to disk, or to ground without a disk; this spring is mistuned, N/m",
     ),
     entry(
@@ -94,6 +95,79 @@ pub(super) const MODEL_KEYS: &[Entry] = &[
         AT_LEAST_ZERO,
         "0",
         "locates the ring on the disk; not the contact stiffness, N/m",
+    ),
+    entry(
+        "model.lumped.mass",
+        Tables,
+        "none",
+        "masses with names, in the place of blade, disk and ring",
+    ),
+    entry(
+        "model.lumped.mass.name",
+        Text("letters, digits, `-`, `_`, and not `ground`"),
+        REQUIRED,
+        "names the mass; each has another",
+    ),
+    entry("model.lumped.mass.mass_kg", ABOVE_ZERO, REQUIRED, "kg"),
+    entry(
+        "model.lumped.mass.body",
+        Name(&["blisk", "ring", "damper"]),
+        "`\"blisk\"`",
+        "the body that it belongs to; `damper`: one for each sector, held by contact",
+    ),
+    entry(
+        "model.lumped.spring",
+        Tables,
+        "none",
+        "springs between named masses",
+    ),
+    entry(
+        "model.lumped.spring.between",
+        ENDS,
+        REQUIRED,
+        "its two ends; one of them is a mass of the sector",
+    ),
+    entry(
+        "model.lumped.spring.stiffness_n_per_m",
+        ABOVE_ZERO,
+        REQUIRED,
+        "N/m",
+    ),
+    entry(
+        "model.lumped.spring.mistuned",
+        Flag,
+        "`false`",
+        "whether the deviation of the blade changes it; at least one is, and none to the next sector",
+    ),
+    entry(
+        "model.lumped.contact",
+        Tables,
+        "none",
+        "contacts between named masses",
+    ),
+    entry(
+        "model.lumped.contact.between",
+        ENDS,
+        REQUIRED,
+        "its two ends, as of a spring; friction acts on their relative motion",
+    ),
+    entry(
+        "model.lumped.contact.weight",
+        ABOVE_ZERO,
+        "1.0",
+        "share of the sector's contact stiffness and normal load, relative to the other contacts",
+    ),
+    entry(
+        "model.lumped.force",
+        Text("name of a mass"),
+        "required with `mass`",
+        "the mass on which 1 N acts",
+    ),
+    entry(
+        "model.lumped.observe",
+        List(&Text("name of a mass")),
+        "that of `force`",
+        "observed masses; the first has the amplitude",
     ),
     entry("model.parametric", Table, "", "the built-in bladed disk"),
     entry(

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use blisk::linalg::{Complex64, Matrix, SymmetricSparse, hermitian_pencil, orthonormal_basis};
 use blisk::model::reduction::{BasisChoice, Reduction};
 use blisk::model::sector::{
-    Body, Component, ContactPair, Dof, LumpedOptions, ObservedNode, SectorModel, lumped, validate,
+    Body, Component, ContactPair, ContactSide, Dof, LumpedOptions, ObservedNode, SectorModel,
+    lumped, validate,
 };
 use blisk::response::forced_response::{ContactCondition, SolverOptions};
 use blisk::response::friction::{ContactLaw, PairParameters};
@@ -87,8 +88,8 @@ fn comb(link: f64) -> SectorModel {
         cyclic_pairs: vec![(disk[0], next), (ring[0], next_ring)],
         contact_pairs: (0..PAIRS)
             .map(|i| ContactPair {
-                blisk_node: disk[i],
-                ring_node: ring[i],
+                first: ContactSide::Node(disk[i]),
+                second: ContactSide::Node(ring[i]),
                 normal: [-1.0, 0.0, 0.0],
                 weight: share,
                 load_weight: None,

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use blisk::linalg::{Complex64, SymmetricSparse};
 use blisk::model::reduction::BasisChoice;
 use blisk::model::sector::{
-    Body, Component, ContactPair, Dof, LumpedOptions, ObservedNode, SectorModel, lumped,
+    Body, Component, ContactPair, ContactSide, Dof, LumpedOptions, ObservedNode, SectorModel,
+    lumped,
 };
 use blisk::population::monte_carlo::{ResponseRow, RowSolver, Scenario, TunedReference};
 use blisk::response::forced_response::{ContactCondition, SolverOptions};
@@ -136,8 +137,8 @@ pub fn spatial_sector(sectors: usize) -> SectorModel {
         dofs,
         cyclic_pairs: pairs(DISK, 3).chain(pairs(RING, 4)).collect(),
         contact_pairs: vec![ContactPair {
-            blisk_node: DISK,
-            ring_node: RING,
+            first: ContactSide::Node(DISK),
+            second: ContactSide::Node(RING),
             normal: [-1.0, 0.0, 0.0],
             weight: 1.0,
             load_weight: None,

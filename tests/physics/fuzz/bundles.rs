@@ -147,6 +147,7 @@ fn random_models_read_back_equal() {
             ring_coupling_stiffness_n_per_m: draw(1e-9, 1e15),
             ring_disk_stiffness_n_per_m: draw(1e-9, 1e15),
             sectors: random.integer(1, 10_000),
+            ..LumpedOptions::default()
         };
         let model = lumped::build(&options).unwrap();
         bundle::write(&model, folder.path()).unwrap();

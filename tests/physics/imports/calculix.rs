@@ -151,7 +151,7 @@ fn contact_weights_are_the_areas_round_the_nodes_and_normals_point_into_the_ring
     for pair in &model.contact_pairs {
         let at = [0.0, 6.5, 8.5]
             .iter()
-            .position(|a: &f64| (a - angle(pair.blisk_node)).abs() < 1e-6);
+            .position(|a: &f64| (a - angle(pair.first.node().unwrap())).abs() < 1e-6);
         let expected = shares[at.unwrap()] / total / 2.0;
         assert!((pair.weight - expected).abs() < 1e-9, "{pair:?}");
         assert!(

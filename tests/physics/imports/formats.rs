@@ -48,8 +48,8 @@ impl Wheel {
             ("RING", "3", ring.into_iter().collect()),
             ("RING_LOW", "4", ring_low),
             ("RING_HIGH", "5", ring_high),
-            ("LANDING", "6", side(|pair| pair.blisk_node)),
-            ("RING_OUT", "7", side(|pair| pair.ring_node)),
+            ("LANDING", "6", side(|pair| pair.first.node().unwrap())),
+            ("RING_OUT", "7", side(|pair| pair.second.node().unwrap())),
         ];
         // The ring's grounding is part of K here.
         Self {
@@ -157,7 +157,12 @@ impl Wheel {
             model
                 .contact_pairs
                 .iter()
-                .map(|pair| (pair.blisk_node + offset, pair.ring_node + offset))
+                .map(|pair| {
+                    (
+                        pair.first.node().unwrap() + offset,
+                        pair.second.node().unwrap() + offset,
+                    )
+                })
                 .collect()
         };
         assert_eq!(contacts(model, 0), contacts(original, 1));

@@ -4,7 +4,9 @@ use std::f64::consts::TAU;
 
 use blisk::linalg::{SymmetricSparse, lowest_modes};
 use blisk::model::cyclic::CyclicSector;
-use blisk::model::sector::{LumpedOptions, ModelError, SectorModel, lumped, matrix_market};
+use blisk::model::sector::{
+    ContactSide, LumpedOptions, ModelError, SectorModel, lumped, matrix_market,
+};
 
 use super::data;
 
@@ -57,11 +59,8 @@ fn lumped24_assembles_to_the_reference_matrices_exactly() {
     let model = lumped::build(&lumped24()).unwrap();
     assert_eq!(model.contact_pairs.len(), 1);
     assert_eq!(
-        (
-            model.contact_pairs[0].blisk_node,
-            model.contact_pairs[0].ring_node
-        ),
-        (1, 2)
+        (model.contact_pairs[0].first, model.contact_pairs[0].second),
+        (ContactSide::Node(1), ContactSide::Node(2))
     );
     for (part, file) in [(&model.stiffness, "K.mtx"), (&model.mass, "M.mtx")] {
         let reference = matrix_market::read(&data("lumped24").join(file)).unwrap();

@@ -50,7 +50,7 @@ fn frequencies(
         .collect();
     let stiffness = sector
         .stiffness(h)
-        .plus(1.0, &sector.contact_stiffness(&springs));
+        .plus(1.0, &sector.contact_stiffness(&springs, h));
     let factor = stiffness.factor().unwrap();
     let (values, _) = lowest_modes(&factor, &sector.mass(h), 0.0, count).unwrap();
     values.iter().map(|value| value.sqrt() / TAU).collect()

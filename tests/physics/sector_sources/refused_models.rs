@@ -4,7 +4,8 @@ use std::sync::LazyLock;
 
 use blisk::linalg::{Complex64, SymmetricSparse};
 use blisk::model::sector::{
-    Body, Component, ContactPair, ModelError, ObservedNode, SectorModel, bundle, validate,
+    Body, Component, ContactPair, ContactProblem, ContactSide, Dof, ModelError, ObservedNode,
+    SectorModel, bundle, validate,
 };
 
 use super::data;
@@ -24,6 +25,10 @@ fn with(matrix: &SymmetricSparse, row: usize, column: usize, value: f64) -> Symm
 /// A high dof, an inner dof and the node of each.
 fn high_dof(model: &SectorModel) -> usize {
     model.cyclic_pairs[0].1
+}
+
+fn is_contact(error: &ModelError, is: fn(&ContactProblem) -> bool) -> bool {
+    matches!(error, ModelError::Contact { problem, .. } if is(problem))
 }
 
 struct Case {
@@ -201,24 +206,72 @@ const DOF_CASES: [Case; 10] = [
     },
 ];
 
-const CONTACT_CASES: [Case; 10] = [
+const CONTACT_CASES: [Case; 14] = [
     Case {
         name: "contact node unknown",
-        spoil: |m| m.contact_pairs[1].ring_node = 9999,
+        spoil: |m| m.contact_pairs[1].second = ContactSide::Node(9999),
         kind: |e| matches!(e, ModelError::NodeUnknown { .. }),
         message: "contact pair 1 refers to node 9999",
     },
     Case {
         name: "contact on the high face",
-        spoil: |m| m.contact_pairs[1].blisk_node = m.dofs[high_dof(m)].node,
+        spoil: |m| m.contact_pairs[1].first = ContactSide::Node(m.dofs[high_dof(m)].node),
         kind: |e| matches!(e, ModelError::OnHighFace { .. }),
         message: "contact pair 1 refers to node",
     },
     Case {
-        name: "contact on the wrong body",
-        spoil: |m| m.contact_pairs[1].ring_node = m.contact_pairs[1].blisk_node,
-        kind: |e| matches!(e, ModelError::ContactBody { .. }),
-        message: "contact pair 1 has node 302 on the wrong body",
+        name: "contact of a point with itself",
+        spoil: |m| m.contact_pairs[1].second = m.contact_pairs[1].first,
+        kind: |e| is_contact(e, |p| matches!(p, ContactProblem::Sides { .. })),
+        message: "contact pair 1: it joins node 302 and node 302",
+    },
+    Case {
+        name: "contact of the ground",
+        spoil: |m| m.contact_pairs[1].first = ContactSide::Ground,
+        kind: |e| is_contact(e, |p| matches!(p, ContactProblem::Sides { .. })),
+        message: "contact pair 1: it joins the ground and node",
+    },
+    Case {
+        name: "contact across a wheel of one sector",
+        spoil: |m| {
+            m.sectors = 1;
+            m.cyclic_pairs.clear();
+            let node = m.contact_pairs[1].first.node().unwrap();
+            m.contact_pairs[1].second = ContactSide::NextSector(node);
+        },
+        kind: |e| is_contact(e, |p| matches!(p, ContactProblem::OneSector)),
+        message: "contact pair 1: it reaches the next sector of a wheel of one sector",
+    },
+    Case {
+        name: "contact with a point of the next sector that is elsewhere",
+        spoil: |m| {
+            let node = m.contact_pairs[1].second.node().unwrap();
+            m.contact_pairs[1].second = ContactSide::NextSector(node);
+        },
+        kind: |e| is_contact(e, |p| matches!(p, ContactProblem::Angle { .. })),
+        message: "of the next sector are 2.6",
+    },
+    Case {
+        name: "a damper that nothing holds",
+        spoil: |m| {
+            let node = m.dofs.iter().map(|dof| dof.node).max().unwrap() + 1;
+            let dof = Dof {
+                node,
+                body: Body::Damper,
+                ..m.dofs[0].clone()
+            };
+            m.dofs.push(dof);
+            let n = m.dofs.len();
+            let grown = |matrix: &SymmetricSparse, own: f64| {
+                let entries = matrix.lower_entries().chain([(n - 1, n - 1, own)]);
+                SymmetricSparse::from_lower_triplets(n, &entries.collect::<Vec<_>>())
+            };
+            m.stiffness = grown(&m.stiffness, 1.0);
+            m.mass = grown(&m.mass, 1.0);
+            m.blade_stiffness = grown(&m.blade_stiffness, 0.0);
+        },
+        kind: |e| matches!(e, ModelError::DamperWithoutContact { .. }),
+        message: "belongs to a damper that no contact pair touches",
     },
     Case {
         name: "contact pair twice",
@@ -231,14 +284,14 @@ const CONTACT_CASES: [Case; 10] = [
     },
     Case {
         name: "contact nodes at different angles",
-        spoil: |m| m.contact_pairs[0].ring_node = m.contact_pairs[2].ring_node,
-        kind: |e| matches!(e, ModelError::ContactAngle { .. }),
-        message: "contact pair 0: nodes 269 and 341",
+        spoil: |m| m.contact_pairs[0].second = m.contact_pairs[2].second,
+        kind: |e| is_contact(e, |p| matches!(p, ContactProblem::Angle { .. })),
+        message: "contact pair 0: node 269 and node 341",
     },
     Case {
         name: "normal not of unit length",
         spoil: |m| m.contact_pairs[2].normal = [-2.0, 0.0, 0.0],
-        kind: |e| matches!(e, ModelError::ContactNormal { .. }),
+        kind: |e| is_contact(e, |p| matches!(p, ContactProblem::Normal { .. })),
         message: "contact pair 2: the normal has length 2",
     },
     Case {
@@ -250,7 +303,7 @@ const CONTACT_CASES: [Case; 10] = [
     Case {
         name: "weight of nought",
         spoil: |m| m.contact_pairs[2].weight = 0.0,
-        kind: |e| matches!(e, ModelError::ContactWeight { .. }),
+        kind: |e| is_contact(e, |p| matches!(p, ContactProblem::Weight { .. })),
         message: "contact pair 2: weight is 0",
     },
     Case {
@@ -265,15 +318,15 @@ const CONTACT_CASES: [Case; 10] = [
         name: "contact nodes with different components",
         spoil: |m| {
             // Moves the axial dof of the first ring node to a node of its own.
-            let node = m.contact_pairs[0].ring_node;
+            let node = m.contact_pairs[0].second.node().unwrap();
             for dof in &mut m.dofs {
                 if dof.node == node && dof.component == Component::Axial {
                     dof.node = 100_000;
                 }
             }
         },
-        kind: |e| matches!(e, ModelError::ContactComponents { .. }),
-        message: "contact pair 0: nodes 269 and 339 have different components",
+        kind: |e| is_contact(e, |p| matches!(p, ContactProblem::Components { .. })),
+        message: "contact pair 0: node 269 and node 339 have different components",
     },
 ];
 

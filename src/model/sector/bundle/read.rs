@@ -5,18 +5,23 @@ use std::path::Path;
 use super::header::{FILE_NAME, Header};
 use super::table::{Table, read_text};
 use crate::linalg::Complex64;
+use crate::model::sector::contact_problem::ContactProblem;
 use crate::model::sector::error::ModelError;
 use crate::model::sector::line_problem::LineProblem;
 use crate::model::sector::matrix_market::{self, integer, number};
 use crate::model::sector::sector_model::{
-    Body, Component, ContactPair, Dof, ObservedNode, SectorModel,
+    Body, Component, ContactPair, ContactSide, Dof, ObservedNode, SectorModel,
 };
 use crate::model::sector::validate::validate;
 
 /// Columns of each table.
 pub(super) const DOFS: &str = "dof,node,component,x,y,z,body";
 pub(super) const CYCLIC: &str = "low_dof,high_dof";
-pub(super) const CONTACT: &str = "pair,blisk_node,ring_node,nr,nt,nz,weight";
+pub(super) const RING_CONTACT: &str = "pair,blisk_node,ring_node,nr,nt,nz,weight";
+pub(super) const CONTACT: &str =
+    "pair,first_node,first_sector,second_node,second_sector,nr,nt,nz,weight";
+/// The second node of a pair with the ground.
+pub(super) const GROUND: &str = "ground";
 pub(super) const FORCE: &str = "dof,re,im";
 pub(super) const OBSERVE: &str = "name,node";
 
@@ -33,6 +38,9 @@ pub fn read(directory: &Path) -> Result<SectorModel, ModelError> {
             problem,
         })?;
     let files = &header.files;
+    let contact = directory.join(&files.contact);
+    let contact = Table::read_either(contact, [RING_CONTACT, CONTACT])?;
+    let is_ring_contact = contact.columns() == RING_CONTACT;
     let model = SectorModel {
         name: header.name,
         sectors: header.sectors,
@@ -41,13 +49,36 @@ pub fn read(directory: &Path) -> Result<SectorModel, ModelError> {
         blade_stiffness: matrix_market::read(&directory.join(&files.blade_stiffness))?,
         dofs: Table::read(directory.join(&files.dofs), DOFS)?.rows(parse_dof)?,
         cyclic_pairs: Table::read(directory.join(&files.cyclic), CYCLIC)?.rows(parse_cyclic)?,
-        contact_pairs: Table::read(directory.join(&files.contact), CONTACT)?.rows(parse_contact)?,
+        contact_pairs: if is_ring_contact {
+            contact.rows(parse_ring_contact)?
+        } else {
+            contact.rows(parse_contact)?
+        },
         force: Table::read(directory.join(&files.force), FORCE)?.rows(parse_force)?,
         load_case_forces: Vec::new(),
         observed: Table::read(directory.join(&files.observe), OBSERVE)?.rows(parse_observed)?,
     };
     validate(&model)?;
+    if is_ring_contact {
+        check_bodies(&model)?;
+    }
     Ok(model)
+}
+
+/// Refuses a pair that is not of blisk and ring, as the columns of its file say.
+fn check_bodies(model: &SectorModel) -> Result<(), ModelError> {
+    for (pair, contact) in model.contact_pairs.iter().enumerate() {
+        for (side, body) in [(contact.first, Body::Blisk), (contact.second, Body::Ring)] {
+            let on_it = |dof: &Dof| Some(dof.node) == side.node() && dof.body != body;
+            if let Some(dof) = model.dofs.iter().find(|dof| on_it(dof)) {
+                return Err(ModelError::Contact {
+                    pair,
+                    problem: ContactProblem::Body { node: dof.node },
+                });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Reads a force vector as a bundle has it: `dof,re,im`, in N.
@@ -75,7 +106,8 @@ fn parse_dof(
         body: match body {
             "blisk" => Body::Blisk,
             "ring" => Body::Ring,
-            other => return Err(not_a_word("body", other, "blisk or ring")),
+            "damper" => Body::Damper,
+            other => return Err(not_a_word("body", other, "blisk, ring or damper")),
         },
     })
 }
@@ -86,12 +118,57 @@ fn parse_cyclic(_: usize, [low, high]: [&str; 2]) -> Result<(usize, usize), Line
 
 fn parse_contact(
     index: usize,
+    [
+        pair,
+        first,
+        first_sector,
+        second,
+        second_sector,
+        nr,
+        nt,
+        nz,
+        weight,
+    ]: [&str; 9],
+) -> Result<ContactPair, LineProblem> {
+    in_order("pair", pair, index)?;
+    let first = side("first_node", first, "first_sector", first_sector)?;
+    let second = if second == GROUND {
+        ContactSide::Ground
+    } else {
+        side("second_node", second, "second_sector", second_sector)?
+    };
+    Ok(ContactPair {
+        first,
+        second,
+        normal: [number("nr", nr)?, number("nt", nt)?, number("nz", nz)?],
+        weight: number("weight", weight)?,
+        load_weight: None,
+    })
+}
+
+/// A node of the sector (0) or of the next one (1).
+fn side(
+    node_field: &'static str,
+    node: &str,
+    sector_field: &'static str,
+    sector: &str,
+) -> Result<ContactSide, LineProblem> {
+    let node = integer(node_field, node)?;
+    match sector {
+        "0" => Ok(ContactSide::Node(node)),
+        "1" => Ok(ContactSide::NextSector(node)),
+        other => Err(not_a_word(sector_field, other, "0 or 1, the next sector")),
+    }
+}
+
+fn parse_ring_contact(
+    index: usize,
     [pair, blisk_node, ring_node, nr, nt, nz, weight]: [&str; 7],
 ) -> Result<ContactPair, LineProblem> {
     in_order("pair", pair, index)?;
     Ok(ContactPair {
-        blisk_node: integer("blisk_node", blisk_node)?,
-        ring_node: integer("ring_node", ring_node)?,
+        first: ContactSide::Node(integer("blisk_node", blisk_node)?),
+        second: ContactSide::Node(integer("ring_node", ring_node)?),
         normal: [number("nr", nr)?, number("nt", nt)?, number("nz", nz)?],
         weight: number("weight", weight)?,
         load_weight: None,

@@ -16,26 +16,45 @@ pub(super) struct Table {
 impl Table {
     /// Reads a table whose header line must be `columns`.
     pub(super) fn read(path: PathBuf, columns: &'static str) -> Result<Self, ModelError> {
+        Self::read_either(path, [columns, columns])
+    }
+
+    /// Reads a table whose header line must be one of two.
+    pub(super) fn read_either(
+        path: PathBuf,
+        columns: [&'static str; 2],
+    ) -> Result<Self, ModelError> {
         let text = read_text(&path)?;
+        let header = text
+            .lines()
+            .next()
+            .unwrap_or_default()
+            .trim_end()
+            .to_owned();
+        let own = columns.into_iter().find(|&columns| columns == header);
         let table = Self {
             path,
             text,
-            columns,
+            columns: own.unwrap_or(columns[0]),
         };
-        let header = table.text.lines().next().unwrap_or_default();
-        if header.trim_end() != columns {
+        if own.is_none() {
             let problem = if header.is_empty() {
-                LineProblem::Missing(LinePart::Columns(columns))
+                LineProblem::Missing(LinePart::Columns(columns[0]))
             } else {
                 LineProblem::NotAWord {
                     field: "the header line",
-                    found: header.to_owned(),
-                    accepted: columns,
+                    found: header,
+                    accepted: columns[0],
                 }
             };
             return Err(table.refuse(1, problem));
         }
         Ok(table)
+    }
+
+    /// Its header line.
+    pub(super) fn columns(&self) -> &'static str {
+        self.columns
     }
 
     /// Applies `parse` to the fields of each row (its index first); refusals carry file and line.

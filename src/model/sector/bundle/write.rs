@@ -6,10 +6,12 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::header::{FILE_NAME, Header};
-use super::read::{CONTACT, CYCLIC, DOFS, FORCE, OBSERVE};
+use super::read::{CONTACT, CYCLIC, DOFS, FORCE, GROUND, OBSERVE, RING_CONTACT};
 use crate::model::sector::error::ModelError;
 use crate::model::sector::matrix_market;
-use crate::model::sector::sector_model::{Body, ObservedNode, SectorModel};
+use crate::model::sector::sector_model::{
+    Body, ContactPair, ContactSide, ObservedNode, SectorModel,
+};
 use crate::model::sector::validate::validate;
 
 /// Writes `model` as a bundle into `directory`, made if absent; files of the same names are replaced. The header
@@ -82,6 +84,7 @@ fn dofs(model: &SectorModel) -> String {
         let body = match dof.body {
             Body::Blisk => "blisk",
             Body::Ring => "ring",
+            Body::Damper => "damper",
         };
         let _ = writeln!(
             text,
@@ -100,17 +103,51 @@ fn cyclic(model: &SectorModel) -> String {
     text
 }
 
+/// Pairs of blisk and ring alone are written as readers of such bundles know them.
 fn contact(model: &SectorModel) -> String {
-    let mut text = format!("{CONTACT}\n");
-    for (index, pair) in model.contact_pairs.iter().enumerate() {
+    let pairs = &model.contact_pairs;
+    let ring_pairs: Option<Vec<[usize; 2]>> =
+        pairs.iter().map(|pair| ring_pair(model, pair)).collect();
+    let columns = if ring_pairs.is_some() {
+        RING_CONTACT
+    } else {
+        CONTACT
+    };
+    let mut text = format!("{columns}\n");
+    for (index, pair) in pairs.iter().enumerate() {
+        let sides = match &ring_pairs {
+            Some(nodes) => format!("{},{}", nodes[index][0], nodes[index][1]),
+            None => format!("{},{}", side(pair.first), side(pair.second)),
+        };
         let [nr, nt, nz] = pair.normal;
         let _ = writeln!(
             text,
-            "{index},{},{},{nr:e},{nt:e},{nz:e},{:e}",
-            pair.blisk_node, pair.ring_node, pair.weight
+            "{index},{sides},{nr:e},{nt:e},{nz:e},{:e}",
+            pair.weight
         );
     }
     text
+}
+
+/// Node and sector of a side.
+fn side(side: ContactSide) -> String {
+    match side {
+        ContactSide::Node(node) => format!("{node},0"),
+        ContactSide::NextSector(node) => format!("{node},1"),
+        ContactSide::Ground => format!("{GROUND},0"),
+    }
+}
+
+/// Blisk node and ring node of a pair that has these two.
+fn ring_pair(model: &SectorModel, pair: &ContactPair) -> Option<[usize; 2]> {
+    let on = |side: ContactSide, body: Body| match side {
+        ContactSide::Node(node) => {
+            let dof = model.dofs.iter().find(|dof| dof.node == node)?;
+            (dof.body == body).then_some(node)
+        }
+        ContactSide::NextSector(_) | ContactSide::Ground => None,
+    };
+    Some([on(pair.first, Body::Blisk)?, on(pair.second, Body::Ring)?])
 }
 
 fn force(model: &SectorModel) -> String {

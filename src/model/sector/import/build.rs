@@ -17,8 +17,9 @@ use super::tables::{ForceDirection, Pairing};
 use super::{blade, contact};
 use crate::linalg::{Complex64, SymmetricSparse};
 use crate::model::sector::error::ModelError;
+use crate::model::sector::layout::position_tolerance_of;
 use crate::model::sector::sector_model::{Body, Component, ObservedNode, SectorModel};
-use crate::model::sector::validate::{position_tolerance_of, validate};
+use crate::model::sector::validate::validate;
 
 /// An imported sector.
 #[derive(Debug)]

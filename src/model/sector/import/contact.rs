@@ -13,7 +13,7 @@ use super::source::refuse;
 use super::surface::{NodalArea, add_face};
 use super::tables::{ContactTable, Weights};
 use crate::model::sector::error::ModelError;
-use crate::model::sector::sector_model::{Body, ContactPair};
+use crate::model::sector::sector_model::{Body, ContactPair, ContactSide};
 
 /// What the sector looks like to the contact: nodes, frames, and the low node of each high one.
 pub(super) struct Sector<'a> {
@@ -92,8 +92,8 @@ pub(super) fn pairs(
         let angle_deg = cosine.clamp(-1.0, 1.0).acos().to_degrees();
         report.worst_normal_angle_deg = report.worst_normal_angle_deg.max(angle_deg);
         pairs.push(ContactPair {
-            blisk_node: node,
-            ring_node: other,
+            first: ContactSide::Node(node),
+            second: ContactSide::Node(other),
             normal,
             weight: nodal.area_m2,
             load_weight: None,
@@ -126,7 +126,7 @@ fn surface(
 ) -> Result<BTreeMap<usize, NodalArea>, ModelError> {
     let name = match body {
         Body::Blisk => &table.blisk,
-        Body::Ring => &table.ring,
+        Body::Ring | Body::Damper => &table.ring,
     };
     let run = runs.iter().rev().find(|run| run.holds(body));
     let run = run.unwrap_or(&runs[0]);

@@ -384,5 +384,6 @@ pub(super) fn body_name(body: Body) -> &'static str {
     match body {
         Body::Blisk => "blisk",
         Body::Ring => "ring",
+        Body::Damper => "damper",
     }
 }

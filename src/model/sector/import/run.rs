@@ -62,7 +62,7 @@ impl Run {
             }
             let largest = |run: &Self| run.mesh.nodes.keys().next_back().copied().unwrap_or(0);
             let ring_nodes = match body {
-                Body::Ring => mesh.nodes.keys().copied().collect(),
+                Body::Ring | Body::Damper => mesh.nodes.keys().copied().collect(),
                 Body::Blisk => BTreeSet::new(),
             };
             runs.push(Self {
@@ -105,7 +105,7 @@ impl Run {
     pub fn holds(&self, body: Body) -> bool {
         match body {
             Body::Blisk => self.body == Body::Blisk,
-            Body::Ring => !self.ring_nodes.is_empty(),
+            Body::Ring | Body::Damper => !self.ring_nodes.is_empty(),
         }
     }
 

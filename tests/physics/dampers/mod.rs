@@ -1,0 +1,5 @@
+//! Contacts of every kind: of the sector, with the next sector, with a damper body, with the ground.
+
+mod chains;
+mod published;
+mod whole_wheel;
