@@ -246,7 +246,7 @@ fn ring_of_masses(model: &SectorModel, radius_m: f64) -> CentrifugalContact {
     let on_ring: Vec<f64> = model
         .dofs
         .iter()
-        .map(|dof| f64::from(dof.body == Body::Ring))
+        .map(|dof| f64::from(dof.body != Body::Blisk))
         .collect();
     let moved = model.mass.multiply(&on_ring);
     let ring_mass_kg: f64 = on_ring.iter().zip(&moved).map(|(a, b)| a * b).sum();
@@ -268,7 +268,7 @@ fn with_ring_mass(model: SectorModel, factor: f64) -> SectorModel {
         .mass
         .lower_entries()
         .map(|(row, column, value)| {
-            let on_ring = model.dofs[row].body == Body::Ring;
+            let on_ring = model.dofs[row].body != Body::Blisk;
             (row, column, if on_ring { factor * value } else { value })
         })
         .collect();

@@ -1,4 +1,4 @@
-//! Static equilibrium of ring and blisk under rotation: how hard each contact pair is pressed.
+//! Static equilibrium of damper and blisk under rotation: how hard each contact pair is pressed by ring or damper body.
 //!
 //! In nodal diameter 0, per square of the angular velocity Omega, with x the radius of every node along r,
 //!
@@ -44,8 +44,8 @@ pub enum CentrifugalError {
     /// There is nothing to press on.
     #[error("the model has no contact pairs")]
     NoContact,
-    /// The ring of the model does not move along r, as that of masses and springs.
-    #[error("the ring of the model has no radial degree of freedom")]
+    /// No body that is pressed by its own mass moves along r, as in wheels of masses and springs.
+    #[error("the model has no ring or damper body with a radial degree of freedom")]
     NoRadialMotion,
     /// The stiffness of nodal diameter 0 is not positive definite.
     #[error("the stiffness of nodal diameter 0 is not positive definite")]
@@ -55,7 +55,7 @@ pub enum CentrifugalError {
     NotSettled,
 }
 
-/// The ring of a sector under rotation.
+/// Ring or damper body of a sector under rotation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CentrifugalContact {
     /// Normal load of each pair over the square of the angular velocity, kg m (N s^2).
@@ -93,20 +93,20 @@ pub fn centrifugal_contact(
     if model.contact_pairs.is_empty() {
         return Err(CentrifugalError::NoContact);
     }
-    let on_ring = |component| {
-        move |dof: &Dof| f64::from(dof.body == Body::Ring && dof.component == component)
+    let on_damper = |component| {
+        move |dof: &Dof| f64::from(dof.body != Body::Blisk && dof.component == component)
     };
     let radius = |dof: &Dof| match dof.component {
         Component::Radial => dof.position_m[0].hypot(dof.position_m[1]),
         _ => 0.0,
     };
     let of = |value: &dyn Fn(&Dof) -> f64| -> Vec<f64> { model.dofs.iter().map(value).collect() };
-    let radial = of(&on_ring(Component::Radial));
+    let radial = of(&on_damper(Component::Radial));
     if radial.iter().all(|&value| value == 0.0) {
         return Err(CentrifugalError::NoRadialMotion);
     }
     let load = model.mass.multiply(&of(&radius));
-    let axial = of(&on_ring(Component::Axial));
+    let axial = of(&on_damper(Component::Axial));
     let motion = if axial.iter().any(|&value| value > 0.0) {
         &axial
     } else {

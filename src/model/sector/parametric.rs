@@ -1,4 +1,4 @@
-//! The built-in bladed disk with a friction ring: options to sector model.
+//! The built-in bladed disk with its damper: options to sector model.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -6,16 +6,16 @@ use std::f64::consts::TAU;
 use super::error::ModelError;
 use super::parametric_mesh::ParametricMesh;
 use super::parametric_options::ParametricOptions;
-use super::sector_model::{Body, Component, ContactPair, ContactSide, ObservedNode, SectorModel};
+use super::sector_model::{Body, Component, ObservedNode, SectorModel};
 use super::validate::validate;
 use crate::linalg::{Complex64, SymmetricSparse};
 
 /// Builds the sector of the built-in bladed disk.
 ///
 /// 1 N acts on the leading edge of the tip, normal to the tip's chord: `(cos, -sin)` of the tip's stagger
-/// angle in (theta, z). Observed are `tip_le` and `tip_te`, at mid-thickness. The contact pairs are
-/// the facing corner nodes of flange and ring off the cyclic faces, each with its share of the
-/// contact surface (see the mesh), normal (-1, 0, 0): the flange's inner surface faces the axis.
+/// angle in (theta, z). Observed are `tip_le` and `tip_te`, at mid-thickness. The contact pairs are corner nodes that
+/// face each other, off the cyclic faces, each with its share of the contact surface (see the mesh): of flange and ring,
+/// of platforms and the body between them, of neighbouring shrouds, or of the platform's underside and the ground.
 ///
 /// # Errors
 /// If an option is out of range or the geometry folds an element.
@@ -30,13 +30,13 @@ pub fn build(options: &ParametricOptions) -> Result<SectorModel, ModelError> {
         .filter(|(_, dof)| dof.component == Component::Radial)
         .map(|(index, dof)| (dof.node, index))
         .collect();
-    let is_ring: Vec<bool> = assembled
+    let is_loose: Vec<bool> = assembled
         .dofs
         .iter()
-        .map(|dof| dof.body == Body::Ring)
+        .map(|dof| dof.body != Body::Blisk)
         .collect();
     let grounding = (TAU * options.ring_grounding_frequency_hz).powi(2);
-    let stiffness = grounded(&assembled.stiffness, &assembled.mass, &is_ring, grounding);
+    let stiffness = grounded(&assembled.stiffness, &assembled.mass, &is_loose, grounding);
 
     let mut cyclic_pairs = Vec::new();
     for (low, high) in layout.face_nodes() {
@@ -45,17 +45,7 @@ pub fn build(options: &ParametricOptions) -> Result<SectorModel, ModelError> {
         }
     }
     cyclic_pairs.sort_unstable();
-    let contact_pairs = layout
-        .facing_nodes()
-        .into_iter()
-        .map(|facing| ContactPair {
-            first: ContactSide::Node(facing.blisk_node),
-            second: ContactSide::Node(facing.ring_node),
-            normal: [-1.0, 0.0, 0.0],
-            weight: facing.weight,
-            load_weight: None,
-        })
-        .collect();
+    let contact_pairs = layout.contact_pairs();
     let mut force = Vec::new();
     let mut observed = Vec::new();
     if let Some((leading, trailing)) = layout.tip_nodes() {
@@ -89,17 +79,17 @@ pub fn build(options: &ParametricOptions) -> Result<SectorModel, ModelError> {
     Ok(model)
 }
 
-/// `K + grounding M` on the ring's dofs.
+/// `K + grounding M` on the dofs of ring or damper.
 fn grounded(
     stiffness: &SymmetricSparse,
     mass: &SymmetricSparse,
-    is_ring: &[bool],
+    is_loose: &[bool],
     grounding: f64,
 ) -> SymmetricSparse {
-    let on_ring = mass
+    let on_damper = mass
         .lower_entries()
-        .filter(|&(row, column, _)| is_ring[row] && is_ring[column])
+        .filter(|&(row, column, _)| is_loose[row] && is_loose[column])
         .map(|(row, column, value)| (row, column, grounding * value));
-    let triplets: Vec<_> = stiffness.lower_entries().chain(on_ring).collect();
+    let triplets: Vec<_> = stiffness.lower_entries().chain(on_damper).collect();
     SymmetricSparse::from_lower_triplets(stiffness.dimension(), &triplets)
 }

@@ -6,16 +6,34 @@ use super::error::ModelError;
 use super::error_place::Accepted;
 use super::hexahedron20::Material;
 
-/// The built-in bladed disk with a ring damper under a rim flange; lengths in m.
+/// What damps the built-in bladed disk by friction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Damper {
+    /// A ring under the rim's flange.
+    #[default]
+    Ring,
+    /// A wedge between the platforms of neighbouring blades, pressed outwards into their gap.
+    Underplatform,
+    /// Shrouds of neighbouring blades, that touch one another.
+    Shroud,
+    /// The platform of each blade on the ground.
+    BladeToGround,
+}
+
+/// The built-in bladed disk with its damper; lengths in m.
 ///
 /// Seen in the (z, r) plane, from the axis outwards: a web of constant thickness round z = 0, clamped
 /// at the bore; a rim, as wide as `rim_axial_width_m`, centred on z = 0; a flange, the outer layer of the
-/// rim continued towards +z; under the flange's free end the ring. The blade stands on the rim.
+/// rim continued towards +z; under the flange's free end the ring. The blade stands on the rim. Other dampers have neither
+/// flange nor ring, but a plate round the blade's section: a platform above the rim, or a shroud.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ParametricOptions {
     /// Number of sectors N. Default 24.
     pub sectors: usize,
+    /// The damper. Default ring.
+    pub damper: Damper,
     /// Radius of the bore, where the disk is clamped. Default 0.06.
     pub bore_radius_m: f64,
     /// Outer radius of the rim, on which the blade stands. Default 0.205.
@@ -48,19 +66,33 @@ pub struct ParametricOptions {
     pub blade_stagger_angle_deg: f64,
     /// Stagger angle at the tip less that at the root; linear in between. Default 20.0.
     pub blade_twist_deg: f64,
+    /// Height of the platform's underside above the rim. Default 0.006.
+    pub platform_height_m: f64,
+    /// Radial thickness of the platform, and of the wedge. Default 0.006.
+    pub platform_thickness_m: f64,
+    /// Gap between two platforms at their outer side. Default 0.003.
+    pub platform_gap_m: f64,
+    /// Angle between the flank of the wedge and the radius. Default 35.0.
+    pub flank_angle_deg: f64,
+    /// Height of the shroud's outer side above the rim, as a share of the blade's. Default 1.0.
+    pub shroud_height_share: f64,
+    /// Radial thickness of the shroud. Default 0.004.
+    pub shroud_thickness_m: f64,
+    /// Angle between the contact face of the shroud and the axis. Default 30.0.
+    pub shroud_angle_deg: f64,
     /// Young's modulus of disk and blade, Pa. Default 2.1e11.
     pub blisk_youngs_modulus_pa: f64,
     /// Poisson's ratio of disk and blade. Default 0.3.
     pub blisk_poisson_ratio: f64,
     /// Density of disk and blade. Default 7850.0.
     pub blisk_density_kg_per_m3: f64,
-    /// Young's modulus of the ring, Pa. Default 2.1e11.
+    /// Young's modulus of ring or wedge, Pa. Default 2.1e11.
     pub ring_youngs_modulus_pa: f64,
-    /// Poisson's ratio of the ring. Default 0.3.
+    /// Poisson's ratio of ring or wedge. Default 0.3.
     pub ring_poisson_ratio: f64,
-    /// Density of the ring. Default 7850.0.
+    /// Density of ring or wedge. Default 7850.0.
     pub ring_density_kg_per_m3: f64,
-    /// Frequency f of the weak grounding `(2 pi f)^2 M` of the ring, which contact alone holds otherwise. Default 5.0.
+    /// Frequency f of the weak grounding `(2 pi f)^2 M` of ring or wedge, which contact alone holds otherwise. Default 5.0.
     pub ring_grounding_frequency_hz: f64,
     /// Elements along the radius of the web. Default 3.
     pub disk_radial_elements: usize,
@@ -84,6 +116,7 @@ impl Default for ParametricOptions {
     fn default() -> Self {
         Self {
             sectors: 24,
+            damper: Damper::Ring,
             bore_radius_m: 0.06,
             rim_radius_m: 0.205,
             rim_thickness_m: 0.010,
@@ -100,6 +133,13 @@ impl Default for ParametricOptions {
             blade_tip_thickness_m: 0.003,
             blade_stagger_angle_deg: 30.0,
             blade_twist_deg: 20.0,
+            platform_height_m: 0.006,
+            platform_thickness_m: 0.006,
+            platform_gap_m: 0.003,
+            flank_angle_deg: 35.0,
+            shroud_height_share: 1.0,
+            shroud_thickness_m: 0.004,
+            shroud_angle_deg: 30.0,
             blisk_youngs_modulus_pa: 2.1e11,
             blisk_poisson_ratio: 0.3,
             blisk_density_kg_per_m3: 7850.0,
@@ -125,6 +165,8 @@ const SECTORS: (usize, usize) = (3, 1000);
 const MAX_ELEMENTS: usize = 64;
 /// Largest stagger angle at root and tip, deg: beyond it the elements are too sheared.
 const MAX_STAGGER_DEG: f64 = 65.0;
+/// Least angle of a wedge's flank, deg: below it friction may hold what the flank pressed together.
+const LEAST_FLANK_DEG: f64 = 5.0;
 
 impl ParametricOptions {
     /// Inner radius of the rim, m.
@@ -146,7 +188,7 @@ impl ParametricOptions {
         self.blade_root_thickness_m / (2.0 * self.rim_radius_m * cosine)
     }
 
-    /// Material of disk and blade, then of the ring.
+    /// Material of disk and blade, then of ring or wedge.
     #[must_use]
     pub fn materials(&self) -> [Material; 2] {
         [
@@ -170,7 +212,8 @@ impl ParametricOptions {
     pub fn check(&self) -> Result<(), ModelError> {
         self.check_counts()?;
         self.check_signs()?;
-        self.check_order()
+        self.check_order()?;
+        self.check_shelf()
     }
 
     fn check_counts(&self) -> Result<(), ModelError> {
@@ -206,6 +249,11 @@ impl ParametricOptions {
             ("blade_tip_axial_chord_m", self.blade_tip_axial_chord_m),
             ("blade_root_thickness_m", self.blade_root_thickness_m),
             ("blade_tip_thickness_m", self.blade_tip_thickness_m),
+            ("platform_height_m", self.platform_height_m),
+            ("platform_thickness_m", self.platform_thickness_m),
+            ("platform_gap_m", self.platform_gap_m),
+            ("shroud_height_share", self.shroud_height_share),
+            ("shroud_thickness_m", self.shroud_thickness_m),
             ("blisk_youngs_modulus_pa", self.blisk_youngs_modulus_pa),
             ("blisk_density_kg_per_m3", self.blisk_density_kg_per_m3),
             ("ring_youngs_modulus_pa", self.ring_youngs_modulus_pa),
@@ -254,6 +302,33 @@ impl ParametricOptions {
             limits.contains(&(root + twist)),
             accepted,
         )
+    }
+
+    /// Platform and shroud: their angles, and that the blade holds them.
+    fn check_shelf(&self) -> Result<(), ModelError> {
+        for (key, angle_deg, lowest) in [
+            ("flank_angle_deg", self.flank_angle_deg, LEAST_FLANK_DEG),
+            ("shroud_angle_deg", self.shroud_angle_deg, -MAX_STAGGER_DEG),
+        ] {
+            let is_possible = (lowest..MAX_STAGGER_DEG).contains(&angle_deg);
+            let accepted = Accepted::Range(lowest, MAX_STAGGER_DEG);
+            accept(key, angle_deg, is_possible, accepted)?;
+        }
+        let height = self.platform_height_m;
+        let limit = self.blade_height_m - self.platform_thickness_m;
+        let accepted = Accepted::BelowM("blade_height_m - platform_thickness_m", limit);
+        accept("platform_height_m", height, height < limit, accepted)?;
+        let share = self.shroud_height_share;
+        let accepted = Accepted::Range(0.0, 1.0 + f64::EPSILON);
+        accept("shroud_height_share", share, share <= 1.0, accepted)?;
+        let thickness = self.shroud_thickness_m;
+        let limit = share * self.blade_height_m;
+        let accepted = Accepted::BelowM("shroud_height_share * blade_height_m", limit);
+        accept("shroud_thickness_m", thickness, thickness < limit, accepted)?;
+        let gap = self.platform_gap_m;
+        let pitch_m = std::f64::consts::TAU / self.sectors as f64 * self.rim_radius_m;
+        let accepted = Accepted::BelowM("the pitch of the blades at the rim", pitch_m);
+        accept("platform_gap_m", gap, gap < pitch_m, accepted)
     }
 
     fn check_order(&self) -> Result<(), ModelError> {

@@ -1,12 +1,12 @@
 //! Checks of a sector model before anything is computed with it: refused or untouched, never repaired.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use super::error::ModelError;
 use super::error_place::{Item, Matrix, Place};
 use super::layout::{Layout, advanced, distance, finite, position_tolerance_of};
 use super::sector_model::{Dof, MAX_SECTORS, SectorModel};
-use super::validate_contact::{check_contact, touching_one_sector_on};
+use super::validate_contact::{check_contact, is_with_next_sector};
 use super::validate_couplings::check_couplings;
 use crate::linalg::{Complex64, SymmetricSparse};
 
@@ -157,7 +157,7 @@ fn check_cyclic(model: &SectorModel) -> Result<Vec<bool>, ModelError> {
 }
 
 /// Every dof of a face is paired: where a node and its image one sector on both exist, each
-/// component of both must stand in a cyclic pair. Nodes that touch one sector on are in contact, not joined.
+/// component of both must stand in a cyclic pair. Where sectors touch, what is free on both sides is in contact, not joined.
 fn check_faces_complete(model: &SectorModel, layout: &Layout) -> Result<(), ModelError> {
     let mut paired = vec![false; model.dofs.len()];
     for &(low, high) in &model.cyclic_pairs {
@@ -187,11 +187,7 @@ fn check_faces_complete(model: &SectorModel, layout: &Layout) -> Result<(), Mode
             .total_cmp(&model.dofs[b].position_m[2])
             .then(a.cmp(&b))
     });
-    let touching: HashSet<[usize; 2]> = model
-        .contact_pairs
-        .iter()
-        .filter_map(touching_one_sector_on)
-        .collect();
+    let sectors_touch = model.contact_pairs.iter().any(is_with_next_sector);
     for &dof in &by_height {
         let image = advanced(model.dofs[dof].position_m, model.sectors);
         let start = by_height
@@ -202,10 +198,13 @@ fn check_faces_complete(model: &SectorModel, layout: &Layout) -> Result<(), Mode
             .find(|&&other| {
                 model.dofs[other].body == model.dofs[dof].body
                     && model.dofs[other].node != model.dofs[dof].node
-                    && !touching.contains(&[model.dofs[dof].node, model.dofs[other].node])
                     && distance(model.dofs[other].position_m, image) <= tolerance_m
             });
         if let Some(&other) = found {
+            let touches = sectors_touch && !paired[dof] && !paired[other];
+            if touches {
+                continue;
+            }
             for end in [dof, other] {
                 if !paired[end] {
                     return Err(unpaired(end));

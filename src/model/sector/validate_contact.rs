@@ -76,8 +76,8 @@ fn check_sides(
     if first == second || first == ContactSide::Ground {
         return refused(ContactProblem::Sides { first, second });
     }
-    let is_across = [first, second].map(|side| matches!(side, ContactSide::NextSector(_)));
-    if is_across.contains(&true) && model.sectors == 1 {
+    let is_across = is_with_next_sector(contact);
+    if is_across && model.sectors == 1 {
         return refused(ContactProblem::OneSector);
     }
     let mut ends = Vec::new();
@@ -98,7 +98,7 @@ fn check_sides(
         return refused(ContactProblem::Components { first, second });
     }
     // Masses that move along one line have no frame that could turn from sector to sector.
-    if components.len() == 1 && is_across.contains(&true) {
+    if components.len() == 1 && is_across {
         return Ok(());
     }
     let difference_rad = angle_between(*here_m, *there_m);
@@ -113,13 +113,11 @@ fn check_sides(
     Ok(())
 }
 
-/// The node whose copy in the next sector is in contact, and the node that it touches.
-pub(super) fn touching_one_sector_on(pair: &ContactPair) -> Option<[usize; 2]> {
-    match (pair.first, pair.second) {
-        (ContactSide::Node(node), ContactSide::NextSector(next))
-        | (ContactSide::NextSector(next), ContactSide::Node(node)) => Some([next, node]),
-        _ => None,
-    }
+/// Whether a contact pair is with the next sector.
+pub(super) fn is_with_next_sector(pair: &ContactPair) -> bool {
+    [pair.first, pair.second]
+        .iter()
+        .any(|side| matches!(side, ContactSide::NextSector(_)))
 }
 
 /// Magnitude of the difference in theta, rad.

@@ -177,6 +177,12 @@ pub(super) const MODEL_KEYS: &[Entry] = &[
         "number of sectors N",
     ),
     entry(
+        "model.parametric.damper",
+        Name(&["ring", "underplatform", "shroud", "blade_to_ground"]),
+        "`\"ring\"`",
+        "what damps: a ring under the flange; a wedge between the platforms of neighbouring blades; shrouds that touch; the platform on the ground. All but `ring` go without flange and ring",
+    ),
+    entry(
         "model.parametric.bore_radius_m",
         ABOVE_ZERO,
         "0.06",
@@ -273,6 +279,48 @@ pub(super) const MODEL_KEYS: &[Entry] = &[
         "stagger of the tip less that of the root; the tip's stagger within the limits of the root's, deg",
     ),
     entry(
+        "model.parametric.platform_height_m",
+        ABOVE_ZERO,
+        "0.006",
+        "underside of the platform above the rim (`underplatform`, `blade_to_ground`), m",
+    ),
+    entry(
+        "model.parametric.platform_thickness_m",
+        ABOVE_ZERO,
+        "0.006",
+        "radial, of the platform and of the wedge, m",
+    ),
+    entry(
+        "model.parametric.platform_gap_m",
+        ABOVE_ZERO,
+        "0.003",
+        "between two platforms at their outer side, m",
+    ),
+    entry(
+        "model.parametric.flank_angle_deg",
+        Number(Range::at_least(5.0).below(65.0)),
+        "35.0",
+        "between the flank of the wedge and the radius, deg",
+    ),
+    entry(
+        "model.parametric.shroud_height_share",
+        Number(Range::above(0.0).up_to(1.0)),
+        "1.0",
+        "outer side of the shroud above the rim, as a share of the blade's height (`shroud`)",
+    ),
+    entry(
+        "model.parametric.shroud_thickness_m",
+        ABOVE_ZERO,
+        "0.004",
+        "radial, m",
+    ),
+    entry(
+        "model.parametric.shroud_angle_deg",
+        Number(Range::at_least(-65.0).below(65.0)),
+        "30.0",
+        "between the contact face of the shroud and the axis, deg",
+    ),
+    entry(
         "model.parametric.blisk_youngs_modulus_pa",
         ABOVE_ZERO,
         "2.1e11",
@@ -312,7 +360,7 @@ pub(super) const MODEL_KEYS: &[Entry] = &[
         "model.parametric.ring_grounding_frequency_hz",
         AT_LEAST_ZERO,
         "5.0",
-        "weak grounding `(2 pi f)^2 M` of the ring, which only contact holds otherwise, Hz",
+        "weak grounding `(2 pi f)^2 M` of ring or wedge, which only contact holds otherwise, Hz",
     ),
     entry(
         "model.parametric.disk_radial_elements",
