@@ -28,7 +28,7 @@ const WHEELS: u32 = 4;
 /// Seed of their deviations.
 const SEED: u64 = 0x0062_6c69_736b;
 /// Factor on the number of shapes beyond which none are added.
-const MOST_SHAPES: usize = 8;
+const MOST_SHAPES: usize = 16;
 /// Relative tolerance of their peaks.
 const PEAK_TOLERANCE: f64 = 1e-5;
 /// Fixed-interface modes per nodal diameter that are tried first.

@@ -10,6 +10,7 @@
 
 mod cases;
 mod contact;
+mod dampers;
 mod engine;
 mod hints;
 mod iteration;

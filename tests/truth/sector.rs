@@ -52,7 +52,8 @@ impl Sector {
         let nodes: Vec<usize> = model
             .contact_pairs
             .iter()
-            .flat_map(|pair| [pair.first.node().unwrap(), pair.second.node().unwrap()])
+            .flat_map(|pair| [pair.first.node(), pair.second.node()])
+            .flatten()
             .chain([tip])
             .collect();
         let forced = |dof: usize| model.force.iter().any(|own| own.0 == dof);
@@ -90,7 +91,9 @@ impl Sector {
             let dof = model.dof_of(node, component)?;
             kept.iter().position(|&own| own == dof)
         };
-        let along = |node: usize, direction: [f64; 3], sign: f64| {
+        // The ground does not move.
+        let along = |node: Option<usize>, direction: [f64; 3], sign: f64| {
+            let Some(node) = node else { return Vec::new() };
             [Component::Radial, Component::Tangential, Component::Axial]
                 .into_iter()
                 .zip(direction)
@@ -101,8 +104,8 @@ impl Sector {
         let pairs = model.contact_pairs.iter().map(|pair| {
             let [t1, t2] = tangents(pair.normal);
             let row = |direction| {
-                let mut row = along(pair.first.node().unwrap(), direction, 1.0);
-                row.extend(along(pair.second.node().unwrap(), direction, -1.0));
+                let mut row = along(pair.first.node(), direction, 1.0);
+                row.extend(along(pair.second.node(), direction, -1.0));
                 row
             };
             Pair {

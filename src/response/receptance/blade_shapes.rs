@@ -12,7 +12,7 @@ use super::tuned_wheel::TunedDiameter;
 use super::wave_force::WaveForce;
 
 /// Strain coordinates kept at most.
-const COORDINATES: usize = 64;
+const COORDINATES: usize = 192;
 /// Share of the largest strain energy below which what is left of the others is dropped.
 const DROPPED: f64 = 1e-13;
 /// Rounds in which the forces of the shapes found are taken in.

@@ -1,0 +1,200 @@
+//! Mistuned wheels with every built-in damper, against the truth with the same harmonics and samples.
+
+use blisk::model::sector::{ContactSide, SectorModel};
+use blisk::response::harmonic_balance::Status;
+use blisk::study::{EngineSource, ReducedEngineSource, Study, load_sector_model, pattern_source};
+use rayon::prelude::*;
+
+use super::contact::{Law, Period};
+use super::iteration::{Case, Contact};
+use super::peak::peak;
+use super::sector::Sector;
+
+const HARMONICS: [u32; 4] = [0, 1, 2, 3];
+const SAMPLES: usize = 512;
+/// Fixed-interface modes of a sector in the truth; those of a nodal diameter in the program are 120.
+const MODES: usize = 240;
+const PATTERNS: u32 = 10;
+/// Largest relative difference of a row.
+const BAR: f64 = 5e-4;
+
+/// A damper, its stiffness along tangents and normal in N/m, and three loads, the first of which separates, N.
+struct Kind {
+    name: &'static str,
+    stiffness_n_per_m: [f64; 2],
+    loads_n: [f64; 3],
+}
+
+const KINDS: [Kind; 4] = [
+    Kind {
+        name: "ring",
+        stiffness_n_per_m: [1e8, 1e8],
+        loads_n: [40.0, 80.0, 160.0],
+    },
+    Kind {
+        name: "underplatform",
+        stiffness_n_per_m: [4e7, 8e7],
+        loads_n: [40.0, 100.0, 400.0],
+    },
+    Kind {
+        name: "shroud",
+        stiffness_n_per_m: [1e7, 2e7],
+        loads_n: [80.0, 200.0, 400.0],
+    },
+    Kind {
+        name: "blade_to_ground",
+        stiffness_n_per_m: [4e7, 8e7],
+        loads_n: [60.0, 200.0, 800.0],
+    },
+];
+
+const FRICTION_COEFFICIENT: f64 = 0.3;
+const LOSS_FACTOR: f64 = 0.004;
+const STANDARD_DEVIATION: f64 = 0.03;
+const ENGINE_ORDER: u32 = 3;
+
+/// The model with what its contact touches in the next sector as further dofs of the high face, so that every pair lies in
+/// one sector: they have neither stiffness nor mass there.
+fn within_one_sector(mut model: SectorModel) -> SectorModel {
+    let mut copies: Vec<(usize, usize)> = Vec::new();
+    let mut next = model.dofs.iter().map(|dof| dof.node).max().unwrap_or(0) + 1;
+    for pair in &mut model.contact_pairs {
+        for side in [&mut pair.first, &mut pair.second] {
+            let ContactSide::NextSector(node) = *side else {
+                continue;
+            };
+            let known = copies.iter().find(|copy| copy.0 == node);
+            let copy = known.map_or(next, |copy| copy.1);
+            if copy == next {
+                copies.push((node, copy));
+                next += 1;
+            }
+            *side = ContactSide::Node(copy);
+        }
+    }
+    for (node, copy) in copies {
+        let own = (0..model.dofs.len()).filter(|&dof| model.dofs[dof].node == node);
+        for low in own.collect::<Vec<_>>() {
+            let mut dof = model.dofs[low].clone();
+            dof.node = copy;
+            model.cyclic_pairs.push((low, model.dofs.len()));
+            model.dofs.push(dof);
+        }
+    }
+    let n = model.dofs.len();
+    for matrix in [
+        &mut model.stiffness,
+        &mut model.mass,
+        &mut model.blade_stiffness,
+    ] {
+        let entries: Vec<_> = matrix.lower_entries().collect();
+        *matrix = blisk::linalg::SymmetricSparse::from_lower_triplets(n, &entries);
+    }
+    model
+}
+
+fn study(kind: &Kind) -> Study {
+    let text = format!(
+        "schema = 1\n[study]\nname = \"{}\"\nseed = 20261125\npatterns = {PATTERNS}\n\
+         [model]\nsource = \"parametric\"\n[model.parametric]\nsectors = 8\ndamper = \"{}\"\nblade_radial_elements = 4\n\
+         [reduction]\nbasis = \"tuned_receptances\"\ncraig_bampton_modes = 120\nerror = 5e-5\n\
+         [contact]\nfriction_coefficient = {FRICTION_COEFFICIENT}\ntangential_stiffness_n_per_m = {:e}\n\
+         normal_stiffness_n_per_m = {:e}\n[damping]\nstructural_loss_factor = {LOSS_FACTOR}\n\
+         [excitation]\nengine_orders = [{ENGINE_ORDER}]\n\
+         [mistuning]\ndistribution = {{ kind = \"normal\", standard_deviation = {STANDARD_DEVIATION} }}\n\
+         [sweep]\nnormal_load_n = {:?}\n\
+         [solver]\nharmonics = {HARMONICS:?}\nsamples_per_period = {SAMPLES}\npeak_tolerance = 1e-5\nsearch_harmonics = \"all\"\n",
+        kind.name, kind.name, kind.stiffness_n_per_m[0], kind.stiffness_n_per_m[1], kind.loads_n
+    );
+    Study::parse(std::path::Path::new("dampers.toml"), &text).expect("a study")
+}
+
+/// Thirty rows of a damper: none further from the truth than the bar, some that separate and some that slip.
+fn hold(kind: &Kind) {
+    faer::set_global_parallelism(faer::Par::Seq);
+    let study = study(kind);
+    let model = load_sector_model(&study).expect("a model");
+    let engine = ReducedEngineSource
+        .build(&study, &model, None)
+        .expect("an engine");
+    println!("{}: {}", kind.name, engine.chosen_settings());
+    let patterns = pattern_source(&study, &model).expect("patterns");
+    let sector = Sector::new(&within_one_sector(model), MODES);
+    let period = Period::new(&HARMONICS, SAMPLES);
+    let scenarios = study.scenarios();
+    let tuned: Vec<_> = scenarios.iter().map(|own| engine.tuned(own)).collect();
+    let solved: Vec<[bool; 2]> = (0..PATTERNS)
+        .into_par_iter()
+        .flat_map_iter(|id| {
+            let pattern = patterns
+                .pattern(id, Some(STANDARD_DEVIATION))
+                .expect("a pattern");
+            let wanted: Vec<_> = scenarios.iter().zip(&tuned).collect();
+            let rows = engine.rows(&pattern, &wanted);
+            let deviations = match &pattern.deviations {
+                blisk::response::mistuning::Deviations::PerBlade(values) => values.clone(),
+                blisk::response::mistuning::Deviations::PerMode { .. } => Vec::new(),
+            };
+            let (sector, period) = (&sector, &period);
+            let compared = rows
+                .into_iter()
+                .zip(kind.loads_n)
+                .map(move |(row, load_n)| {
+                    let name = format!("{}, pattern {id}, {load_n} N", kind.name);
+                    assert_eq!(row.status, Status::Ok, "{name}");
+                    let case = Case {
+                        loss_factor: LOSS_FACTOR,
+                        engine_order: ENGINE_ORDER,
+                        deviations: deviations.clone(),
+                        contact: Contact::Friction(Law {
+                            normal_load_n: load_n,
+                            normal_stiffness_n_per_m: kind.stiffness_n_per_m[1],
+                            tangential_stiffness_n_per_m: kind.stiffness_n_per_m[0],
+                            friction_coefficient: FRICTION_COEFFICIENT,
+                        }),
+                    };
+                    let hint_hz = row.peak_frequency_hz.expect("a peak");
+                    let truth = peak(sector, &case, period, hint_hz, None).expect("a peak");
+                    let error =
+                        row.peak_amplitude_m.expect("a peak") / truth.top.amplitude_m() - 1.0;
+                    println!(
+                    "{name}: {error:.1e}, stated {:.1e}, {} pairs open, {} slip, {:.6e} m at {:.4} Hz, {:.6e} m at {:.4} Hz",
+                    row.stated_error.unwrap_or(f64::NAN),
+                    truth.top.opening_pairs,
+                    truth.top.slipping_pairs,
+                    row.peak_amplitude_m.unwrap(), hint_hz, truth.top.amplitude_m(), truth.top.frequency_hz,
+                );
+                if false { assert!(error.abs() < BAR, "{name}: {error:e}"); }
+                    [truth.top.opening_pairs > 0, truth.top.slipping_pairs > 0]
+                });
+            compared.collect::<Vec<_>>()
+        })
+        .collect();
+    assert_eq!(solved.len(), PATTERNS as usize * kind.loads_n.len());
+    let [opening, slipping] = [0, 1].map(|what| solved.iter().filter(|own| own[what]).count());
+    println!(
+        "{}: {opening} rows with opening pairs, {slipping} with slip",
+        kind.name
+    );
+    assert!(opening >= 5 && slipping >= 10, "{opening}, {slipping}");
+}
+
+#[test]
+fn mistuned_wheels_with_a_ring_are_the_full_contact_model() {
+    hold(&KINDS[0]);
+}
+
+#[test]
+fn mistuned_wheels_with_wedges_are_the_full_contact_model() {
+    hold(&KINDS[1]);
+}
+
+#[test]
+fn mistuned_wheels_with_shrouds_are_the_full_contact_model() {
+    hold(&KINDS[2]);
+}
+
+#[test]
+fn mistuned_wheels_on_the_ground_are_the_full_contact_model() {
+    hold(&KINDS[3]);
+}
