@@ -12,8 +12,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::basis_choice::judged_conditions;
+use super::excitation::{Excitation, excitations};
 use super::full_model::reference_settings;
-use super::load_cases::Excitation;
 use super::reduced_engine::{contact_stiffness, row_settings};
 use super::{MistuningSource, PipelineError, Study};
 use crate::model::ReducedModel;
@@ -197,7 +197,7 @@ struct ComparedCases(Vec<(Excitation, Compared)>);
 
 impl ComparedCases {
     fn new(study: &Study) -> Result<Self, PipelineError> {
-        let cases = study.excitations().into_iter().map(|case| {
+        let cases = excitations(study).into_iter().map(|case| {
             let compared = Compared::new(&case.study)?;
             Ok((case, compared))
         });

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::excitation::excitations;
 use super::fixed_interface::reduction_of;
 use super::harmonic_choice::choose_harmonics;
 use super::reduced_engine::row_settings;
@@ -96,7 +97,7 @@ impl FullModel {
         };
         let whole = reduction.reduce(BasisChoice::CraigBampton, cantilever)?;
         let scout = reduction.reduce(scout, cantilever)?;
-        let cases = study.excitations().into_iter().map(|case| {
+        let cases = excitations(study).into_iter().map(|case| {
             let amplitude_n = case.study.amplitude_n;
             let settings = RowSettings {
                 amplitude_n,

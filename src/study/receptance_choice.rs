@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::load_cases::Excitation;
+use super::excitation::Excitation;
 use super::reduced_engine::row_settings;
 use crate::model::ReducedModel;
 use crate::model::cyclic::ContactGeometry;

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::basis_choice::{
     BasisEvidence, Judged, choose_basis_under, judged_conditions, judged_variations,
 };
+use super::excitation::{Excitation, excitations, solver_under};
 use super::fixed_interface::FixedInterface;
 use super::harmonic_choice::{choose_harmonics, with_separation};
-use super::load_cases::{Excitation, solver_under};
 use super::receptance_choice::choice_of;
 use super::reduced_engine::row_settings;
 use super::sector_model::judging_patterns;
@@ -140,7 +140,7 @@ pub(super) fn reduced(
     let automatic = study.solver.harmonics == Harmonics::Auto;
     let tolerance = automatic.then_some(study.solver.harmonic_tolerance);
     let full = reduction.reduce(BasisChoice::CraigBampton, None)?;
-    let excitations = study.excitations();
+    let excitations = excitations(study);
     let cases: Vec<Case<'_>> = excitations
         .iter()
         .map(|own| Case::new(own, &full))
@@ -218,7 +218,7 @@ pub(super) fn reduced_on_receptances(
     study: &Study,
     sector: &SectorModel,
 ) -> Result<Stored, PipelineError> {
-    let excitations = study.excitations();
+    let excitations = excitations(study);
     let patterns = judging_patterns(study, sector)?;
     let law = study.contact.as_ref().map(|contact| contact.law);
     let separates = law.is_some_and(ContactLaw::has_variable_load);
@@ -301,7 +301,7 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Pip
         .filter(|own| own.normal_load_n().is_some());
     let loads = nonlinear.count();
     let mut first = 0;
-    let excitations = study.excitations();
+    let excitations = excitations(study);
     let engine = stored.engine.as_ref().map(|own| {
         let made = stored.receptances.clone().map(Ok);
         let engine = made

@@ -27,23 +27,6 @@ const OPEN: &[&[&str]] = &[
         "study/tuned_receptances.rs",
         "study/verify.rs",
     ],
-    &[
-        "study/load_cases.rs",
-        "study/nodal_diameter_damping.rs",
-        "study/raw.rs",
-        "study/resolved.rs",
-        "study/rotation.rs",
-        "study/sector_model.rs",
-        "study/validate.rs",
-        "study/validate_accuracy.rs",
-        "study/validate_contact.rs",
-        "study/validate_damping.rs",
-        "study/validate_excitation.rs",
-        "study/validate_loads.rs",
-        "study/validate_mistuning.rs",
-        "study/validate_solver.rs",
-        "study/validate_stop.rs",
-    ],
 ];
 
 /// The files of a crate and what they name.
