@@ -17,12 +17,12 @@ use super::ladder::{Knob, LadderSetting};
 use super::ladder_bench::LadderBench;
 use super::ladder_measure::{Compared, Measured, error_bound, errors_of_load_cases};
 use super::ladder_reference::{LadderEnds, LadderReference};
-use super::ladder_sample::most_scenarios;
+use super::ladder_sample::{most_scenarios, sample_of_patterns};
 use super::ladder_search::LadderSearch;
 use super::ladder_trials::{Trials, levels};
 use super::receptance_accuracy::{ReceptanceSetting, on_receptances};
 use super::reduced_engine::is_on_receptances;
-use super::tradeoff::sample_of_patterns;
+
 use super::{AccuracyOptions, PipelineError, Progress, Study, StudyDigest, pattern_source};
 use crate::model::sector::SectorModel;
 use crate::model::{read_cached, reduction_digest, write_cached};

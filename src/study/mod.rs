@@ -46,6 +46,7 @@ mod pipeline_stability;
 mod pipeline_tables;
 mod plan;
 mod progress;
+mod random_sample;
 mod raw;
 mod receptance_accuracy;
 mod receptance_choice;
