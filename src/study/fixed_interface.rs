@@ -13,8 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::basis_choice::judged_conditions;
 use super::excitation::{Excitation, excitations};
-use super::full_model::reference_settings;
-use super::reduced_engine::{contact_stiffness, row_settings};
+use super::row_settings::{contact_stiffness, reference_settings, row_settings};
 use super::{MistuningSource, PipelineError, Study};
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;

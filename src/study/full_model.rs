@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::excitation::excitations;
 use super::fixed_interface::reduction_of;
 use super::harmonic_choice::choose_harmonics;
-use super::reduced_engine::row_settings;
+use super::row_settings::{reference_settings, row_settings};
 use super::{PipelineError, Study};
 use crate::model::ReducedModel;
 use crate::model::reduction::BasisChoice;
@@ -251,23 +251,5 @@ impl FullModel {
             ..settings.clone()
         };
         ReferenceSolver::new(&case.model, &settings, engine_order, contact, pattern)
-    }
-}
-
-/// The settings of a study's rows as the full-contact model takes them.
-pub(super) fn reference_settings(
-    row: &RowSettings,
-    transform: HarmonicTransform,
-) -> ReferenceSettings {
-    ReferenceSettings {
-        transform: Arc::new(transform),
-        residual_tolerance: ReferenceSettings::RESIDUAL_TOLERANCE,
-        peak_tolerance: ReferenceSettings::PEAK_TOLERANCE,
-        contact: row.contact,
-        damping: row.damping,
-        amplitude_n: row.amplitude_n,
-        amplitude: row.solver.amplitude,
-        time_samples: row.solver.time_samples,
-        projection: row.projection,
     }
 }

@@ -16,7 +16,7 @@ use super::fixed_interface::{FixedInterface, reduce_sector};
 use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::ladder::{HarmonicLevel, LadderSetting, LadderSpace};
 use super::ladder_sample::{LadderSample, Remainders, distinct, of_sample, sampled_scenarios};
-use super::reduced_engine::{contact_stiffness, row_settings};
+use super::row_settings::{contact_stiffness, row_settings};
 use super::{PipelineError, Progress, Study};
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, ContactStiffness, Reduction};

@@ -16,7 +16,7 @@ use super::excitation::{Excitation, excitations};
 use super::ladder::{HarmonicLevel, Knob, LadderSetting};
 use super::ladder_bench::{LadderBench, LadderValues};
 use super::ladder_measure::Measured;
-use super::reduced_engine::row_settings;
+use super::row_settings::row_settings;
 use crate::model::reduction::{Basis, BasisChoice, ReductionOptions};
 use crate::response::forced_response::Harmonics;
 use crate::response::mistuning::PatternSource;

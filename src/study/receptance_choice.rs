@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::excitation::Excitation;
-use super::reduced_engine::row_settings;
+use super::row_settings::row_settings;
 use crate::model::ReducedModel;
 use crate::model::cyclic::ContactGeometry;
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings};

@@ -6,28 +6,7 @@ use super::paths::Source;
 use super::{complain, source_files};
 
 /// Circles that are still open, each by its files under `src/`. One that is broken up or smaller comes off this list.
-const OPEN: &[&[&str]] = &[
-    &[
-        "study/accuracy_choice.rs",
-        "study/accurate_engine.rs",
-        "study/fixed_interface.rs",
-        "study/full_model.rs",
-        "study/ladder_bench.rs",
-        "study/ladder_cost.rs",
-        "study/ladder_measure.rs",
-        "study/ladder_reference.rs",
-        "study/ladder_search.rs",
-        "study/ladder_trials.rs",
-        "study/receptance_accuracy.rs",
-        "study/receptance_choice.rs",
-        "study/reduced_engine.rs",
-        "study/reduced_study.rs",
-        "study/replay.rs",
-        "study/tradeoff.rs",
-        "study/tuned_receptances.rs",
-        "study/verify.rs",
-    ],
-];
+const OPEN: &[&[&str]] = &[];
 
 /// The files of a crate and what they name.
 struct Crate<'a> {
