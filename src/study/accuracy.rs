@@ -4,6 +4,21 @@ use std::fmt::Write;
 
 use serde::{Deserialize, Serialize};
 
+/// Keys that the program sets itself under `[accuracy]`, unless the study says them.
+pub(super) const KEYS_OF_ACCURACY: [&str; 11] = [
+    "reduction.basis",
+    "reduction.error",
+    "reduction.stick_modes",
+    "reduction.slide_modes",
+    "solver.harmonics",
+    "solver.search_harmonics",
+    "solver.harmonic_tolerance",
+    "solver.rows_beyond_tolerance",
+    "solver.samples_per_period",
+    "solver.residual_tolerance",
+    "solver.peak_tolerance",
+];
+
 /// What a user says of the accuracy instead of the settings that make it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

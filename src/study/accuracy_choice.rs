@@ -1,5 +1,5 @@
 //! The choice of settings by an accepted error, with the evidence: on tuned receptances those of
-//! [`ReceptanceSetting`], on a basis the cheapest of the ladder.
+//! [`ReceptanceSetting`](super::ReceptanceSetting), on a basis the cheapest of the ladder.
 //!
 //! Of the ladder:
 //! A few patterns of the study are solved at reference settings. Single knobs are moved on fewer of them,
@@ -10,24 +10,21 @@
 
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
-
-use super::ladder::{Knob, LadderSetting};
 use super::ladder_bench::LadderBench;
 use super::ladder_measure::{Compared, Measured, error_bound, errors_of_load_cases};
 use super::ladder_reference::{LadderEnds, LadderReference};
-use super::ladder_sample::most_scenarios;
+use super::ladder_sample::{most_scenarios, sample_of_patterns};
 use super::ladder_search::LadderSearch;
 use super::ladder_trials::{Trials, levels};
-use super::receptance_accuracy::{ReceptanceSetting, on_receptances};
-use super::reduced_engine::is_on_receptances;
-use super::tradeoff::sample_of_patterns;
-use super::{AccuracyOptions, PipelineError, Progress, Study, StudyDigest, pattern_source};
+use super::progress::Unwatched;
+use super::receptance_accuracy::on_receptances;
+use super::reduced_study::is_on_receptances;
+use super::{
+    AccuracyChoice, AccuracyEvidence, AccuracyOptions, ChosenSetting, PipelineError, Study,
+    StudyDigest, pattern_source,
+};
 use crate::model::sector::SectorModel;
 use crate::model::{read_cached, reduction_digest, write_cached};
-use crate::population::monte_carlo::LoadCaseName;
-use crate::population::statistics::{ErrorBound, LoadCaseErrors};
 use crate::response::friction::Ring;
 use crate::response::mistuning::PatternSource;
 
@@ -40,80 +37,6 @@ const PROBED: usize = 2;
 const FINER_REFERENCE: f64 = 5.0;
 /// Least tolerance of these harmonics.
 const FINEST_REFERENCE: f64 = 1e-3;
-
-/// The settings chosen for an accepted error.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct AccuracyChoice {
-    /// Error accepted.
-    pub accepted: f64,
-    /// The settings.
-    pub setting: ChosenSetting,
-    /// Fixed-interface modes.
-    pub craig_bampton_modes: usize,
-    /// Whether the upper bound of the 95th percentile of the amplitude error is accepted, and on tuned receptances most rows of the
-    /// sample are known at the enlarged settings.
-    pub met: bool,
-    /// Errors on the sample; none where nothing was to be measured.
-    pub evidence: Option<AccuracyEvidence>,
-}
-
-/// Settings that were chosen.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum ChosenSetting {
-    /// A combination of the ladder, for rows on a basis.
-    Ladder(LadderSetting),
-    /// For rows on tuned receptances.
-    Receptances(ReceptanceSetting),
-}
-
-/// What a choice was made by.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct AccuracyEvidence {
-    /// Ids of the patterns of the sample.
-    pub patterns: Vec<u32>,
-    /// Normal loads of its scenarios, N.
-    pub normal_loads_n: Vec<f64>,
-    /// Tolerance of the harmonics of the reference; none where they are fixed.
-    pub reference_tolerance: Option<f64>,
-    /// `joint`, `by_knobs`, or `enlarged` on tuned receptances.
-    pub reference: String,
-    /// Errors of the peak amplitude.
-    pub amplitude: ErrorBound,
-    /// What the worst of them over all rows is claimed to be at most, see [`ErrorBound::worst_upper`].
-    pub amplitude_worst_upper: f64,
-    /// Errors of its frequency.
-    pub frequency: Option<ErrorBound>,
-    /// Errors of the amplification factor.
-    pub amplification_factor: Option<ErrorBound>,
-    /// Estimated floating-point operations of a row at the settings chosen.
-    pub operations_per_row: f64,
-    /// Those of the whole choice: reference, single knobs and combinations.
-    pub operations_of_choice: f64,
-    /// Combinations measured, in order.
-    pub tried: Vec<TriedSetting>,
-    /// Load case of each scenario of the sample; empty in a study without load cases.
-    pub load_cases: Vec<LoadCaseName>,
-    /// Errors of the peak amplitude under each of these.
-    pub errors_of_load_cases: Vec<LoadCaseErrors>,
-}
-
-/// A combination that was measured.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct TriedSetting {
-    /// The setting, in words.
-    pub setting: String,
-    /// Rows measured before it was taken or given up.
-    pub rows: u64,
-    /// Largest amplitude error of these.
-    pub worst: f64,
-    /// Estimated floating-point operations of a row.
-    pub operations: f64,
-}
-
-/// Nobody watches: the choice is a part of the reduction.
-pub(super) struct Unwatched;
-
-impl Progress for Unwatched {}
 
 impl AccuracyChoice {
     /// The choice for `study`, from the folder `cache` if it was made there before.
@@ -146,143 +69,100 @@ impl AccuracyChoice {
                 cache,
             )?
         } else {
-            Self::make(study, accuracy, sector, &patterns)?
+            on_the_ladder(study, accuracy, sector, &patterns)?
         };
         if let Some(folder) = cache {
             write_cached(folder, &digest, &choice)?;
         }
         Ok(choice)
     }
+}
 
-    fn make(
-        study: &Study,
-        accuracy: AccuracyOptions,
-        sector: &SectorModel,
-        patterns: &PatternSource,
-    ) -> Result<Self, PipelineError> {
-        let accepted = accuracy.amplitude_error;
-        let ids = sample_of_patterns(study, patterns, sampled_patterns(study));
-        let mut bench = LadderBench::new(study, sector, ids, &Unwatched)?;
-        let tolerance = (accepted / FINER_REFERENCE).max(FINEST_REFERENCE);
-        let mut ends = LadderEnds::choose(&mut bench, tolerance, accepted)?;
-        ends.base = ends.base.but_for_those_of(study);
-        let craig_bampton_modes = bench.fixed_interface().modes;
-        if bench.sample().scenarios.is_empty() {
-            // Linear limits know none of these settings but the basis.
-            return Ok(Self {
-                accepted,
-                setting: ChosenSetting::Ladder(ends.base),
-                craig_bampton_modes,
-                met: true,
-                evidence: None,
-            });
-        }
-        let reference = LadderReference::solve(&mut bench, &ends, patterns)?;
-        let space = bench.space(ends.best.basis);
-        let sample = bench.sample().clone();
-        let mut search = LadderSearch::new(&mut bench, patterns, &reference, PROBED);
-        // The drift of a creeping ring under one law is not that under another.
-        let locked = study
-            .contact
-            .as_ref()
-            .is_some_and(|contact| contact.ring == Ring::Locked);
-        let accuracy = AccuracyOptions {
-            simpler_contact_law: accuracy.simpler_contact_law && locked,
-            ..accuracy
-        };
-        search.measure_levels(levels(study, &space, &ends.base, accuracy, tolerance))?;
-        let mut trials = Trials::new(accepted);
-        trials.among(&mut search, study, reference.most_operations())?;
-        let Some((measured, amplitude)) = trials.taken else {
-            // No row of the sample has a reference: the best that is affordable.
-            return Ok(Self {
-                accepted,
-                setting: ChosenSetting::Ladder(ends.base),
-                craig_bampton_modes,
-                met: false,
-                evidence: None,
-            });
-        };
-        let of_measured = |own: &Measured| own.rows.iter().map(|row| row.operations).sum::<f64>();
-        let of_reference = reference.parts.iter().chain([&reference.base]);
-        let values = measured.values();
-        let bound = |quantity| error_bound(&values, &reference.values, quantity);
-        Ok(Self {
+/// The cheapest settings of the ladder for `accuracy`.
+fn on_the_ladder(
+    study: &Study,
+    accuracy: AccuracyOptions,
+    sector: &SectorModel,
+    patterns: &PatternSource,
+) -> Result<AccuracyChoice, PipelineError> {
+    let accepted = accuracy.amplitude_error;
+    let ids = sample_of_patterns(study, patterns, sampled_patterns(study));
+    let mut bench = LadderBench::new(study, sector, ids, &Unwatched)?;
+    let tolerance = (accepted / FINER_REFERENCE).max(FINEST_REFERENCE);
+    let mut ends = LadderEnds::choose(&mut bench, tolerance, accepted)?;
+    ends.base = ends.base.but_for_those_of(study);
+    let craig_bampton_modes = bench.fixed_interface().modes;
+    if bench.sample().scenarios.is_empty() {
+        // Linear limits know none of these settings but the basis.
+        return Ok(AccuracyChoice {
             accepted,
+            setting: ChosenSetting::Ladder(ends.base),
             craig_bampton_modes,
-            met: amplitude.p95_upper <= accepted,
-            evidence: Some(AccuracyEvidence {
-                patterns: sample.patterns.clone(),
-                normal_loads_n: sample
-                    .scenarios
-                    .iter()
-                    .filter_map(|scenario| scenario.contact.normal_load_n())
-                    .collect(),
-                reference_tolerance: Some(tolerance),
-                reference: reference.kind.name().to_owned(),
-                amplitude,
-                amplitude_worst_upper: amplitude.worst_upper(measured.setting.peak_tolerance),
-                frequency: bound(Compared::Frequency),
-                amplification_factor: bound(Compared::AmplificationFactor),
-                operations_per_row: measured.operations(),
-                operations_of_choice: trials.operations
-                    + of_reference.map(of_measured).sum::<f64>()
-                    + search.levels().iter().map(of_measured).sum::<f64>(),
-                tried: trials.tried,
-                load_cases: sample
-                    .scenarios
-                    .iter()
-                    .filter_map(|scenario| scenario.load_case)
-                    .collect(),
-                errors_of_load_cases: errors_of_load_cases(
-                    &measured.rows,
-                    &reference.values,
-                    &sample,
-                ),
-            }),
-            setting: ChosenSetting::Ladder(measured.setting),
-        })
+            met: true,
+            evidence: None,
+        });
     }
-
-    /// The study at the settings chosen.
-    #[must_use]
-    pub fn applied_to(&self, study: &Study) -> Study {
-        match &self.setting {
-            ChosenSetting::Ladder(setting) => {
-                let mut own = setting.applied_to(study);
-                own.reduction.craig_bampton_modes = Some(self.craig_bampton_modes);
-                if study.states("solver.rows_beyond_tolerance") {
-                    own.solver.rows_beyond_tolerance = study.solver.rows_beyond_tolerance;
-                }
-                own
-            }
-            ChosenSetting::Receptances(setting) => setting.applied_to(study),
-        }
-    }
-
-    /// The choice for the manifest.
-    #[must_use]
-    pub fn facts(&self) -> Value {
-        let setting: Value = match &self.setting {
-            ChosenSetting::Ladder(setting) => Knob::ALL
-                .into_iter()
-                .map(|knob| (knob.name(), json!(setting.level(knob))))
+    let reference = LadderReference::solve(&mut bench, &ends, patterns)?;
+    let space = bench.space(ends.best.basis);
+    let sample = bench.sample().clone();
+    let mut search = LadderSearch::new(&mut bench, patterns, &reference, PROBED);
+    // The drift of a creeping ring under one law is not that under another.
+    let locked = study
+        .contact
+        .as_ref()
+        .is_some_and(|contact| contact.ring == Ring::Locked);
+    let accuracy = AccuracyOptions {
+        simpler_contact_law: accuracy.simpler_contact_law && locked,
+        ..accuracy
+    };
+    search.measure_levels(levels(study, &space, &ends.base, accuracy, tolerance))?;
+    let mut trials = Trials::new(accepted);
+    trials.among(&mut search, study, reference.most_operations())?;
+    let Some((measured, amplitude)) = trials.taken else {
+        // No row of the sample has a reference: the best that is affordable.
+        return Ok(AccuracyChoice {
+            accepted,
+            setting: ChosenSetting::Ladder(ends.base),
+            craig_bampton_modes,
+            met: false,
+            evidence: None,
+        });
+    };
+    let of_measured = |own: &Measured| own.rows.iter().map(|row| row.operations).sum::<f64>();
+    let of_reference = reference.parts.iter().chain([&reference.base]);
+    let values = measured.values();
+    let bound = |quantity| error_bound(&values, &reference.values, quantity);
+    Ok(AccuracyChoice {
+        accepted,
+        craig_bampton_modes,
+        met: amplitude.p95_upper <= accepted,
+        evidence: Some(AccuracyEvidence {
+            patterns: sample.patterns.clone(),
+            normal_loads_n: sample
+                .scenarios
+                .iter()
+                .filter_map(|scenario| scenario.contact.normal_load_n())
                 .collect(),
-            ChosenSetting::Receptances(setting) => setting.facts(),
-        };
-        let mut evidence = json!(self.evidence);
-        if let Some(evidence) = evidence.as_object_mut() {
-            // A study without load cases has none in its manifest.
-            evidence.retain(|key, value| !key.contains("load_cases") || *value != json!([]));
-        }
-        json!({
-            "accepted_error": self.accepted,
-            "met": self.met,
-            "craig_bampton_modes": self.craig_bampton_modes,
-            "setting": setting,
-            "evidence": evidence,
-        })
-    }
+            reference_tolerance: Some(tolerance),
+            reference: reference.kind.name().to_owned(),
+            amplitude,
+            amplitude_worst_upper: amplitude.worst_upper(measured.setting.peak_tolerance),
+            frequency: bound(Compared::Frequency),
+            amplification_factor: bound(Compared::AmplificationFactor),
+            operations_per_row: measured.operations(),
+            operations_of_choice: trials.operations
+                + of_reference.map(of_measured).sum::<f64>()
+                + search.levels().iter().map(of_measured).sum::<f64>(),
+            tried: trials.tried,
+            load_cases: sample
+                .scenarios
+                .iter()
+                .filter_map(|scenario| scenario.load_case)
+                .collect(),
+            errors_of_load_cases: errors_of_load_cases(&measured.rows, &reference.values, &sample),
+        }),
+        setting: ChosenSetting::Ladder(measured.setting),
+    })
 }
 
 /// Patterns of the sample.

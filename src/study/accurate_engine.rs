@@ -5,8 +5,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::{
-    AccuracyChoice, AccuracyOptions, Engine, EngineSource, PipelineError, ReducedEngineSource,
-    Study, SurrogateOf,
+    AccuracyChoice, AccuracyOptions, Engine, EngineSource, PipelineError, Study, SurrogateOf,
 };
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{ResponseRow, RowSolver, Scenario, TunedReference};
@@ -23,18 +22,19 @@ struct AccurateEngine {
     choice: AccuracyChoice,
 }
 
-/// Chooses settings for `accuracy`, or takes them from `cache`, and builds the engine with them.
+/// Chooses settings for `accuracy`, or takes them from `cache`, and lets `source` build the engine with them.
 ///
 /// # Errors
 /// The model cannot be reduced, or the cache not be read or written.
 pub(super) fn accurate_engine(
     study: &Study,
     accuracy: AccuracyOptions,
+    source: &dyn EngineSource,
     model: &SectorModel,
     cache: Option<&Path>,
 ) -> Result<Box<dyn Engine>, PipelineError> {
     let choice = AccuracyChoice::of(study, accuracy, model, cache)?;
-    let engine = ReducedEngineSource.build(&choice.applied_to(study), model, cache)?;
+    let engine = source.build(&choice.applied_to(study), model, cache)?;
     Ok(Box::new(AccurateEngine { engine, choice }))
 }
 

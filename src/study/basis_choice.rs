@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::PipelineError;
-use super::load_cases::Excitation;
+use super::excitation::Excitation;
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::model::reduction::{

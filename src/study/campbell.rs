@@ -1,6 +1,6 @@
 //! The Campbell table of a study: its wheel, or prestressed models of it at several speeds.
 
-use super::reduced_engine::contact_stiffness;
+use super::row_settings::contact_stiffness;
 use super::{PipelineError, Study};
 use crate::model::cyclic::natural_frequencies_hz;
 use crate::model::sector::SectorModel;

@@ -1,5 +1,6 @@
 //! A study in words, from the study file and its sector model.
 
+use super::excitation::excitations;
 use super::{MistuningSource, Study};
 use crate::linalg::Complex64;
 use crate::model::cyclic::nodal_diameter_of;
@@ -27,7 +28,7 @@ pub fn echo(study: &Study, sector: &SectorModel) -> StudyEcho {
         .filter(|own| own.contact.normal_load_n().is_some());
     let patterns = u64::from(study.patterns);
     let sectors = sector.sectors;
-    let excitations = excitations(study, sector);
+    let excitations = echoed_excitations(study, sector);
     StudyEcho {
         name: study.name.clone(),
         patterns,
@@ -59,13 +60,13 @@ pub fn echo(study: &Study, sector: &SectorModel) -> StudyEcho {
     }
 }
 
-fn excitations(study: &Study, sector: &SectorModel) -> Vec<EchoedExcitation> {
+fn echoed_excitations(study: &Study, sector: &SectorModel) -> Vec<EchoedExcitation> {
     let norm = |force: &[(usize, Complex64)]| {
         let squares: f64 = force.iter().map(|(_, value)| value.norm_sqr()).sum();
         squares.sqrt()
     };
     let mut found = Vec::new();
-    for (place, case) in study.excitations().iter().enumerate() {
+    for (place, case) in excitations(study).iter().enumerate() {
         let own = &case.study;
         let force = sector.load_case_forces.get(place).unwrap_or(&sector.force);
         let force_n = own.amplitude_n * norm(force);

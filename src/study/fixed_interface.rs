@@ -12,9 +12,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::basis_choice::judged_conditions;
-use super::full_model::reference_settings;
-use super::load_cases::Excitation;
-use super::reduced_engine::{contact_stiffness, row_settings};
+use super::excitation::{Excitation, excitations};
+use super::row_settings::{contact_stiffness, reference_settings, row_settings};
 use super::{MistuningSource, PipelineError, Study};
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
@@ -197,7 +196,7 @@ struct ComparedCases(Vec<(Excitation, Compared)>);
 
 impl ComparedCases {
     fn new(study: &Study) -> Result<Self, PipelineError> {
-        let cases = study.excitations().into_iter().map(|case| {
+        let cases = excitations(study).into_iter().map(|case| {
             let compared = Compared::new(&case.study)?;
             Ok((case, compared))
         });

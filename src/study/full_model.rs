@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use super::excitation::excitations;
 use super::fixed_interface::reduction_of;
 use super::harmonic_choice::choose_harmonics;
-use super::reduced_engine::row_settings;
+use super::row_settings::{reference_settings, row_settings};
 use super::{PipelineError, Study};
 use crate::model::ReducedModel;
 use crate::model::reduction::BasisChoice;
@@ -96,7 +97,7 @@ impl FullModel {
         };
         let whole = reduction.reduce(BasisChoice::CraigBampton, cantilever)?;
         let scout = reduction.reduce(scout, cantilever)?;
-        let cases = study.excitations().into_iter().map(|case| {
+        let cases = excitations(study).into_iter().map(|case| {
             let amplitude_n = case.study.amplitude_n;
             let settings = RowSettings {
                 amplitude_n,
@@ -250,23 +251,5 @@ impl FullModel {
             ..settings.clone()
         };
         ReferenceSolver::new(&case.model, &settings, engine_order, contact, pattern)
-    }
-}
-
-/// The settings of a study's rows as the full-contact model takes them.
-pub(super) fn reference_settings(
-    row: &RowSettings,
-    transform: HarmonicTransform,
-) -> ReferenceSettings {
-    ReferenceSettings {
-        transform: Arc::new(transform),
-        residual_tolerance: ReferenceSettings::RESIDUAL_TOLERANCE,
-        peak_tolerance: ReferenceSettings::PEAK_TOLERANCE,
-        contact: row.contact,
-        damping: row.damping,
-        amplitude_n: row.amplitude_n,
-        amplitude: row.solver.amplitude,
-        time_samples: row.solver.time_samples,
-        projection: row.projection,
     }
 }

@@ -10,13 +10,13 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::basis_choice::judged_conditions;
+use super::excitation::{Excitation, excitations, solver_under};
 use super::fixed_interface::sensitivity_vectors;
 use super::fixed_interface::{FixedInterface, reduce_sector};
 use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::ladder::{HarmonicLevel, LadderSetting, LadderSpace};
 use super::ladder_sample::{LadderSample, Remainders, distinct, of_sample, sampled_scenarios};
-use super::load_cases::{Excitation, solver_under};
-use super::reduced_engine::{contact_stiffness, row_settings};
+use super::row_settings::{contact_stiffness, row_settings};
 use super::{PipelineError, Progress, Study};
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, ContactStiffness, Reduction};
@@ -187,7 +187,7 @@ impl<'a> LadderBench<'a> {
             }
             HarmonicLevel::Set(_) => None,
         };
-        let solver = solver_under(&study.excitations(), |case| {
+        let solver = solver_under(&excitations(&study), |case| {
             let settings = row_settings(&case.study);
             let model = Arc::new(case.of(&model));
             let solver = RowSolver::new(Arc::clone(&model), settings.clone())?;
@@ -235,8 +235,7 @@ impl<'a> LadderBench<'a> {
             )?;
             Ok((case.name, choices))
         };
-        alone(&self.study)
-            .excitations()
+        excitations(&alone(&self.study))
             .iter()
             .map(of_case)
             .collect()

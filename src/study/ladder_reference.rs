@@ -12,11 +12,11 @@
 
 use super::PipelineError;
 use super::basis_choice::{Judged, choose_basis_under, judged_conditions, judged_variations};
+use super::excitation::{Excitation, excitations};
 use super::ladder::{HarmonicLevel, Knob, LadderSetting};
 use super::ladder_bench::{LadderBench, LadderValues};
 use super::ladder_measure::Measured;
-use super::load_cases::Excitation;
-use super::reduced_engine::row_settings;
+use super::row_settings::row_settings;
 use crate::model::reduction::{Basis, BasisChoice, ReductionOptions};
 use crate::response::forced_response::Harmonics;
 use crate::response::mistuning::PatternSource;
@@ -145,7 +145,7 @@ fn basis_within(
     study.solver.harmonics = Harmonics::Set(BASE_HARMONICS[0].to_vec());
     let conditions = judged_conditions(&study.contacts);
     let varied = judged_variations(&study.contact_variations);
-    let excitations = study.excitations();
+    let excitations = excitations(&study);
     let settings: Vec<_> = excitations
         .iter()
         .map(|case| row_settings(&case.study))

@@ -1,8 +1,12 @@
-//! Which rows of a study settings are judged by: a few scenarios that stand for all of them.
+//! Which rows of a study settings are judged by: a few scenarios that stand for all of them, and a few patterns.
 
-use super::Study;
+use super::random_sample::draw_in;
+use super::{MistuningSource, Study};
 use crate::population::monte_carlo::{HarmonicChoice, LoadCaseName, Scenario};
+use crate::response::mistuning::PatternSource;
 
+/// Stream of the sample of patterns of a file.
+const SAMPLE_STREAM: u64 = u64::MAX - 1;
 /// Load cases of a sample at most.
 const LOAD_CASES: usize = 3;
 /// What harmonic 1 leaves out of two tuned peaks is the same within this: rounding decides nothing.
@@ -23,6 +27,23 @@ impl LadderSample {
     pub fn load_cases(&self) -> Vec<LoadCaseName> {
         let scenarios = self.scenarios.iter();
         distinct(scenarios.filter_map(|scenario| scenario.load_case))
+    }
+}
+
+/// The first `count` patterns of a law, each a draw of its own, so that a longer study has the same; of
+/// a file, whose order may mean something, as many drawn at random.
+pub(super) fn sample_of_patterns(
+    study: &Study,
+    patterns: &PatternSource,
+    count: usize,
+) -> Vec<u32> {
+    let ids = patterns.ids();
+    match &study.mistuning.source {
+        MistuningSource::Law(_) => ids.into_iter().take(count).collect(),
+        MistuningSource::File { .. } => draw_in(SAMPLE_STREAM, ids.len(), count, study.seed)
+            .into_iter()
+            .map(|place| ids[place])
+            .collect(),
     }
 }
 

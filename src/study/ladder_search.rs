@@ -257,8 +257,8 @@ fn chunks(ids: &[u32]) -> Vec<&[u32]> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::accuracy_choice::Unwatched;
     use super::super::ladder_reference::{LadderEnds, ReferenceKind};
+    use super::super::progress::Unwatched;
     use super::super::{Study, load_sector_model, pattern_source};
     use super::*;
 

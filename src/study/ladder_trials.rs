@@ -1,10 +1,9 @@
 //! Combinations of the ladder under trial: those worth measuring for an accepted error, and the one taken.
 
-use super::accuracy_choice::TriedSetting;
 use super::ladder::{HarmonicLevel, Knob, LadderSetting, LadderSpace};
 use super::ladder_measure::Measured;
 use super::ladder_search::{LadderSearch, Proposal};
-use super::{AccuracyOptions, PipelineError, Study};
+use super::{AccuracyOptions, PipelineError, Study, TriedSetting};
 use crate::population::statistics::ErrorBound;
 use crate::response::friction::ContactLaw;
 

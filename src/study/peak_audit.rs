@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
+use super::random_sample::draw;
 use super::results_folder::ResultsFolder;
-use super::verify::draw;
 use super::{
     Engine, EngineSource, PipelineError, Progress, Stage, StoredModel, StoredStudy, VerifyRequest,
 };

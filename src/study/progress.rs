@@ -42,3 +42,8 @@ pub trait Progress: Sync {
     /// end. The run waits for them otherwise.
     fn saved(&self) {}
 }
+
+/// For work that nobody watches, like a choice of settings that is a part of the reduction.
+pub(super) struct Unwatched;
+
+impl Progress for Unwatched {}

@@ -15,6 +15,9 @@ use crate::response::forced_response::{AmplitudeMeasure, RowsBeyondTolerance};
 use crate::response::friction::{ContactLaw, Ring};
 use crate::response::mistuning::{Projection, VariesPer};
 
+/// Version of the study file.
+pub(super) const SCHEMA: u64 = 1;
+
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawStudy {

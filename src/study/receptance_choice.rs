@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::load_cases::Excitation;
-use super::reduced_engine::row_settings;
+use super::excitation::Excitation;
+use super::row_settings::row_settings;
 use crate::model::ReducedModel;
 use crate::model::cyclic::ContactGeometry;
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings};

@@ -6,26 +6,20 @@ use serde_json::{Value, json};
 
 use super::accurate_engine::accurate_engine;
 use super::basis_choice::BasisEvidence;
-use super::fixed_interface::{FixedInterface, reduce_sector, sensitivity_vectors};
-use super::reduced_study::{Stored, models_digest, reduced, reduced_on_receptances, solver_of};
-use super::validate::against_receptances;
+use super::fixed_interface::FixedInterface;
+use super::reduced_study::{models_digest, solver_of, stored_digest, stored_for};
 use super::{Engine, EngineSource, PipelineError, Study, SurrogateOf};
-use crate::model::reduction::{Basis, ContactStiffness, WHOLE_SPACE_DOFS};
+use crate::model::reduction::Basis;
 use crate::model::sector::SectorModel;
-use crate::model::{read_cached, reduction_digest, write_cached};
 use crate::population::monte_carlo::{
-    LoadCaseName, ResponseRow, RowSettings, RowSolver, Scenario, TunedReference,
+    LoadCaseName, ResponseRow, RowSolver, Scenario, TunedReference,
 };
 use crate::population::table::CurvePoint;
 use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
-use crate::response::forced_response::{Harmonics, ResponseTrace, SearchPlan};
-use crate::response::friction::{ContactOptions, PairParameters, Ring};
+use crate::response::forced_response::{ResponseTrace, SearchPlan};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
 use crate::response::time_integration::{PointComparison, TimeOptions};
-
-/// Harmonics that an automatic set begins with.
-const FIRST_HARMONICS: [u32; 1] = [1];
 
 /// Reduces a model for a study with the basis that the study asks for.
 #[derive(Debug, Clone, Copy, Default)]
@@ -58,7 +52,7 @@ impl EngineSource for ReducedEngineSource {
         cache: Option<&Path>,
     ) -> Result<Box<dyn Engine>, PipelineError> {
         if let Some(accuracy) = study.accuracy {
-            return accurate_engine(study, accuracy, model, cache);
+            return accurate_engine(study, accuracy, self, model, cache);
         }
         let digest = stored_digest(study, model);
         let stored = stored_for(study, model, cache)?;
@@ -281,116 +275,5 @@ impl Engine for ReducedEngine {
         options: &TimeOptions,
     ) -> Result<PointComparison, Status> {
         self.solver.compare_in_time(pattern, scenario, row, options)
-    }
-}
-
-/// What rows of `study` are solved on: from `cache` if it is there, else made, and kept there.
-///
-/// # Errors
-/// The model cannot be reduced, or the cache not be written.
-pub(super) fn stored_for(
-    study: &Study,
-    model: &SectorModel,
-    cache: Option<&Path>,
-) -> Result<Stored, PipelineError> {
-    let digest = stored_digest(study, model);
-    let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
-    if let Some(stored) = cached.filter(|stored| stored.fits(study, model)) {
-        return Ok(stored);
-    }
-    let stored = if is_on_receptances(study, model) {
-        reduced_on_receptances(study, model)?
-    } else {
-        let (reduction, fixed_interface) = reduce_sector(study, model)?;
-        reduced(study, &reduction, fixed_interface)?
-    };
-    if let Some(folder) = cache {
-        write_cached(folder, &digest, &stored)?;
-    }
-    Ok(stored)
-}
-
-/// Digest of everything that the stored models and sets of a study depend on: also of what their errors are judged by.
-fn stored_digest(study: &Study, model: &SectorModel) -> String {
-    let settings = row_settings(study);
-    let stiffness = contact_stiffness(study.contact.as_ref());
-    let sensitivity = sensitivity_vectors(study);
-    let key = format!(
-        "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?} {:?} {:?}",
-        study.reduction,
-        study.mistuning.cantilever_mode_count,
-        study.engine_orders,
-        study.contacts,
-        study.contact_variations,
-        study.nodal_diameter_damping,
-        study.amplitudes_n
-    );
-    let key = match study.load_cases.as_slice() {
-        [] => key,
-        load_cases => format!("{key} {load_cases:?}"),
-    };
-    reduction_digest(model, &key)
-}
-
-/// Whether rows are solved on the receptances of the tuned wheel: where the study names them, and by default wherever they are ready for
-/// what it asks, on sectors that are not solved in their whole space.
-pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
-    let ready = || {
-        let contact = study.contact.as_ref();
-        !sector.contact_pairs.is_empty()
-            && sector.dofs.len() > WHOLE_SPACE_DOFS
-            && contact.is_none_or(|own| own.in_place_of.is_none())
-            && against_receptances(contact.map(|own| own.ring), &study.solver).is_empty()
-    };
-    match study.reduction.basis {
-        Basis::TunedReceptances => true,
-        Basis::Auto | Basis::StickAttachment => ready(),
-        Basis::StickSlide => false,
-    }
-}
-
-/// The physics of a row as the study states it.
-pub(super) fn row_settings(study: &Study) -> RowSettings {
-    let harmonics = match &study.solver.harmonics {
-        Harmonics::Set(set) => set.clone(),
-        Harmonics::Auto => FIRST_HARMONICS.to_vec(),
-    };
-    RowSettings {
-        harmonics,
-        contact: study
-            .contact
-            .as_ref()
-            .map(|contact| (contact.law, PairParameters::of_sector(contact, 0.0))),
-        ring: study
-            .contact
-            .as_ref()
-            .map_or(Ring::Locked, |contact| contact.ring),
-        in_place_of: study
-            .contact
-            .as_ref()
-            .and_then(|contact| contact.in_place_of),
-        damping: study.damping,
-        amplitude_n: study.amplitude_n,
-        projection: study.mistuning.projection,
-        solver: study.solver.clone(),
-    }
-}
-
-/// Linear contact springs of the law.
-pub(super) fn contact_stiffness(contact: Option<&ContactOptions>) -> ContactStiffness {
-    let Some(contact) = contact else {
-        return ContactStiffness {
-            normal_n_per_m: 0.0,
-            tangential_1_n_per_m: 0.0,
-            tangential_2_n_per_m: 0.0,
-        };
-    };
-    let normal = contact.normal_stiffness_n_per_m.unwrap_or(0.0);
-    let tangential = contact.tangential_stiffness_n_per_m;
-    let [normal, first, second] = contact.law.springs(normal, tangential);
-    ContactStiffness {
-        normal_n_per_m: normal,
-        tangential_1_n_per_m: first,
-        tangential_2_n_per_m: second,
     }
 }

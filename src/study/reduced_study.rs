@@ -1,5 +1,6 @@
 //! What a study is solved on: its reduced models and harmonic sets, under each of its force vectors.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -7,17 +8,18 @@ use serde::{Deserialize, Serialize};
 use super::basis_choice::{
     BasisEvidence, Judged, choose_basis_under, judged_conditions, judged_variations,
 };
-use super::fixed_interface::FixedInterface;
+use super::excitation::{Excitation, excitations, solver_under};
+use super::fixed_interface::{FixedInterface, reduce_sector, sensitivity_vectors};
 use super::harmonic_choice::{choose_harmonics, with_separation};
-use super::load_cases::{Excitation, solver_under};
 use super::receptance_choice::choice_of;
-use super::reduced_engine::row_settings;
+use super::row_settings::{contact_stiffness, row_settings};
 use super::sector_model::judging_patterns;
 use super::tuned_receptances::{COMPANION_MODES, Refined, engine_of, engine_options, refined};
+use super::validate::against_receptances;
 use super::{PipelineError, Study};
-use crate::model::ReducedModel;
-use crate::model::reduction::{BasisChoice, Reduction};
+use crate::model::reduction::{Basis, BasisChoice, Reduction, WHOLE_SPACE_DOFS};
 use crate::model::sector::SectorModel;
+use crate::model::{ReducedModel, read_cached, reduction_digest, write_cached};
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
 use crate::response::forced_response::{Harmonics, RowsBeyondTolerance};
 use crate::response::friction::ContactLaw;
@@ -130,9 +132,74 @@ impl<'a> Case<'a> {
     }
 }
 
+/// What rows of `study` are solved on: from `cache` if it is there, else made, and kept there.
+///
+/// # Errors
+/// The model cannot be reduced, or the cache not be written.
+pub(super) fn stored_for(
+    study: &Study,
+    model: &SectorModel,
+    cache: Option<&Path>,
+) -> Result<Stored, PipelineError> {
+    let digest = stored_digest(study, model);
+    let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
+    if let Some(stored) = cached.filter(|stored| stored.fits(study, model)) {
+        return Ok(stored);
+    }
+    let stored = if is_on_receptances(study, model) {
+        reduced_on_receptances(study, model)?
+    } else {
+        let (reduction, fixed_interface) = reduce_sector(study, model)?;
+        reduced(study, &reduction, fixed_interface)?
+    };
+    if let Some(folder) = cache {
+        write_cached(folder, &digest, &stored)?;
+    }
+    Ok(stored)
+}
+
+/// Digest of everything that the stored models and sets of a study depend on: also of what their errors are judged by.
+pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> String {
+    let settings = row_settings(study);
+    let stiffness = contact_stiffness(study.contact.as_ref());
+    let sensitivity = sensitivity_vectors(study);
+    let key = format!(
+        "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?} {:?} {:?}",
+        study.reduction,
+        study.mistuning.cantilever_mode_count,
+        study.engine_orders,
+        study.contacts,
+        study.contact_variations,
+        study.nodal_diameter_damping,
+        study.amplitudes_n
+    );
+    let key = match study.load_cases.as_slice() {
+        [] => key,
+        load_cases => format!("{key} {load_cases:?}"),
+    };
+    reduction_digest(model, &key)
+}
+
+/// Whether rows are solved on the receptances of the tuned wheel: where the study names them, and by default wherever they are ready for
+/// what it asks, on sectors that are not solved in their whole space.
+pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
+    let ready = || {
+        let contact = study.contact.as_ref();
+        !sector.contact_pairs.is_empty()
+            && sector.dofs.len() > WHOLE_SPACE_DOFS
+            && contact.is_none_or(|own| own.in_place_of.is_none())
+            && against_receptances(contact.map(|own| own.ring), &study.solver).is_empty()
+    };
+    match study.reduction.basis {
+        Basis::TunedReceptances => true,
+        Basis::Auto | Basis::StickAttachment => ready(),
+        Basis::StickSlide => false,
+    }
+}
+
 /// Harmonics, basis and reduced model of a study, and those for rows beyond them: harmonics by
 /// the full contact model, then the basis that carries these harmonics.
-pub(super) fn reduced(
+fn reduced(
     study: &Study,
     reduction: &Reduction<'_>,
     fixed_interface: FixedInterface,
@@ -140,7 +207,7 @@ pub(super) fn reduced(
     let automatic = study.solver.harmonics == Harmonics::Auto;
     let tolerance = automatic.then_some(study.solver.harmonic_tolerance);
     let full = reduction.reduce(BasisChoice::CraigBampton, None)?;
-    let excitations = study.excitations();
+    let excitations = excitations(study);
     let cases: Vec<Case<'_>> = excitations
         .iter()
         .map(|own| Case::new(own, &full))
@@ -214,11 +281,8 @@ fn admitting_separation(cases: &[Case<'_>], sets: Vec<Sets>) -> Result<Vec<Sets>
 
 /// What rows on tuned receptances are solved on: fixed-interface modes by the tuned wheel and some mistuned ones, all harmonics up to
 /// 15 or those of the study, and a small companion model besides, for what is not solved there.
-pub(super) fn reduced_on_receptances(
-    study: &Study,
-    sector: &SectorModel,
-) -> Result<Stored, PipelineError> {
-    let excitations = study.excitations();
+fn reduced_on_receptances(study: &Study, sector: &SectorModel) -> Result<Stored, PipelineError> {
+    let excitations = excitations(study);
     let patterns = judging_patterns(study, sector)?;
     let law = study.contact.as_ref().map(|contact| contact.law);
     let separates = law.is_some_and(ContactLaw::has_variable_load);
@@ -301,7 +365,7 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Pip
         .filter(|own| own.normal_load_n().is_some());
     let loads = nonlinear.count();
     let mut first = 0;
-    let excitations = study.excitations();
+    let excitations = excitations(study);
     let engine = stored.engine.as_ref().map(|own| {
         let made = stored.receptances.clone().map(Ok);
         let engine = made

@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::validate_accuracy::KEYS_OF_ACCURACY;
+use super::accuracy::KEYS_OF_ACCURACY;
+use super::load_cases::amplitude_value;
+use super::raw::SCHEMA;
 use super::{AccuracyOptions, LoadCase, Mistuning, NodalDiameterTable, RotationLoad};
 use crate::input::SourceMap;
-use crate::model::reduction::ReductionOptions;
+use crate::model::reduction::{NodalDiameterDamping, ReductionOptions};
 use crate::model::sector::{LumpedOptions, ParametricOptions};
-use crate::population::monte_carlo::Scenario;
+use crate::population::monte_carlo::{LoadCaseName, Scenario};
 use crate::population::statistics::StopOptions;
 use crate::population::table::Compression;
 use crate::response::forced_response::{
@@ -122,6 +124,17 @@ impl Study {
         scenarios
     }
 
+    /// Load cases with their engine orders; one without name where the study has none.
+    pub(super) fn excited_orders(&self) -> Vec<(Option<LoadCaseName>, &[u32])> {
+        if self.load_cases.is_empty() {
+            return vec![(None, &self.engine_orders)];
+        }
+        let cases = self.load_cases.iter();
+        cases
+            .map(|case| (Some(case.name), case.engine_orders.as_slice()))
+            .collect()
+    }
+
     /// Factors on the force vector of engine orders that have one of their own.
     #[must_use]
     pub fn force_factors(&self) -> Vec<(u32, f64)> {
@@ -132,12 +145,24 @@ impl Study {
             .collect()
     }
 
+    /// What damps the modes of the tuned wheel besides `[damping]`.
+    #[must_use]
+    pub fn added_damping(&self) -> NodalDiameterDamping {
+        let table = self.nodal_diameter_damping.as_ref();
+        table.map_or_else(NodalDiameterDamping::default, NodalDiameterTable::damping)
+    }
+
     /// Whether a scenario is under the nonlinear contact law.
     #[must_use]
     pub fn has_friction(&self) -> bool {
         self.contacts
             .iter()
             .any(|contact| matches!(contact, ContactCondition::Full { .. }))
+    }
+
+    /// Whether the study file says the key `key`, which nothing chosen takes the place of.
+    pub(super) fn states(&self, key: &str) -> bool {
+        self.map.holds(key)
     }
 
     /// `path` as seen from the folder of the study file.
@@ -152,7 +177,7 @@ impl Study {
     #[must_use]
     pub fn resolved(&self) -> Value {
         let mut study = json!({
-            "schema": super::validate::SCHEMA,
+            "schema": SCHEMA,
             "study": { "name": self.name, "seed": self.seed, "patterns": self.patterns },
             "model": self.model_value(),
             "reduction": self.reduction,
@@ -215,6 +240,18 @@ impl Study {
             }
         }
         study
+    }
+
+    /// `[excitation]` with every default filled in.
+    fn excitation_value(&self) -> Value {
+        if self.load_cases.is_empty() {
+            return json!({
+                "engine_orders": self.engine_orders,
+                "amplitude_n": amplitude_value(self.amplitude_n, &self.amplitudes_n),
+            });
+        }
+        let cases: Vec<Value> = self.load_cases.iter().map(LoadCase::resolved).collect();
+        json!({ "load_case": cases })
     }
 
     fn output_value(&self) -> Value {

@@ -1,5 +1,6 @@
 //! The sector model that a study names, and the checks that need both.
 
+use super::excitation::with_load_cases;
 use super::{MistuningSource, ModelSource, PipelineError, Problem, Study, StudyError};
 use crate::model::cyclic::ring_free;
 use crate::model::sector::{ModelError, SectorModel, bundle, lumped, parametric};
@@ -17,8 +18,8 @@ pub fn load_sector_model(study: &Study) -> Result<SectorModel, PipelineError> {
         error => PipelineError::Study(error),
     })?;
     check_contact(study, &model)?;
-    study.check_nodal_diameters(&model)?;
-    let model = study.with_load_cases(model)?;
+    check_nodal_diameters(study, &model)?;
+    let model = with_load_cases(study, model)?;
     Ok(match &study.rotation {
         Some(rotation) => rotation.applied_to(model),
         None => model,
@@ -172,4 +173,34 @@ fn check_contact(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
         );
     }
     Ok(())
+}
+
+/// Refuses nodal diameters that the wheel does not have.
+fn check_nodal_diameters(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
+    let last = model.sectors / 2;
+    let findings: Vec<_> = study
+        .nodal_diameter_damping
+        .iter()
+        .flat_map(|table| table.ratios.iter().enumerate())
+        .filter(|(_, (h, _))| *h as usize > last)
+        .map(|(place, _)| {
+            let key = format!("nodal_diameter_damping.damping_ratios[{place}]");
+            let problem = Problem::NotAccepted {
+                value: study.map.value(&key),
+                accepted: format!(
+                    "nodal diameters from 0 to {last}, those of {} sectors",
+                    model.sectors
+                ),
+                suggestion: None,
+            };
+            study.map.finding(&key, problem)
+        })
+        .collect();
+    if findings.is_empty() {
+        return Ok(());
+    }
+    Err(StudyError::Invalid {
+        path: study.path.clone(),
+        findings,
+    })
 }

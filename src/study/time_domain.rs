@@ -1,6 +1,6 @@
 //! One delivered row integrated in time beside its harmonic balance.
 
-use super::verify::draw;
+use super::random_sample::draw;
 use super::{EngineSource, PipelineError, Progress, Stage, StoredStudy, VerifyRequest};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::report::TimeDomainReport;

@@ -7,15 +7,14 @@ use super::ladder_bench::{LadderBench, LadderValues};
 use super::ladder_cost::LadderPlan;
 use super::ladder_measure::{Compared, Measured, error_bound, errors_of_load_cases};
 use super::ladder_reference::{LadderEnds, LadderReference};
-use super::ladder_sample::LadderSample;
+use super::ladder_sample::{LadderSample, sample_of_patterns};
 use super::ladder_search::LadderSearch;
 use super::pipeline::pool_of;
 use super::replay::harmonics_of;
 use super::results_folder::ResultsFolder;
-use super::verify::draw_in;
 use super::{
-    FullModel, FullRow, FullSettings, MistuningSource, PipelineError, Progress, Stage, Study,
-    StudyDigest, load_sector_model, pattern_source,
+    FullModel, FullRow, FullSettings, PipelineError, Progress, Stage, Study, StudyDigest,
+    load_sector_model, pattern_source,
 };
 use crate::identity;
 use crate::model::sector::SectorModel;
@@ -28,8 +27,6 @@ use crate::population::table::{
 use crate::report::{FullContactCheck, TradeoffChoice, TradeoffReference, TradeoffReport};
 use crate::response::mistuning::PatternSource;
 
-/// Stream of the sample of patterns of a file.
-const SAMPLE_STREAM: u64 = u64::MAX - 1;
 /// Tolerance of the harmonics of the reference.
 const REFERENCE_TOLERANCE: f64 = 1e-3;
 /// Errors for which combinations are proposed and measured: the front between them.
@@ -110,23 +107,6 @@ pub fn tradeoff(
         write_tradeoff_times(path, settings, &header)
     })?;
     Ok(report)
-}
-
-/// The first `count` patterns of a law, each a draw of its own, so that a longer study has the same; of
-/// a file, whose order may mean something, as many drawn at random.
-pub(super) fn sample_of_patterns(
-    study: &Study,
-    patterns: &PatternSource,
-    count: usize,
-) -> Vec<u32> {
-    let ids = patterns.ids();
-    match &study.mistuning.source {
-        MistuningSource::Law(_) => ids.into_iter().take(count).collect(),
-        MistuningSource::File { .. } => draw_in(SAMPLE_STREAM, ids.len(), count, study.seed)
-            .into_iter()
-            .map(|place| ids[place])
-            .collect(),
-    }
 }
 
 /// All that was measured.

@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
-use super::raw::{RawContact, RawHead, RawModel, RawModelKind, RawStudy};
+use super::check::Check;
+use super::raw::{RawContact, RawHead, RawModel, RawModelKind, RawStudy, SCHEMA};
 use super::replaced::replaced;
-use super::validate_accuracy::accuracy;
+use super::rotation::pressed_by;
+use super::validate_accuracy::{accuracy, with_accuracy};
 use super::validate_contact::contact_variations;
 use super::validate_damping::{damping, nodal_diameter_damping};
 use super::validate_excitation::excitation;
@@ -12,101 +14,15 @@ use super::validate_loads::{contacts, rotation};
 use super::validate_mistuning::mistuning;
 use super::validate_solver::solver;
 use super::validate_stop::stop;
-use super::{Finding, ModelSource, OutputOptions, Problem, RotationOptions, Study, StudyError};
+use super::{
+    AccuracyOptions, Finding, ModelSource, OutputOptions, Problem, RotationOptions, Study,
+    StudyError,
+};
 use crate::input::SourceMap;
 use crate::model::reduction::{Basis, ReductionOptions};
 use crate::response::forced_response::{Harmonics, SolverOptions};
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
 use crate::response::receptance::HIGHEST_HARMONIC;
-
-/// Version of the study file.
-pub(super) const SCHEMA: u64 = 1;
-
-/// Findings so far, and the text they refer to.
-pub(super) struct Check<'a> {
-    map: &'a SourceMap,
-    findings: Vec<Finding>,
-}
-
-impl Check<'_> {
-    pub(super) fn refuse(&mut self, key: &str, accepted: &str) {
-        self.add(
-            key,
-            Problem::NotAccepted {
-                value: self.map.value(key),
-                accepted: accepted.to_owned(),
-                suggestion: None,
-            },
-        );
-    }
-
-    pub(super) fn missing(&mut self, key: &str, accepted: &str) {
-        self.add(
-            key,
-            Problem::Missing {
-                accepted: accepted.to_owned(),
-            },
-        );
-    }
-
-    pub(super) fn conflict(&mut self, key: &str, reason: &str) {
-        self.add(
-            key,
-            Problem::Conflict {
-                reason: reason.to_owned(),
-            },
-        );
-    }
-
-    fn add(&mut self, key: &str, problem: Problem) {
-        self.findings.push(self.map.finding(key, problem));
-    }
-
-    pub(super) fn is_written(&self, key: &str) -> bool {
-        self.map.holds(key)
-    }
-
-    /// `value` if `holds`, otherwise a finding and `fallback`.
-    pub(super) fn within<T: Copy>(
-        &mut self,
-        key: &str,
-        value: T,
-        holds: bool,
-        accepted: &str,
-    ) -> T {
-        if !holds {
-            self.refuse(key, accepted);
-        }
-        value
-    }
-
-    /// A number that must be there and accepted; none, and a finding, otherwise.
-    pub(super) fn given(
-        &mut self,
-        key: &str,
-        value: Option<f64>,
-        holds: impl Fn(f64) -> bool,
-        accepted: &str,
-    ) -> Option<f64> {
-        match value {
-            Some(value) if holds(value) => return Some(value),
-            Some(_) => self.refuse(key, accepted),
-            None => self.missing(key, accepted),
-        }
-        None
-    }
-
-    /// The same with a stand-in.
-    pub(super) fn required(
-        &mut self,
-        key: &str,
-        value: Option<f64>,
-        holds: impl Fn(f64) -> bool,
-        accepted: &str,
-    ) -> f64 {
-        self.given(key, value, holds, accepted).unwrap_or(1.0)
-    }
-}
 
 impl Study {
     /// Reads and checks the study file `path`.
@@ -115,6 +31,40 @@ impl Study {
     /// The file cannot be read, or everything in it that is not accepted.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         Self::read_with(path, None)
+    }
+
+    /// Reads and checks the study file `path` as if it had these `[accuracy]`, if there are any.
+    ///
+    /// # Errors
+    /// The file cannot be read, or everything in it that is not accepted.
+    pub fn read_with(path: &Path, accuracy: Option<AccuracyOptions>) -> Result<Self, StudyError> {
+        let text = std::fs::read_to_string(path).map_err(|source| StudyError::Unreadable {
+            path: path.to_owned(),
+            source,
+        })?;
+        match accuracy {
+            None => Self::parse(path, &text),
+            Some(accuracy) => {
+                // A file that is no TOML is described when it is parsed.
+                let written = SourceMap::new(&text).ok();
+                let line = written
+                    .filter(|map| map.holds("accuracy"))
+                    .map(|map| map.line("accuracy"));
+                if let Some(line) = line {
+                    let reason = "--accuracy is given too; accepted: one of the two".to_owned();
+                    return Err(StudyError::Invalid {
+                        path: path.to_owned(),
+                        findings: vec![Finding {
+                            line,
+                            key: "accuracy".to_owned(),
+                            problem: Problem::Conflict { reason },
+                            excerpt: None,
+                        }],
+                    });
+                }
+                Self::parse(path, &accuracy.appended_to(&text))
+            }
+        }
     }
 
     /// Checks the text of the study file `path`; files it names are sought beside it.
@@ -141,7 +91,7 @@ impl Study {
         match study {
             Some((study, rotation)) if check.findings.is_empty() => {
                 let map = map.clone();
-                Self { map, ..study }.pressed_by(rotation)
+                pressed_by(Self { map, ..study }, rotation)
             }
             _ => {
                 check.findings.sort_by_key(|finding| finding.line);
@@ -251,7 +201,7 @@ fn resolve(
             }),
         },
     };
-    let study = study.with_accuracy(accuracy, |key| check.is_written(key));
+    let study = with_accuracy(study, accuracy, |key| check.is_written(key));
     Ok(Some((study, rotation)))
 }
 

@@ -1,7 +1,7 @@
 //! The checks of the table `[contact.variation]`.
 
+use super::check::Check;
 use super::raw::{RawContactVariation, RawFactorKind, RawVariation};
-use super::validate::Check;
 use crate::response::friction::ContactOptions;
 use crate::response::mistuning::{
     ContactQuantity, ContactVariation, Distribution, FactorLaw, TRUNCATION_RANGE,

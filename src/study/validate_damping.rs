@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::NodalDiameterTable;
+use super::check::Check;
 use super::raw::{RawDamping, RawNodalDiameterDamping};
-use super::validate::Check;
 use crate::response::harmonic_balance::Damping;
 
 /// The damping of the structure; none where it cannot be told.

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use super::check::Check;
 use super::keys::EXCITATION_N;
 use super::raw::{RawExcitation, RawLoadCase, RawNumbers};
-use super::validate::Check;
 use super::{ForceSource, LoadCase, Study};
 use crate::population::monte_carlo::LoadCaseName;
 

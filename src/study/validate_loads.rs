@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use super::RotationOptions;
+use super::check::Check;
 use super::keys::NORMAL_LOAD_N;
 use super::raw::{RawLoad, RawNormalLoad, RawNumbers, RawSweep};
-use super::validate::Check;
 use crate::response::forced_response::ContactCondition;
 
 /// The contact conditions written as newtons or limits; there may be none `besides` those by rotation.

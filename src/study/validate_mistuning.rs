@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use super::check::Check;
 use super::raw::{RawDistribution, RawDistributionKind, RawMistuning, RawSweep};
-use super::validate::Check;
 use super::{Mistuning, MistuningSource, Study, StudyError};
 use crate::population::table::read_pattern_parquet;
 use crate::response::mistuning::{

@@ -1,7 +1,7 @@
 //! The checks of `[solver]`: harmonics, samples, tolerances and band.
 
+use super::check::Check;
 use super::raw::{RawBand, RawHarmonics, RawSolver};
-use super::validate::Check;
 use crate::response::forced_response::{FrequencyBand, Harmonics, SearchHarmonics, SolverOptions};
 
 /// Highest harmonic accepted.

@@ -1,7 +1,7 @@
 //! The checks of the table `[stop]`.
 
+use super::check::Check;
 use super::raw::RawStop;
-use super::validate::Check;
 use crate::population::statistics::{CONFIDENCE, Quantity, StopOptions, smallest_sample};
 
 /// The stopping rule of a study of at most `patterns`; none where a number is missing.

@@ -1,12 +1,10 @@
 //! A random sample of delivered rows solved again, on the same path and on the full-contact model.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
-use chacha20::ChaCha8Rng;
-use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
+use super::random_sample::draw;
 use super::replay::{harmonics_of, same_bits};
 use super::results_folder::ResultsFolder;
 use super::{
@@ -19,9 +17,6 @@ use crate::population::table::{
 };
 use crate::report::{VerificationContext, VerificationReport};
 use crate::response::reference::{ReferencePeak, ReferenceSettings};
-
-/// Stream of the sample, apart from those of the patterns.
-const SAMPLE_STREAM: u64 = u64::MAX;
 
 /// What to verify.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,25 +100,6 @@ fn verify_in(
         stated_error,
     };
     Ok(VerificationReport::new(context, &records))
-}
-
-/// `count` different places of `0..rows`, ascending, all equally likely (Floyd 1987).
-pub(super) fn draw(rows: usize, count: usize, seed: u64) -> Vec<usize> {
-    draw_in(SAMPLE_STREAM, rows, count, seed)
-}
-
-/// The same from a stream of its own.
-pub(super) fn draw_in(stream: u64, rows: usize, count: usize, seed: u64) -> Vec<usize> {
-    let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    generator.set_stream(stream);
-    let mut places = BTreeSet::new();
-    for last in rows - count.min(rows)..rows {
-        let place = generator.random_range(0..=last as u64) as usize;
-        if !places.insert(place) {
-            places.insert(last);
-        }
-    }
-    places.into_iter().collect()
 }
 
 /// The tuned wheel under one contact condition and excitation.
@@ -262,35 +238,4 @@ fn write_records(
     Ok(write_side_table(folder, "verification.parquet", |path| {
         write_verification(path, records, &header, seed)
     })?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::draw;
-
-    #[test]
-    fn a_sample_is_without_repeats_and_depends_on_its_seed_alone() {
-        let sample = draw(1000, 20, 7);
-        assert_eq!(sample.len(), 20);
-        assert!(sample.windows(2).all(|pair| pair[0] < pair[1]) && sample[19] < 1000);
-        assert_eq!(sample, draw(1000, 20, 7));
-        assert_ne!(sample, draw(1000, 20, 8));
-        assert_eq!(draw(3, 20, 7), [0, 1, 2]);
-        assert!(draw(0, 5, 7).is_empty());
-    }
-
-    #[test]
-    fn every_row_is_as_likely_as_any_other() {
-        let mut counts = [0_u32; 10];
-        for seed in 0..2000 {
-            for place in draw(10, 3, seed) {
-                counts[place] += 1;
-            }
-        }
-        // 600 expected of each, standard deviation 20.5.
-        assert!(
-            counts.iter().all(|&count| count.abs_diff(600) < 100),
-            "{counts:?}"
-        );
-    }
 }

@@ -1,106 +1,32 @@
 //! Circles of imports between files, with what a module offers by `pub use` taken to where it stands.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use super::paths::Source;
+use super::paths::{Crate, Source};
 use super::{complain, source_files};
 
 /// Circles that are still open, each by its files under `src/`. One that is broken up or smaller comes off this list.
-const OPEN: &[&[&str]] = &[
-    &[
-        "study/accuracy_choice.rs",
-        "study/accurate_engine.rs",
-        "study/fixed_interface.rs",
-        "study/full_model.rs",
-        "study/ladder_bench.rs",
-        "study/ladder_cost.rs",
-        "study/ladder_measure.rs",
-        "study/ladder_reference.rs",
-        "study/ladder_search.rs",
-        "study/ladder_trials.rs",
-        "study/receptance_accuracy.rs",
-        "study/receptance_choice.rs",
-        "study/reduced_engine.rs",
-        "study/reduced_study.rs",
-        "study/replay.rs",
-        "study/tradeoff.rs",
-        "study/tuned_receptances.rs",
-        "study/verify.rs",
-    ],
-    &[
-        "study/load_cases.rs",
-        "study/nodal_diameter_damping.rs",
-        "study/raw.rs",
-        "study/resolved.rs",
-        "study/rotation.rs",
-        "study/sector_model.rs",
-        "study/validate.rs",
-        "study/validate_accuracy.rs",
-        "study/validate_contact.rs",
-        "study/validate_damping.rs",
-        "study/validate_excitation.rs",
-        "study/validate_loads.rs",
-        "study/validate_mistuning.rs",
-        "study/validate_solver.rs",
-        "study/validate_stop.rs",
-    ],
-];
+const OPEN: &[&[&str]] = &[];
 
-/// The files of a crate and what they name.
-struct Crate<'a> {
-    files: &'a [Source],
-    by_module: BTreeMap<&'a [String], usize>,
-}
-
-impl<'a> Crate<'a> {
-    fn new(files: &'a [Source]) -> Self {
-        let modules = files.iter().enumerate();
-        Self {
-            by_module: modules
-                .map(|(at, source)| (source.module.as_slice(), at))
-                .collect(),
-            files,
-        }
-    }
-
-    /// The file in which what `path` names stands; none for what is outside the crate.
-    fn file_of(&self, path: &[String]) -> Option<usize> {
-        let longest = (1..=path.len()).rev();
-        let module = { longest }.find(|&length| self.by_module.contains_key(&path[..length]))?;
-        let file = self.by_module[&path[..module]];
-        let Some(item) = path.get(module) else {
-            return Some(file);
-        };
-        let offers = |offered: &&Vec<String>| {
-            offered.len() > module + 1
-                && offered[..module] == path[..module]
-                && offered.last() == Some(item)
-        };
-        match self.files[file].paths.iter().find(offers) {
-            Some(offered) => self.file_of(offered),
-            None => Some(file),
-        }
-    }
-
-    /// Which files every file names; a module that re-exports its children does not need them.
-    fn edges(&self) -> Vec<BTreeSet<usize>> {
-        let of_file = |(at, source): (usize, &Source)| {
-            let is_child = |path: &&Vec<String>| path.starts_with(&source.module);
-            let is_mod = source.name.ends_with("mod.rs");
-            let named = source
-                .paths
-                .iter()
-                .filter(|path| !(is_mod && is_child(path)));
-            let files = named.filter_map(|path| self.file_of(path));
-            files.filter(|&file| file != at).collect()
-        };
-        self.files.iter().enumerate().map(of_file).collect()
-    }
+/// Which files every file names; a module that re-exports its children does not need them.
+fn edges(files: &[Source]) -> Vec<BTreeSet<usize>> {
+    let own = Crate::new(files);
+    let of_file = |(at, source): (usize, &Source)| {
+        let is_child = |path: &&Vec<String>| path.starts_with(&source.module);
+        let is_mod = source.name.ends_with("mod.rs");
+        let named = source
+            .paths
+            .iter()
+            .filter(|path| !(is_mod && is_child(path)));
+        let files = named.filter_map(|path| own.file_of(path));
+        files.filter(|&file| file != at).collect()
+    };
+    files.iter().enumerate().map(of_file).collect()
 }
 
 /// Sets of files each of which names every other, directly or by others; the files under `src/`, without the folder.
 fn circles(files: &[Source]) -> Vec<BTreeSet<String>> {
-    let edges = Crate::new(files).edges();
+    let edges = edges(files);
     let reached = |from: usize| -> BTreeSet<usize> {
         let mut seen = BTreeSet::new();
         let mut next: Vec<usize> = edges[from].iter().copied().collect();
@@ -117,18 +43,12 @@ fn circles(files: &[Source]) -> Vec<BTreeSet<String>> {
         let circle = others
             .iter()
             .filter(|&&other| reached[other].contains(&file));
-        let circle: BTreeSet<String> = circle.map(|&other| name_of(&files[other])).collect();
+        let circle: BTreeSet<String> = circle.map(|&other| files[other].inside()).collect();
         if circle.len() > 1 {
             found.insert(circle);
         }
     }
     found.into_iter().collect()
-}
-
-fn name_of(source: &Source) -> String {
-    let name = source.name.replace('\\', "/");
-    name.rsplit_once("/src/")
-        .map_or(name.clone(), |(_, inside)| inside.to_owned())
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Reads the paths from `crate`, `super` and `self` in Rust sources: no compiler, just enough grammar.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// One source file without comments, strings and tests, and the paths it names.
@@ -54,12 +55,56 @@ impl Source {
         }
     }
 
+    /// The file as seen from `src/`.
+    pub fn inside(&self) -> String {
+        let name = self.name.replace('\\', "/");
+        name.rsplit_once("/src/")
+            .map_or(name.clone(), |(_, inside)| inside.to_owned())
+    }
+
     /// Whether `word` stands in the code, not as the end of a longer name.
     pub fn has_word(&self, word: &str) -> bool {
         self.code.match_indices(word).any(|(at, _)| {
             let before = self.code[..at].chars().next_back();
             !before.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == ':')
         })
+    }
+}
+
+/// The files of a crate and what they name.
+pub struct Crate<'a> {
+    pub files: &'a [Source],
+    by_module: BTreeMap<&'a [String], usize>,
+}
+
+impl<'a> Crate<'a> {
+    pub fn new(files: &'a [Source]) -> Self {
+        let modules = files.iter().enumerate();
+        Self {
+            by_module: modules
+                .map(|(at, source)| (source.module.as_slice(), at))
+                .collect(),
+            files,
+        }
+    }
+
+    /// The file in which what `path` names stands; none for what is outside the crate.
+    pub fn file_of(&self, path: &[String]) -> Option<usize> {
+        let longest = (1..=path.len()).rev();
+        let module = { longest }.find(|&length| self.by_module.contains_key(&path[..length]))?;
+        let file = self.by_module[&path[..module]];
+        let Some(item) = path.get(module) else {
+            return Some(file);
+        };
+        let offers = |offered: &&Vec<String>| {
+            offered.len() > module + 1
+                && offered[..module] == path[..module]
+                && offered.last() == Some(item)
+        };
+        match self.files[file].paths.iter().find(offers) {
+            Some(offered) => self.file_of(offered),
+            None => Some(file),
+        }
     }
 }
 
