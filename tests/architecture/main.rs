@@ -8,6 +8,7 @@
 mod circles;
 mod links;
 mod long_tests;
+mod map;
 mod paths;
 
 use std::path::Path;
