@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod circles;
+mod citation;
 mod glossary;
 mod links;
 mod long_tests;
