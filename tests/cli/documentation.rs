@@ -11,6 +11,7 @@ pub fn pages() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths = vec![
         root.join("README.md"),
+        root.join("CONTRIBUTING.md"),
         root.join("results/README.md"),
         root.join("studies/calculix/README.md"),
         root.join("studies/validation/README.md"),
