@@ -12,6 +12,9 @@ pub fn pages() -> Vec<(String, String)> {
     let mut paths = vec![
         root.join("README.md"),
         root.join("CONTRIBUTING.md"),
+        root.join("SECURITY.md"),
+        root.join(".github/ISSUE_TEMPLATE/import-fails.md"),
+        root.join(".github/ISSUE_TEMPLATE/wrong-number.md"),
         root.join("results/README.md"),
         root.join("studies/calculix/README.md"),
         root.join("studies/validation/README.md"),
