@@ -11,7 +11,7 @@ fn is_page(path: &Path) -> bool {
 }
 
 /// Every page in Markdown, but for results that are not kept.
-fn pages(root: &Path) -> Vec<PathBuf> {
+pub fn pages(root: &Path) -> Vec<PathBuf> {
     let mut found = vec![root.join("results/README.md")];
     let mut folders = vec![root.to_owned()];
     while let Some(folder) = folders.pop() {

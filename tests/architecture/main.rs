@@ -6,8 +6,11 @@
 #![allow(clippy::unwrap_used)]
 
 mod circles;
+mod citation;
+mod glossary;
 mod links;
 mod long_tests;
+mod map;
 mod methods;
 mod paths;
 

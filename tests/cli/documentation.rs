@@ -11,6 +11,10 @@ pub fn pages() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths = vec![
         root.join("README.md"),
+        root.join("CONTRIBUTING.md"),
+        root.join("SECURITY.md"),
+        root.join(".github/ISSUE_TEMPLATE/import-fails.md"),
+        root.join(".github/ISSUE_TEMPLATE/wrong-number.md"),
         root.join("results/README.md"),
         root.join("studies/calculix/README.md"),
         root.join("studies/validation/README.md"),

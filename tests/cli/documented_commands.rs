@@ -29,13 +29,15 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 18] = [
+const NOT_RUN: [(&str, &str); 20] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
         "BLISK_VALIDATION_SECTIONS=",
         "is a run of tests for an hour",
     ),
+    ("BLISK_WRITE_MAP=", "writes a page of the clone"),
+    ("cargo check", "compiles everything from nothing"),
     ("cargo bench", "takes many minutes"),
     (
         "cargo deny",
