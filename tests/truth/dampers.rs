@@ -34,17 +34,17 @@ const KINDS: [Kind; 4] = [
     Kind {
         name: "underplatform",
         stiffness_n_per_m: [4e7, 8e7],
-        loads_n: [40.0, 100.0, 400.0],
+        loads_n: [8.0, 60.0, 400.0],
     },
     Kind {
         name: "shroud",
         stiffness_n_per_m: [1e7, 2e7],
-        loads_n: [80.0, 200.0, 400.0],
+        loads_n: [40.0, 80.0, 600.0],
     },
     Kind {
         name: "blade_to_ground",
         stiffness_n_per_m: [4e7, 8e7],
-        loads_n: [60.0, 200.0, 800.0],
+        loads_n: [20.0, 200.0, 800.0],
     },
 ];
 

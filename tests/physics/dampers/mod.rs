@@ -2,4 +2,5 @@
 
 mod chains;
 mod published;
+mod sectors;
 mod whole_wheel;
