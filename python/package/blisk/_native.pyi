@@ -1,0 +1,72 @@
+"""The native part of the package: what the Rust library gives it."""
+
+import os
+from collections.abc import Callable, Sequence
+from typing import Any, Optional, Union, final
+
+_Path = Union[str, os.PathLike[str]]
+
+VERSION: str
+BUILD: str
+COMMIT: str
+
+@final
+class CheckedStudy:
+    """A study that the reader of study files has accepted."""
+
+    def __new__(cls, path: _Path, text: str) -> CheckedStudy: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def patterns(self) -> int: ...
+    @property
+    def scenarios(self) -> int: ...
+    def digest(self) -> str: ...
+    def resolved(self) -> str: ...
+    def echo(self) -> str: ...
+
+@final
+class Table:
+    """A table: named columns of the same length, with units.
+
+    Libraries take it as it is: ``polars.DataFrame(table)``, ``pyarrow.table(table)``,
+    ``pandas.DataFrame.from_arrow(table)``, ``duckdb.sql("from table")``.
+    """
+
+    @property
+    def name(self) -> str:
+        """Name of the table, like ``responses``."""
+    @property
+    def columns(self) -> list[str]:
+        """Names of the columns, in order."""
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each column by its name; ``1`` for pure numbers, nothing for names and flags."""
+    @property
+    def descriptions(self) -> dict[str, str]:
+        """What each column holds, by its name."""
+    def rows(self) -> list[dict[str, Any]]:
+        """The rows as a list of dictionaries by the names of the columns."""
+    def __len__(self) -> int:
+        """Number of rows."""
+    def __getitem__(self, column: str, /) -> list[Any]:
+        """The values of a column as a list with one entry per row; ``None`` where there is no value."""
+    def __arrow_c_schema__(self) -> object:
+        """The schema by the Arrow PyCapsule interface."""
+    def __arrow_c_stream__(self, requested_schema: Optional[object] = None) -> object:
+        """The rows by the Arrow PyCapsule interface."""
+
+def main(arguments: Sequence[str]) -> int: ...
+def key_names() -> list[str]: ...
+def tables_of(text: str) -> str: ...
+def run(
+    study: CheckedStudy,
+    out: _Path,
+    threads: Optional[int],
+    solve_anew: bool,
+    listener: Optional[Callable[[str, int, int, int], object]],
+) -> tuple[int, int]: ...
+def summary(results: _Path) -> tuple[str, str, Optional[tuple[int, int]]]: ...
+def manifest(results: _Path) -> str: ...
+def report(results: _Path, path: _Path, curves: bool, study_file: Optional[_Path]) -> None: ...
+def table(results: _Path, name: str) -> Table: ...
