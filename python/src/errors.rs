@@ -52,7 +52,12 @@ fn described(path: &Path, finding: &Finding) -> Value {
         Problem::UnknownKey {
             suggestion,
             accepted,
-        } => ("unknown_key", None, Some(accepted.join(", ")), suggestion.clone()),
+        } => (
+            "unknown_key",
+            None,
+            Some(accepted.join(", ")),
+            suggestion.clone(),
+        ),
         Problem::Missing { accepted } => ("missing", None, Some(accepted.clone()), None),
         Problem::NotAccepted {
             value,
@@ -74,7 +79,12 @@ fn described(path: &Path, finding: &Finding) -> Value {
 }
 
 /// `InputError` where there are findings, else `BliskError`; both stand in Python.
-fn raised(py: Python<'_>, status: ExitStatus, message: &str, findings: Option<Vec<Value>>) -> PyErr {
+fn raised(
+    py: Python<'_>,
+    status: ExitStatus,
+    message: &str,
+    findings: Option<Vec<Value>>,
+) -> PyErr {
     let made = || {
         let errors = py.import("blisk._errors")?;
         let code = status as i32;

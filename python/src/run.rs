@@ -1,9 +1,9 @@
 //! A run on a thread of its own, while the thread of Python that asked for it watches for signals and reports progress.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
-use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
@@ -50,14 +50,20 @@ impl Watched {
     fn reached(&self) -> Reached {
         let number = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         let (_, stage) = STAGES[self.stage.load(Ordering::Relaxed)];
-        (stage, number(&self.planned), number(&self.done), number(&self.failed))
+        (
+            stage,
+            number(&self.planned),
+            number(&self.done),
+            number(&self.failed),
+        )
     }
 }
 
 impl Progress for Watched {
     fn stage(&self, stage: Stage) {
         let place = STAGES.iter().position(|(own, _)| *own == stage);
-        self.stage.store(place.unwrap_or_default(), Ordering::Relaxed);
+        self.stage
+            .store(place.unwrap_or_default(), Ordering::Relaxed);
     }
 
     fn begin_rows(&self, planned: u64, done: u64) {
@@ -90,7 +96,7 @@ pub fn run(
     listener: Option<Py<PyAny>>,
 ) -> PyResult<(u64, u64)> {
     let watched = Arc::new(Watched::default());
-    let ended = begin(
+    let mut ended = begin(
         Arc::clone(&study.0),
         out,
         blisk::cli::threads(threads),
@@ -100,7 +106,7 @@ pub fn run(
     let mut told = None;
     let mut broken_off: Option<PyErr> = None;
     let outcome = loop {
-        match py.detach(|| wait(&ended)) {
+        match py.detach(|| wait(&mut ended)) {
             Ok(outcome) => break outcome,
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
@@ -170,7 +176,8 @@ fn solve(
     blisk::study::run(request, &ReducedEngineSource, watched)
 }
 
-fn wait(ended: &Receiver<Outcome>) -> Result<Outcome, RecvTimeoutError> {
+/// Waits for the end of a run until the next look.
+fn wait(ended: &mut Receiver<Outcome>) -> Result<Outcome, RecvTimeoutError> {
     ended.recv_timeout(LOOK)
 }
 

@@ -3,9 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use blisk::study::{
-    Study, StudyDigest, echo, keys, load_sector_model, pattern_source,
-};
+use blisk::study::{Study, StudyDigest, echo, keys, load_sector_model, pattern_source};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::json;

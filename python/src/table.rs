@@ -6,8 +6,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use blisk::population::table::TableError;
-use polars::prelude::{CompatLevel, PolarsError, ParquetReader, SerReader};
-use polars_arrow::array::{Array, BooleanArray, Float64Array, Int32Array, Int64Array, StructArray, Utf8Array};
+use polars::prelude::{CompatLevel, ParquetReader, PolarsError, SerReader};
+use polars_arrow::array::{
+    Array, BooleanArray, Float64Array, Int32Array, Int64Array, StructArray, Utf8Array,
+};
 use polars_arrow::datatypes::{ArrowDataType, Field, Metadata};
 use polars_arrow::ffi::{ArrowArrayStream, ArrowSchema, export_field_to_c, export_iterator};
 use pyo3::exceptions::{PyKeyError, PyTypeError};
@@ -44,14 +46,22 @@ impl Table {
         })?;
         let mut reader = ParquetReader::new(file);
         let schema = reader.schema().map_err(refused)?;
-        let pairs = reader.get_metadata().map_err(refused)?.key_value_metadata().clone();
+        let pairs = reader
+            .get_metadata()
+            .map_err(refused)?
+            .key_value_metadata()
+            .clone();
         let frame = reader.set_rechunk(true).finish().map_err(refused)?;
         let (height, mut fields, mut arrays) = (frame.height(), Vec::new(), Vec::new());
         for column in frame.columns() {
             // Types that every reader of Arrow knows: no views of strings.
-            let array = column.as_materialized_series().to_arrow(0, CompatLevel::oldest());
+            let array = column
+                .as_materialized_series()
+                .to_arrow(0, CompatLevel::oldest());
             let mut field = Field::new(column.name().clone(), array.dtype().clone(), true);
-            field.metadata = schema.get(column.name()).and_then(|own| own.metadata.clone());
+            field.metadata = schema
+                .get(column.name())
+                .and_then(|own| own.metadata.clone());
             fields.push(field);
             arrays.push(array);
         }
@@ -61,9 +71,17 @@ impl Table {
             .filter(|pair| pair.key.starts_with("blisk."))
             .map(|pair| (pair.key.into(), pair.value.unwrap_or_default().into()))
             .collect();
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let name = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
         let field = Field::new("".into(), kind, false).with_metadata(own);
-        Ok(Self { name, columns, field })
+        Ok(Self {
+            name,
+            columns,
+            field,
+        })
     }
 
     fn fields(&self) -> &[Field] {
@@ -96,7 +114,10 @@ impl Table {
     /// Names of the columns, in order.
     #[getter]
     fn columns(&self) -> Vec<String> {
-        self.fields().iter().map(|field| field.name.to_string()).collect()
+        self.fields()
+            .iter()
+            .map(|field| field.name.to_string())
+            .collect()
     }
 
     /// Unit of each column by its name; ``1`` for pure numbers, nothing for names and flags.
@@ -118,7 +139,10 @@ impl Table {
 
     fn __repr__(&self) -> String {
         let (rows, columns) = (self.columns.len(), self.fields().len());
-        format!("<blisk.Table {}: {rows} rows, {columns} columns>", self.name)
+        format!(
+            "<blisk.Table {}: {rows} rows, {columns} columns>",
+            self.name
+        )
     }
 
     /// The values of a column as a list with one entry per row; ``None`` where there is no value.
@@ -171,17 +195,37 @@ impl Table {
 fn values<'py>(py: Python<'py>, array: &dyn Array) -> PyResult<Bound<'py, PyList>> {
     let array = array.as_any();
     if let Some(numbers) = array.downcast_ref::<Float64Array>() {
-        PyList::new(py, numbers.iter().map(Option::<&f64>::cloned).collect::<Vec<_>>())
+        PyList::new(
+            py,
+            numbers
+                .iter()
+                .map(Option::<&f64>::cloned)
+                .collect::<Vec<_>>(),
+        )
     } else if let Some(numbers) = array.downcast_ref::<Int32Array>() {
-        PyList::new(py, numbers.iter().map(Option::<&i32>::cloned).collect::<Vec<_>>())
+        PyList::new(
+            py,
+            numbers
+                .iter()
+                .map(Option::<&i32>::cloned)
+                .collect::<Vec<_>>(),
+        )
     } else if let Some(numbers) = array.downcast_ref::<Int64Array>() {
-        PyList::new(py, numbers.iter().map(Option::<&i64>::cloned).collect::<Vec<_>>())
+        PyList::new(
+            py,
+            numbers
+                .iter()
+                .map(Option::<&i64>::cloned)
+                .collect::<Vec<_>>(),
+        )
     } else if let Some(flags) = array.downcast_ref::<BooleanArray>() {
         PyList::new(py, flags.iter().collect::<Vec<_>>())
     } else if let Some(texts) = array.downcast_ref::<Utf8Array<i64>>() {
         PyList::new(py, texts.iter().collect::<Vec<_>>())
     } else {
-        Err(PyTypeError::new_err("a column of a type that no table of blisk has"))
+        Err(PyTypeError::new_err(
+            "a column of a type that no table of blisk has",
+        ))
     }
 }
 

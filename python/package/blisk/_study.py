@@ -35,7 +35,9 @@ class Study:
     _text: str
 
     def __init__(self, *, base: Union[str, os.PathLike[str], None] = None, **tables: Any) -> None:
-        self._read(_path_in(base), text_of({"schema": 1, **tables}))
+        own: dict[str, Any] = {"schema": 1}
+        _put_all(own, tables)
+        self._read(_path_in(base), text_of(own))
 
     @classmethod
     def from_toml(
@@ -73,8 +75,8 @@ class Study:
             study.replace(study={"patterns": 4000})
         """
         own = self.to_dict()
-        for key, value in {**(changes or {}), **tables}.items():
-            _put(own, key.split("."), value)
+        _put_all(own, changes or {})
+        _put_all(own, tables)
         return self._of(self._path, text_of(own))
 
     def check(self) -> list[str]:
@@ -144,6 +146,14 @@ def _path_in(base: Union[str, os.PathLike[str], None]) -> str:
     return _FILE if base is None else str(Path(base) / _FILE)
 
 
+def _put_all(table: dict[str, Any], changes: Mapping[str, Any]) -> None:
+    """Puts values under keys of a table, dotted or not."""
+    for key, value in changes.items():
+        if not isinstance(key, str):
+            raise TypeError(f"a key of a study is a text, and {key!r} is none")
+        _put(table, key.split("."), value)
+
+
 def _put(table: dict[str, Any], path: list[str], value: Any) -> None:
     """Puts ``value`` under a key of a table; a dictionary into the table that is there."""
     key, rest = path[0], path[1:]
@@ -157,6 +167,5 @@ def _put(table: dict[str, Any], path: list[str], value: Any) -> None:
         table[key] = {}
     if rest:
         _put(table[key], rest, value)
-        return
-    for own, below in value.items():
-        _put(table[key], own.split("."), below)
+    else:
+        _put_all(table[key], value)

@@ -23,7 +23,7 @@ def text_of(tables: Mapping[str, Any]) -> str:
     Keys are in the order of the documentation, whatever order they come in; unknown ones are last.
     """
     lines: list[str] = []
-    _write(lines, "", _plain(tables, "the study"))
+    _write(lines, (), _plain(tables, "the study"))
     return "\n".join(lines).strip("\n") + "\n"
 
 
@@ -34,8 +34,10 @@ def _plain(value: Any, place: str) -> Any:
             if not isinstance(key, str):
                 raise TypeError(f"{place} has the key {key!r}, which is no text")
         return {key: _plain(own, key) for key, own in value.items() if own is not None}
-    if isinstance(value, (str, bool, int, float)):
-        return value
+    for kind in (bool, int, float, str):
+        # Those of numpy are subclasses that write themselves in another way.
+        if isinstance(value, kind):
+            return kind(value)
     if hasattr(value, "tolist"):
         return _plain(value.tolist(), place)
     if isinstance(value, (list, tuple, range)):
@@ -47,12 +49,10 @@ def _plain(value: Any, place: str) -> Any:
     raise TypeError(f"{place} = {value!r} is of a type that a study file cannot hold: {type(value).__name__}")
 
 
-def _write(lines: list[str], name: str, table: dict[str, Any]) -> None:
-    """Writes a table: first its own values, then the tables in it."""
-    full = {key: f"{name}.{key}" if name else key for key in table}
+def _write(lines: list[str], path: tuple[str, ...], table: dict[str, Any]) -> None:
+    """Writes the table ``path``: first its own values, then the tables in it."""
     places = _places()
-    # Keys of a table in a list stand in the documentation without the number of that table.
-    ordered = sorted(table, key=lambda key: places.get(full[key], len(places)))
+    ordered = sorted(table, key=lambda key: places.get(".".join((*path, key)), len(places)))
     below: list[str] = []
     for key in ordered:
         value = table[key]
@@ -61,10 +61,11 @@ def _write(lines: list[str], name: str, table: dict[str, Any]) -> None:
         else:
             lines.append(f"{_key(key)} = {_inline(value)}")
     for key in below:
-        value, path = table[key], ".".join(_key(part) for part in full[key].split("."))
-        for own in value if isinstance(value, list) else [value]:
-            lines.extend(["", f"[[{path}]]" if isinstance(value, list) else f"[{path}]"])
-            _write(lines, full[key], own)
+        value, own = table[key], (*path, key)
+        name = ".".join(map(_key, own))
+        for inner in value if isinstance(value, list) else [value]:
+            lines.extend(["", f"[[{name}]]" if isinstance(value, list) else f"[{name}]"])
+            _write(lines, own, inner)
 
 
 def _is_tables(value: Any) -> bool:
