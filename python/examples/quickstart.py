@@ -27,8 +27,8 @@ study = blisk.Study(
     damping={"structural_loss_factor": 0.002},
     excitation={"engine_orders": [2], "amplitude_n": 10.0},
     mistuning={"distribution": {"kind": "normal"}},
-    sweep={"normal_load_n": ["slide", 50, 150, 450, "stuck"], "standard_deviation": [0.03]},
-    solver={"harmonics": [1, 3]},
+    sweep={"normal_load_n": ["slide", 50, 100, 150, "stuck"], "standard_deviation": [0.03]},
+    solver={"harmonics": [1, 3, 5, 7]},
 )
 for remark in study.check():
     print("remark:", remark)

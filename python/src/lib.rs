@@ -8,6 +8,7 @@ mod results;
 mod run;
 mod study;
 mod table;
+mod watch;
 
 use pyo3::prelude::*;
 
@@ -23,6 +24,10 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(study::key_names, module)?)?;
     module.add_function(wrap_pyfunction!(study::tables_of, module)?)?;
     module.add_function(wrap_pyfunction!(run::run, module)?)?;
+    module.add_function(wrap_pyfunction!(run::optimum, module)?)?;
+    module.add_function(wrap_pyfunction!(run::plan, module)?)?;
+    module.add_function(wrap_pyfunction!(run::response, module)?)?;
+    module.add_function(wrap_pyfunction!(results::compare, module)?)?;
     module.add_function(wrap_pyfunction!(results::summary, module)?)?;
     module.add_function(wrap_pyfunction!(results::manifest, module)?)?;
     module.add_function(wrap_pyfunction!(results::report, module)?)?;

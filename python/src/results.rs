@@ -1,11 +1,13 @@
-//! Results folders: summary, manifest, report, and which table is read.
+//! Results folders: summary, manifest, report, comparison, and which table is read.
 
+use std::fmt::Display;
 use std::path::PathBuf;
 
 use blisk::population::table::{Manifest, write_atomically};
 use blisk::report::html_report;
 use blisk::study::{
-    PipelineError, ReducedEngineSource, ReportRequest, checked_table, summarise, summarise_partly,
+    CompareRequest, PipelineError, ReducedEngineSource, ReportRequest, checked_table, summarise,
+    summarise_partly,
 };
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -13,10 +15,14 @@ use serde::Serialize;
 
 use crate::errors::of_pipeline;
 use crate::table::Table;
+use crate::watch::{OnSignal, watch};
+
+/// An answer as JSON and as text.
+pub type Answer = (String, String);
 
 /// Summary of the folder as JSON and as text, and rows stored and planned where the study is not finished.
 #[pyfunction]
-pub fn summary(py: Python<'_>, results: PathBuf) -> PyResult<(String, String, Option<(u64, u64)>)> {
+pub fn summary(py: Python<'_>, results: PathBuf) -> PyResult<(Answer, Option<(u64, u64)>)> {
     let summarised = || -> Result<_, PipelineError> {
         Ok(match summarise_partly(&results)? {
             Some(partial) => (partial.summary, Some((partial.stored, partial.planned))),
@@ -26,7 +32,7 @@ pub fn summary(py: Python<'_>, results: PathBuf) -> PyResult<(String, String, Op
     let (summary, unfinished) = py
         .detach(summarised)
         .map_err(|error| of_pipeline(py, &error))?;
-    Ok((json_of(&summary)?, summary.to_string(), unfinished))
+    Ok((answer_of(&summary)?, unfinished))
 }
 
 /// `manifest.json` of the folder as JSON.
@@ -55,12 +61,29 @@ pub fn report(
         study_file,
         curves,
     };
-    let written = || -> Result<(), PipelineError> {
+    watch(py, None, OnSignal::Leave, move |_| {
         let found = blisk::study::report(&request, &ReducedEngineSource)?;
-        write_atomically(&path, html_report(&found).as_bytes())?;
-        Ok(())
+        Ok(write_atomically(&path, html_report(&found).as_bytes())?)
+    })
+}
+
+/// Compares the scenarios of folders on the patterns that they share.
+#[pyfunction]
+pub fn compare(
+    py: Python<'_>,
+    folders: Vec<PathBuf>,
+    percent: f64,
+    baseline: Option<usize>,
+) -> PyResult<Answer> {
+    let request = CompareRequest {
+        folders,
+        baseline,
+        percent,
     };
-    py.detach(written).map_err(|error| of_pipeline(py, &error))
+    let report = watch(py, None, OnSignal::Leave, move |_| {
+        blisk::study::compare(&request)
+    })?;
+    answer_of(&report)
 }
 
 /// Reads the table `name` of the folder, after a look at its digest.
@@ -72,6 +95,11 @@ pub fn table(py: Python<'_>, results: PathBuf, name: &str) -> PyResult<Table> {
         Ok(Table::read(&path)?)
     };
     py.detach(read).map_err(|error| of_pipeline(py, &error))
+}
+
+/// `value` as JSON and as text.
+pub fn answer_of(value: &(impl Serialize + Display)) -> PyResult<Answer> {
+    Ok((json_of(value)?, value.to_string()))
 }
 
 fn json_of(value: &impl Serialize) -> PyResult<String> {

@@ -1,91 +1,26 @@
-//! A run on a thread of its own, while the thread of Python that asked for it watches for signals and reports progress.
+//! What solves rows: runs, searches for a load, plans, response curves.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
-use std::thread;
-use std::time::Duration;
 
-use blisk::response::harmonic_balance::Status;
+use blisk::cli::threads as threads_of;
+use blisk::population::monte_carlo::{LoadCaseName, Scenario};
+use blisk::population::statistics::Quantity;
+use blisk::population::table::{CurveFormat, TableHeader, write_curve};
+use blisk::response::forced_response::ContactCondition;
 use blisk::study::{
-    PipelineError, Progress, ReducedEngineSource, RunOutcome, RunRequest, Stage, Study,
+    CurveRequest, OptimumRequest, PlanRequest, ReducedEngineSource, RunRequest, Study, StudyDigest,
     set_other_builds_aside,
 };
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::errors::of_pipeline;
+use crate::results::{Answer, answer_of};
 use crate::study::CheckedStudy;
-
-/// Time between looks for a signal, and between two reports of progress.
-const LOOK: Duration = Duration::from_millis(50);
-/// Stack of the thread of a run, bytes: that of the main thread of a program.
-const STACK: usize = 8 << 20;
-
-/// The stages by name, in their order.
-const STAGES: [(Stage, &str); 6] = [
-    (Stage::LoadModel, "load_model"),
-    (Stage::Reduce, "reduce"),
-    (Stage::Tuned, "tuned"),
-    (Stage::Surrogates, "surrogates"),
-    (Stage::Rows, "rows"),
-    (Stage::Tables, "tables"),
-];
-
-/// How far a run is: written by its threads, read by that of Python.
-#[derive(Default)]
-struct Watched {
-    stage: AtomicUsize,
-    planned: AtomicU64,
-    done: AtomicU64,
-    failed: AtomicU64,
-    stop: AtomicBool,
-}
-
-/// Stage, rows planned, rows done, rows failed.
-type Reached = (&'static str, u64, u64, u64);
-
-impl Watched {
-    fn reached(&self) -> Reached {
-        let number = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
-        let (_, stage) = STAGES[self.stage.load(Ordering::Relaxed)];
-        (
-            stage,
-            number(&self.planned),
-            number(&self.done),
-            number(&self.failed),
-        )
-    }
-}
-
-impl Progress for Watched {
-    fn stage(&self, stage: Stage) {
-        let place = STAGES.iter().position(|(own, _)| *own == stage);
-        self.stage
-            .store(place.unwrap_or_default(), Ordering::Relaxed);
-    }
-
-    fn begin_rows(&self, planned: u64, done: u64) {
-        self.planned.store(planned, Ordering::Relaxed);
-        self.done.store(done, Ordering::Relaxed);
-    }
-
-    fn row(&self, status: Status) {
-        let failed = u64::from(status != Status::Ok);
-        self.failed.fetch_add(failed, Ordering::Relaxed);
-        self.done.fetch_add(1, Ordering::Relaxed);
-    }
-
-    fn stop_requested(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
-    }
-}
+use crate::table::Table;
+use crate::watch::{OnSignal, watch};
 
 /// Creates or continues a study in the folder `out`; gives the rows solved and the rows that were there.
-///
-/// `listener` is called with stage, rows planned, rows done and rows failed, whenever they have changed. A signal, or
-/// an exception of `listener`, stops the run between rows; a second one does not wait for that.
 #[pyfunction]
 pub fn run(
     py: Python<'_>,
@@ -95,105 +30,201 @@ pub fn run(
     solve_anew: bool,
     listener: Option<Py<PyAny>>,
 ) -> PyResult<(u64, u64)> {
-    let watched = Arc::new(Watched::default());
-    let mut ended = begin(
-        Arc::clone(&study.0),
-        out,
-        blisk::cli::threads(threads),
-        solve_anew,
-        Arc::clone(&watched),
-    )?;
-    let mut told = None;
-    let mut broken_off: Option<PyErr> = None;
-    let outcome = loop {
-        match py.detach(|| wait(&mut ended)) {
-            Ok(outcome) => break outcome,
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => {
-                return Err(PyRuntimeError::new_err("the thread of the run panicked"));
-            }
+    let study = Arc::clone(&study.0);
+    let outcome = watch(py, listener.as_ref(), OnSignal::Wait, move |progress| {
+        if solve_anew {
+            set_other_builds_aside(&out, &study, None)?;
         }
-        let looked = py.check_signals().and_then(|()| {
-            // Whoever listens is told no more once the run is to stop.
-            let listener = listener.as_ref().filter(|_| broken_off.is_none());
-            tell(py, listener, &watched, &mut told)
-        });
-        if let Err(error) = looked {
-            watched.stop.store(true, Ordering::Relaxed);
-            if broken_off.is_some() {
-                // The thread stores what it has and ends by itself.
-                return Err(error);
-            }
-            broken_off = Some(error);
-        }
-    };
-    if let Some(error) = broken_off {
-        return Err(error);
-    }
-    let outcome = outcome.map_err(|error| of_pipeline(py, &error))?;
-    tell(py, listener.as_ref(), &watched, &mut told)?;
+        let request = RunRequest {
+            study: &study,
+            results: &out,
+            threads: threads_of(threads),
+        };
+        blisk::study::run(request, &ReducedEngineSource, progress)
+    })?;
     Ok((outcome.rows_solved, outcome.rows_reused))
 }
 
-/// How a run ended.
-type Outcome = Result<RunOutcome, PipelineError>;
-
-/// Begins the run on a thread of its own.
-fn begin(
-    study: Arc<Study>,
-    out: PathBuf,
-    threads: usize,
-    solve_anew: bool,
-    watched: Arc<Watched>,
-) -> PyResult<Receiver<Outcome>> {
-    let (sender, ended) = channel();
-    let carry_out = move || {
-        // Without a receiver nobody waits any more.
-        let _ = sender.send(solve(&study, &out, threads, solve_anew, &watched));
-    };
-    thread::Builder::new()
-        .name("blisk run".to_owned())
-        .stack_size(STACK)
-        .spawn(carry_out)?;
-    Ok(ended)
-}
-
-fn solve(
-    study: &Study,
-    results: &Path,
-    threads: usize,
-    solve_anew: bool,
-    watched: &Watched,
-) -> Outcome {
-    if solve_anew {
-        set_other_builds_aside(results, study, None)?;
-    }
-    let request = RunRequest {
-        study,
-        results,
-        threads,
-    };
-    blisk::study::run(request, &ReducedEngineSource, watched)
-}
-
-/// Waits for the end of a run until the next look.
-fn wait(ended: &mut Receiver<Outcome>) -> Result<Outcome, RecvTimeoutError> {
-    ended.recv_timeout(LOOK)
-}
-
-/// Tells the listener how far the run is, unless it has been told so.
-fn tell(
+/// Searches the normal load with the lowest percentile.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)] // As many as the search has.
+pub fn optimum(
     py: Python<'_>,
-    listener: Option<&Py<PyAny>>,
-    watched: &Watched,
-    told: &mut Option<Reached>,
-) -> PyResult<()> {
-    let reached = watched.reached();
-    if let Some(listener) = listener
-        && *told != Some(reached)
-    {
-        listener.call1(py, reached)?;
-        *told = Some(reached);
+    study: &CheckedStudy,
+    between_n: [f64; 2],
+    percent: f64,
+    quantity: &str,
+    resolution: f64,
+    out: PathBuf,
+    solved: PathBuf,
+    threads: Option<u16>,
+    listener: Option<Py<PyAny>>,
+) -> PyResult<Answer> {
+    let quantity = { Quantity::ALL.into_iter() }
+        .find(|own| own.name() == quantity)
+        .ok_or_else(|| PyValueError::new_err(format!("there is no quantity {quantity}")))?;
+    let study = Arc::clone(&study.0);
+    let report = watch(py, listener.as_ref(), OnSignal::Wait, move |progress| {
+        let request = OptimumRequest {
+            study: &study,
+            results: &out,
+            solved: &solved,
+            between_n,
+            percent,
+            quantity,
+            resolution,
+            threads: threads_of(threads),
+        };
+        blisk::study::find_optimum(request, &ReducedEngineSource, progress)
+    })?;
+    answer_of(&report)
+}
+
+/// Solves the first `pilot` patterns and says what the study costs.
+#[pyfunction]
+pub fn plan(
+    py: Python<'_>,
+    study: &CheckedStudy,
+    pilot: u32,
+    threads: Option<u16>,
+) -> PyResult<Answer> {
+    let study = Arc::clone(&study.0);
+    let plan = watch(py, None, OnSignal::Leave, move |progress| {
+        let request = PlanRequest {
+            study: &study,
+            pilot: pilot as usize,
+            threads: threads_of(threads),
+        };
+        blisk::study::plan(request, &ReducedEngineSource, progress)
+    })?;
+    answer_of(&plan)
+}
+
+/// Amplitude of every blade of one wheel over frequency, written to the Parquet file `path` and read from there.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)] // As many as name a curve.
+pub fn response(
+    py: Python<'_>,
+    study: &CheckedStudy,
+    pattern: Option<u32>,
+    load: Load,
+    frequencies_hz: Vec<f64>,
+    load_case: Option<String>,
+    engine_order: Option<u32>,
+    standard_deviation: Option<f64>,
+    path: PathBuf,
+) -> PyResult<Table> {
+    let study = Arc::clone(&study.0);
+    let contact = load.contact()?;
+    let excited = excitation_of(&study, load_case.as_deref(), engine_order)?;
+    let standard_deviation = match pattern {
+        None => None,
+        Some(_) => deviation_of(&study, standard_deviation)?,
+    };
+    watch(py, None, OnSignal::Leave, move |_| {
+        let request = CurveRequest {
+            pattern,
+            contact,
+            load_case: excited.load_case,
+            engine_order: excited.engine_order,
+            standard_deviation,
+            frequencies_hz: &frequencies_hz,
+        };
+        let points = blisk::study::response_curve(&study, &ReducedEngineSource, request)?;
+        let header = TableHeader {
+            study_digest: StudyDigest::of(&study)?.hex(),
+            compression: study.output.compression,
+            load_cases: Vec::new(),
+        };
+        write_curve(&path, CurveFormat::Parquet, &points, &header)?;
+        Ok(Table::read(&path)?)
+    })
+}
+
+/// A number of newtons, or a linear limit by name.
+#[derive(FromPyObject)]
+pub enum Load {
+    /// Normal load per sector, N.
+    Newtons(f64),
+    /// `stuck`, `slide` or `free`.
+    Limit(String),
+}
+
+impl Load {
+    fn contact(&self) -> PyResult<ContactCondition> {
+        let (accepted, written) = match self {
+            Self::Newtons(load) if *load >= 0.0 && load.is_finite() => {
+                return Ok(ContactCondition::Full {
+                    normal_load_n: *load,
+                });
+            }
+            Self::Newtons(load) => (None, load.to_string()),
+            Self::Limit(name) => {
+                let limits = [
+                    ContactCondition::Stuck,
+                    ContactCondition::Slide,
+                    ContactCondition::Free,
+                ];
+                let limit = limits.into_iter().find(|limit| limit.name() == name);
+                (limit, name.clone())
+            }
+        };
+        accepted.ok_or_else(|| {
+            PyValueError::new_err(format!(
+                "load = {written} is not accepted; accepted: a number of at least 0 in N, stuck, slide or free"
+            ))
+        })
     }
-    Ok(())
+}
+
+/// The excitation of the study that is named, or its only one.
+fn excitation_of(
+    study: &Study,
+    load_case: Option<&str>,
+    engine_order: Option<u32>,
+) -> PyResult<Scenario> {
+    let name = |scenario: &Scenario| {
+        scenario
+            .load_case
+            .as_ref()
+            .map(LoadCaseName::as_str)
+            .map(str::to_owned)
+    };
+    let fits = |scenario: &Scenario| {
+        load_case.is_none_or(|wanted| name(scenario).as_deref() == Some(wanted))
+            && engine_order.is_none_or(|wanted| scenario.engine_order == wanted)
+    };
+    let all = study.scenarios();
+    let mut fitting: Vec<Scenario> = all.iter().copied().filter(fits).collect();
+    fitting.dedup_by(|a, b| a.same_excitation(b));
+    if let [only] = fitting[..] {
+        return Ok(only);
+    }
+    let mut choices: Vec<String> = { all.iter() }
+        .map(|own| match name(own) {
+            Some(case) => format!("load_case {case}, engine_order {}", own.engine_order),
+            None => format!("engine_order {}", own.engine_order),
+        })
+        .collect();
+    choices.dedup();
+    Err(PyValueError::new_err(format!(
+        "name one excitation of the study: {}",
+        choices.join("; ")
+    )))
+}
+
+/// The standard deviation of the study that is named, or its only one; none for patterns from a file.
+fn deviation_of(study: &Study, wanted: Option<f64>) -> PyResult<Option<f64>> {
+    let known = &study.standard_deviations;
+    match (wanted, &known[..]) {
+        (None, [only]) => Ok(*only),
+        (Some(_), _) if known.contains(&wanted) => Ok(wanted),
+        _ => {
+            let choices: Vec<String> = { known.iter().flatten() }.map(f64::to_string).collect();
+            Err(PyValueError::new_err(format!(
+                "name one standard_deviation of the study: {}",
+                choices.join(", ")
+            )))
+        }
+    }
 }

@@ -124,11 +124,11 @@ def test_other_threads_go_on_meanwhile(small, tmp_path):
     thread = threading.Thread(target=count)
     thread.start()
     began = time.monotonic()
-    blisk.run(blisk.Study(**small, **{"study.patterns": 1500}), out=tmp_path, threads=1)
+    blisk.run(blisk.Study(**small, **{"study.patterns": 300}), out=tmp_path, threads=1)
     took = time.monotonic() - began
     over.set()
     thread.join()
-    assert counted[0] > 50 * took
+    assert counted[0] > 50 * took > 0
 
 
 def test_another_study_is_refused_with_the_exit_code_of_the_command(small, finished):

@@ -82,20 +82,34 @@ def test_a_refusal_has_the_words_of_the_command(small, tmp_path):
 
 def test_findings_say_where_what_and_what_is_accepted(small):
     small["study"]["patterns"] = 0
-    small["solver"]["peak_tolerence"] = 0.1
-    del small["damping"]
+    small["solver"]["peak_tolerance"] = 2.0
     with pytest.raises(blisk.InputError) as refused:
         blisk.Study(**small)
     by_key = {finding.key: finding for finding in refused.value.findings}
+    assert set(by_key) == {"study.patterns", "solver.peak_tolerance"}
     patterns = by_key["study.patterns"]
     assert (patterns.problem, patterns.value, patterns.file) == ("not_accepted", "0", "<study>")
-    assert patterns.accepted == "whole number, 1 to 2147483647"
-    assert patterns.message in str(refused.value)
-    unknown = by_key["solver.peak_tolerence"]
-    assert (unknown.problem, unknown.suggestion) == ("unknown_key", "peak_tolerance")
-    assert "harmonic_tolerance" in unknown.accepted
-    assert any(finding.problem in ("missing", "conflict") for finding in refused.value.findings)
+    assert patterns.line == 6 and "2147483647" in patterns.accepted
+    assert str(refused.value).startswith(f"<study>:6: {patterns.message}\n")
     assert isinstance(refused.value, ValueError)
+
+
+def test_an_unknown_key_is_told_the_nearest_one(small):
+    with pytest.raises(blisk.InputError) as refused:
+        blisk.Study(**small, **{"solver.peak_tolerence": 0.1})
+    (unknown,) = refused.value.findings
+    assert (unknown.problem, unknown.key) == ("unknown_key", "solver.peak_tolerence")
+    assert unknown.suggestion == "peak_tolerance"
+    assert "harmonic_tolerance" in unknown.accepted
+
+
+def test_a_missing_table_is_told_what_is_accepted(small):
+    del small["damping"]
+    with pytest.raises(blisk.InputError) as refused:
+        blisk.Study(**small)
+    (missing,) = refused.value.findings
+    assert (missing.problem, missing.key, missing.value) == ("missing", "damping", None)
+    assert missing.accepted
 
 
 @pytest.mark.parametrize("text", ["schema = ", "schema = 1\n[study\n", "a = 1\na = 2\n"])

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::PipelineError;
 use super::results_folder::verify_tables;
-use crate::population::table::{Manifest, RunState, SideTables, TABLES, TableError, is_file};
+use crate::population::table::{
+    Manifest, RunState, SIDE_FILES, SideTables, TABLES, TableError, is_file,
+};
 
 /// The file of the table `name`, like `responses.parquet`, of the folder `results`, after a look at its digest.
 ///
@@ -27,11 +29,13 @@ pub fn checked_table(results: &Path, name: &str) -> Result<PathBuf, PipelineErro
         manifest.tables.retain(|own, _| own == name);
         verify_tables(results, &manifest)?;
         !manifest.tables.is_empty()
-    } else {
+    } else if SIDE_FILES.contains(&name) {
         if let Some(noted) = SideTables::read(results)?.tables.get(name) {
             noted.check(&path)?;
         }
         is_file(&path)?
+    } else {
+        false
     };
     if is_there {
         return Ok(path);

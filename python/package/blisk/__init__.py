@@ -9,15 +9,18 @@ A study says what is solved, ``run`` solves it, and its results are tables with 
 Numbers are those of the command ``blisk``, bit for bit. Units stand in the names of keys and columns: SI, Hz, N.
 """
 
+from ._answers import Answer, compare, optimum, plan, response
 from ._errors import BliskError, Finding, InputError
 from ._native import BUILD as __build__
 from ._native import VERSION as __version__
 from ._native import Table
+from ._progress import Progress
 from ._results import Best, Results
-from ._run import Progress, run
+from ._run import run
 from ._study import Study
 
 __all__ = [
+    "Answer",
     "Best",
     "BliskError",
     "Finding",
@@ -28,5 +31,9 @@ __all__ = [
     "Table",
     "__build__",
     "__version__",
+    "compare",
+    "optimum",
+    "plan",
+    "response",
     "run",
 ]

@@ -4,7 +4,28 @@ import os
 from collections.abc import Callable, Sequence
 from typing import Any, Optional, Union, final
 
+__all__ = [
+    "BUILD",
+    "COMMIT",
+    "CheckedStudy",
+    "Table",
+    "VERSION",
+    "compare",
+    "key_names",
+    "main",
+    "manifest",
+    "optimum",
+    "plan",
+    "report",
+    "response",
+    "run",
+    "summary",
+    "table",
+    "tables_of",
+]
+
 _Path = Union[str, os.PathLike[str]]
+_Listener = Callable[[str, int, int, int], object]
 
 VERSION: str
 BUILD: str
@@ -64,9 +85,32 @@ def run(
     out: _Path,
     threads: Optional[int],
     solve_anew: bool,
-    listener: Optional[Callable[[str, int, int, int], object]],
+    listener: Optional[_Listener],
 ) -> tuple[int, int]: ...
-def summary(results: _Path) -> tuple[str, str, Optional[tuple[int, int]]]: ...
+def optimum(
+    study: CheckedStudy,
+    between_n: tuple[float, float],
+    percent: float,
+    quantity: str,
+    resolution: float,
+    out: _Path,
+    solved: _Path,
+    threads: Optional[int],
+    listener: Optional[_Listener],
+) -> tuple[str, str]: ...
+def plan(study: CheckedStudy, pilot: int, threads: Optional[int]) -> tuple[str, str]: ...
+def response(
+    study: CheckedStudy,
+    pattern: Optional[int],
+    load: Union[float, str],
+    frequencies_hz: Sequence[float],
+    load_case: Optional[str],
+    engine_order: Optional[int],
+    standard_deviation: Optional[float],
+    path: _Path,
+) -> Table: ...
+def compare(folders: Sequence[_Path], percent: float, baseline: Optional[int]) -> tuple[str, str]: ...
+def summary(results: _Path) -> tuple[tuple[str, str], Optional[tuple[int, int]]]: ...
 def manifest(results: _Path) -> str: ...
 def report(results: _Path, path: _Path, curves: bool, study_file: Optional[_Path]) -> None: ...
 def table(results: _Path, name: str) -> Table: ...

@@ -60,7 +60,7 @@ class Results:
         _native.manifest(self.folder)
 
     def table(self, name: str) -> Table:
-        """The table in the file ``<name>.parquet`` of the folder, also one that another command wrote, like ``tail_fits``."""
+        """The table ``<name>.parquet`` of the folder, also one that another command wrote, like ``tail_fits``."""
         return _native.table(self.folder, name)
 
     @property
@@ -70,7 +70,7 @@ class Results:
 
     @property
     def scenarios(self) -> Table:
-        """One row per scenario: tuned peak, mean, P5, P50, P95, P99 of peak amplitude (m) and amplification factor (1)."""
+        """One row per scenario: tuned peak; mean, P5, P50, P95, P99 of peak amplitude (m), amplification factor (1)."""
         return self.table("scenarios")
 
     @property
@@ -100,7 +100,7 @@ class Results:
         Of a study that is not finished it is that of the rows stored, with ``unfinished``, ``rows_stored`` and
         ``rows_planned``.
         """
-        text, _, unfinished = _native.summary(self.folder)
+        (text, _), unfinished = _native.summary(self.folder)
         summary: dict[str, Any] = json.loads(text)
         if unfinished is not None:
             stored, planned = unfinished
@@ -110,7 +110,7 @@ class Results:
     @property
     def summary_text(self) -> str:
         """The summary as ``blisk run`` prints it."""
-        return _native.summary(self.folder)[1]
+        return _native.summary(self.folder)[0][1]
 
     @property
     def manifest(self) -> dict[str, Any]:
@@ -149,8 +149,8 @@ class Results:
         rows = [row for row in rows if row["percent"] == percentile and row["value"] is not None]
         if not rows:
             raise ValueError(
-                f"no normal load has a value of P{percentile:g} of {quantity} with {wanted}; `percentiles` has what there"
-                " is, and its column `status` says why a value is missing"
+                f"no normal load has a value of P{percentile:g} of {quantity} with {wanted}; `percentiles` has what"
+                " there is, and its column `status` says why a value is missing"
             )
         row = min(rows, key=lambda row: row["value"])
         own = ("scenario", "normal_load_n", "value", "lower", "upper", "percent", "quantity", "engine_order")

@@ -23,9 +23,9 @@ class Study:
 
         blisk.Study(study={"name": "ring", "seed": 7, "patterns": 400}, model={"source": "parametric"}, ...)
 
-    Everything is checked as the command checks a study file, and with the same words: ``InputError`` says all that is
-    wrong at once. A study cannot be changed; ``replace`` makes another one. Files that it names are sought in ``base``,
-    which is the working directory unless given. A value of ``None`` is a key that is left out.
+    Keys may be dotted as well, and a value of ``None`` is a key that is left out. Everything is checked as the command
+    checks a study file, and ``InputError`` says what is wrong in the same words. A study cannot be changed; ``replace``
+    makes another one. Files that it names are sought in ``base``, which is the working directory unless given.
     """
 
     __slots__ = ("_checked", "_path", "_text")
