@@ -40,6 +40,6 @@ best = results.best(percentile=99)
 print(f"lowest P99: {best.value:.3e} m ({best.lower:.3e} to {best.upper:.3e} m) at {best.normal_load_n:g} N per sector")
 
 for row in results.scenarios.rows():
-    print(row["contact"], row["normal_load_n"], row["peak_amplitude_m_p99"], results.scenarios.units["peak_amplitude_m_p99"])
+    print(row["contact"], row["normal_load_n"], row["peak_amplitude_m_p99"])
 
 print("report:", results.report(folder / "report.html", curves=False))

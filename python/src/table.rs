@@ -18,8 +18,9 @@ use pyo3::types::{PyCapsule, PyDict, PyList};
 
 /// A table: named columns of the same length, with units.
 ///
-/// Libraries take it as it is: `polars.DataFrame(table)`, `pyarrow.table(table)`, `pandas.DataFrame.from_arrow(table)`,
-/// `duckdb.sql("from table")`. No value is copied that they can share.
+/// Libraries take it as it is: `polars.DataFrame(responses)`, `pyarrow.table(responses)`,
+/// `pandas.DataFrame.from_arrow(responses)`,
+/// `duckdb.sql("from responses")`. No value is copied that they can share.
 #[pyclass(frozen, module = "blisk")]
 pub struct Table {
     name: String,

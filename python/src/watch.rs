@@ -83,14 +83,14 @@ impl Progress for Watched {
 pub enum OnSignal {
     /// The work is asked to stop and waited for, since it stores what it has; a second signal is not waited for.
     Wait,
-    /// The work is left alone, since it stores nothing.
+    /// The work is left to itself, since nothing of it is stored but its end.
     Leave,
 }
 
 /// Carries out `work` and gives what it gives.
 ///
-/// `listener` is called with stage, rows planned, rows done and rows failed, whenever they have changed. An exception of
-/// `listener` counts as a signal.
+/// `listener` is called with stage, rows planned, rows done and rows failed, whenever they have changed. An exception
+/// of `listener` counts as a signal.
 pub fn watch<T: Send + 'static>(
     py: Python<'_>,
     listener: Option<&Py<PyAny>>,

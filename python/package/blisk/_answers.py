@@ -18,7 +18,7 @@ from ._study import Study
 
 
 class Answer(dict[str, Any]):
-    """An answer as nested dictionaries, with the keys that the command has with ``--json``; ``str`` of it is in words."""
+    """An answer as nested dictionaries, with the keys of ``--json`` of the command; ``str`` of it is in words."""
 
     text: str
     """The answer in words, as the command prints it."""
@@ -96,9 +96,10 @@ def response(
     engine_order: Optional[int] = None,
     standard_deviation: Optional[float] = None,
 ) -> Table:
-    """Amplitude of every blade of one wheel over frequency: ``frequency_hz`` (Hz), ``blade``, ``amplitude_m`` (m), ``status``.
+    """Amplitude of every blade of one wheel over frequency.
 
-    With F frequencies and B blades the table has F B rows, ordered by frequency, then blade.
+    With F frequencies and B blades the table has F B rows, ordered by frequency, then blade: ``frequency_hz`` (Hz),
+    ``blade``, ``amplitude_m`` (m), ``status``.
 
     ``load``: normal load per sector, N, or a linear limit: ``stuck``, ``slide``, ``free``.
     ``frequencies_hz``: frequencies of the excitation, Hz, positive and ascending.
@@ -108,7 +109,7 @@ def response(
     frequencies = [float(frequency) for frequency in frequencies_hz]
     ascending = all(low < high for low, high in zip(frequencies, frequencies[1:]))
     if not frequencies or not ascending or not 0.0 < frequencies[0] <= frequencies[-1] < float("inf"):
-        raise ValueError("frequencies_hz is not accepted; accepted: positive frequencies in ascending order, at least one")
+        raise ValueError("frequencies_hz is not accepted; accepted: positive frequencies in ascending order")
     excitation = (load_case, engine_order, standard_deviation)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "response.parquet"
@@ -122,5 +123,5 @@ def _answer(answer: tuple[str, str]) -> Answer:
 
 def _percent(percent: float) -> float:
     if not 0.0 < percent < 100.0:
-        raise ValueError(f"percentile = {percent} is not accepted; accepted: a number above 0 and below 100, for instance 95")
+        raise ValueError(f"percentile = {percent} is not accepted; accepted: a number above 0 and below 100")
     return percent

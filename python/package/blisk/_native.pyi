@@ -50,8 +50,8 @@ class CheckedStudy:
 class Table:
     """A table: named columns of the same length, with units.
 
-    Libraries take it as it is: ``polars.DataFrame(table)``, ``pyarrow.table(table)``,
-    ``pandas.DataFrame.from_arrow(table)``, ``duckdb.sql("from table")``.
+    Libraries take it as it is: ``polars.DataFrame(responses)``, ``pyarrow.table(responses)``,
+    ``pandas.DataFrame.from_arrow(responses)``, ``duckdb.sql("from responses")``.
     """
 
     @property
