@@ -45,7 +45,7 @@ impl CheckedStudy {
 
     /// Digest of the study and the files it names, hexadecimal.
     fn digest(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| StudyDigest::of(&self.0).map(|digest| digest.hex().to_string()))
+        py.detach(|| StudyDigest::of(&self.0).map(|digest| digest.hex()))
             .map_err(|error| of_study(py, &error))
     }
 
