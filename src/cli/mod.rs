@@ -32,5 +32,6 @@ mod verify;
 pub use arguments::{Arguments, Command};
 pub use exit::ExitStatus;
 pub use run_command::main;
+pub use scheduler::threads;
 
 mod run_command;

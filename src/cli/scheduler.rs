@@ -171,7 +171,8 @@ const PROCESSORS: [&str; 6] = [
 ];
 
 /// Threads as asked for; else what the scheduler gave this task; else all processors there are.
-pub(super) fn threads(asked: Option<u16>) -> usize {
+#[must_use]
+pub fn threads(asked: Option<u16>) -> usize {
     let scheduled = || {
         PROCESSORS
             .iter()

@@ -6,6 +6,7 @@ mod accurate_engine;
 mod basis_choice;
 mod campbell;
 mod check;
+mod checked_table;
 mod chosen_settings;
 mod compare;
 mod digest;
@@ -90,6 +91,7 @@ mod verify;
 
 pub use accuracy::AccuracyOptions;
 pub use campbell::{CampbellRequest, campbell};
+pub use checked_table::checked_table;
 pub use chosen_settings::{AccuracyChoice, AccuracyEvidence, ChosenSetting, TriedSetting};
 pub use compare::{CompareRequest, compare};
 pub use digest::StudyDigest;

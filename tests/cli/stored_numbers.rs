@@ -332,7 +332,7 @@ fn rebuilt() -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let copy = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rebuilt");
     let _ = std::fs::remove_dir_all(&copy);
-    for folder in ["src", "benches", "studies", "tests/data"] {
+    for folder in ["src", "benches", "studies", "tests/data", "python"] {
         copy_all(&root.join(folder), &copy.join(folder), &|_| true);
     }
     for file in ["build.rs", "Cargo.toml", "Cargo.lock", "README.md"] {
