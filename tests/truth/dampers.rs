@@ -13,16 +13,17 @@ use super::sector::Sector;
 const HARMONICS: [u32; 4] = [0, 1, 2, 3];
 const SAMPLES: usize = 512;
 /// Fixed-interface modes of a sector in the truth; those of a nodal diameter in the program are 120.
-const MODES: usize = 240;
+const MODES: usize = 480;
 const PATTERNS: u32 = 10;
 /// Largest relative difference of a row.
 const BAR: f64 = 5e-4;
 
-/// A damper, its stiffness along tangents and normal in N/m, and three loads, the first of which separates, N.
+/// A damper, its stiffness along tangents and normal in N/m, three loads, N, and whether pairs open under some of them.
 struct Kind {
     name: &'static str,
     stiffness_n_per_m: [f64; 2],
     loads_n: [f64; 3],
+    opens: bool,
 }
 
 const KINDS: [Kind; 4] = [
@@ -30,21 +31,25 @@ const KINDS: [Kind; 4] = [
         name: "ring",
         stiffness_n_per_m: [1e8, 1e8],
         loads_n: [40.0, 80.0, 160.0],
+        opens: true,
     },
     Kind {
         name: "underplatform",
         stiffness_n_per_m: [4e7, 8e7],
-        loads_n: [8.0, 60.0, 400.0],
+        loads_n: [20.0, 60.0, 400.0],
+        opens: false,
     },
     Kind {
         name: "shroud",
         stiffness_n_per_m: [1e7, 2e7],
         loads_n: [40.0, 80.0, 600.0],
+        opens: true,
     },
     Kind {
         name: "blade_to_ground",
         stiffness_n_per_m: [4e7, 8e7],
         loads_n: [20.0, 200.0, 800.0],
+        opens: false,
     },
 ];
 
@@ -117,7 +122,6 @@ fn hold(kind: &Kind) {
     let engine = ReducedEngineSource
         .build(&study, &model, None)
         .expect("an engine");
-    println!("{}: {}", kind.name, engine.chosen_settings());
     let patterns = pattern_source(&study, &model).expect("patterns");
     let sector = Sector::new(&within_one_sector(model), MODES);
     let period = Period::new(&HARMONICS, SAMPLES);
@@ -158,13 +162,12 @@ fn hold(kind: &Kind) {
                     let error =
                         row.peak_amplitude_m.expect("a peak") / truth.top.amplitude_m() - 1.0;
                     println!(
-                    "{name}: {error:.1e}, stated {:.1e}, {} pairs open, {} slip, {:.6e} m at {:.4} Hz, {:.6e} m at {:.4} Hz",
-                    row.stated_error.unwrap_or(f64::NAN),
-                    truth.top.opening_pairs,
-                    truth.top.slipping_pairs,
-                    row.peak_amplitude_m.unwrap(), hint_hz, truth.top.amplitude_m(), truth.top.frequency_hz,
-                );
-                if false { assert!(error.abs() < BAR, "{name}: {error:e}"); }
+                        "{name}: {error:.1e}, stated {:.1e}, {} pairs open, {} slip",
+                        row.stated_error.unwrap_or(f64::NAN),
+                        truth.top.opening_pairs,
+                        truth.top.slipping_pairs,
+                    );
+                    assert!(error.abs() < BAR, "{name}: {error:e}");
                     [truth.top.opening_pairs > 0, truth.top.slipping_pairs > 0]
                 });
             compared.collect::<Vec<_>>()
@@ -176,7 +179,11 @@ fn hold(kind: &Kind) {
         "{}: {opening} rows with opening pairs, {slipping} with slip",
         kind.name
     );
-    assert!(opening >= 5 && slipping >= 10, "{opening}, {slipping}");
+    assert!(slipping >= 10, "{slipping} rows with slip");
+    assert!(
+        !kind.opens || opening >= 10,
+        "{opening} rows with opening pairs"
+    );
 }
 
 #[test]
