@@ -437,13 +437,15 @@ impl<'a> ParametricMesh<'a> {
         let ends_r = shelf.radii_m.map(|radius| self.r.index_of(radius));
         let last = self.theta.0.len() - 1;
         let node = |body: Body, point: Point| self.nodes[&(body, point)];
+        // On the ground stands the underside alone.
+        let touching = match o.damper {
+            Damper::BladeToGround => &ends_r[..1],
+            Damper::Ring | Damper::Underplatform | Damper::Shroud => &ends_r[..],
+        };
         let mut pairs = Vec::new();
-        for k in ends_r {
+        for &k in touching {
             for j in ends_z {
-                let (high, low) = (
-                    node(Body::Blisk, [last, j, k]),
-                    node(Body::Blisk, [0, j, k]),
-                );
+                let [low, high] = [0, last].map(|i| node(Body::Blisk, [i, j, k]));
                 let r = self.r.0[k];
                 let mut add = |first, second, side: f64| {
                     pairs.push(ContactPair {
@@ -468,11 +470,10 @@ impl<'a> ParametricMesh<'a> {
                     Damper::Shroud => {
                         add(ContactSide::Node(high), ContactSide::NextSector(low), 1.0);
                     }
-                    Damper::BladeToGround if k == ends_r[0] => {
+                    Damper::BladeToGround => {
                         add(ContactSide::Node(high), ContactSide::Ground, 1.0);
                         add(ContactSide::Node(low), ContactSide::Ground, -1.0);
                     }
-                    Damper::BladeToGround => {}
                 }
             }
         }

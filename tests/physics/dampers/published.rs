@@ -63,7 +63,7 @@ fn natural_frequencies_are_those_of_laxalde_2007() {
     let count: usize = found
         .iter()
         .enumerate()
-        .map(|(h, own)| own.len() * if h % 12 == 0 { 1 } else { 2 })
+        .map(|(h, own)| own.len() * if h.is_multiple_of(12) { 1 } else { 2 })
         .sum();
     assert_eq!(count, 72);
     let published = [
@@ -80,7 +80,7 @@ fn natural_frequencies_are_those_of_laxalde_2007() {
             .filter(|&h| found[h].iter().any(|own| near(&own)))
             .collect();
         assert_eq!(places.len(), 1, "{hz} Hz: nodal diameters {places:?}");
-        let standing = places[0] % 12 == 0;
+        let standing = places[0].is_multiple_of(12);
         assert_eq!(times, if standing { 1 } else { 2 }, "{hz} Hz");
     }
 }

@@ -58,12 +58,12 @@ impl WholeWheel {
         };
         let (mut springs, mut contacts) = (Vec::new(), Vec::new());
         let weights: f64 = options.contact.iter().map(|contact| contact.weight).sum();
-        for sector in 0..sectors {
+        for (sector, deviation) in deviations.iter().enumerate() {
             for spring in &options.spring {
                 let (a, b) = ends(sector, &spring.between);
                 let tuned = spring.stiffness_n_per_m;
                 let factor = if spring.mistuned {
-                    1.0 + deviations[sector]
+                    1.0 + deviation
                 } else {
                     1.0
                 };
