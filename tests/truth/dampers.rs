@@ -14,9 +14,7 @@ const HARMONICS: [u32; 4] = [0, 1, 2, 3];
 const SAMPLES: usize = 512;
 /// Fixed-interface modes of a sector in the truth; those of a nodal diameter in the program are 120.
 const MODES: usize = 480;
-/// Patterns of a study; the first few are looked at every time.
-const PATTERNS: u32 = 10;
-const FEW: u32 = 3;
+const PATTERNS: u32 = 3;
 /// Largest relative difference of a row.
 const BAR: f64 = 5e-4;
 
@@ -117,7 +115,7 @@ fn study(kind: &Kind) -> Study {
 }
 
 /// Rows of some patterns under three loads: none further from the truth than the bar, some that open and some that slip.
-fn hold(kind: &Kind, patterns_held: u32) {
+fn hold(kind: &Kind) {
     faer::set_global_parallelism(faer::Par::Seq);
     let study = study(kind);
     let model = load_sector_model(&study).expect("a model");
@@ -129,7 +127,7 @@ fn hold(kind: &Kind, patterns_held: u32) {
     let period = Period::new(&HARMONICS, SAMPLES);
     let scenarios = study.scenarios();
     let tuned: Vec<_> = scenarios.iter().map(|own| engine.tuned(own)).collect();
-    let solved: Vec<[bool; 2]> = (0..patterns_held)
+    let solved: Vec<[bool; 2]> = (0..PATTERNS)
         .into_par_iter()
         .flat_map_iter(|id| {
             let pattern = patterns
@@ -176,7 +174,7 @@ fn hold(kind: &Kind, patterns_held: u32) {
         })
         .collect();
     let all = solved.len();
-    assert_eq!(all, patterns_held as usize * kind.loads_n.len());
+    assert_eq!(all, PATTERNS as usize * kind.loads_n.len());
     let [opening, slipping] = [0, 1].map(|what| solved.iter().filter(|own| own[what]).count());
     println!(
         "{}: {opening} rows with opening pairs, {slipping} with slip",
@@ -191,28 +189,20 @@ fn hold(kind: &Kind, patterns_held: u32) {
 
 #[test]
 fn mistuned_wheels_with_a_ring_are_the_full_contact_model() {
-    hold(&KINDS[0], FEW);
+    hold(&KINDS[0]);
 }
 
 #[test]
 fn mistuned_wheels_with_wedges_are_the_full_contact_model() {
-    hold(&KINDS[1], FEW);
+    hold(&KINDS[1]);
 }
 
 #[test]
 fn mistuned_wheels_with_shrouds_are_the_full_contact_model() {
-    hold(&KINDS[2], FEW);
+    hold(&KINDS[2]);
 }
 
 #[test]
 fn mistuned_wheels_on_the_ground_are_the_full_contact_model() {
-    hold(&KINDS[3], FEW);
-}
-
-#[test]
-#[ignore = "minutes: thirty rows of each of four dampers"]
-fn thirty_rows_of_every_damper_are_the_full_contact_model() {
-    for kind in &KINDS {
-        hold(kind, PATTERNS);
-    }
+    hold(&KINDS[3]);
 }
