@@ -1,12 +1,25 @@
 //! The studies that come with the program, and the files that they read.
 
 /// Name and text of every example, the template of `blisk init` first.
-pub const EXAMPLES: [(&str, &str); 6] = [
+pub const EXAMPLES: [(&str, &str); 10] = [
     ("template", super::STUDY_TEMPLATE),
     ("quickstart", include_str!("../../studies/quickstart.toml")),
     ("wheel", include_str!("../../studies/wheel.toml")),
     ("lumped24", include_str!("../../studies/lumped24.toml")),
     ("one-dof", include_str!("../../studies/one-dof.toml")),
+    (
+        "underplatform",
+        include_str!("../../studies/underplatform.toml"),
+    ),
+    ("shroud", include_str!("../../studies/shroud.toml")),
+    (
+        "blade-to-ground",
+        include_str!("../../studies/blade-to-ground.toml"),
+    ),
+    (
+        "laxalde-2007",
+        include_str!("../../studies/laxalde-2007.toml"),
+    ),
     (
         "contact-uncertainty",
         include_str!("../../studies/contact-uncertainty.toml"),

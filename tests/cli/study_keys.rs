@@ -40,7 +40,14 @@ fn children(table: &str) -> BTreeSet<String> {
 fn alone(key: &str, value: &str) -> String {
     match split(key) {
         ("", name) => format!("{name} = {value}\n"),
-        (table, name) => format!("[{table}]\n{name} = {value}\n"),
+        (table, name) => {
+            let is_list = |key: &KeySpec| key.key == table && key.value == Value::Tables;
+            let table = match keys().iter().any(is_list) {
+                true => format!("[[{table}]]"),
+                false => format!("[{table}]"),
+            };
+            format!("{table}\n{name} = {value}\n")
+        }
     }
 }
 
@@ -315,9 +322,15 @@ fn defaults_are_those_of_the_resolved_study() {
         .iter()
         .filter(|key| key.key.starts_with("model.parametric."))
     {
-        let default: f64 = key.default.parse().expect("a number");
-        let own = parametric[split(&key.key).1].as_f64().expect("a number");
-        assert!(default.total_cmp(&own).is_eq(), "{}", key.key);
+        let document = format!("value = {}", key.default.trim_matches('`'));
+        let document = document.parse::<toml::Table>().expect("TOML");
+        let default = serde_json::to_value(&document["value"]).expect("JSON");
+        let own = &parametric[split(&key.key).1];
+        let same = match (default.as_f64(), own.as_f64()) {
+            (Some(default), Some(own)) => default.total_cmp(&own).is_eq(),
+            _ => default == *own,
+        };
+        assert!(same, "{}: {default} and {own}", key.key);
     }
 }
 
