@@ -42,9 +42,10 @@ fn alone(key: &str, value: &str) -> String {
         ("", name) => format!("{name} = {value}\n"),
         (table, name) => {
             let is_list = |key: &KeySpec| key.key == table && key.value == Value::Tables;
-            let table = match keys().iter().any(is_list) {
-                true => format!("[[{table}]]"),
-                false => format!("[{table}]"),
+            let table = if keys().iter().any(is_list) {
+                format!("[[{table}]]")
+            } else {
+                format!("[{table}]")
             };
             format!("{table}\n{name} = {value}\n")
         }
