@@ -206,3 +206,37 @@ fn a_missing_file_of_a_bundle_is_named() {
     let error = bundle::read(directory.path()).unwrap_err();
     assert!(error.to_string().contains("contact.csv"), "{error}");
 }
+
+/// With the columns of a ring, the first node is on the blisk and the second on the ring.
+#[test]
+fn the_columns_of_a_ring_say_which_node_is_on_which_body() {
+    let directory = tempfile::tempdir().unwrap();
+    write_small_bundle(directory.path());
+    let text = "pair,blisk_node,ring_node,nr,nt,nz,weight\n0,0,1,-1,0,0,1\n";
+    fs::write(directory.path().join("contact.csv"), text).unwrap();
+    let error = bundle::read(directory.path()).unwrap_err().to_string();
+    let expected = "contact pair 0: node 1 is on the wrong body";
+    assert!(error.contains(expected), "{error}");
+}
+
+/// With the columns of any two sides, a side is a node of sector 0 or 1, and the second one may be the ground.
+#[test]
+fn sides_of_other_contacts_are_refused_with_line_and_value() {
+    let header = "pair,first_node,first_sector,second_node,second_sector,nr,nt,nz,weight";
+    for (pair, accepted) in [
+        (
+            "0,1,2,2,0,-1,0,0,1",
+            "first_sector is \"2\"; accepted: 0 or 1",
+        ),
+        ("0,1,0,earth,0,-1,0,0,1", "second_node is \"earth\""),
+        ("0,ground,0,2,0,-1,0,0,1", "first_node is \"ground\""),
+        ("0,1,0,1,0,-1,0,0,1", "it joins node 1 and node 1"),
+    ] {
+        let directory = tempfile::tempdir().unwrap();
+        write_small_bundle(directory.path());
+        let text = format!("{header}\n{pair}\n");
+        fs::write(directory.path().join("contact.csv"), text).unwrap();
+        let error = bundle::read(directory.path()).unwrap_err().to_string();
+        assert!(error.contains(accepted), "{error}");
+    }
+}
