@@ -20,7 +20,7 @@ use super::tables::Receptances;
 use super::tuned_wheel::TunedDiameter;
 use super::wave_force::WaveForce;
 
-/// Blade shapes of harmonic 1, and of every other one.
+/// Least number of blade shapes of harmonic 1, and of every other one.
 const SHAPES: [usize; 2] = [3, 2];
 /// Frequencies of the band at which the shapes of harmonic 1 are made, and of every other one.
 const SHAPE_FREQUENCIES: [usize; 2] = [9, 5];
@@ -36,8 +36,34 @@ pub struct EngineModel {
     pub model: ReducedModel,
     /// Participation of the contact-free modes of nodal diameters 0..=N/2 in coordinates of the blade's strain.
     strain: Vec<Matrix<Complex64>>,
-    /// Factor on the number of blade shapes.
-    shape_factor: usize,
+    /// Factors on the least numbers of blade shapes.
+    shape_factors: ShapeFactors,
+}
+
+/// How many times as many blade shapes there are as at least.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ShapeFactors {
+    /// Of harmonic 1.
+    pub first: usize,
+    /// Of every other harmonic.
+    pub others: usize,
+}
+
+impl ShapeFactors {
+    /// As few shapes as there can be.
+    pub const LEAST: Self = Self {
+        first: 1,
+        others: 1,
+    };
+
+    /// Twice as many of every harmonic.
+    #[must_use]
+    pub fn doubled(self) -> Self {
+        Self {
+            first: 2 * self.first,
+            others: 2 * self.others,
+        }
+    }
 }
 
 impl EngineModel {
@@ -61,15 +87,15 @@ impl EngineModel {
         Some(Self {
             model,
             strain,
-            shape_factor: 1,
+            shape_factors: ShapeFactors::LEAST,
         })
     }
 
     /// The same with so many times as many blade shapes as there are at least.
     #[must_use]
-    pub fn with_shape_factor(self, shape_factor: usize) -> Self {
+    pub fn with_shape_factors(self, shape_factors: ShapeFactors) -> Self {
         Self {
-            shape_factor,
+            shape_factors,
             ..self
         }
     }
@@ -77,8 +103,8 @@ impl EngineModel {
     /// The same with twice as many blade shapes.
     #[must_use]
     pub fn with_twice_the_shapes(self) -> Self {
-        let shape_factor = 2 * self.shape_factor;
-        self.with_shape_factor(shape_factor)
+        let shape_factors = self.shape_factors.doubled();
+        self.with_shape_factors(shape_factors)
     }
 }
 
@@ -119,7 +145,7 @@ pub(super) struct Pencil {
     band: (f64, f64),
     forces: Vec<WaveForce>,
     deviation: f64,
-    shape_factor: usize,
+    shape_factors: ShapeFactors,
     sectors: usize,
     modes: Option<BandModes>,
     /// By harmonic.
@@ -172,7 +198,7 @@ impl ReceptanceEngine {
             band,
             forces: options.forces.clone(),
             deviation: options.deviation,
-            shape_factor: own.shape_factor,
+            shape_factors: own.shape_factors,
             sectors: model.sectors,
             modes: None,
             tables: (0..=HIGHEST_HARMONIC).map(|_| OnceLock::new()).collect(),
@@ -347,6 +373,8 @@ impl Pencil {
             return Some(self.strain.clone());
         }
         let place = usize::from(harmonic != 1);
+        let ShapeFactors { first, others } = self.shape_factors;
+        let factor = if harmonic == 1 { first } else { others };
         let count = SHAPE_FREQUENCIES[place];
         let at = |i: usize| {
             let way = i as f64 / (count - 1) as f64;
@@ -362,7 +390,7 @@ impl Pencil {
             contact_forces: &self.contact_forces,
             excitations: if harmonic == 1 { &self.forces } else { &[] },
             deviation: self.deviation,
-            count: SHAPES[place] * self.shape_factor,
+            count: SHAPES[place] * factor,
         };
         let shapes = blade_shapes(&self.diameters, &self.strain, &wanted)?;
         Some(in_shapes(&self.strain, &shapes))

@@ -23,6 +23,7 @@ mod wheel_solver;
 pub use contact_forces::ContactForces;
 pub use engine::{
     EngineModel, EngineOptions, EngineWheel, HIGHEST_HARMONIC, Limit, ReceptanceEngine,
+    ShapeFactors,
 };
 pub use free_waves::{FreeWave, FreeWheel};
 pub use resonances::Resonance;
