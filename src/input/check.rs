@@ -79,8 +79,10 @@ impl<'a> Check<'a> {
 
     fn value(&mut self, place: &str, key: &KeySpec, written: &Written) {
         match (key.value, written) {
-            (Value::Table, Written::Table(table)) => self.table(place, &key.key, table),
-            (Value::Tables, Written::Array(tables)) if is_tables(tables) => {
+            (Value::Table | Value::TableOrTables, Written::Table(table)) => {
+                self.table(place, &key.key, table);
+            }
+            (Value::Tables | Value::TableOrTables, Written::Array(tables)) if is_tables(tables) => {
                 for (index, table) in tables.iter().enumerate() {
                     if let Written::Table(table) = table {
                         self.table(&format!("{place}[{index}]"), &key.key, table);
@@ -112,6 +114,9 @@ impl<'a> Check<'a> {
 fn accepted(key: &KeySpec) -> String {
     match key.value {
         Value::Tables => format!("one or more tables [[{}]]", key.key),
+        Value::TableOrTables => {
+            format!("a table [{0}], or one or more tables [[{0}]]", key.key)
+        }
         value => value.to_string().replace('`', ""),
     }
 }
@@ -123,7 +128,7 @@ fn is_tables(values: &[Written]) -> bool {
 /// Whether a value that is no table is what its key accepts.
 fn holds(value: Value, written: &Written) -> bool {
     match value {
-        Value::Table | Value::Tables => false,
+        Value::Table | Value::Tables | Value::TableOrTables => false,
         Value::Number(range) => number(written).is_some_and(|number| range.holds(number)),
         Value::Whole(low, high) => written
             .as_integer()

@@ -17,19 +17,33 @@ pub(crate) fn schema_of(title: &str, keys: &[KeySpec]) -> Json {
         "additionalProperties": false,
     });
     for key in keys {
-        let path: Vec<&str> = key.key.split('.').collect();
-        if let Some((name, tables)) = path.split_last() {
-            let mut table = &mut schema;
-            for step in tables {
-                table = &mut table["properties"][*step];
-                if table["items"].is_object() {
-                    table = &mut table["items"];
-                }
-            }
-            add(table, name, key);
-        }
+        let (table, name) = place(&mut schema, &key.key);
+        add(table, name, key);
+    }
+    // What has all its keys by now is also what a list is made of.
+    for key in keys.iter().filter(|key| key.value == Value::TableOrTables) {
+        let (table, name) = place(&mut schema, &key.key);
+        let own = &mut table["properties"][name];
+        let one = own.take();
+        *own = json!({
+            "description": one["description"],
+            "anyOf": [one, { "type": "array", "items": one, "minItems": 1 }],
+        });
     }
     schema
+}
+
+/// The schema of the table that a key is in, and the key's own name.
+fn place<'a, 'b>(schema: &'a mut Json, key: &'b str) -> (&'a mut Json, &'b str) {
+    let (tables, name) = key.rsplit_once('.').unwrap_or(("", key));
+    let mut table = schema;
+    for step in tables.split('.').filter(|step| !step.is_empty()) {
+        table = &mut table["properties"][step];
+        if table["items"].is_object() {
+            table = &mut table["items"];
+        }
+    }
+    (table, name)
 }
 
 fn add(table: &mut Json, name: &str, key: &KeySpec) {

@@ -81,6 +81,8 @@ pub enum Value {
     Table,
     /// One or more tables with the same keys, each `[[key]]`.
     Tables,
+    /// A table `[key]`, or one or more `[[key]]` with the same keys.
+    TableOrTables,
     /// A finite number.
     Number(Range),
     /// A whole number from the first to the second.
@@ -137,6 +139,7 @@ impl fmt::Display for Value {
         match self {
             Self::Table => write!(f, "a table"),
             Self::Tables => write!(f, "one or more tables"),
+            Self::TableOrTables => write!(f, "a table, or one or more tables"),
             Self::Number(range) => write!(f, "{range}"),
             Self::Whole(low, high) => write!(f, "whole number, {low} to {high}"),
             Self::Text(what) => write!(f, "{what}"),
@@ -167,7 +170,10 @@ impl Value {
     #[must_use]
     pub fn schema(&self) -> Json {
         match self {
-            Self::Table => json!({ "type": "object", "additionalProperties": false }),
+            // A list of tables is made of the one, once it has its keys.
+            Self::Table | Self::TableOrTables => {
+                json!({ "type": "object", "additionalProperties": false })
+            }
             Self::Tables => json!({
                 "type": "array", "items": Self::Table.schema(), "minItems": 1,
             }),

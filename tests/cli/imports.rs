@@ -356,6 +356,9 @@ fn the_schema_of_import_files_accepts_all_there_are_and_the_guide_has_every_key(
             texts.push(std::fs::read_to_string(path).expect("an import file"));
         }
     }
+    texts.push(texts[0].replace("\n[contact]", "\n[[contact]]"));
+    let wedge = "[damper]\nset = \"W\"\n[[contact]]\nfirst = \"damper.W\"\nsecond = \"ground\"\n\n[[contact]]";
+    texts.push(texts[0].replace("\n[contact]", &format!("\n{wedge}")));
     for text in &texts {
         assert_eq!(
             violations(&schema, &as_json(text), ""),
@@ -366,7 +369,9 @@ fn the_schema_of_import_files_accepts_all_there_are_and_the_guide_has_every_key(
     for (good, bad) in [
         ("sectors = 24", "sectors = 0"),
         ("sectors = 24", "sektors = 24"),
-        ("[contact]", "[contact]\npairing = \"near\""),
+        ("\n[contact]", "\n[contact]\npairing = \"near\""),
+        ("\n[contact]", "\n[[contact]]\npairing = \"near\""),
+        ("\n[contact]", "\n[[contact]]\nthird = \"ground\""),
         ("component = \"z\"", ""),
     ] {
         let spoiled = texts[0].replace(good, bad);

@@ -131,3 +131,25 @@ fn rings_that_cannot_follow_are_refused() {
     let report = projected("ring_free", 1e-5).report.contact.unwrap();
     assert_eq!((report.pairs, report.ring_nodes_without_pair), (2, 6));
 }
+
+/// In a list of contacts a ring is projected as it is alone, and only once.
+#[test]
+fn a_listed_ring_is_projected_like_one_alone() {
+    let listed = |more: &str| {
+        try_import_changed("rest", |text| {
+            let sides = "[[contact]]\npairing = \"projection\"\ntolerance_m = 3e-4\nfirst = \"blisk.LANDING\"\nsecond = \"ring.RING_OUTER\"";
+            text.replace("ring_rest", "ring_free").replace(
+                "[contact]\nblisk = \"LANDING\"\nring = \"RING_OUTER\"",
+                &format!("{sides}\n{more}"),
+            )
+        })
+    };
+    assert_eq!(
+        listed("").unwrap().model,
+        projected("ring_free", 3e-4).model
+    );
+    let more = "[[contact]]\npairing = \"projection\"\nfirst = \"blisk.BORE\"\nsecond = \"ring.RING_OUTER\"";
+    let refused = listed(more).err().unwrap().to_string();
+    let words = "contact[1].pairing = \"projection\" is not accepted; accepted: \"nodes\": contact[0] is projected already";
+    assert!(refused.contains(words), "{refused}");
+}

@@ -93,6 +93,24 @@ fn the_templates_of_ansys_and_nastran_import_files_in_their_formats() {
     }
 }
 
+/// What the templates say of dampers other than a ring is an import file, too.
+#[test]
+fn the_wedge_of_each_template_stands_in_the_place_of_its_ring() {
+    for (code, text) in IMPORT_TEMPLATES {
+        let (head, tail) = text.split_once("[ring]").unwrap();
+        let (_, tail) = tail.split_once("# Dampers other than a ring").unwrap();
+        let (wedge, tail) = tail.split_once("\n\n").unwrap();
+        let wedge = wedge.lines().skip(1).map(|line| line.replacen("# ", "", 1));
+        let wedge: Vec<String> = wedge.collect();
+        let text = format!("{head}{}\n\n{tail}", wedge.join("\n"));
+        assert_eq!(wedge.len(), 9, "{text}");
+        assert_eq!(findings(&text), [], "{code}: {text}");
+        // It would be missed.
+        let without = text.replace("damper.", "blisk.");
+        assert!(findings(&without)[0].2.contains("nothing holds the damper"));
+    }
+}
+
 /// What is wrong in an import file, by key.
 fn findings(text: &str) -> Vec<(usize, String, String)> {
     let folder = tempfile::tempdir().unwrap();
@@ -119,17 +137,27 @@ fn sample(value: Value) -> String {
     }
 }
 
+/// Keys in the place of others.
+const INSTEAD: [&str; 5] = [
+    "blisk.blade_elements",
+    "ring.set",
+    "damper.set",
+    "contact.first",
+    "contact.second",
+];
+
 /// An import file with every key, or without one.
 fn every_key(left_out: &str) -> String {
     let mut text = String::new();
     for key in import_keys() {
         let name = key.key.rsplit('.').next().unwrap();
         match key.value {
-            Value::Table => writeln!(text, "[{}]", key.key).unwrap(),
+            Value::Table | Value::TableOrTables => writeln!(text, "[{}]", key.key).unwrap(),
             Value::Tables => writeln!(text, "[[{}]]", key.key).unwrap(),
-            // Either a node or a set; either sets or files of their own for blade and ring.
+            // Either a node or a set; either sets or files of their own for blade, ring and damper; either
+            // `blisk` and `ring` or the sides of a contact.
             _ if key.key == left_out || name == "node" => {}
-            _ if ["blisk.blade_elements", "ring.set"].contains(&key.key.as_str()) => {}
+            _ if INSTEAD.contains(&key.key.as_str()) => {}
             value => writeln!(text, "{name} = {}", sample(value)).unwrap(),
         }
     }
@@ -138,10 +166,20 @@ fn every_key(left_out: &str) -> String {
 
 #[test]
 fn every_key_of_an_import_file_is_one_that_its_reader_knows() {
-    assert_eq!(findings(&every_key("")), []);
+    // A contact of blisk and ring alone holds no damper.
+    let unheld = |text: &str| {
+        let found = findings(text).into_iter();
+        found
+            .filter(|(_, key, _)| key != "damper")
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(unheld(&every_key("")), []);
     let mut missed = BTreeSet::new();
     for key in import_keys() {
-        if matches!(key.value, Value::Table | Value::Tables) {
+        if matches!(
+            key.value,
+            Value::Table | Value::Tables | Value::TableOrTables
+        ) {
             continue;
         }
         let table = key.key.rsplit_once('.').map_or("", |(table, _)| table);
@@ -149,11 +187,42 @@ fn every_key_of_an_import_file_is_one_that_its_reader_knows() {
         let misses = found.iter().any(|(_, missing, said)| {
             missing.replace("[0]", "") == key.key && said.contains("is missing")
         });
-        let needed = key.required || ["force.set", "observe.set"].contains(&key.key.as_str());
+        let either = ["force.set", "observe.set", "contact.blisk", "contact.ring"];
+        let needed = key.required || either.contains(&key.key.as_str());
         assert_eq!(misses, needed, "{}: {found:?}", key.key);
         missed.extend(misses.then_some(table.to_owned()));
     }
     assert!(missed.len() >= 5, "{missed:?}");
+}
+
+/// A list of contacts has every key of a contact as well, and needs both of its sides.
+#[test]
+fn every_key_of_a_contact_is_one_of_a_list_of_contacts() {
+    let listed = |sides: &str| {
+        let start = every_key("").find("[contact]").unwrap();
+        let text = every_key("").replacen("[contact]", "[[contact]]", 1);
+        let (head, tail) = text.split_at(start);
+        let kept = |line: &&str| !line.starts_with("blisk =") && !line.starts_with("ring =");
+        let tail: Vec<&str> = tail.lines().filter(kept).collect();
+        let tail = tail.join("\n");
+        let with_sides = tail.replacen("[[contact]]", &format!("[[contact]]\n{sides}"), 1);
+        let damper =
+            "[[contact]]\nfirst = \"damper.A\"\nsecond = \"ground\"\nweights = \"equal\"\n";
+        findings(&format!("{head}{damper}{with_sides}"))
+    };
+    let both = "first = \"blisk.x\"\nsecond = \"ring.x\"";
+    assert_eq!(listed(both), []);
+    for (sides, missing) in [
+        ("first = \"blisk.x\"", "contact[1].second"),
+        ("second = \"ring.x\"", "contact[1].first"),
+    ] {
+        let found = listed(sides);
+        let [(_, key, said)] = found.as_slice() else {
+            panic!("{found:?}");
+        };
+        assert_eq!(key, missing);
+        assert!(said.contains("is missing; accepted: BODY.SET"), "{said}");
+    }
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
 
 use super::cartesian::CartesianMatrix;
 
@@ -82,6 +84,28 @@ pub fn matrix_market(matrix: &CartesianMatrix) -> String {
     }
     text
 }
+
+/// Stiffness, mass and the blade's stiffness of one run in Matrix Market files, each with its table of rows.
+pub fn matrix_market_run(
+    folder: &Path,
+    stiffness: &CartesianMatrix,
+    mass: &CartesianMatrix,
+    blade: &CartesianMatrix,
+) {
+    for (name, text) in [
+        ("K.mtx", matrix_market(stiffness)),
+        ("M.mtx", matrix_market(mass)),
+        ("dofs.csv", dof_table(stiffness, true)),
+        ("blade.mtx", matrix_market(blade)),
+        ("blade.csv", dof_table(blade, true)),
+    ] {
+        fs::write(folder.join(name), text).unwrap();
+    }
+}
+
+/// The keys of an import file for such a run.
+pub const MATRIX_MARKET_KEYS: &str = "mesh = \"mesh\"\nstiffness = \"K.mtx\"\nmass = \"M.mtx\"\ndofs = \"dofs.csv\"\n\
+    blade_stiffness = \"blade.mtx\"\nblade_dofs = \"blade.csv\"\n";
 
 /// Both triangles, by column then row.
 fn full(matrix: &CartesianMatrix) -> Vec<(usize, usize, f64)> {

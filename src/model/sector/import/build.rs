@@ -4,14 +4,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 use std::path::Path;
 
+use super::contact_tables::Contact;
 use super::cyclic_faces::{FacePairs, match_faces, turned_by};
 use super::cylindrical::{Frames, Node};
+use super::files::OtherBody;
 use super::import_file::ImportFile;
 use super::matrices::Matrices;
 use super::problem::{ImportProblem, body_name};
 use super::projection::{Projected, project};
 use super::report::{BodyReport, ImportReport};
 use super::run::Run;
+use super::side::Side;
 use super::source::refuse;
 use super::tables::{ForceDirection, Pairing};
 use super::{blade, contact};
@@ -67,12 +70,10 @@ pub fn import(path: &Path) -> Result<Imported, ModelError> {
         .filter(|&(.., value)| value != 0.0)
         .collect();
     let bodies = body_reports(&file, &runs, &frames, &faces, &stiffness, &mass);
-    let ring_grounding_hz = file
-        .ring
-        .as_ref()
-        .and_then(|ring| ring.grounding_hz)
-        .unwrap_or(0.0);
-    ground_ring(&mut stiffness, &mass, &frames, ring_grounding_hz);
+    for other in &file.others {
+        let hz = file.grounding_hz(other.body);
+        ground(&mut stiffness, &mass, &frames, other.body, hz);
+    }
     let (mut blade, blade_source) = blade::stiffness(&file, &runs[0], &frames)?;
     blade.retain(|&(.., value)| value != 0.0);
     let low_of_high = faces
@@ -87,11 +88,7 @@ pub fn import(path: &Path) -> Result<Imported, ModelError> {
         projected,
         tolerance_m: tolerance_m(&file, &nodes),
     };
-    let contact = file
-        .contact
-        .as_ref()
-        .map(|table| contact::pairs(&file, table, &runs, &sector));
-    let (contact_pairs, contact) = contact.transpose()?.unzip();
+    let (contact_pairs, contact) = contact::pairs(&file, &runs, &sector)?;
     let force = force(&file, &runs, &frames, &low_of_high)?;
     let observed = observed(&file, &runs)?;
     let blade_dofs: BTreeSet<usize> = blade
@@ -107,7 +104,8 @@ pub fn import(path: &Path) -> Result<Imported, ModelError> {
         blade_source,
         blade_dofs: blade_dofs.len(),
         contact,
-        ring_grounding_hz,
+        ring_grounding_hz: file.grounding_hz(Body::Ring),
+        damper_grounding_hz: file.grounding_hz(Body::Damper),
         forced_dofs: force.len(),
         observed: observed
             .iter()
@@ -122,7 +120,7 @@ pub fn import(path: &Path) -> Result<Imported, ModelError> {
         blade_stiffness: SymmetricSparse::from_lower_triplets(n, &blade),
         cyclic_pairs: cyclic_dofs(&file, &frames, &faces)?,
         dofs: frames.dofs,
-        contact_pairs: contact_pairs.unwrap_or_default(),
+        contact_pairs,
         force,
         load_case_forces: Vec::new(),
         observed,
@@ -139,14 +137,24 @@ fn project_ring(
     matrices: &mut [Matrices],
     faces: &mut BTreeMap<&'static str, FacePairs>,
 ) -> Result<Option<Projected>, ModelError> {
-    let (Some(table), Some(ring)) = (&file.contact, matrices.last_mut()) else {
+    let is_projected = |contact: &&Contact| contact.pairing == Pairing::Projection;
+    let contact = file.contacts.iter().find(is_projected);
+    let Some((contact, Side::Surface(ring))) = contact.map(|own| (own, &own.second)) else {
         return Ok(None);
     };
-    if table.pairing == Pairing::Nodes {
-        return Ok(None);
-    }
-    let tolerance_m = table.tolerance_m.unwrap_or(tolerance_m(file, nodes));
-    project(file, table, runs, tolerance_m, nodes, ring, faces).map(Some)
+    let tolerance_m = contact.tolerance_m.unwrap_or(tolerance_m(file, nodes));
+    let own = runs.iter().position(|run| run.holds(Body::Ring));
+    let matrices = &mut matrices[own.unwrap_or_default()];
+    project(
+        file,
+        (contact, ring),
+        runs,
+        tolerance_m,
+        nodes,
+        matrices,
+        faces,
+    )
+    .map(Some)
 }
 
 /// Tolerance on positions: the import file's, or what a bundle accepts.
@@ -155,20 +163,22 @@ fn tolerance_m(file: &ImportFile, nodes: &BTreeMap<usize, Node>) -> f64 {
         .unwrap_or_else(|| position_tolerance_of(nodes.values().map(|node| node.position_m)))
 }
 
-/// Low and high set of each body with the run that holds them.
+/// Low and high set of each body that has them, with the run that holds them.
 pub(super) fn face_sets<'a>(
     file: &'a ImportFile,
     runs: &'a [Run],
 ) -> impl Iterator<Item = (Body, &'a Run, [&'a str; 2])> {
     let blisk = [file.blisk.low_face.as_str(), file.blisk.high_face.as_str()];
-    let ring = file.ring.as_ref();
-    let ring = ring.map(|ring| [ring.low_face.as_str(), ring.high_face.as_str()]);
-    [(Body::Blisk, Some(blisk)), (Body::Ring, ring)]
-        .into_iter()
-        .filter_map(move |(body, names)| {
-            let run = runs.iter().rev().find(|run| run.holds(body))?;
-            Some((body, run, names?))
-        })
+    let others = file
+        .others
+        .iter()
+        .filter_map(|OtherBody { body, table, .. }| {
+            let names = [table.low_face.as_deref()?, table.high_face.as_deref()?];
+            Some((*body, names))
+        });
+    std::iter::once((Body::Blisk, blisk))
+        .chain(others)
+        .map(move |(body, names)| (body, Run::of(runs, body), names))
 }
 
 /// Pairs of the free nodes on the faces of each body.
@@ -286,7 +296,7 @@ fn body_reports(
         let own = |dof: &&crate::model::sector::Dof| dof.body == body;
         let nodes: BTreeSet<usize> = frames.dofs.iter().filter(own).map(|dof| dof.node).collect();
         let facts = &run.mesh.run;
-        let faces = &faces[body_name(body)];
+        let faces = faces.get(body_name(body));
         BodyReport {
             body: body_name(body),
             nodes: nodes.len(),
@@ -299,27 +309,30 @@ fn body_reports(
                 .centrifugal
                 .filter(|_| facts.prestressed)
                 .map(|squared| squared.abs().sqrt()),
-            cyclic_node_pairs: faces.pairs.len(),
-            worst_face_mismatch_m: faces.worst_m,
-            rigid_shift_residual: (body == Body::Ring).then_some(residual),
+            cyclic_node_pairs: faces.map_or(0, |faces| faces.pairs.len()),
+            worst_face_mismatch_m: faces.map_or(0.0, |faces| faces.worst_m),
+            rigid_shift_residual: (body != Body::Blisk).then_some(residual),
         }
     };
-    face_sets(file, runs)
-        .map(|(body, run, _)| report(body, run))
+    let others = file.others.iter().map(|other| other.body);
+    std::iter::once(Body::Blisk)
+        .chain(others)
+        .map(|body| report(body, Run::of(runs, body)))
         .collect()
 }
 
-/// Adds `(2 pi f)^2 M` on the ring's dofs to the stiffness.
-fn ground_ring(
+/// Adds `(2 pi f)^2 M` on the dofs of a body to the stiffness.
+fn ground(
     stiffness: &mut Vec<(usize, usize, f64)>,
     mass: &[(usize, usize, f64)],
     frames: &Frames,
+    body: Body,
     frequency_hz: f64,
 ) {
     let omega = TAU * frequency_hz;
     if omega > 0.0 {
-        let ring = |&&(row, _, _): &&(usize, usize, f64)| frames.dofs[row].body == Body::Ring;
-        let springs = mass.iter().filter(ring);
+        let own = |&&(row, _, _): &&(usize, usize, f64)| frames.dofs[row].body == body;
+        let springs = mass.iter().filter(own);
         stiffness.extend(springs.map(|&(row, column, value)| (row, column, omega * omega * value)));
     }
 }

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::matrices::{MatrixFiles, MatrixFormat};
-use super::tables::{BliskTable, RingTable};
+use super::problem::body_name;
+use super::tables::{BliskTable, BodyTable};
 use crate::input::Problem;
+use crate::model::sector::sector_model::Body;
 
 /// Files of one run: its mesh and its matrices.
 #[derive(Debug, Clone)]
@@ -15,7 +17,7 @@ pub(super) struct RunFiles {
 
 /// Keys of the files of one run as written.
 struct Keys<'a> {
-    /// What stands before the names of the keys: `blisk.`, `ring.` or `blisk.blade_`.
+    /// What stands before the names of the keys: `blisk.`, `ring.`, `damper.` or `blisk.blade_`.
     prefix: &'static str,
     job: Option<&'a PathBuf>,
     stiffness: Option<&'a PathBuf>,
@@ -34,14 +36,24 @@ struct Reader<'a> {
     problems: &'a mut Vec<(String, Problem)>,
 }
 
-/// Files of the blisk, of the blade alone and of the ring; what is missing goes to `problems`.
+/// A body beside the blisk.
+#[derive(Debug)]
+pub(super) struct OtherBody {
+    /// Ring or damper.
+    pub body: Body,
+    pub table: BodyTable,
+    /// None where it stands in the blisk's files.
+    pub files: Option<RunFiles>,
+}
+
+/// Files of the blisk, of the blade alone and of the other bodies; what is missing goes to `problems`.
 pub(super) fn files(
     import_file: &Path,
     format: MatrixFormat,
     blisk: &BliskTable,
-    ring: Option<&RingTable>,
+    others: [(Body, Option<BodyTable>); 2],
     problems: &mut Vec<(String, Problem)>,
-) -> (RunFiles, Option<MatrixFiles>, Option<RunFiles>) {
+) -> (RunFiles, Option<MatrixFiles>, Vec<OtherBody>) {
     let mut reader = Reader {
         import_file,
         format,
@@ -59,28 +71,13 @@ pub(super) fn files(
     };
     let of_blisk = reader.run(blisk.mesh.as_ref(), &keys);
     let of_blade = reader.blade(blisk);
-    let of_ring = ring.and_then(|ring| {
-        if ring.mesh.is_none() && ring.job.is_none() && ring.stiffness.is_none() {
-            if ring.set.is_none() {
-                let accepted =
-                    "the set of the ring's nodes or elements in the blisk's files, or `ring.mesh` and its matrices";
-                reader.problems.push(missing("ring.set", accepted));
-            }
-            return None;
-        }
-        let keys = Keys {
-            prefix: "ring.",
-            job: ring.job.as_ref(),
-            stiffness: ring.stiffness.as_ref(),
-            mass: ring.mass.as_ref(),
-            has_mass: true,
-            dofs: ring.dofs.as_ref(),
-            stiffness_name: ring.stiffness_name.as_ref(),
-            mass_name: ring.mass_name.as_ref(),
-        };
-        Some(reader.run(ring.mesh.as_ref(), &keys))
+    let others = others.into_iter().filter_map(|(body, table)| {
+        let table = table?;
+        let files = reader.other(body, &table);
+        Some(OtherBody { body, table, files })
     });
-    (of_blisk, of_blade, of_ring)
+    let others = others.collect();
+    (of_blisk, of_blade, others)
 }
 
 impl Reader<'_> {
@@ -105,6 +102,41 @@ impl Reader<'_> {
             mesh,
             matrices: self.matrices(keys),
         }
+    }
+
+    /// The files of a body beside the blisk, where it has some of its own.
+    fn other(&mut self, body: Body, table: &BodyTable) -> Option<RunFiles> {
+        let name = body_name(body);
+        if !table.has_files() {
+            if table.set.is_none() {
+                let accepted = format!(
+                    "the set of the {name}'s nodes or elements in the blisk's files, or `{name}.mesh` and its matrices"
+                );
+                self.problems
+                    .push(missing(format!("{name}.set"), &accepted));
+            }
+            return None;
+        }
+        if table.set.is_some() {
+            let reason = format!("files of the {name} are also given; accepted: one of the two");
+            let problem = Problem::Conflict { reason };
+            self.problems.push((format!("{name}.set"), problem));
+        }
+        let keys = Keys {
+            prefix: match body {
+                Body::Blisk => "blisk.",
+                Body::Ring => "ring.",
+                Body::Damper => "damper.",
+            },
+            job: table.job.as_ref(),
+            stiffness: table.stiffness.as_ref(),
+            mass: table.mass.as_ref(),
+            has_mass: true,
+            dofs: table.dofs.as_ref(),
+            stiffness_name: table.stiffness_name.as_ref(),
+            mass_name: table.mass_name.as_ref(),
+        };
+        Some(self.run(table.mesh.as_ref(), &keys))
     }
 
     /// The files of the blade's stiffness, where a run of its own wrote it.

@@ -4,17 +4,15 @@ use std::path::{Path, PathBuf};
 
 use toml::Table;
 
-use super::files::{RunFiles, files, missing};
+use super::contact_tables::{Contact, contacts};
+use super::files::{OtherBody, RunFiles, files, missing};
 use super::keys::import_keys;
 use super::matrices::{MatrixFiles, MatrixFormat};
 use super::source::Source;
-use super::tables::{
-    Axis, BliskTable, Code, ContactTable, ForceTable, MeshFormat, ObserveTable, RawFile, RingTable,
-    Units,
-};
+use super::tables::{Axis, BliskTable, Code, ForceTable, MeshFormat, ObserveTable, RawFile, Units};
 use crate::input::{Finding, Problem, SourceMap, check};
 use crate::model::sector::error::ModelError;
-use crate::model::sector::sector_model::ObservedNode;
+use crate::model::sector::sector_model::{Body, ObservedNode};
 
 /// An import file with its formats decided, its numbers checked and its files named.
 #[derive(Debug)]
@@ -31,10 +29,9 @@ pub(super) struct ImportFile {
     pub blisk_files: RunFiles,
     /// Matrices of the blade alone; none where it is assembled here.
     pub blade_files: Option<MatrixFiles>,
-    pub ring: Option<RingTable>,
-    /// None where there is no ring, or where it stands in the blisk's files.
-    pub ring_files: Option<RunFiles>,
-    pub contact: Option<ContactTable>,
+    /// Ring and damper, those that there are.
+    pub others: Vec<OtherBody>,
+    pub contacts: Vec<Contact>,
     pub force: Vec<ForceTable>,
     pub observe: Vec<ObserveTable>,
 }
@@ -54,7 +51,7 @@ impl ImportFile {
         if !findings.is_empty() {
             return Err(refused(findings));
         }
-        let raw: RawFile = toml::from_str(&source.text).map_err(described)?;
+        let mut raw: RawFile = toml::from_str(&source.text).map_err(described)?;
         let mut missing = Vec::new();
         let mesh_format = raw.mesh_format.unwrap_or(match raw.code {
             Code::Calculix => MeshFormat::Calculix,
@@ -66,14 +63,14 @@ impl ImportFile {
             Code::Ansys => MatrixFormat::HarwellBoeing,
             Code::Nastran => MatrixFormat::Dmig,
         });
-        let (blisk_files, blade_files, ring_files) = files(
-            path,
-            matrix_format,
-            &raw.blisk,
-            raw.ring.as_ref(),
-            &mut missing,
-        );
+        let contacts = contacts(&raw, &mut missing);
         together(&raw, &mut missing);
+        let others = [
+            (Body::Ring, raw.ring.take()),
+            (Body::Damper, raw.damper.take()),
+        ];
+        let (blisk_files, blade_files, others) =
+            files(path, matrix_format, &raw.blisk, others, &mut missing);
         if !missing.is_empty() {
             let mut findings: Vec<Finding> = missing
                 .into_iter()
@@ -94,9 +91,8 @@ impl ImportFile {
             blisk: raw.blisk,
             blisk_files,
             blade_files,
-            ring: raw.ring,
-            ring_files,
-            contact: raw.contact,
+            others,
+            contacts,
             force: raw.force,
             observe: raw.observe,
         })
@@ -119,6 +115,17 @@ impl ImportFile {
         self.refuse(vec![(key.to_owned(), Problem::Conflict { reason })])
     }
 
+    /// The body beside the blisk.
+    pub fn other(&self, body: Body) -> Option<&OtherBody> {
+        self.others.iter().find(|other| other.body == body)
+    }
+
+    /// Frequency by which a body beside the blisk is grounded, Hz.
+    pub fn grounding_hz(&self, body: Body) -> f64 {
+        let table = self.other(body).map(|other| &other.table);
+        table.and_then(|table| table.grounding_hz).unwrap_or(0.0)
+    }
+
     /// The value of `key` as it is written.
     pub fn written(&self, key: &str) -> String {
         self.map.value(key)
@@ -127,39 +134,16 @@ impl ImportFile {
 
 /// What keys have to do with each other.
 fn together(raw: &RawFile, problems: &mut Vec<(String, Problem)>) {
-    match (&raw.ring, &raw.contact) {
-        (Some(_), None) => problems.push(missing(
-            "contact",
-            "a table with the surfaces that touch, blisk and ring, as there is a [ring]",
-        )),
-        (None, Some(_)) => problems.push(missing(
-            "ring",
-            "a table with the files of the ring, as there is a [contact]",
-        )),
-        _ => {}
-    }
     let mut conflict = |key: String, reason: &str| {
         let reason = reason.to_owned();
         problems.push((key, Problem::Conflict { reason }));
     };
-    if let Some(ring) = &raw.ring {
-        let has_files = ring.mesh.is_some() || ring.job.is_some() || ring.stiffness.is_some();
-        if ring.set.is_some() && has_files {
-            let reason = "files of the ring are also given; accepted: one of the two";
-            conflict("ring.set".to_owned(), reason);
-        }
-    }
     let blade = &raw.blisk;
     if blade.blade_elements.is_some()
         && (blade.blade_job.is_some() || blade.blade_stiffness.is_some())
     {
         let reason = "matrices of the blade alone are also given; accepted: one of the two";
         conflict("blisk.blade_elements".to_owned(), reason);
-    }
-    let normal = raw.contact.as_ref().and_then(|contact| contact.normal);
-    if normal.is_some_and(|normal| normal.iter().all(|&part| part == 0.0)) {
-        let reason = "the normal has no direction; accepted: one number at least that is not 0";
-        conflict("contact.normal".to_owned(), reason);
     }
     for (index, observed) in raw.observe.iter().enumerate() {
         if !ObservedNode::is_name(&observed.name) {

@@ -2,7 +2,7 @@
 
 use serde_json::Value as Json;
 
-use crate::input::Value::{Name, Number, Table, Tables, Text, Vector, Whole};
+use crate::input::Value::{Name, Number, Table, TableOrTables, Tables, Text, Vector, Whole};
 use crate::input::{Entry, KeySpec, REQUIRED, Range, Value, entry, schema_of};
 use crate::model::sector::sector_model::MAX_SECTORS;
 
@@ -14,9 +14,11 @@ const MATRIX: Value = Text("the name of a matrix in the file");
 const ONLY_ONE: &str = "the only one; of DMIG `KAAX` or `MAAX`";
 const OF_JOB: &str = "that of the job; required without one";
 const NO_JOB: &str = "none";
+const SIDE: &str = "`BODY.SET` or `next.BODY.SET`, BODY being `blisk`, `ring` or `damper` and SET a set of its mesh";
+const SIDE_OR_GROUND: &str = "`BODY.SET`, `next.BODY.SET` or `ground`, BODY being `blisk`, `ring` or `damper` and SET a set of its mesh";
 
-/// The keys in the order of docs/import.md.
-const KEYS: &[Entry] = &[
+/// The keys before those of the bodies beside the blisk, in the order of docs/import.md.
+const HEAD: &[Entry] = &[
     entry(
         "code",
         Name(&["calculix", "ansys", "nastran"]),
@@ -140,90 +142,136 @@ const KEYS: &[Entry] = &[
         ONLY_ONE,
         "matrix within an OP4 or DMIG file",
     ),
+];
+
+/// The keys of the files of a body beside the blisk, below its table.
+const FILES: &[Entry] = &[
     entry(
-        "ring",
-        Table,
-        "no ring",
-        "the files of the ring, or its set in those of the blisk",
-    ),
-    entry(
-        "ring.mesh",
+        "mesh",
         FILE,
         "`JOB.inp` of the job",
-        "nodes, elements and sets, where the ring has files of its own",
+        "nodes, elements and sets, where the body has files of its own",
     ),
     entry(
-        "ring.job",
+        "job",
         Text("the name of a CalculiX job, relative to the import file"),
         NO_JOB,
         "CalculiX: stands for `JOB.inp`, `.sti`, `.mas` and `.dof`",
     ),
-    entry("ring.stiffness", FILE, OF_JOB, "the stiffness"),
+    entry("stiffness", FILE, OF_JOB, "the stiffness"),
     entry(
-        "ring.mass",
+        "mass",
         FILE,
         "that of the job; the file of the stiffness for OP4 and DMIG; else required",
         "the mass",
     ),
     entry(
-        "ring.dofs",
+        "dofs",
         FILE,
         "that of the job; none for DMIG; else required",
         "the table that gives node and direction of each row",
     ),
     entry(
-        "ring.stiffness_name",
+        "stiffness_name",
         MATRIX,
         ONLY_ONE,
         "matrix within an OP4 or DMIG file",
     ),
     entry(
-        "ring.mass_name",
+        "mass_name",
         MATRIX,
         ONLY_ONE,
         "matrix within an OP4 or DMIG file",
     ),
+];
+
+const RING: &[Entry] = &[entry(
+    "ring",
+    Table,
+    "no ring",
+    "the files of the ring, or its set in those of the blisk",
+)];
+
+const OF_RING: &[Entry] = &[
     entry(
-        "ring.low_face",
+        "low_face",
         SET,
         REQUIRED,
         "nodes of the low cyclic face of the ring",
     ),
     entry(
-        "ring.high_face",
+        "high_face",
         SET,
         REQUIRED,
         "nodes of the high cyclic face of the ring",
     ),
     entry(
-        "ring.set",
+        "set",
         SET,
         "required where the ring has no files of its own",
         "nodes or elements of the ring in the blisk's files",
     ),
     entry(
-        "ring.grounding_hz",
+        "grounding_hz",
         ZERO_OR_MORE,
         "0",
         "adds `(2 pi f)^2 M` on the ring, so that its free motions are not singular, Hz",
     ),
+];
+
+const DAMPER: &[Entry] = &[entry(
+    "damper",
+    Table,
+    "no damper",
+    "the files of a body of one sector that contact alone holds, or its set in those of the blisk",
+)];
+
+const OF_DAMPER: &[Entry] = &[
+    entry(
+        "set",
+        SET,
+        "required where the damper has no files of its own",
+        "nodes or elements of the damper in the blisk's files",
+    ),
+    entry(
+        "grounding_hz",
+        ZERO_OR_MORE,
+        "0",
+        "adds `(2 pi f)^2 M` on the damper, so that its free motions are not singular, Hz",
+    ),
+];
+
+/// The keys after those of the bodies.
+const TAIL: &[Entry] = &[
     entry(
         "contact",
-        Table,
-        "required with a ring",
-        "the surfaces on which blisk and ring touch",
+        TableOrTables,
+        "required with a ring or a damper",
+        "the surfaces that touch, two in each table",
     ),
     entry(
         "contact.blisk",
         SET,
-        REQUIRED,
-        "the blisk's surface: a node set that holds whole element faces, or a surface of element faces",
+        "required without `first`",
+        "the blisk's surface: a node set that holds whole element faces, or a surface of element faces; stands for `first = \"blisk.SET\"`",
     ),
     entry(
         "contact.ring",
         SET,
-        REQUIRED,
-        "the ring's surface, likewise",
+        "required without `second`",
+        "the ring's surface, likewise; stands for `second = \"ring.SET\"`",
+    ),
+    entry(
+        "contact.first",
+        Text(SIDE),
+        "required without `blisk`",
+        "the side out of which normals point: its body, and a set as of `blisk`; after `next.` that of the next sector",
+    ),
+    entry(
+        "contact.second",
+        Text(SIDE_OR_GROUND),
+        "required without `ring`",
+        "the side that it touches, likewise, or the ground; one of the two is of the sector itself",
     ),
     entry(
         "contact.tolerance_m",
@@ -235,19 +283,19 @@ const KEYS: &[Entry] = &[
         "contact.pairing",
         Name(&["nodes", "projection"]),
         "`\"nodes\"`",
-        "`nodes`: node to node; `projection`: surfaces that do not match",
+        "`nodes`: node to node; `projection`: surfaces of blisk and ring that do not match",
     ),
     entry(
         "contact.weights",
         Name(&["area", "equal"]),
         "`\"area\"`",
-        "how much a pair counts: the area that its node stands for, or the same for all",
+        "how much a pair counts among those of all contacts: the area that its node stands for, or the same for all",
     ),
     entry(
         "contact.normal",
         Vector(3),
         "from the faces",
-        "outward normal of the blisk in (r, theta, z), for meshes without elements; weights are then equal",
+        "outward normal of the first side in (r, theta, z), for meshes without elements; weights are then equal",
     ),
     entry(
         "force",
@@ -299,8 +347,21 @@ const KEYS: &[Entry] = &[
 /// Every key of an import file in the order of docs/import.md.
 #[must_use]
 pub fn import_keys() -> Vec<KeySpec> {
-    let named = |entry| KeySpec::new(entry, entry.key.to_owned());
-    KEYS.iter().map(named).collect()
+    let groups = [
+        ("", HEAD),
+        ("", RING),
+        ("ring.", FILES),
+        ("ring.", OF_RING),
+        ("", DAMPER),
+        ("damper.", FILES),
+        ("damper.", OF_DAMPER),
+        ("", TAIL),
+    ];
+    let named = |(table, entries): (&str, &'static [Entry])| {
+        let key = |entry: &Entry| KeySpec::new(entry, format!("{table}{}", entry.key));
+        entries.iter().map(key).collect::<Vec<_>>()
+    };
+    groups.into_iter().flat_map(named).collect()
 }
 
 /// JSON Schema (draft 7) of import files. What keys have to do with each other is said by `blisk import`.

@@ -237,21 +237,47 @@ pub enum ImportProblem {
         high: usize,
     },
     /// No element face lies in a set.
-    #[error("no outer element face of the {} has all its nodes in {name}; accepted: a node set that holds whole faces, or a surface of element faces", body_name(*body))]
+    #[error("no outer element face of the {} has all its nodes in {name}; accepted: a node set that holds whole faces, or a surface of element faces{normal}", body_name(*body))]
     NoFaces {
         /// Body.
         body: Body,
         /// Name of the set.
         name: String,
+        /// The key that takes the place of faces, if it is to be named.
+        normal: String,
+    },
+    /// A set of a contact has no free node of its body.
+    #[error("no free node of the {} is in {name}; accepted: a set of nodes of that body with rows in the matrices", body_name(*body))]
+    NoFreeNodes {
+        /// Body.
+        body: Body,
+        /// Name of the set.
+        name: String,
+    },
+    /// The faces at a node give no area or no normal.
+    #[error(
+        "the faces of {name} at node {node} have no area, or face each other; accepted: faces of one side of a body, with an area"
+    )]
+    NoArea {
+        /// The surface.
+        name: String,
+        /// The node.
+        node: usize,
     },
     /// A contact node without partner.
     #[error(
-        "node {node} of the blisk's contact surface is {distance_m:e} m from the nearest node of the ring's (node {nearest}); accepted: at most {tolerance_m:e} m (`contact.tolerance_m`)"
+        "node {node} of the {first}'s contact surface is {distance_m:e} m from the nearest node of the {second}'s (node {nearest}); accepted: at most {tolerance_m:e} m (`{key}.tolerance_m`)"
     )]
     ContactMismatch {
-        /// Node on the blisk.
+        /// Key of the contact.
+        key: String,
+        /// Owner of the first surface.
+        first: String,
+        /// Owner of the second surface.
+        second: String,
+        /// Node on the first surface.
         node: usize,
-        /// Nearest node on the ring.
+        /// Nearest node on the second.
         nearest: usize,
         /// Their distance, m.
         distance_m: f64,
@@ -288,33 +314,45 @@ pub enum ImportProblem {
         /// Direction, 1 to 3.
         direction: usize,
     },
-    /// Blisk and ring are one structure.
+    /// Two bodies are one structure.
     #[error(
-        "nodes {first} and {second} belong to different bodies but the stiffness couples them; accepted: blisk and ring without tie or contact in the matrix step"
+        "nodes {first} and {second} belong to different bodies but the stiffness couples them; accepted: {} and {} without tie or contact in the matrix step",
+        body_name(bodies[0]),
+        body_name(bodies[1])
     )]
     BodiesCoupled {
         /// Node of one body.
         first: usize,
         /// Node of the other.
         second: usize,
+        /// The bodies.
+        bodies: [Body; 2],
     },
-    /// Two contact nodes of the blisk meet one of the ring.
+    /// Two contact nodes of the first side meet one of the second.
     #[error(
-        "nodes {first} and {second} of the blisk's contact surface both meet node {ring} of the ring's; accepted: one each (`contact.tolerance_m` smaller than the mesh)"
+        "nodes {} and {} of the {first}'s contact surface both meet node {met} of the {second}'s; accepted: one each (`{key}.tolerance_m` smaller than the mesh)",
+        nodes[0],
+        nodes[1]
     )]
     ContactTwice {
-        /// First node.
-        first: usize,
-        /// Second node.
-        second: usize,
-        /// Node of the ring.
-        ring: usize,
+        /// Key of the contact.
+        key: String,
+        /// Owner of the first surface.
+        first: String,
+        /// Owner of the second surface.
+        second: String,
+        /// The two nodes of the first surface.
+        nodes: [usize; 2],
+        /// Node of the second.
+        met: usize,
     },
     /// No node of the ring lies on the blisk's contact surface.
     #[error(
-        "no node of the ring's contact surface is within {tolerance_m:e} m of the blisk's (nearest: node {nearest}, {distance_m:e} m); accepted: surfaces that touch, or a larger `contact.tolerance_m`"
+        "no node of the ring's contact surface is within {tolerance_m:e} m of the blisk's (nearest: node {nearest}, {distance_m:e} m); accepted: surfaces that touch, or a larger `{key}.tolerance_m`"
     )]
     NothingProjected {
+        /// Key of the contact.
+        key: String,
         /// Nearest node of the ring.
         nearest: usize,
         /// Its distance, m.

@@ -8,15 +8,16 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::contact_tables::Contact;
 use super::cyclic_faces::{FacePairs, distance};
 use super::cylindrical::Node;
 use super::import_file::ImportFile;
 use super::matrices::Matrices;
 use super::problem::{ImportProblem, body_name};
 use super::run::{Run, round_up};
+use super::side::Surface;
 use super::source::refuse;
 use super::surface::FacePoint;
-use super::tables::ContactTable;
 use crate::linalg::{Matrix, SymmetricSparse, hermitian_eigen};
 use crate::model::sector::error::ModelError;
 use crate::model::sector::sector_model::Body;
@@ -48,15 +49,27 @@ struct Face {
 /// Replaces the ring's contact nodes in `nodes`, `matrices` (those of the ring's run) and `faces`.
 pub(super) fn project(
     file: &ImportFile,
-    table: &ContactTable,
+    (contact, ring_surface): (&Contact, &Surface),
     runs: &[Run],
     tolerance_m: f64,
     nodes: &mut BTreeMap<usize, Node>,
     matrices: &mut Matrices,
     faces: &mut BTreeMap<&'static str, FacePairs>,
 ) -> Result<Projected, ModelError> {
-    let surface = blisk_faces(table, runs, nodes)?;
-    let weights = ring_weights(file, table, runs, tolerance_m, nodes, matrices, &surface)?;
+    let surface = blisk_faces(contact, runs, nodes)?;
+    let run = Run::of(runs, Body::Ring);
+    let ring_nodes = run.set(&ring_surface.set);
+    let count = ring_nodes.len();
+    let ring_nodes = ring_nodes.into_iter().map(|node| node + run.offset);
+    let weights = ring_weights(
+        file,
+        contact,
+        ring_nodes,
+        tolerance_m,
+        nodes,
+        matrices,
+        &surface,
+    )?;
     let followed: BTreeSet<usize> = weights
         .values()
         .flat_map(|(list, _)| list.keys().copied())
@@ -95,10 +108,9 @@ pub(super) fn project(
             }
         }
     }
-    let run = &runs[runs.len() - 1];
     Ok(Projected {
         nodes: weights.len(),
-        left_out: run.set(&table.ring).len() - weights.len(),
+        left_out: count - weights.len(),
         worst_distance_m: weights
             .values()
             .fold(0.0, |worst, (_, distance)| worst.max(*distance)),
@@ -107,19 +119,20 @@ pub(super) fn project(
 }
 
 fn blisk_faces(
-    table: &ContactTable,
+    contact: &Contact,
     runs: &[Run],
     nodes: &BTreeMap<usize, Node>,
 ) -> Result<Vec<Face>, ModelError> {
     let run = &runs[0];
-    let body = Body::Blisk;
-    let faces = run.mesh.faces_of(&table.blisk).unwrap_or_default();
+    let name = contact.first.set.clone();
+    let faces = run.mesh.faces_of(&name).unwrap_or_default();
     if faces.is_empty() {
-        let name = table.blisk.clone();
-        return Err(refuse(
-            &run.mesh_path,
-            ImportProblem::NoFaces { body, name },
-        ));
+        let problem = ImportProblem::NoFaces {
+            body: Body::Blisk,
+            name,
+            normal: String::new(),
+        };
+        return Err(refuse(&run.mesh_path, problem));
     }
     let face = |(element, face)| {
         let numbers: Vec<usize> = run
@@ -141,19 +154,17 @@ type Weights = BTreeMap<usize, (BTreeMap<usize, f64>, f64)>;
 
 fn ring_weights(
     file: &ImportFile,
-    table: &ContactTable,
-    runs: &[Run],
+    contact: &Contact,
+    ring_nodes: impl Iterator<Item = usize>,
     tolerance_m: f64,
     nodes: &BTreeMap<usize, Node>,
     matrices: &Matrices,
     surface: &[Face],
 ) -> Result<Weights, ModelError> {
-    let run = &runs[runs.len() - 1];
     let free: BTreeSet<usize> = matrices.rows.iter().map(|&(node, _)| node).collect();
     let mut weights = Weights::new();
     let mut nearest_of_all = (0, f64::INFINITY);
-    for number in run.set(&table.ring) {
-        let node = number + run.offset;
+    for node in ring_nodes {
         if !free.contains(&node) || nodes[&node].body != Body::Ring {
             continue;
         }
@@ -184,6 +195,7 @@ fn ring_weights(
         return Err(refuse(
             &file.path,
             ImportProblem::NothingProjected {
+                key: contact.key.clone(),
                 nearest,
                 distance_m,
                 tolerance_m,

@@ -4,6 +4,9 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::problem::body_name;
+use crate::model::sector::sector_model::Body;
+
 /// Where the blade's stiffness comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -17,7 +20,7 @@ pub enum BladeSource {
 /// One body of the sector.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BodyReport {
-    /// `blisk` or `ring`.
+    /// `blisk`, `ring` or `damper`.
     pub body: &'static str,
     /// Free nodes.
     pub nodes: usize,
@@ -33,7 +36,7 @@ pub struct BodyReport {
     pub prestressed: Option<bool>,
     /// Speed of the centrifugal load in the run, rad/s.
     pub rotation_rad_per_s: Option<f64>,
-    /// Pairs of nodes on the cyclic faces.
+    /// Pairs of nodes on the cyclic faces; 0 for a damper, which has none.
     pub cyclic_node_pairs: usize,
     /// Largest distance between a node of the high face and its image of the low face, m.
     pub worst_face_mismatch_m: f64,
@@ -42,7 +45,50 @@ pub struct BodyReport {
     pub rigid_shift_residual: Option<f64>,
 }
 
-/// The contact interface.
+/// Two surfaces in contact.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct SurfacesReport {
+    /// The first side as an import file spells it, `BODY.SET`.
+    pub first: String,
+    /// The second side, or `ground`.
+    pub second: String,
+    /// Pairs of a sector.
+    pub pairs: usize,
+    /// Largest distance between the nodes of a pair, m.
+    pub worst_distance_m: f64,
+    /// Largest distance accepted, m.
+    pub tolerance_m: f64,
+    /// Largest angle between the first side's normal and the opposite of the second's, degrees.
+    pub worst_normal_angle_deg: f64,
+    /// Area of a sector's contact, m^2 (the number of nodes where normals were given).
+    pub area_m2: f64,
+    /// Nodes of the second side that no node of the first meets.
+    pub second_nodes_without_pair: usize,
+}
+
+impl SurfacesReport {
+    /// What they have beyond the contact as a whole, which is all that there is to say of one among several.
+    fn write(&self, f: &mut fmt::Formatter<'_>, is_one_of_several: bool) -> fmt::Result {
+        let (first, second) = (&self.first, &self.second);
+        if is_one_of_several {
+            writeln!(
+                f,
+                "  {first} on {second}: {} pairs, worst distance {:.2e} m, normals within {:.2} degrees",
+                self.pairs, self.worst_distance_m, self.worst_normal_angle_deg
+            )?;
+        }
+        match self.second_nodes_without_pair {
+            0 => Ok(()),
+            count if first.starts_with("blisk.") && second.starts_with("ring.") => writeln!(
+                f,
+                "  {count} nodes of the ring's surface meet no node of the blisk"
+            ),
+            count => writeln!(f, "  {count} nodes of {second} meet no node of {first}"),
+        }
+    }
+}
+
+/// The contact of a sector: that of all its surfaces.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ContactReport {
     /// Pairs of a sector.
@@ -51,14 +97,16 @@ pub struct ContactReport {
     pub worst_distance_m: f64,
     /// Largest distance accepted, m.
     pub tolerance_m: f64,
-    /// Largest angle between the blisk's normal and the opposite of the ring's, degrees.
+    /// Largest angle between the first side's normal and the opposite of the second's, degrees.
     pub worst_normal_angle_deg: f64,
     /// Area of a sector's contact, m^2 (the number of nodes where normals were given).
     pub area_m2: f64,
     /// Nodes of the ring that were projected on the blisk's faces, where the meshes do not match.
     pub projected_ring_nodes: Option<usize>,
-    /// Nodes of the ring's surface that no node of the blisk meets.
+    /// Nodes of the second sides (the ring's surface) that no node of the first meets.
     pub ring_nodes_without_pair: usize,
+    /// Each two surfaces.
+    pub surfaces: Vec<SurfacesReport>,
 }
 
 /// Facts about an import.
@@ -79,10 +127,12 @@ pub struct ImportReport {
     pub blade_source: BladeSource,
     /// Dofs that the blade's stiffness acts on.
     pub blade_dofs: usize,
-    /// Contact; none without ring.
+    /// Contact; none of a blisk alone.
     pub contact: Option<ContactReport>,
     /// Frequency by which the ring is grounded, Hz.
     pub ring_grounding_hz: f64,
+    /// Frequency by which the damper is grounded, Hz.
+    pub damper_grounding_hz: f64,
     /// Forced dofs.
     pub forced_dofs: usize,
     /// Observed nodes, by name and number.
@@ -108,11 +158,13 @@ impl fmt::Display for ImportReport {
                 (Some(false), _) => writeln!(f, ", not prestressed")?,
                 (None, _) => writeln!(f)?,
             }
-            writeln!(
-                f,
-                "  cyclic faces: {} node pairs, worst mismatch {:.2e} m (tolerance {:.2e} m)",
-                body.cyclic_node_pairs, body.worst_face_mismatch_m, self.position_tolerance_m
-            )?;
+            if body.body != body_name(Body::Damper) {
+                writeln!(
+                    f,
+                    "  cyclic faces: {} node pairs, worst mismatch {:.2e} m (tolerance {:.2e} m)",
+                    body.cyclic_node_pairs, body.worst_face_mismatch_m, self.position_tolerance_m
+                )?;
+            }
             if let Some(residual) = body.rigid_shift_residual {
                 writeln!(
                     f,
@@ -156,14 +208,18 @@ impl fmt::Display for ImportReport {
                     "  {nodes} nodes of the ring follow the nodes of the blisk's faces"
                 )?;
             }
-            if contact.ring_nodes_without_pair > 0 {
-                let count = contact.ring_nodes_without_pair;
-                writeln!(
-                    f,
-                    "  {count} nodes of the ring's surface meet no node of the blisk"
-                )?;
+            for own in &contact.surfaces {
+                own.write(f, contact.surfaces.len() > 1)?;
             }
-            writeln!(f, "ring grounded at {} Hz", self.ring_grounding_hz)?;
+        }
+        for (body, hz) in [
+            (Body::Ring, self.ring_grounding_hz),
+            (Body::Damper, self.damper_grounding_hz),
+        ] {
+            let name = body_name(body);
+            if self.bodies.iter().any(|own| own.body == name) {
+                writeln!(f, "{name} grounded at {hz} Hz")?;
+            }
         }
         let observed: Vec<String> = self
             .observed

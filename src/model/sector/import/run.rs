@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use super::couplings::Couplings;
 use super::cylindrical::Node;
-use super::files::RunFiles;
+use super::files::{OtherBody, RunFiles};
 use super::import_file::ImportFile;
 use super::matrices::{self, Matrices, Rows};
 use super::mesh::Mesh;
-use super::problem::ImportProblem;
+use super::problem::{ImportProblem, body_name};
 use super::source::refuse;
 use super::tables::MeshFormat;
 use super::{ansys, deck, nastran};
@@ -22,7 +22,7 @@ use crate::model::sector::sector_model::Body;
 /// Largest node number accepted: numbers of a second file are raised above it.
 const MOST_NODE_NUMBER: usize = 999_999_999;
 
-/// A mesh read for one body, or for both.
+/// A mesh read for one body, or for several.
 #[derive(Debug)]
 pub(super) struct Run {
     pub body: Body,
@@ -31,19 +31,17 @@ pub(super) struct Run {
     pub mesh: Mesh,
     /// Added to the node numbers of the file, so that two files do not collide.
     pub offset: usize,
-    /// Nodes of the ring by the numbers of the file.
-    ring_nodes: BTreeSet<usize>,
+    /// Nodes of the bodies beside the blisk by the numbers of the file.
+    others: BTreeMap<Body, BTreeSet<usize>>,
 }
 
 impl Run {
-    /// The runs of an import file: that of the blisk, and that of the ring if it has one of its own.
+    /// The runs of an import file: that of the blisk, and those of ring and damper if they have some of their own.
     pub fn read_meshes(file: &ImportFile) -> Result<Vec<Self>, ModelError> {
         let mut runs: Vec<Self> = Vec::new();
-        let of_ring = file.ring_files.as_ref().map(|files| (Body::Ring, files));
-        for (body, files) in [(Body::Blisk, &file.blisk_files)]
-            .into_iter()
-            .chain(of_ring)
-        {
+        let own = file.others.iter();
+        let own = own.filter_map(|other| Some((other.body, other.files.as_ref()?)));
+        for (body, files) in std::iter::once((Body::Blisk, &file.blisk_files)).chain(own) {
             let mesh_path = files.mesh.clone();
             let mesh = match file.mesh_format {
                 MeshFormat::Calculix => deck::read(&mesh_path),
@@ -60,23 +58,29 @@ impl Run {
                 };
                 return Err(refuse(&mesh_path, problem));
             }
-            let largest = |run: &Self| run.mesh.nodes.keys().next_back().copied().unwrap_or(0);
-            let ring_nodes = match body {
-                Body::Ring | Body::Damper => mesh.nodes.keys().copied().collect(),
-                Body::Blisk => BTreeSet::new(),
+            let largest = |run: &Self| {
+                let own = run.mesh.nodes.keys().next_back().copied().unwrap_or(0);
+                own + run.offset
+            };
+            let others = match body {
+                Body::Ring | Body::Damper => {
+                    BTreeMap::from([(body, mesh.nodes.keys().copied().collect())])
+                }
+                Body::Blisk => BTreeMap::new(),
             };
             runs.push(Self {
                 body,
                 files: files.clone(),
-                offset: runs.first().map_or(0, |run| round_up(largest(run))),
+                offset: runs.last().map_or(0, |run| round_up(largest(run))),
                 mesh_path,
                 mesh,
-                ring_nodes,
+                others,
             });
         }
-        if let (Some(ring), [both]) = (&file.ring, runs.as_mut_slice()) {
-            let name = ring.set.as_deref().unwrap_or_default();
-            both.ring_nodes = both.set(name);
+        for other in file.others.iter().filter(|other| other.files.is_none()) {
+            let name = other.table.set.as_deref().unwrap_or_default();
+            let nodes = runs[0].set(name);
+            runs[0].others.insert(other.body, nodes);
         }
         known_sets(file, &runs)?;
         Ok(runs)
@@ -103,18 +107,19 @@ impl Run {
 
     /// Whether the run holds a body.
     pub fn holds(&self, body: Body) -> bool {
-        match body {
-            Body::Blisk => self.body == Body::Blisk,
-            Body::Ring | Body::Damper => !self.ring_nodes.is_empty(),
-        }
+        self.body == body || self.others.contains_key(&body)
+    }
+
+    /// The run that holds a body; that of the blisk if none does.
+    pub fn of(runs: &[Self], body: Body) -> &Self {
+        let own = runs.iter().find(|run| run.holds(body));
+        own.unwrap_or(&runs[0])
     }
 
     pub fn body_of(&self, node: usize) -> Body {
-        if self.ring_nodes.contains(&node) {
-            Body::Ring
-        } else {
-            Body::Blisk
-        }
+        let mut others = self.others.iter();
+        let own = others.find(|(_, nodes)| nodes.contains(&node));
+        own.map_or(Body::Blisk, |(&body, _)| body)
     }
 
     /// Nodes of the wheel: numbers with the offset, positions in m with the axis along z.
@@ -147,11 +152,12 @@ impl Run {
             let (a, b) = (matrices.rows[row].0, matrices.rows[column].0);
             let body = |node: usize| self.body_of(node - self.offset);
             if value != 0.0 && body(a) != body(b) {
-                let (first, second) = (a - self.offset, b - self.offset);
-                return Err(refuse(
-                    &files.stiffness,
-                    ImportProblem::BodiesCoupled { first, second },
-                ));
+                let problem = ImportProblem::BodiesCoupled {
+                    first: a - self.offset,
+                    second: b - self.offset,
+                    bodies: [body(a).min(body(b)), body(a).max(body(b))],
+                };
+                return Err(refuse(&files.stiffness, problem));
             }
         }
         let rows = &matrices.rows;
@@ -197,23 +203,39 @@ impl Run {
     }
 }
 
+/// A name of a set: its key, the runs that may have it, what stands before it in the file, and itself.
+type Asked<'a> = (String, &'a [Run], String, &'a str);
+
+/// A name with nothing before it.
+fn asked_set<'a>(key: String, runs: &'a [Run], name: &'a str) -> Asked<'a> {
+    (key, runs, String::new(), name)
+}
+
 /// Refuses names of sets that no mesh has, all at once, each with the nearest name there is.
 fn known_sets(file: &ImportFile, runs: &[Run]) -> Result<(), ModelError> {
-    let (first, last) = (&runs[..1], &runs[runs.len() - 1..]);
-    let mut asked: Vec<(String, &[Run], &str)> = vec![
-        ("blisk.low_face".to_owned(), first, &file.blisk.low_face),
-        ("blisk.high_face".to_owned(), first, &file.blisk.high_face),
+    let first = &runs[..1];
+    let mut asked = vec![
+        asked_set("blisk.low_face".to_owned(), first, &file.blisk.low_face),
+        asked_set("blisk.high_face".to_owned(), first, &file.blisk.high_face),
     ];
-    if let Some(ring) = &file.ring {
-        asked.push(("ring.low_face".to_owned(), last, &ring.low_face));
-        asked.push(("ring.high_face".to_owned(), last, &ring.high_face));
-        if let (Some(set), 1) = (&ring.set, runs.len()) {
-            asked.push(("ring.set".to_owned(), first, set));
+    for OtherBody { body, table, .. } in &file.others {
+        let run = std::slice::from_ref(Run::of(runs, *body));
+        for (name, set) in [
+            ("low_face", &table.low_face),
+            ("high_face", &table.high_face),
+            ("set", &table.set),
+        ] {
+            if let Some(set) = set {
+                asked.push(asked_set(format!("{}.{name}", body_name(*body)), run, set));
+            }
         }
     }
-    if let Some(contact) = &file.contact {
-        asked.push(("contact.blisk".to_owned(), first, &contact.blisk));
-        asked.push(("contact.ring".to_owned(), last, &contact.ring));
+    for contact in &file.contacts {
+        for (key, surface) in contact.surfaces() {
+            let run = std::slice::from_ref(Run::of(runs, surface.body));
+            let prefix = contact.prefix_of(surface);
+            asked.push((key.to_owned(), run, prefix, &surface.set));
+        }
     }
     let forced = file.force.iter().map(|force| force.set.as_deref());
     let observed = file.observe.iter().map(|node| node.set.as_deref());
@@ -223,18 +245,25 @@ fn known_sets(file: &ImportFile, runs: &[Run]) -> Result<(), ModelError> {
     ] {
         for (index, set) in sets.into_iter().enumerate() {
             if let Some(set) = set {
-                asked.push((format!("{table}[{index}].set"), runs, set));
+                asked.push(asked_set(format!("{table}[{index}].set"), runs, set));
             }
         }
     }
     let mut problems = Vec::new();
-    for (key, runs, name) in asked {
+    for (key, runs, prefix, name) in asked {
         if runs.iter().all(|run| run.mesh.nodes_of(name).is_none()) {
             let names = runs.iter().flat_map(|run| run.mesh.set_names());
-            problems.push(unknown(file, key, name, "a set of", runs, names.collect()));
+            // `damper.SET, SET being` a set of its mesh.
+            let what = match prefix.as_str() {
+                "" => "a set of".to_owned(),
+                prefix => format!("{prefix}SET, SET being a set of"),
+            };
+            let meant = (prefix.as_str(), name);
+            problems.push(unknown(file, key, meant, &what, runs, names.collect()));
         } else if runs.iter().all(|run| run.set(name).is_empty()) {
             let accepted = match key.as_str() {
                 "ring.set" => "the nodes or elements of the ring",
+                "damper.set" => "the nodes or elements of the damper",
                 _ => "a set with nodes or elements",
             };
             let reason = format!("the set is empty; accepted: {accepted}");
@@ -248,12 +277,15 @@ fn known_sets(file: &ImportFile, runs: &[Run]) -> Result<(), ModelError> {
             problems.push(unknown(
                 file,
                 key,
-                name,
+                ("", name),
                 "an element set of",
                 first,
                 names.collect(),
             ));
         }
+    }
+    if problems.is_empty() {
+        problems.extend(shared_node(file, &runs[0]));
     }
     if problems.is_empty() {
         Ok(())
@@ -262,11 +294,23 @@ fn known_sets(file: &ImportFile, runs: &[Run]) -> Result<(), ModelError> {
     }
 }
 
-/// A set that is not in the meshes of `runs`.
+/// A node that is in the sets of ring and damper.
+fn shared_node(file: &ImportFile, run: &Run) -> Option<(String, Problem)> {
+    let of = |body: Body| {
+        let table = &file.other(body)?.table;
+        Some(run.set(table.set.as_deref()?))
+    };
+    let (ring, damper) = (of(Body::Ring)?, of(Body::Damper)?);
+    let node = ring.intersection(&damper).next()?;
+    let reason = format!("node {node} is in ring.set, too; accepted: sets without a common node");
+    Some(("damper.set".to_owned(), Problem::Conflict { reason }))
+}
+
+/// A set that is not in the meshes of `runs`; in the file it stands after a prefix.
 fn unknown(
     file: &ImportFile,
     key: String,
-    name: &str,
+    (prefix, name): (&str, &str),
     what: &str,
     runs: &[Run],
     names: BTreeSet<String>,
@@ -284,7 +328,8 @@ fn unknown(
     let problem = Problem::NotAccepted {
         value: file.written(&key),
         accepted: format!("{what} {}: {listed}", paths.join(" or ")),
-        suggestion: nearest(&name.to_ascii_uppercase(), &names).map(|name| format!("\"{name}\"")),
+        suggestion: nearest(&name.to_ascii_uppercase(), &names)
+            .map(|name| format!("\"{prefix}{name}\"")),
     };
     (key, problem)
 }

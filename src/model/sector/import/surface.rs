@@ -13,6 +13,32 @@ pub(super) struct NodalArea {
     pub normal_m2: [f64; 3],
 }
 
+impl NodalArea {
+    /// A node whose normal is given, and whose area is not known.
+    pub fn of_node(normal_m2: [f64; 3]) -> Self {
+        Self {
+            area_m2: 1.0,
+            normal_m2,
+        }
+    }
+
+    /// Adds the share of other faces.
+    pub fn add(&mut self, other: Self) {
+        self.area_m2 += other.area_m2;
+        for (total, part) in self.normal_m2.iter_mut().zip(other.normal_m2) {
+            *total += part;
+        }
+    }
+
+    /// What faces it.
+    pub fn facing(&self) -> Self {
+        Self {
+            normal_m2: self.normal_m2.map(|part| -part),
+            ..*self
+        }
+    }
+}
+
 /// Abscissae and weights of the three-point Gauss rule on [-1, 1].
 const GAUSS: [(f64, f64); 3] = [
     (-0.774_596_669_241_483_4, 5.0 / 9.0),

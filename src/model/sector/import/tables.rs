@@ -110,8 +110,9 @@ pub(super) struct RawFile {
     pub mesh_format: Option<MeshFormat>,
     pub matrix_format: Option<MatrixFormat>,
     pub blisk: BliskTable,
-    pub ring: Option<RingTable>,
-    pub contact: Option<ContactTable>,
+    pub ring: Option<BodyTable>,
+    pub damper: Option<BodyTable>,
+    pub contact: Option<ContactTables>,
     pub force: Vec<ForceTable>,
     pub observe: Vec<ObserveTable>,
 }
@@ -135,9 +136,10 @@ pub(super) struct BliskTable {
     pub blade_stiffness_name: Option<String>,
 }
 
+/// A body beside the blisk: a ring, or a damper, which has no faces.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct RingTable {
+pub(super) struct BodyTable {
     pub mesh: Option<PathBuf>,
     pub job: Option<PathBuf>,
     pub stiffness: Option<PathBuf>,
@@ -145,11 +147,18 @@ pub(super) struct RingTable {
     pub dofs: Option<PathBuf>,
     pub stiffness_name: Option<String>,
     pub mass_name: Option<String>,
-    pub low_face: String,
-    pub high_face: String,
-    /// Nodes or elements of the ring, where it stands in the blisk's files.
+    pub low_face: Option<String>,
+    pub high_face: Option<String>,
+    /// Nodes or elements of the body, where it stands in the blisk's files.
     pub set: Option<String>,
     pub grounding_hz: Option<f64>,
+}
+
+impl BodyTable {
+    /// Whether the body has files of its own.
+    pub fn has_files(&self) -> bool {
+        self.mesh.is_some() || self.job.is_some() || self.stiffness.is_some()
+    }
 }
 
 /// How the contact surfaces are paired.
@@ -159,7 +168,7 @@ pub(super) enum Pairing {
     /// Node to node.
     #[default]
     Nodes,
-    /// The ring's nodes projected on the blisk's faces.
+    /// The nodes of a ring projected on the blisk's faces.
     Projection,
 }
 
@@ -174,17 +183,28 @@ pub(super) enum Weights {
     Equal,
 }
 
+/// `[contact]`, or `[[contact]]`.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum ContactTables {
+    One(ContactTable),
+    More(Vec<ContactTable>),
+}
+
+/// Either `blisk` and `ring` or `first` and `second` are given.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ContactTable {
-    pub blisk: String,
-    pub ring: String,
+    pub blisk: Option<String>,
+    pub ring: Option<String>,
+    pub first: Option<String>,
+    pub second: Option<String>,
     pub tolerance_m: Option<f64>,
     #[serde(default)]
     pub pairing: Pairing,
     #[serde(default)]
     pub weights: Weights,
-    /// Outward normal of the blisk's surface (r, theta, z), where the mesh has no elements.
+    /// Outward normal of the first side's surface (r, theta, z), where the mesh has no elements.
     pub normal: Option<[f64; 3]>,
 }
 
