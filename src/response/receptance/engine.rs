@@ -12,7 +12,8 @@ use crate::response::harmonic_balance::Damping;
 use crate::response::mistuning::{Deviations, Pattern, Projection};
 
 use super::blade_shapes::{
-    Participation, ShapesWanted, blade_shapes, in_cantilever_modes, in_shapes, strain_coordinates,
+    Participation, ShapeFactors, ShapesWanted, blade_shapes, in_cantilever_modes, in_shapes,
+    strain_coordinates,
 };
 use super::fields::SectorTransform;
 use super::resonances::{BandModes, MistunedModes, Resonance};
@@ -38,32 +39,6 @@ pub struct EngineModel {
     strain: Vec<Matrix<Complex64>>,
     /// Factors on the least numbers of blade shapes.
     shape_factors: ShapeFactors,
-}
-
-/// How many times as many blade shapes there are as at least.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ShapeFactors {
-    /// Of harmonic 1.
-    pub first: usize,
-    /// Of every other harmonic.
-    pub others: usize,
-}
-
-impl ShapeFactors {
-    /// As few shapes as there can be.
-    pub const LEAST: Self = Self {
-        first: 1,
-        others: 1,
-    };
-
-    /// Twice as many of every harmonic.
-    #[must_use]
-    pub fn doubled(self) -> Self {
-        Self {
-            first: 2 * self.first,
-            others: 2 * self.others,
-        }
-    }
 }
 
 impl EngineModel {

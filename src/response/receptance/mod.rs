@@ -20,10 +20,10 @@ mod wave_matrix;
 mod wheel_harmonic;
 mod wheel_solver;
 
+pub use blade_shapes::ShapeFactors;
 pub use contact_forces::ContactForces;
 pub use engine::{
     EngineModel, EngineOptions, EngineWheel, HIGHEST_HARMONIC, Limit, ReceptanceEngine,
-    ShapeFactors,
 };
 pub use free_waves::{FreeWave, FreeWheel};
 pub use resonances::Resonance;
