@@ -240,3 +240,26 @@ fn sides_of_other_contacts_are_refused_with_line_and_value() {
         assert!(error.contains(accepted), "{error}");
     }
 }
+
+/// A header line that is neither is told the columns that are nearer to it.
+#[test]
+fn a_wrong_header_of_contacts_is_told_the_columns_it_is_nearest_to() {
+    let ring = "pair,blisk_node,ring_node,nr,nt,nz,weight";
+    let any = "pair,first_node,first_sector,second_node,second_sector,nr,nt,nz,weight";
+    for (header, accepted) in [
+        ("pair,blade_node,ring_node,nr,nt,nz,weight", ring),
+        (
+            "pair,first_node,sector,second_node,sector,nr,nt,nz,weight",
+            any,
+        ),
+        ("", ring),
+    ] {
+        let directory = tempfile::tempdir().unwrap();
+        write_small_bundle(directory.path());
+        let text = format!("{header}\n0,0,1,-1,0,0,1\n");
+        fs::write(directory.path().join("contact.csv"), text).unwrap();
+        let error = bundle::read(directory.path()).unwrap_err().to_string();
+        assert!(error.contains(accepted), "{error}");
+        assert!(accepted == any || !error.contains(any), "{error}");
+    }
+}

@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use strsim::damerau_levenshtein;
+
 use crate::model::sector::error::ModelError;
 use crate::model::sector::line_problem::{LinePart, LineProblem};
 
@@ -19,7 +21,7 @@ impl Table {
         Self::read_either(path, [columns, columns])
     }
 
-    /// Reads a table whose header line must be one of two.
+    /// Reads a table whose header line must be one of two; a refusal names the one that is nearer to what stands there.
     pub(super) fn read_either(
         path: PathBuf,
         columns: [&'static str; 2],
@@ -31,20 +33,21 @@ impl Table {
             .unwrap_or_default()
             .trim_end()
             .to_owned();
-        let own = columns.into_iter().find(|&columns| columns == header);
+        let [one, other] = columns.map(|columns| damerau_levenshtein(columns, &header));
+        let columns = columns[usize::from(other < one)];
         let table = Self {
             path,
             text,
-            columns: own.unwrap_or(columns[0]),
+            columns,
         };
-        if own.is_none() {
+        if columns != header {
             let problem = if header.is_empty() {
-                LineProblem::Missing(LinePart::Columns(columns[0]))
+                LineProblem::Missing(LinePart::Columns(columns))
             } else {
                 LineProblem::NotAWord {
                     field: "the header line",
                     found: header,
-                    accepted: columns[0],
+                    accepted: columns,
                 }
             };
             return Err(table.refuse(1, problem));
