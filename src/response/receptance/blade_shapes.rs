@@ -189,7 +189,10 @@ pub(super) fn blade_shapes(
             });
             strain_receptances.push((waves, block));
         }
-        for resonance in resonances_of(diameter, own, wanted, h) {
+        // The peaks of a wheel are those of the harmonic that is excited; the others pass through their resonances by chance.
+        let excited = !wanted.excitations.is_empty();
+        let own = excited.then(|| resonances_of(diameter, own, wanted, h));
+        for resonance in own.into_iter().flatten() {
             add_outer(&mut covariance, resonance.energy, &resonance.motion);
             resonances.push(resonance);
         }
