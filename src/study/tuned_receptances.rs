@@ -18,7 +18,7 @@ use crate::response::forced_response::{
 use crate::response::harmonic_balance::TransformError;
 use crate::response::mistuning::{Distribution, Pattern, PatternSource};
 use crate::response::receptance::{
-    EngineModel, EngineOptions, EngineWheel, Limit, ReceptanceEngine, ShapeFactors, WaveForce,
+    EngineModel, EngineOptions, EngineWheel, Limit, ReceptanceEngine, WaveForce,
 };
 
 /// Standard deviations that a blade deviates by at most, for the choice of its shapes.
@@ -95,25 +95,25 @@ impl Made {
         study: &Study,
         reduction: &Reduction<'_>,
         excitations: &[Excitation],
-        shapes: ShapeFactors,
+        shape_factor: usize,
     ) -> Result<Self, PipelineError> {
         let modes = study.mistuning.cantilever_mode_count;
         let model = reduction.reduce(BasisChoice::CraigBampton, modes)?;
         let options = engine_options(study, excitations, &model);
         let own = EngineModel::new(&model, &options).ok_or_else(no_modes)?;
-        let own = own.with_shape_factors(shapes);
+        let own = own.with_shape_factor(shape_factor);
         let receptances = engine_of(&own, &options)?;
         Ok(Self { own, receptances })
     }
 
     /// The same with another number of blade shapes.
-    fn with_shapes(
+    fn with_shape_factor(
         &self,
         study: &Study,
         excitations: &[Excitation],
-        shapes: ShapeFactors,
+        shape_factor: usize,
     ) -> Result<Self, PipelineError> {
-        let own = self.own.clone().with_shape_factors(shapes);
+        let own = self.own.clone().with_shape_factor(shape_factor);
         let receptances = engine_of(&own, &engine_options(study, excitations, &own.model))?;
         Ok(Self { own, receptances })
     }
@@ -158,7 +158,7 @@ pub(super) fn refined<'a>(
     let mut modes = fixed.map_or(FIRST_MODES, |own| 2 * own);
     let mut harmonics: Option<Vec<Vec<HarmonicChoice>>> = None;
     let mut tried = Vec::new();
-    let mut shapes = ShapeFactors::LEAST;
+    let mut shape_factor = 1;
     loop {
         let fine = reduction_with(study, sector, modes)
             .with_residual_vectors()
@@ -169,9 +169,9 @@ pub(super) fn refined<'a>(
             Some(_) if !whole => (coarse, Some(fine)),
             _ => (fine, (!whole).then_some(coarse)),
         };
-        let engine = Made::new(study, &taken, excitations, shapes)?;
-        let shaped = Shaped::new(study, engine, excitations, shapes)?;
-        shapes = shaped.shapes;
+        let engine = Made::new(study, &taken, excitations, shape_factor)?;
+        let shaped = Shaped::new(study, engine, excitations, shape_factor)?;
+        shape_factor = shaped.factor;
         let own = shaped.engine.judges(excitations, patterns);
         let sets = match harmonics.take() {
             Some(sets) => sets,
@@ -186,7 +186,7 @@ pub(super) fn refined<'a>(
         let change = match &other {
             None => Some(0.0),
             Some(other) => {
-                let other = Made::new(study, other, excitations, shapes)?;
+                let other = Made::new(study, other, excitations, shape_factor)?;
                 change_of(&tops, &other.judges(excitations, patterns))
             }
         };
@@ -203,7 +203,7 @@ pub(super) fn refined<'a>(
         let of_shapes = shaped.change(&tops, excitations, patterns);
         let mut shaped = shaped.with_change(of_shapes);
         while shaped.lacks_shapes(study) {
-            shaped = shaped.with_more_shapes(study, excitations)?;
+            shaped = shaped.with_twice_the_shapes(study, excitations)?;
             let own = shaped.engine.judges(excitations, patterns);
             let tops = judged_tops(&own, &study.contacts, &sets)?;
             drop(own);
@@ -253,28 +253,24 @@ struct Shaped {
     engine: Made,
     /// None where no shape is left out.
     finer: Option<Made>,
-    shapes: ShapeFactors,
+    factor: usize,
     /// What was tried, the engine last.
     tried: Vec<BasisError>,
 }
 
 impl Shaped {
-    /// With as many shapes of harmonic 1 as `shapes` says, or the first of twice, four times ... as many that twice as many again change
-    /// no linear peak by more than `reduction.error`: linear peaks know no other harmonic.
+    /// With `factor` or the first of twice, four times ... as many shapes that twice as many again change no linear peak by more than
+    /// `reduction.error`.
     fn new(
         study: &Study,
         engine: Made,
         excitations: &[Excitation],
-        shapes: ShapeFactors,
+        factor: usize,
     ) -> Result<Self, PipelineError> {
-        let mut own = Self::judged(study, engine, excitations, shapes, Vec::new())?;
+        let tried = Vec::new();
+        let mut own = Self::judged(study, engine, excitations, factor, tried)?;
         while own.lacks_shapes(study) {
-            let first = 2 * own.shapes.first;
-            let shapes = ShapeFactors {
-                first,
-                ..own.shapes
-            };
-            own = own.with_shapes(study, excitations, shapes)?;
+            own = own.with_twice_the_shapes(study, excitations)?;
         }
         Ok(own)
     }
@@ -284,11 +280,11 @@ impl Shaped {
         study: &Study,
         engine: Made,
         excitations: &[Excitation],
-        shapes: ShapeFactors,
+        factor: usize,
         mut tried: Vec<BasisError>,
     ) -> Result<Self, PipelineError> {
         let exact = engine.receptances.is_exact();
-        let finer = (!exact).then(|| engine.with_shapes(study, excitations, shapes.doubled()));
+        let finer = (!exact).then(|| engine.with_shape_factor(study, excitations, 2 * factor));
         let finer = finer.transpose()?;
         let error = match &finer {
             None => Some(0.0),
@@ -302,45 +298,27 @@ impl Shaped {
         Ok(Self {
             engine,
             finer,
-            shapes,
+            factor,
             tried,
         })
     }
 
-    /// With more shapes for peaks with friction: those of the other harmonics, which show there alone, until they are as many times as
-    /// many as those of harmonic 1; then all.
-    fn with_more_shapes(
+    fn with_twice_the_shapes(
         self,
         study: &Study,
         excitations: &[Excitation],
     ) -> Result<Self, PipelineError> {
-        let ShapeFactors { first, others } = self.shapes;
-        let shapes = if others < first {
-            ShapeFactors {
-                others: 2 * others,
-                first,
-            }
-        } else {
-            self.shapes.doubled()
-        };
-        self.with_shapes(study, excitations, shapes)
-    }
-
-    fn with_shapes(
-        self,
-        study: &Study,
-        excitations: &[Excitation],
-        shapes: ShapeFactors,
-    ) -> Result<Self, PipelineError> {
-        let engine = self.engine.with_shapes(study, excitations, shapes)?;
-        Self::judged(study, engine, excitations, shapes, self.tried)
+        match self.finer {
+            None => Ok(self),
+            Some(finer) => Self::judged(study, finer, excitations, 2 * self.factor, self.tried),
+        }
     }
 
     /// Whether twice as many change a peak by more than `reduction.error`, and may be taken.
     fn lacks_shapes(&self, study: &Study) -> bool {
         let error = self.tried.last().and_then(|taken| taken.error);
         let enough = error.is_some_and(|error| error <= study.reduction.error);
-        !enough && self.finer.is_some() && self.shapes.first < MOST_SHAPES
+        !enough && self.finer.is_some() && self.factor < MOST_SHAPES
     }
 
     /// What twice as many change of `tops`, which are those of this engine.

@@ -5,8 +5,6 @@
 //! The shapes are a proper orthogonal decomposition (Sirovich 1987) of the strain in the motions that forces of the contact,
 //! the excitation and the blades themselves cause; every kind counts as much as forces of that kind are.
 
-use serde::{Deserialize, Serialize};
-
 use crate::linalg::{Complex64, Matrix, hermitian_eigen};
 use crate::model::ReducedModel;
 
@@ -21,32 +19,6 @@ const DROPPED: f64 = 1e-13;
 const ROUNDS: usize = 4;
 /// Shapes whose forces are taken in at least.
 const SHAPES_OF_ROUNDS: usize = 8;
-
-/// How many times as many blade shapes there are as at least.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ShapeFactors {
-    /// Of harmonic 1.
-    pub first: usize,
-    /// Of every other harmonic.
-    pub others: usize,
-}
-
-impl ShapeFactors {
-    /// As few shapes as there can be.
-    pub const LEAST: Self = Self {
-        first: 1,
-        others: 1,
-    };
-
-    /// Twice as many of every harmonic.
-    #[must_use]
-    pub fn doubled(self) -> Self {
-        Self {
-            first: 2 * self.first,
-            others: 2 * self.others,
-        }
-    }
-}
 
 /// What the modes of each nodal diameter, 0..=N/2, do to some coordinates of the blade's strain, `r x n`.
 pub(super) type Participation = Vec<Matrix<Complex64>>;

@@ -12,8 +12,7 @@ use crate::response::harmonic_balance::Damping;
 use crate::response::mistuning::{Deviations, Pattern, Projection};
 
 use super::blade_shapes::{
-    Participation, ShapeFactors, ShapesWanted, blade_shapes, in_cantilever_modes, in_shapes,
-    strain_coordinates,
+    Participation, ShapesWanted, blade_shapes, in_cantilever_modes, in_shapes, strain_coordinates,
 };
 use super::fields::SectorTransform;
 use super::resonances::{BandModes, MistunedModes, Resonance};
@@ -21,7 +20,7 @@ use super::tables::Receptances;
 use super::tuned_wheel::TunedDiameter;
 use super::wave_force::WaveForce;
 
-/// Least number of blade shapes of harmonic 1, and of every other one.
+/// Blade shapes of harmonic 1, and of every other one.
 const SHAPES: [usize; 2] = [3, 2];
 /// Frequencies of the band at which the shapes of harmonic 1 are made, and of every other one.
 const SHAPE_FREQUENCIES: [usize; 2] = [9, 5];
@@ -37,8 +36,8 @@ pub struct EngineModel {
     pub model: ReducedModel,
     /// Participation of the contact-free modes of nodal diameters 0..=N/2 in coordinates of the blade's strain.
     strain: Vec<Matrix<Complex64>>,
-    /// Factors on the least numbers of blade shapes.
-    shape_factors: ShapeFactors,
+    /// Factor on the number of blade shapes.
+    shape_factor: usize,
 }
 
 impl EngineModel {
@@ -62,15 +61,15 @@ impl EngineModel {
         Some(Self {
             model,
             strain,
-            shape_factors: ShapeFactors::LEAST,
+            shape_factor: 1,
         })
     }
 
     /// The same with so many times as many blade shapes as there are at least.
     #[must_use]
-    pub fn with_shape_factors(self, shape_factors: ShapeFactors) -> Self {
+    pub fn with_shape_factor(self, shape_factor: usize) -> Self {
         Self {
-            shape_factors,
+            shape_factor,
             ..self
         }
     }
@@ -78,8 +77,8 @@ impl EngineModel {
     /// The same with twice as many blade shapes.
     #[must_use]
     pub fn with_twice_the_shapes(self) -> Self {
-        let shape_factors = self.shape_factors.doubled();
-        self.with_shape_factors(shape_factors)
+        let shape_factor = 2 * self.shape_factor;
+        self.with_shape_factor(shape_factor)
     }
 }
 
@@ -120,7 +119,7 @@ pub(super) struct Pencil {
     band: (f64, f64),
     forces: Vec<WaveForce>,
     deviation: f64,
-    shape_factors: ShapeFactors,
+    shape_factor: usize,
     sectors: usize,
     modes: Option<BandModes>,
     /// By harmonic.
@@ -173,7 +172,7 @@ impl ReceptanceEngine {
             band,
             forces: options.forces.clone(),
             deviation: options.deviation,
-            shape_factors: own.shape_factors,
+            shape_factor: own.shape_factor,
             sectors: model.sectors,
             modes: None,
             tables: (0..=HIGHEST_HARMONIC).map(|_| OnceLock::new()).collect(),
@@ -348,8 +347,6 @@ impl Pencil {
             return Some(self.strain.clone());
         }
         let place = usize::from(harmonic != 1);
-        let ShapeFactors { first, others } = self.shape_factors;
-        let factor = if harmonic == 1 { first } else { others };
         let count = SHAPE_FREQUENCIES[place];
         let at = |i: usize| {
             let way = i as f64 / (count - 1) as f64;
@@ -365,7 +362,7 @@ impl Pencil {
             contact_forces: &self.contact_forces,
             excitations: if harmonic == 1 { &self.forces } else { &[] },
             deviation: self.deviation,
-            count: SHAPES[place] * factor,
+            count: SHAPES[place] * self.shape_factor,
         };
         let shapes = blade_shapes(&self.diameters, &self.strain, &wanted)?;
         Some(in_shapes(&self.strain, &shapes))

@@ -20,7 +20,6 @@ mod wave_matrix;
 mod wheel_harmonic;
 mod wheel_solver;
 
-pub use blade_shapes::ShapeFactors;
 pub use contact_forces::ContactForces;
 pub use engine::{
     EngineModel, EngineOptions, EngineWheel, HIGHEST_HARMONIC, Limit, ReceptanceEngine,
