@@ -32,16 +32,6 @@ pub enum DamperBody {
     Rigid,
 }
 
-impl DamperBody {
-    #[expect(
-        clippy::trivially_copy_pass_by_ref,
-        reason = "serde passes a reference"
-    )]
-    fn is_elastic(&self) -> bool {
-        *self == Self::Elastic
-    }
-}
-
 /// The built-in bladed disk with its damper; lengths in m.
 ///
 /// Seen in the (z, r) plane, from the axis outwards: a web of constant thickness round z = 0, clamped
@@ -55,8 +45,7 @@ pub struct ParametricOptions {
     pub sectors: usize,
     /// The damper. Default ring.
     pub damper: Damper,
-    /// The body of the wedge. Default elastic; what was stored before there was another one says nothing of it.
-    #[serde(skip_serializing_if = "DamperBody::is_elastic")]
+    /// The body of the wedge. Default elastic.
     pub damper_body: DamperBody,
     /// Radius of the bore, where the disk is clamped. Default 0.06.
     pub bore_radius_m: f64,

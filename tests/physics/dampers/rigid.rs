@@ -349,7 +349,7 @@ fn a_skew_rigid_body_is_in_equilibrium() {
         let own = cross(arm, cartesian(pair.normal, angle_of(position_m)));
         moment = [0, 1, 2].map(|axis| moment[axis] + load * own[axis]);
     }
-    println!("{:?} of {size:e} kg m2", moment);
+    println!("{moment:?} of {size:e} kg m2");
     assert!(
         moment.iter().all(|left| left.abs() < 1e-4 * size),
         "{moment:?}"
