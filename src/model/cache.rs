@@ -49,6 +49,9 @@ pub fn reduction_digest(model: &SectorModel, key: &str) -> String {
     if !model.load_case_forces.is_empty() {
         text(&format!("{:?}", model.load_case_forces));
     }
+    if !model.rigid_points.is_empty() {
+        text(&format!("rigid {:?}", model.rigid_points));
+    }
     for matrix in [&model.stiffness, &model.mass, &model.blade_stiffness] {
         for (row, column, value) in matrix.lower_entries() {
             hasher.update(&(row as u64).to_le_bytes());

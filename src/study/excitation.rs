@@ -139,9 +139,8 @@ fn at_node(
         return Err(refused("node", reason));
     };
     let length = direction.iter().map(|part| part * part).sum::<f64>().sqrt();
-    let components = [Component::Radial, Component::Tangential, Component::Axial];
     let mut force = Vec::new();
-    for ((component, word), part) in components
+    for ((component, word), part) in Component::DISPLACEMENTS
         .into_iter()
         .zip(["r", "theta", "z"])
         .zip(direction)

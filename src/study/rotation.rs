@@ -148,7 +148,7 @@ fn ring_of_masses(model: &SectorModel, radius_m: f64) -> CentrifugalContact {
     let on_ring: Vec<f64> = model
         .dofs
         .iter()
-        .map(|dof| f64::from(dof.body != Body::Blisk))
+        .map(|dof| f64::from(dof.body != Body::Blisk && !dof.component.is_rotation()))
         .collect();
     let moved = model.mass.multiply(&on_ring);
     let ring_mass_kg: f64 = on_ring.iter().zip(&moved).map(|(a, b)| a * b).sum();

@@ -145,6 +145,7 @@ pub fn calculix_sector() -> SectorModel {
         cyclic_pairs,
         contact_pairs: Vec::new(),
         force: vec![(tip_dof, Complex64::new(1.0, 0.0))],
+        rigid_points: Vec::new(),
         load_case_forces: Vec::new(),
         observed: vec![ObservedNode {
             name: "tip".to_owned(),

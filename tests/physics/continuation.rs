@@ -226,6 +226,7 @@ fn oscillator_wheel() -> Wheel {
             load_weight: None,
         }],
         force: vec![(0, Complex64::new(oscillator::FORCE_N, 0.0))],
+        rigid_points: Vec::new(),
         load_case_forces: Vec::new(),
         observed: vec![ObservedNode {
             name: "blade".to_owned(),

@@ -200,6 +200,7 @@ fn distorted_patch_reproduces_constant_strain() {
                 Component::Radial => c * u[0] + s * u[1],
                 Component::Tangential => c * u[1] - s * u[0],
                 Component::Axial => u[2],
+                _ => unreachable!("a solid has no rotations"),
             }
         })
         .collect();

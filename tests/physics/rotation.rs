@@ -91,6 +91,7 @@ fn thin_ring(foundations: &[Foundation]) -> SectorModel {
             })
             .collect(),
         force: vec![(0, Complex64::new(1.0, 0.0))],
+        rigid_points: Vec::new(),
         load_case_forces: Vec::new(),
         observed: vec![ObservedNode {
             name: "foundation".to_owned(),

@@ -12,7 +12,11 @@
 //! `x` is the position vector itself, which isoparametric elements interpolate exactly: `M x` is the
 //! consistent centrifugal load. A ring split at one place carries no hoop force far from the gap: its faces may part
 //! by a rotation `gamma` about the axis, `u_theta,high = u_theta,low + gamma r`, with no moment on it.
+//!
+//! A rigid body has the load of its mass at its centre of mass, where `M x` is `m r`, and a moment about it: that of
+//! `s x (s_r, s_theta, 0)` over the body, by its products of inertia `(J_theta,z, -J_r,z, 0)`.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
@@ -105,7 +109,8 @@ pub fn centrifugal_contact(
     if radial.iter().all(|&value| value == 0.0) {
         return Err(CentrifugalError::NoRadialMotion);
     }
-    let load = model.mass.multiply(&of(&radius));
+    let mut load = model.mass.multiply(&of(&radius));
+    add_moments(model, &mut load);
     let axial = of(&on_damper(Component::Axial));
     let motion = if axial.iter().any(|&value| value > 0.0) {
         &axial
@@ -119,6 +124,23 @@ pub fn centrifugal_contact(
         ring_mass_kg: dot(motion, &model.mass.multiply(motion)),
         ring_load_kg_m: dot(&radial, &load),
     })
+}
+
+/// Adds the moments of the centrifugal load about the centres of mass of rigid bodies.
+fn add_moments(model: &SectorModel, load: &mut [f64]) {
+    let points = model.rigid_points.iter();
+    let references: BTreeSet<usize> = points.map(|point| point.reference).collect();
+    for reference in references {
+        let dofs = Component::ROTATIONS.map(|component| model.dof_of(reference, component));
+        let [Some(about_r), Some(about_theta), Some(about_z)] = dofs else {
+            continue;
+        };
+        let mut inertia = vec![0.0; model.dofs.len()];
+        inertia[about_z] = 1.0;
+        let inertia = model.mass.multiply(&inertia);
+        load[about_r] += inertia[about_theta];
+        load[about_theta] -= inertia[about_r];
+    }
 }
 
 /// The coordinates of nodal diameter 0, and of the parting of a split ring.
@@ -150,9 +172,14 @@ impl Equilibrium {
             .enumerate()
             .map(|(index, (low, dof))| {
                 let mut places = vec![(own[low.unwrap_or(index)], 1.0)];
-                let along = dof.body == Body::Ring && dof.component == Component::Tangential;
+                let by_parting = match dof.component {
+                    Component::Tangential => dof.position_m[0].hypot(dof.position_m[1]),
+                    Component::RotationAxial => 1.0,
+                    _ => 0.0,
+                };
+                let along = dof.body == Body::Ring && by_parting > 0.0;
                 if low.is_some() && along && hoop == Hoop::Split {
-                    places.push((parting, dof.position_m[0].hypot(dof.position_m[1])));
+                    places.push((parting, by_parting));
                     parts = true;
                 }
                 places

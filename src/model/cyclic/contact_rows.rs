@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::sector::{Body, Component, ContactPair, ContactSide, Dof, SectorModel};
+use crate::model::sector::{
+    Body, Component, ContactPair, ContactSide, Dof, SectorModel, rigid_motion,
+};
 
 /// Direction of a relative motion at a pair, in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -108,9 +110,8 @@ fn frame(pair: &ContactPair) -> [[f64; 3]; 3] {
 fn ring_motion(model: &SectorModel) -> Vec<[[f64; 2]; 2]> {
     let radius = |pair: &ContactPair| {
         let node = pair.second.node()?;
-        let dof = model.dofs.iter().find(|dof| dof.node == node)?;
-        let [x, y, _] = dof.position_m;
-        (dof.body == Body::Ring).then(|| x.hypot(y))
+        let (body, [x, y, _]) = model.place_of(node)?;
+        (body == Body::Ring).then(|| x.hypot(y))
     };
     let pairs = &model.contact_pairs;
     let lever = |pair: &ContactPair| pair.weight * radius(pair).unwrap_or(0.0);
@@ -133,10 +134,14 @@ fn ring_motion(model: &SectorModel) -> Vec<[[f64; 2]; 2]> {
 pub fn ring_free(model: &SectorModel) -> [bool; 2] {
     const NEGLIGIBLE: f64 = 1e-6;
     [(Component::Tangential, 1), (Component::Axial, 2)].map(|(component, axis)| {
-        let velocity = |dof: &Dof| match component {
-            _ if dof.body != Body::Ring || dof.component != component => 0.0,
-            Component::Tangential => dof.position_m[0].hypot(dof.position_m[1]),
-            _ => 1.0,
+        let velocity = |dof: &Dof| match (component, dof.component) {
+            _ if dof.body != Body::Ring => 0.0,
+            (Component::Tangential, Component::Tangential) => {
+                dof.position_m[0].hypot(dof.position_m[1])
+            }
+            (Component::Tangential, Component::RotationAxial)
+            | (Component::Axial, Component::Axial) => 1.0,
+            _ => 0.0,
         };
         let motion: Vec<f64> = model.dofs.iter().map(velocity).collect();
         // K v against |K| |v|: nothing but rounding is left where the motion is free.
@@ -159,11 +164,32 @@ pub fn ring_free(model: &SectorModel) -> [bool; 2] {
     })
 }
 
+/// Displacement of a node or of a point of a rigid body along `vector`, over the dofs of the sector.
+fn displacement(model: &SectorModel, node: usize, vector: [f64; 3]) -> Vec<(usize, f64)> {
+    let own = |node: usize, component: Component, factor: f64| {
+        let dof = model.dof_of(node, component).filter(|_| factor != 0.0)?;
+        Some((dof, factor))
+    };
+    let point = model.rigid_point(node);
+    let reference = point.and_then(|point| Some((point, model.place_of(point.reference)?)));
+    match reference {
+        Some((point, (_, reference_m))) => Component::RIGID
+            .into_iter()
+            .zip(rigid_motion(point.position_m, reference_m, vector))
+            .filter_map(|(component, factor)| own(point.reference, component, factor))
+            .collect(),
+        None => Component::DISPLACEMENTS
+            .into_iter()
+            .zip(vector)
+            .filter_map(|(component, factor)| own(node, component, factor))
+            .collect(),
+    }
+}
+
 /// Rows of relative motion of a sector, pair by pair in the order normal, t1, t2; directions
 /// that no dof of the pair moves in have no row.
 #[must_use]
 pub fn contact_rows(model: &SectorModel) -> (Vec<ContactRow>, ContactGeometry) {
-    const COMPONENTS: [Component; 3] = [Component::Radial, Component::Tangential, Component::Axial];
     let mut rows: Vec<ContactRow> = Vec::new();
     let mut geometry = ContactGeometry {
         weights: model.contact_pairs.iter().map(|pair| pair.weight).collect(),
@@ -183,16 +209,13 @@ pub fn contact_rows(model: &SectorModel) -> (Vec<ContactRow>, ContactGeometry) {
         {
             let mut entries = Vec::new();
             for (side, sign) in [(pair.first, 1.0), (pair.second, -1.0)] {
-                for (component, factor) in COMPONENTS.into_iter().zip(vector) {
-                    if let Some(dof) = side.node().and_then(|node| model.dof_of(node, component))
-                        && factor != 0.0
-                    {
-                        entries.push(RowEntry {
-                            dof,
-                            is_next: matches!(side, ContactSide::NextSector(_)),
-                            factor: sign * factor,
-                        });
-                    }
+                let Some(node) = side.node() else { continue };
+                for (dof, factor) in displacement(model, node, vector) {
+                    entries.push(RowEntry {
+                        dof,
+                        is_next: matches!(side, ContactSide::NextSector(_)),
+                        factor: sign * factor,
+                    });
                 }
             }
             if !entries.is_empty() {

@@ -1,5 +1,7 @@
 //! A sector under cyclic symmetry: its independent dofs and its matrices per nodal diameter.
 
+use std::collections::BTreeSet;
+
 use super::contact_rows::{ContactGeometry, ContactRow, RowEntry, contact_rows};
 use super::nodal_diameter::phase;
 use crate::linalg::{Complex64, HermitianSparse, Matrix, SymmetricSparse};
@@ -161,20 +163,21 @@ impl<'a> CyclicSector<'a> {
         )
     }
 
-    /// Independent dofs of the nodes in contact, ascending: the boundary of the Craig-Bampton model.
+    /// Independent dofs of the nodes in contact and of the rigid bodies in contact, ascending: the boundary of the Craig-Bampton model.
     #[must_use]
     pub fn contact_dofs(&self) -> Vec<usize> {
+        let pairs = self.model.contact_pairs.iter();
+        let moving: BTreeSet<usize> = pairs
+            .flat_map(|pair| [pair.first.node(), pair.second.node()])
+            .flatten()
+            .map(|node| self.model.moved_by(node))
+            .collect();
         let mut boundary: Vec<usize> = self
             .model
             .dofs
             .iter()
             .enumerate()
-            .filter(|(_, dof)| {
-                let pairs = self.model.contact_pairs.iter();
-                pairs
-                    .flat_map(|pair| [pair.first.node(), pair.second.node()])
-                    .any(|node| node == Some(dof.node))
-            })
+            .filter(|(_, dof)| moving.contains(&dof.node))
             .map(|(index, _)| self.independent[index].0)
             .collect();
         boundary.sort_unstable();
@@ -186,7 +189,7 @@ impl<'a> CyclicSector<'a> {
     /// such component.
     #[must_use]
     pub fn observed_dofs(&self) -> [Option<usize>; 3] {
-        [Component::Radial, Component::Tangential, Component::Axial].map(|component| {
+        Component::DISPLACEMENTS.map(|component| {
             let node = self.model.observed.first()?.node;
             let dof = self.model.dof_of(node, component)?;
             Some(self.independent[dof].0)

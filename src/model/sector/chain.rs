@@ -105,6 +105,7 @@ pub(super) fn build(chain: &Chain) -> Result<SectorModel, ModelError> {
         cyclic_pairs,
         contact_pairs: chain.contacts.iter().map(contact_pair).collect(),
         force: vec![(chain.forced, Complex64::new(1.0, 0.0))],
+        rigid_points: Vec::new(),
         load_case_forces: Vec::new(),
         observed: chain
             .observed

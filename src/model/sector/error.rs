@@ -9,6 +9,7 @@ use super::contact_problem::ContactProblem;
 use super::error_place::{Accepted, Item, Matrix, Place, StiffnessKind};
 use super::import::ImportProblem;
 use super::line_problem::LineProblem;
+use super::rigid_problem::RigidProblem;
 use super::sector_model::Component;
 use crate::input::{Finding, listed};
 
@@ -398,6 +399,14 @@ pub enum ModelError {
         pair: usize,
         /// What is wrong with it.
         problem: ContactProblem,
+    },
+    /// Something is wrong with a point of a rigid body.
+    #[error("rigid point {point}: {problem}")]
+    Rigid {
+        /// The point, by its place in the list.
+        point: usize,
+        /// What is wrong with it.
+        problem: RigidProblem,
     },
     /// A damper body that no contact pair touches.
     #[error(

@@ -86,6 +86,10 @@ pub enum Place {
     Entry(Matrix, usize, usize),
     /// Coordinate x, y or z (0, 1, 2) of a dof.
     Position(usize, usize),
+    /// Coordinate x, y or z (0, 1, 2) of a point of a rigid body.
+    RigidPosition(usize, usize),
+    /// A point of a rigid body.
+    RigidPoint(usize),
     /// A cyclic pair.
     CyclicPair(usize),
     /// A contact pair.
@@ -103,6 +107,10 @@ impl fmt::Display for Place {
                 write!(f, "{matrix} entry (dof {row}, dof {column})")
             }
             Self::Position(dof, axis) => write!(f, "{} of dof {dof}", ["x", "y", "z"][*axis]),
+            Self::RigidPosition(point, axis) => {
+                write!(f, "{} of rigid point {point}", ["x", "y", "z"][*axis])
+            }
+            Self::RigidPoint(point) => write!(f, "rigid point {point}"),
             Self::CyclicPair(pair) => write!(f, "cyclic pair {pair}"),
             Self::ContactPair(pair) => write!(f, "contact pair {pair}"),
             Self::Force(entry) => write!(f, "force entry {entry}"),
@@ -135,6 +143,9 @@ impl fmt::Display for Component {
             Self::Radial => "r",
             Self::Tangential => "t",
             Self::Axial => "z",
+            Self::RotationRadial => "rr",
+            Self::RotationTangential => "rt",
+            Self::RotationAxial => "rz",
         })
     }
 }

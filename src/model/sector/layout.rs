@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use super::error::ModelError;
 use super::error_place::{Item, Place};
-use super::sector_model::{Component, Dof};
+use super::sector_model::{Component, SectorModel};
 
 /// Tolerance on positions, as a fraction of the largest distance from the origin.
 const POSITION_TOLERANCE: f64 = 1e-6;
@@ -19,17 +19,24 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Components of a node, sorted.
-    pub(super) fn components(&self, dofs: &[Dof], node: usize) -> Vec<Component> {
-        let mut components: Vec<Component> = self
-            .node_dofs
-            .get(&node)
-            .into_iter()
-            .flatten()
-            .map(|&dof| dofs[dof].component)
+    /// Components, sorted, and position, m, of what a contact pair names: a point of a rigid body, or a node that must
+    /// exist and lie off the high face.
+    pub(super) fn contact_point(
+        &self,
+        model: &SectorModel,
+        place: Place,
+        node: usize,
+    ) -> Result<(Vec<Component>, [f64; 3]), ModelError> {
+        if let Some(point) = model.rigid_point(node) {
+            return Ok((Component::DISPLACEMENTS.to_vec(), point.position_m));
+        }
+        let first = self.low_or_inner(place, node)?;
+        let mut components: Vec<Component> = self.node_dofs[&node]
+            .iter()
+            .map(|&dof| model.dofs[dof].component)
             .collect();
         components.sort_unstable();
-        components
+        Ok((components, model.dofs[first].position_m))
     }
 
     /// The first dof of a node that must exist and lie off the high face.

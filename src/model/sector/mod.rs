@@ -17,10 +17,13 @@ pub mod parametric;
 mod parametric_mesh;
 mod parametric_options;
 mod parametric_shelf;
+mod rigid;
+mod rigid_problem;
 mod sector_model;
 mod validate;
 mod validate_contact;
 mod validate_couplings;
+mod validate_rigid;
 
 pub use assembly::{AssembledMesh, SolidElement, SolidMesh};
 pub use chain_problem::ChainProblem;
@@ -30,6 +33,10 @@ pub use error_place::{Accepted, Item, Matrix, Place, StiffnessKind};
 pub use hexahedron20::Material;
 pub use line_problem::{LinePart, LineProblem};
 pub use lumped::{LumpedOptions, NamedContact, NamedMass, NamedSpring};
-pub use parametric_options::{Damper, ParametricOptions};
-pub use sector_model::{Body, Component, ContactPair, ContactSide, Dof, ObservedNode, SectorModel};
+pub use parametric_options::{Damper, DamperBody, ParametricOptions};
+pub use rigid::rigid_motion;
+pub use rigid_problem::RigidProblem;
+pub use sector_model::{
+    Body, Component, ContactPair, ContactSide, Dof, ObservedNode, RigidPoint, SectorModel,
+};
 pub use validate::{validate, validate_force};

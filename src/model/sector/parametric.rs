@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 
 use super::error::ModelError;
 use super::parametric_mesh::ParametricMesh;
-use super::parametric_options::ParametricOptions;
+use super::parametric_options::{Damper, DamperBody, ParametricOptions};
+use super::rigid::with_rigid_damper;
 use super::sector_model::{Body, Component, ObservedNode, SectorModel};
 use super::validate::validate;
 use crate::linalg::{Complex64, SymmetricSparse};
@@ -62,7 +63,7 @@ pub fn build(options: &ParametricOptions) -> Result<SectorModel, ModelError> {
             node: trailing,
         });
     }
-    let model = SectorModel {
+    let mut model = SectorModel {
         name: "parametric".to_owned(),
         sectors: options.sectors,
         stiffness,
@@ -72,9 +73,13 @@ pub fn build(options: &ParametricOptions) -> Result<SectorModel, ModelError> {
         cyclic_pairs,
         contact_pairs,
         force,
+        rigid_points: Vec::new(),
         load_case_forces: Vec::new(),
         observed,
     };
+    if options.damper == Damper::Underplatform && options.damper_body == DamperBody::Rigid {
+        model = with_rigid_damper(model, grounding);
+    }
     validate(&model)?;
     Ok(model)
 }

@@ -21,6 +21,17 @@ pub enum Damper {
     BladeToGround,
 }
 
+/// What the wedge of an underplatform damper is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DamperBody {
+    /// Solid elements.
+    #[default]
+    Elastic,
+    /// Six dofs at its centre of mass.
+    Rigid,
+}
+
 /// The built-in bladed disk with its damper; lengths in m.
 ///
 /// Seen in the (z, r) plane, from the axis outwards: a web of constant thickness round z = 0, clamped
@@ -34,6 +45,8 @@ pub struct ParametricOptions {
     pub sectors: usize,
     /// The damper. Default ring.
     pub damper: Damper,
+    /// The body of the wedge. Default elastic.
+    pub damper_body: DamperBody,
     /// Radius of the bore, where the disk is clamped. Default 0.06.
     pub bore_radius_m: f64,
     /// Outer radius of the rim, on which the blade stands. Default 0.205.
@@ -117,6 +130,7 @@ impl Default for ParametricOptions {
         Self {
             sectors: 24,
             damper: Damper::Ring,
+            damper_body: DamperBody::Elastic,
             bore_radius_m: 0.06,
             rim_radius_m: 0.205,
             rim_thickness_m: 0.010,

@@ -7,7 +7,7 @@ use crate::linalg::{Complex64, SymmetricSparse};
 /// Largest number of sectors accepted.
 pub(super) const MAX_SECTORS: usize = 10_000;
 
-/// Component of a displacement in the cylindrical frame at the node's own angle.
+/// Component of a displacement or of a rotation in the cylindrical frame at the node's own angle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Component {
     /// Radial, `r`.
@@ -16,6 +16,38 @@ pub enum Component {
     Tangential,
     /// Axial, `z`.
     Axial,
+    /// Rotation about the radial axis, `rr`, rad.
+    RotationRadial,
+    /// Rotation about the tangential axis, `rt`, rad.
+    RotationTangential,
+    /// Rotation about the axial axis, `rz`, rad.
+    RotationAxial,
+}
+
+impl Component {
+    /// Displacements along r, theta and z.
+    pub const DISPLACEMENTS: [Self; 3] = [Self::Radial, Self::Tangential, Self::Axial];
+    /// Rotations about the same axes.
+    pub const ROTATIONS: [Self; 3] = [
+        Self::RotationRadial,
+        Self::RotationTangential,
+        Self::RotationAxial,
+    ];
+    /// The six of a rigid body.
+    pub const RIGID: [Self; 6] = [
+        Self::Radial,
+        Self::Tangential,
+        Self::Axial,
+        Self::RotationRadial,
+        Self::RotationTangential,
+        Self::RotationAxial,
+    ];
+
+    /// Whether it is a rotation.
+    #[must_use]
+    pub fn is_rotation(self) -> bool {
+        Self::ROTATIONS.contains(&self)
+    }
 }
 
 /// The body a node belongs to.
@@ -35,12 +67,23 @@ pub enum Body {
 pub struct Dof {
     /// Node id, from 0.
     pub node: usize,
-    /// Displacement component.
+    /// Component of its motion.
     pub component: Component,
     /// Cartesian position of the node in the frame of sector 0, m; the axis of rotation is z.
     pub position_m: [f64; 3],
     /// Body of the node.
     pub body: Body,
+}
+
+/// A point of a rigid body: it has no dofs of its own but moves with the six of another node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RigidPoint {
+    /// Number of the point, as contact pairs name it; no node of the dofs has it.
+    pub node: usize,
+    /// Node of the body's six dofs, at its centre of mass.
+    pub reference: usize,
+    /// Cartesian position in the frame of sector 0, m.
+    pub position_m: [f64; 3],
 }
 
 /// One of the two sides that meet in a contact pair of sector n.
@@ -117,6 +160,8 @@ pub struct SectorModel {
     pub dofs: Vec<Dof>,
     /// `(low_dof, high_dof)`: the same component on the two cyclic faces.
     pub cyclic_pairs: Vec<(usize, usize)>,
+    /// Points of rigid bodies, which contact pairs name as they name nodes. Empty for a model without rigid bodies.
+    pub rigid_points: Vec<RigidPoint>,
     /// Contact pairs; no node on the high face. Empty for a model without contact.
     pub contact_pairs: Vec<ContactPair>,
     /// Complex force amplitude on sector 0 as `(dof, newton)`.
@@ -134,5 +179,28 @@ impl SectorModel {
         self.dofs
             .iter()
             .position(|dof| dof.node == node && dof.component == component)
+    }
+
+    /// The point of a rigid body that has the number `node`.
+    #[must_use]
+    pub fn rigid_point(&self, node: usize) -> Option<&RigidPoint> {
+        self.rigid_points.iter().find(|point| point.node == node)
+    }
+
+    /// The node whose dofs move `node`: itself, or the reference of a point of a rigid body.
+    #[must_use]
+    pub fn moved_by(&self, node: usize) -> usize {
+        self.rigid_point(node).map_or(node, |point| point.reference)
+    }
+
+    /// Body and position, m, of a node or of a point of a rigid body.
+    #[must_use]
+    pub fn place_of(&self, node: usize) -> Option<(Body, [f64; 3])> {
+        let reference = self.moved_by(node);
+        let dof = self.dofs.iter().find(|dof| dof.node == reference)?;
+        let position_m = self
+            .rigid_point(node)
+            .map_or(dof.position_m, |point| point.position_m);
+        Some((dof.body, position_m))
     }
 }

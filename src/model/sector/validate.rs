@@ -8,6 +8,7 @@ use super::layout::{Layout, advanced, distance, finite, position_tolerance_of};
 use super::sector_model::{Dof, MAX_SECTORS, SectorModel};
 use super::validate_contact::{check_contact, is_with_next_sector};
 use super::validate_couplings::check_couplings;
+use super::validate_rigid::check_rigid;
 use crate::linalg::{Complex64, SymmetricSparse};
 
 /// How much the blade's diagonal may exceed K's, relative: K of a rotating sector holds spin softening,
@@ -48,6 +49,7 @@ pub fn validate(model: &SectorModel) -> Result<(), ModelError> {
     check_faces_complete(model, &layout)?;
     check_couplings(model)?;
     check_blade_stiffness(model, &layout)?;
+    check_rigid(model, &layout)?;
     check_contact(model, &layout)?;
     for force in std::iter::once(&model.force).chain(&model.load_case_forces) {
         check_force(model, &layout, force)?;

@@ -54,7 +54,11 @@ pub(super) fn check_contact(model: &SectorModel, layout: &Layout) -> Result<(), 
 fn check_damper(model: &SectorModel) -> Result<(), ModelError> {
     let sides = |pair: &ContactPair| [pair.first.node(), pair.second.node()];
     let pairs = model.contact_pairs.iter();
-    let touched: HashSet<usize> = pairs.flat_map(sides).flatten().collect();
+    let touched: HashSet<usize> = pairs
+        .flat_map(sides)
+        .flatten()
+        .map(|node| model.moved_by(node))
+        .collect();
     let mut damper = model.dofs.iter().filter(|dof| dof.body == Body::Damper);
     match damper.clone().next() {
         Some(dof) if !damper.any(|dof| touched.contains(&dof.node)) => {
@@ -83,13 +87,12 @@ fn check_sides(
     let mut ends = Vec::new();
     for side in [first, second] {
         let Some(node) = side.node() else { continue };
-        let dof = layout.low_or_inner(Place::ContactPair(pair), node)?;
-        let own_m = model.dofs[dof].position_m;
+        let (components, own_m) = layout.contact_point(model, Place::ContactPair(pair), node)?;
         let position_m = match side {
             ContactSide::NextSector(_) => advanced(own_m, model.sectors),
             ContactSide::Node(_) | ContactSide::Ground => own_m,
         };
-        ends.push((layout.components(&model.dofs, node), position_m));
+        ends.push((components, position_m));
     }
     let [(components, here_m), (other_components, there_m)] = ends.as_slice() else {
         return Ok(());

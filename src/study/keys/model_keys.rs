@@ -183,6 +183,12 @@ pub(super) const MODEL_KEYS: &[Entry] = &[
         "what damps: a ring under the flange; a wedge between the platforms of neighbouring blades; shrouds that touch; the platform on the ground. All but `ring` go without flange and ring",
     ),
     entry(
+        "model.parametric.damper_body",
+        Name(&["elastic", "rigid"]),
+        "`\"elastic\"`",
+        "the wedge (`underplatform`): solid elements, or a rigid body with six degrees of freedom",
+    ),
+    entry(
         "model.parametric.bore_radius_m",
         ABOVE_ZERO,
         "0.06",

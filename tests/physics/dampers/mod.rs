@@ -2,5 +2,6 @@
 
 mod chains;
 mod published;
+mod rigid;
 mod sectors;
 mod whole_wheel;

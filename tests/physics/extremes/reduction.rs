@@ -96,6 +96,7 @@ fn comb(link: f64) -> SectorModel {
             })
             .collect(),
         force: vec![(blade[0], Complex64::new(1.0, 0.0))],
+        rigid_points: Vec::new(),
         load_case_forces: Vec::new(),
         observed: vec![ObservedNode {
             name: "blade".to_owned(),

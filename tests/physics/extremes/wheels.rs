@@ -148,6 +148,7 @@ pub fn spatial_sector(sectors: usize) -> SectorModel {
             (1, Complex64::new(1.0, 0.3)),
             (2, Complex64::new(0.0, 0.5)),
         ],
+        rigid_points: Vec::new(),
         load_case_forces: Vec::new(),
         observed: vec![ObservedNode {
             name: "blade".to_owned(),

@@ -49,6 +49,7 @@ fn direction(model: &SectorModel, dof: usize) -> [f64; 3] {
         Component::Radial => [x / r, y / r, 0.0],
         Component::Tangential => [-y / r, x / r, 0.0],
         Component::Axial => [0.0, 0.0, 1.0],
+        _ => unreachable!("a solid has no rotations"),
     }
 }
 

@@ -37,11 +37,14 @@ pub(super) struct Files {
     pub(super) contact: String,
     pub(super) force: String,
     pub(super) observe: String,
+    /// Points of rigid bodies, of a model that has some.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) rigid: Option<String>,
 }
 
 impl Header {
-    /// Header of a bundle with the usual file names.
-    pub(super) fn new(name: &str, sectors: usize) -> Self {
+    /// Header of a bundle with the usual file names, that of the points of rigid bodies only if it has some.
+    pub(super) fn new(name: &str, sectors: usize, has_rigid: bool) -> Self {
         Self {
             format: FORMAT.to_owned(),
             version: VERSION,
@@ -57,6 +60,7 @@ impl Header {
                 contact: "contact.csv".to_owned(),
                 force: "force.csv".to_owned(),
                 observe: "observe.csv".to_owned(),
+                rigid: has_rigid.then(|| "rigid.csv".to_owned()),
             },
         }
     }

@@ -10,7 +10,7 @@ use crate::model::sector::error::ModelError;
 use crate::model::sector::line_problem::LineProblem;
 use crate::model::sector::matrix_market::{self, integer, number};
 use crate::model::sector::sector_model::{
-    Body, Component, ContactPair, ContactSide, Dof, ObservedNode, SectorModel,
+    Body, Component, ContactPair, ContactSide, Dof, ObservedNode, RigidPoint, SectorModel,
 };
 use crate::model::sector::validate::validate;
 
@@ -24,6 +24,7 @@ pub(super) const CONTACT: &str =
 pub(super) const GROUND: &str = "ground";
 pub(super) const FORCE: &str = "dof,re,im";
 pub(super) const OBSERVE: &str = "name,node";
+pub(super) const RIGID: &str = "node,reference,x,y,z";
 
 /// Reads the bundle in `directory` and validates it.
 ///
@@ -49,6 +50,10 @@ pub fn read(directory: &Path) -> Result<SectorModel, ModelError> {
         blade_stiffness: matrix_market::read(&directory.join(&files.blade_stiffness))?,
         dofs: Table::read(directory.join(&files.dofs), DOFS)?.rows(parse_dof)?,
         cyclic_pairs: Table::read(directory.join(&files.cyclic), CYCLIC)?.rows(parse_cyclic)?,
+        rigid_points: match &files.rigid {
+            Some(name) => Table::read(directory.join(name), RIGID)?.rows(parse_rigid)?,
+            None => Vec::new(),
+        },
         contact_pairs: if is_ring_contact {
             contact.rows(parse_ring_contact)?
         } else {
@@ -69,11 +74,14 @@ pub fn read(directory: &Path) -> Result<SectorModel, ModelError> {
 fn check_bodies(model: &SectorModel) -> Result<(), ModelError> {
     for (pair, contact) in model.contact_pairs.iter().enumerate() {
         for (side, body) in [(contact.first, Body::Blisk), (contact.second, Body::Ring)] {
-            let on_it = |dof: &Dof| Some(dof.node) == side.node() && dof.body != body;
-            if let Some(dof) = model.dofs.iter().find(|dof| on_it(dof)) {
+            let elsewhere = |&node: &usize| {
+                let place = model.place_of(node);
+                place.is_some_and(|(own, _)| own != body)
+            };
+            if let Some(node) = side.node().filter(elsewhere) {
                 return Err(ModelError::Contact {
                     pair,
-                    problem: ContactProblem::Body { node: dof.node },
+                    problem: ContactProblem::Body { node },
                 });
             }
         }
@@ -100,7 +108,10 @@ fn parse_dof(
             "r" => Component::Radial,
             "t" => Component::Tangential,
             "z" => Component::Axial,
-            other => return Err(not_a_word("component", other, "r, t or z")),
+            "rr" => Component::RotationRadial,
+            "rt" => Component::RotationTangential,
+            "rz" => Component::RotationAxial,
+            other => return Err(not_a_word("component", other, "r, t, z, rr, rt or rz")),
         },
         position_m: [number("x", x)?, number("y", y)?, number("z", z)?],
         body: match body {
@@ -114,6 +125,14 @@ fn parse_dof(
 
 fn parse_cyclic(_: usize, [low, high]: [&str; 2]) -> Result<(usize, usize), LineProblem> {
     Ok((integer("low_dof", low)?, integer("high_dof", high)?))
+}
+
+fn parse_rigid(_: usize, [node, reference, x, y, z]: [&str; 5]) -> Result<RigidPoint, LineProblem> {
+    Ok(RigidPoint {
+        node: integer("node", node)?,
+        reference: integer("reference", reference)?,
+        position_m: [number("x", x)?, number("y", y)?, number("z", z)?],
+    })
 }
 
 fn parse_contact(

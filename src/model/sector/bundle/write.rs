@@ -6,7 +6,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::header::{FILE_NAME, Header};
-use super::read::{CONTACT, CYCLIC, DOFS, FORCE, GROUND, OBSERVE, RING_CONTACT};
+use super::read::{CONTACT, CYCLIC, DOFS, FORCE, GROUND, OBSERVE, RIGID, RING_CONTACT};
 use crate::model::sector::error::ModelError;
 use crate::model::sector::matrix_market;
 use crate::model::sector::sector_model::{
@@ -45,7 +45,7 @@ pub fn write(model: &SectorModel, directory: &Path) -> Result<(), ModelError> {
         }
         _ => {}
     }
-    let header = Header::new(&model.name, model.sectors);
+    let header = Header::new(&model.name, model.sectors, !model.rigid_points.is_empty());
     let files = &header.files;
     for (matrix, comment, name) in [
         (&model.stiffness, "sector stiffness, N/m", &files.stiffness),
@@ -60,14 +60,17 @@ pub fn write(model: &SectorModel, directory: &Path) -> Result<(), ModelError> {
     }
     let header_text =
         toml::to_string(&header).map_err(|source| ModelError::HeaderNotWritable { source })?;
-    for (text, name) in [
+    let header_name = FILE_NAME.to_owned();
+    let tables = [
         (dofs(model), &files.dofs),
         (cyclic(model), &files.cyclic),
         (contact(model), &files.contact),
         (force(model), &files.force),
         (observe(model), &files.observe),
-        (header_text, &FILE_NAME.to_owned()),
-    ] {
+    ];
+    let rigid = files.rigid.iter().map(|name| (rigid(model), name));
+    let last = [(header_text, &header_name)];
+    for (text, name) in tables.into_iter().chain(rigid).chain(last) {
         let path = directory.join(name);
         fs::write(&path, text).map_err(file_error(&path))?;
     }
@@ -99,6 +102,16 @@ fn cyclic(model: &SectorModel) -> String {
     let mut text = format!("{CYCLIC}\n");
     for (low, high) in &model.cyclic_pairs {
         let _ = writeln!(text, "{low},{high}");
+    }
+    text
+}
+
+fn rigid(model: &SectorModel) -> String {
+    let mut text = format!("{RIGID}\n");
+    for point in &model.rigid_points {
+        let [x, y, z] = point.position_m;
+        let (node, reference) = (point.node, point.reference);
+        let _ = writeln!(text, "{node},{reference},{x:e},{y:e},{z:e}");
     }
     text
 }
@@ -142,8 +155,8 @@ fn side(side: ContactSide) -> String {
 fn ring_pair(model: &SectorModel, pair: &ContactPair) -> Option<[usize; 2]> {
     let on = |side: ContactSide, body: Body| match side {
         ContactSide::Node(node) => {
-            let dof = model.dofs.iter().find(|dof| dof.node == node)?;
-            (dof.body == body).then_some(node)
+            let (own, _) = model.place_of(node)?;
+            (own == body).then_some(node)
         }
         ContactSide::NextSector(_) | ContactSide::Ground => None,
     };

@@ -122,6 +122,7 @@ pub fn import(path: &Path) -> Result<Imported, ModelError> {
         dofs: frames.dofs,
         contact_pairs,
         force,
+        rigid_points: Vec::new(),
         load_case_forces: Vec::new(),
         observed,
     };
