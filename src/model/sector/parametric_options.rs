@@ -342,7 +342,37 @@ impl ParametricOptions {
         let gap = self.platform_gap_m;
         let pitch_m = std::f64::consts::TAU / self.sectors as f64 * self.rim_radius_m;
         let accepted = Accepted::BelowM("the pitch of the blades at the rim", pitch_m);
-        accept("platform_gap_m", gap, gap < pitch_m, accepted)
+        accept("platform_gap_m", gap, gap < pitch_m, accepted)?;
+        self.check_room_of_platform()
+    }
+
+    /// That gap and flank leave a platform beside the blade: at its underside, where the flank reaches furthest.
+    fn check_room_of_platform(&self) -> Result<(), ModelError> {
+        let flank_deg = match self.damper {
+            Damper::Ring | Damper::Shroud => return Ok(()),
+            Damper::Underplatform => self.flank_angle_deg,
+            Damper::BladeToGround => 0.0,
+        };
+        let share = self.platform_height_m / self.blade_height_m;
+        let between = |root: f64, tip: f64| root + share * (tip - root);
+        let radius_m = self.rim_radius_m + self.platform_height_m;
+        let stagger = (self.blade_stagger_angle_deg + share * self.blade_twist_deg).to_radians();
+        let chord_m = between(self.blade_root_axial_chord_m, self.blade_tip_axial_chord_m);
+        let thickness_m = between(self.blade_root_thickness_m, self.blade_tip_thickness_m);
+        // The blade's surface at the end of its chord reaches furthest along theta.
+        let reach_m = 0.5 * (chord_m * stagger.tan().abs() + thickness_m / stagger.cos());
+        let half_pitch = std::f64::consts::PI / self.sectors as f64;
+        let room_m = radius_m * (half_pitch - reach_m / radius_m).tan();
+        let flank_m = |angle_deg: f64| self.platform_thickness_m * angle_deg.to_radians().tan();
+        let limit_m = 2.0 * (room_m - flank_m(flank_deg));
+        if limit_m <= 0.0 && room_m > flank_m(LEAST_FLANK_DEG) {
+            let steepest_deg = (room_m / self.platform_thickness_m).atan().to_degrees();
+            let accepted = Accepted::Range(LEAST_FLANK_DEG, steepest_deg);
+            return accept("flank_angle_deg", flank_deg, false, accepted);
+        }
+        let gap_m = self.platform_gap_m;
+        let accepted = Accepted::BelowM("what blade and flank leave of the pitch", limit_m);
+        accept("platform_gap_m", gap_m, gap_m < limit_m, accepted)
     }
 
     fn check_order(&self) -> Result<(), ModelError> {

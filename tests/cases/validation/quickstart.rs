@@ -204,7 +204,7 @@ pub fn write_page(identity: &Identity, sections: &[(&Entry, Section)]) {
     let rows = own.body.split("\n\n").next().unwrap().trim_end();
     let page = format!(
         "# Results\n\n`blisk run STUDY` writes to `results/<name>/`; docs/results.md describes the files. Nothing here is kept\n\
-         but this page and `validation/`.\n\n## Quickstart\n\n{}\n\n{}\n\n{} It is the command of the [validation report](validation/report.md), \
+         but this page, `validation/` and the table of `optimal-load/`.\n\n## Quickstart\n\n{}\n\n{}\n\n{} It is the command of the [validation report](validation/report.md), \
          which has the warnings of this study and rows of it beside the full contact model.\n",
         own.compared,
         rows.split("\nIts warnings").next().unwrap().trim_end(),

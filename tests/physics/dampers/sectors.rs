@@ -144,3 +144,38 @@ fn bundles_of_every_kind_read_back_equal() {
         assert_eq!(of_ring, [0, 4].contains(&place), "{header}");
     }
 }
+
+/// A gap or a flank that leaves no platform beside the blade is refused by its key; what leaves little is built.
+#[test]
+fn a_platform_needs_room_beside_the_blade() {
+    for damper in [Damper::Underplatform, Damper::BladeToGround] {
+        let with = |platform_gap_m: f64, flank_angle_deg: f64| {
+            parametric::build(&ParametricOptions {
+                damper,
+                platform_gap_m,
+                flank_angle_deg,
+                ..ParametricOptions::default()
+            })
+        };
+        let refused = with(0.05, 35.0).unwrap_err().to_string();
+        assert!(refused.contains("platform_gap_m"), "{refused}");
+        let limit = refused.rsplit_once(" = ").and_then(|(_, limit)| {
+            let number = limit.split_whitespace().next()?;
+            number.parse::<f64>().ok()
+        });
+        let limit = limit.unwrap_or_else(|| panic!("no limit in {refused}"));
+        let above = with(1.01 * limit, 35.0).unwrap_err().to_string();
+        assert!(above.contains("platform_gap_m"), "{above}");
+        assert!(with(0.9 * limit, 35.0).is_ok(), "{damper:?}, {limit} m");
+    }
+    // Flanks so flat that no gap would help.
+    let refused = parametric::build(&ParametricOptions {
+        damper: Damper::Underplatform,
+        sectors: 36,
+        flank_angle_deg: 64.0,
+        platform_thickness_m: 0.012,
+        ..ParametricOptions::default()
+    });
+    let refused = refused.unwrap_err().to_string();
+    assert!(refused.contains("flank_angle_deg"), "{refused}");
+}
