@@ -137,7 +137,6 @@ pub(super) fn blade_shapes(
     let mut covariance = Matrix::<f64>::zeros(count, count);
     // Strain by unit strain forces, with the number of waves that it stands for.
     let mut strain_receptances: Vec<(f64, Matrix<Complex64>)> = Vec::new();
-    let mut resonances: Vec<StrainResonance> = Vec::new();
     for (h, (diameter, own)) in diameters.iter().zip(strain).enumerate() {
         let waves = diameter.waves as f64;
         let motions = diameter.motions(own);
@@ -160,13 +159,6 @@ pub(super) fn blade_shapes(
                 receptance[(contact_rows + i, contact_rows + j)]
             });
             strain_receptances.push((waves, block));
-        }
-        // The peaks of a wheel are those of the harmonic that is excited; the others pass through their resonances by chance.
-        let excited = !wanted.excitations.is_empty();
-        let own = excited.then(|| resonances_of(diameter, own, wanted, h));
-        for resonance in own.into_iter().flatten() {
-            add_outer(&mut covariance, resonance.energy, &resonance.motion);
-            resonances.push(resonance);
         }
     }
     let kept = |count: usize, (energies, vectors): (Vec<f64>, Matrix<f64>)| {
@@ -191,75 +183,9 @@ pub(super) fn blade_shapes(
                 add_outer(&mut sum, waves * force, motions.column(shape));
             }
         }
-        for resonance in &resonances {
-            let taken = complex.adjoint_times_vector(&resonance.motion);
-            let forces = taken.iter().zip(&energies).map(|(taken, energy)| {
-                wanted.deviation.powi(2) * energy.max(0.0) / frequencies * taken.norm_sqr()
-            });
-            let force: f64 = forces.sum();
-            let energy = resonance.waves * resonance.gain.powi(2) * force;
-            add_outer(&mut sum, energy, &resonance.motion);
-        }
         decomposed = hermitian_eigen(&sum).ok()?;
     }
     Some(kept(wanted.count, decomposed).1)
-}
-
-/// A mode of the tuned wheel at its own frequency, where it answers alone: `Z^-1 = v v^H / (i d)`.
-struct StrainResonance {
-    /// Waves of the wheel that have it.
-    waves: f64,
-    /// `1 / d`.
-    gain: f64,
-    /// Strain coordinates of `v`.
-    motion: Vec<Complex64>,
-    /// What the excitation brings into it: the factor on its motion, squared.
-    energy: f64,
-}
-
-/// The resonances of nodal diameter `h` between the lowest and the highest frequency of the harmonic. Frequencies of a grid pass between
-/// them, and a mistuned wheel has its peaks there: waves that the excitation does not meet take part by the forces of the blades.
-fn resonances_of(
-    diameter: &TunedDiameter,
-    strain: &Matrix<Complex64>,
-    wanted: &ShapesWanted<'_>,
-    h: usize,
-) -> Vec<StrainResonance> {
-    let [low, high] = [f64::min, f64::max].map(|of| {
-        let frequencies = wanted.frequencies.iter().copied();
-        frequencies.reduce(of).unwrap_or(0.0)
-    });
-    let waves = diameter.waves as f64;
-    let (natural, modes) = &diameter.natural;
-    let inside = (0..natural.len()).filter(|&mode| (low..=high).contains(&natural[mode]));
-    let own = inside.filter_map(|mode| {
-        let damping = diameter.damping_of(mode);
-        if damping <= 0.0 {
-            return None;
-        }
-        let shape = modes.column(mode);
-        let gain = 1.0 / damping;
-        let excitations = wanted.excitations.iter();
-        let of_excitation = excitations
-            .filter(|force| force.diameter.index == h)
-            .map(|force| {
-                let modal = force.modal.iter().zip(shape);
-                let force: Complex64 = if force.diameter.conjugate {
-                    modal.map(|(f, v)| f * v).sum()
-                } else {
-                    modal.map(|(f, v)| f * v.conj()).sum()
-                };
-                force.norm_sqr()
-            });
-        let of_excitation: f64 = of_excitation.sum();
-        Some(StrainResonance {
-            waves,
-            gain,
-            motion: strain.times_vector(shape),
-            energy: gain.powi(2) * of_excitation,
-        })
-    });
-    own.collect()
 }
 
 /// Adds `weight (Re x Re x^T + Im x Im x^T)`.
