@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Does the load that is best for the tuned wheel hold for mistuned ones?
 
-    python3 studies/optimal-load/run.py [--blisk PROGRAM] [--out FOLDER] [--only WORD] [--patterns N] [--threads N]
+    python3 studies/optimal-load/run.py [--blisk PROGRAM] [--out FOLDER] [--only WORDS] [--patterns N] [--threads N]
 
 Eight wheels (four dampers, lumped and of finite elements) under a low and a high engine order, three
 standard deviations. For each the load that is best for the tuned wheel is searched first; then the
@@ -196,7 +196,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--blisk", default=str(ROOT / "target/release/blisk"))
     parser.add_argument("--out", type=Path, default=ROOT / "results/optimal-load")
-    parser.add_argument("--only", default="", help="wheels whose name holds this word")
+    parser.add_argument("--only", default="", help="wheels whose names hold one of these words, with commas between")
     parser.add_argument("--patterns", type=int, help="patterns of a population [default: 400, 100]")
     parser.add_argument("--threads", default="2")
     arguments = parser.parse_args()
@@ -206,7 +206,7 @@ def main():
             wheel = Wheel(
                 arguments.blisk, arguments.out, damper, source, arguments.threads, arguments.patterns
             )
-            if arguments.only not in wheel.name:
+            if not any(word in wheel.name for word in arguments.only.split(",")):
                 continue
             effects[wheel.name] = wheel.effect()
             for order in ENGINE_ORDERS:
@@ -214,10 +214,11 @@ def main():
                 own = list(wheel.verdicts(order, optimum))
                 rows += own
                 print(f"{wheel.name}, engine order {order}: tuned optimum {optimum} N", flush=True)
-    write(arguments.out, rows, effects)
+    only = f" --only {arguments.only}" if arguments.only else ""
+    write(arguments.out, f"python3 studies/optimal-load/run.py{only}", rows, effects)
 
 
-def write(folder, rows, effects):
+def write(folder, command, rows, effects):
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "table.csv", "w", newline="") as table:
         writer = csv.DictWriter(table, fieldnames=list(rows[0]), lineterminator="\n")
@@ -226,7 +227,7 @@ def write(folder, rows, effects):
     lines = [
         "# Does the tuned optimum hold?",
         "",
-        "Made by `python3 studies/optimal-load/run.py`, whose README says how. Single verdicts: [table.csv](table.csv).",
+        f"Made by `{command}`; [its page](../../studies/optimal-load/README.md) says how. Single verdicts: [table.csv](table.csv).",
         "",
         "| wheel | engine order | tuned optimum, N | amplitude: confirmed, open, refuted | worst loss | amplification factor: confirmed, open, refuted |",
         "| --- | --- | --- | --- | --- | --- |",
