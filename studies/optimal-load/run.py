@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Does the load that is best for the tuned wheel hold for mistuned ones?
 
-    python3 studies/optimal-load/run.py [--blisk PROGRAM] [--out FOLDER] [--only WORDS] [--patterns N] [--threads N]
+    python3 studies/optimal-load/run.py [--blisk PROGRAM] [--out FOLDER] [--only WORDS] [--engine-orders 3,9] [--patterns N]
+        [--threads N]
 
 Eight wheels (four dampers, lumped and of finite elements) under a low and a high engine order, three
 standard deviations. For each the load that is best for the tuned wheel is searched first; then the
@@ -197,6 +198,7 @@ def main():
     parser.add_argument("--blisk", default=str(ROOT / "target/release/blisk"))
     parser.add_argument("--out", type=Path, default=ROOT / "results/optimal-load")
     parser.add_argument("--only", default="", help="wheels whose names hold one of these words, with commas between")
+    parser.add_argument("--engine-orders", default=",".join(map(str, ENGINE_ORDERS)))
     parser.add_argument("--patterns", type=int, help="patterns of a population [default: 400, 100]")
     parser.add_argument("--threads", default="2")
     arguments = parser.parse_args()
@@ -209,7 +211,7 @@ def main():
             if not any(word in wheel.name for word in arguments.only.split(",")):
                 continue
             effects[wheel.name] = wheel.effect()
-            for order in ENGINE_ORDERS:
+            for order in map(int, arguments.engine_orders.split(",")):
                 optimum, _ = wheel.tuned_optimum(order)
                 own = list(wheel.verdicts(order, optimum))
                 rows += own
