@@ -216,8 +216,12 @@ def main():
                 own = list(wheel.verdicts(order, optimum))
                 rows += own
                 print(f"{wheel.name}, engine order {order}: tuned optimum {optimum} N", flush=True)
-    only = f" --only {arguments.only}" if arguments.only else ""
-    write(arguments.out, f"python3 studies/optimal-load/run.py{only}", rows, effects)
+    command = "python3 studies/optimal-load/run.py"
+    if arguments.only:
+        command += f" --only {arguments.only}"
+    if arguments.patterns:
+        command += f" --patterns {arguments.patterns}"
+    write(arguments.out, command, rows, effects)
 
 
 def write(folder, command, rows, effects):
