@@ -94,22 +94,23 @@ class Wheel:
         steps = math.ceil(math.log(high / low, ROUNDS[0]))
         loads = {rounded(low * (high / low) ** (i / steps)) for i in range(steps + 1)}
         amplitudes = {}
-        for ratio in (*ROUNDS[1:], None):
+        for place, ratio in enumerate((*ROUNDS[1:], None)):
+            # Each round has a folder of its own: a folder can be run again with the loads that it has, not with fewer.
             results = self.run(
-                f"{self.name}-{order}-tuned",
+                f"{self.name}-{order}-tuned-{place + 1}",
                 engine_orders=[order],
                 patterns=1,
                 standard_deviation=[0.0],
                 normal_load_n=sorted(loads),
             )
-            amplitudes = {load: a for (_, load), a in self.tuned(results).items()}
+            amplitudes |= {load: a for (_, load), a in self.tuned(results).items()}
             best = min(amplitudes, key=amplitudes.get)
             if ratio:
                 nearest = sorted(amplitudes)
-                place = nearest.index(best)
-                sides = nearest[max(place - 1, 0)], nearest[min(place + 1, len(nearest) - 1)]
+                at = nearest.index(best)
+                sides = nearest[max(at - 1, 0)], nearest[min(at + 1, len(nearest) - 1)]
                 count = math.ceil(math.log(sides[1] / sides[0], ratio))
-                loads |= {rounded(sides[0] * ratio**i) for i in range(1, count)}
+                loads = {rounded(sides[0] * ratio**i) for i in range(1, count)} - set(nearest)
         return best, amplitudes
 
     def population(self, order, optimum):
