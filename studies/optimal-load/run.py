@@ -88,11 +88,15 @@ class Wheel:
             if own["tuned_status"] == "ok" and own["tuned_amplitude_m"]
         }
 
-    def tuned_optimum(self, order):
-        """Load with the lowest tuned amplitude, to 3 %, and the amplitudes of all loads looked at."""
+    def scan(self, ratio):
+        """Loads over the range that the study names, each at most so many times the one before."""
         low, high = json.loads(re.search(r"^# loads_n: (.*)$", self.text, re.MULTILINE)[1])
-        steps = math.ceil(math.log(high / low, ROUNDS[0]))
-        loads = {rounded(low * (high / low) ** (i / steps)) for i in range(steps + 1)}
+        steps = math.ceil(math.log(high / low, ratio))
+        return [rounded(low * (high / low) ** (i / steps)) for i in range(steps + 1)]
+
+    def tuned_optimum(self, order):
+        """Load with the lowest tuned amplitude, to 3 %."""
+        loads = set(self.scan(ROUNDS[0]))
         amplitudes = {}
         for place, ratio in enumerate((*ROUNDS[1:], None)):
             # Each round has a folder of its own: a folder can be run again with the loads that it has, not with fewer.
@@ -111,7 +115,7 @@ class Wheel:
                 sides = nearest[max(at - 1, 0)], nearest[min(at + 1, len(nearest) - 1)]
                 count = math.ceil(math.log(sides[1] / sides[0], ratio))
                 loads = {rounded(sides[0] * ratio**i) for i in range(1, count)} - set(nearest)
-        return best, amplitudes
+        return best
 
     def population(self, order, optimum):
         """Results folder of the populations at loads round the tuned optimum."""
@@ -174,15 +178,12 @@ class Wheel:
 
     def effect(self):
         """Tuned amplitude at its best load over that without friction, the lower one of slide and stuck, by engine order."""
-        low, high = json.loads(re.search(r"^# loads_n: (.*)$", self.text, re.MULTILINE)[1])
-        steps = math.ceil(math.log(high / low, 1.25))
-        loads = [rounded(low * (high / low) ** (i / steps)) for i in range(steps + 1)]
         results = self.run(
             f"{self.name}-effect",
             engine_orders=list(EFFECT_ORDERS),
             patterns=1,
             standard_deviation=[0.0],
-            normal_load_n=json.dumps(["slide", *loads, "stuck"]),
+            normal_load_n=json.dumps(["slide", *self.scan(1.25), "stuck"]),
         )
         found = json.loads(self.command("stats", results, "--json"))["scenarios"]
         effects = {}
@@ -213,13 +214,18 @@ def main():
                 continue
             effects[wheel.name] = wheel.effect()
             for order in map(int, arguments.engine_orders.split(",")):
-                optimum, _ = wheel.tuned_optimum(order)
+                optimum = wheel.tuned_optimum(order)
                 own = list(wheel.verdicts(order, optimum))
                 rows += own
                 print(f"{wheel.name}, engine order {order}: tuned optimum {optimum} N", flush=True)
+    if not rows:
+        names = ", ".join(sorted(path.stem for path in HERE.glob("*.toml")))
+        sys.exit(f"--only {arguments.only}: no wheel has such a name; accepted: words of {names}")
     command = "python3 studies/optimal-load/run.py"
     if arguments.only:
         command += f" --only {arguments.only}"
+    if arguments.engine_orders != parser.get_default("engine_orders"):
+        command += f" --engine-orders {arguments.engine_orders}"
     if arguments.patterns:
         command += f" --patterns {arguments.patterns}"
     write(arguments.out, command, rows, effects)
