@@ -174,6 +174,11 @@ fn every_key_of_an_import_file_is_one_that_its_reader_knows() {
             .collect::<Vec<_>>()
     };
     assert_eq!(unheld(&every_key("")), []);
+    assert_eq!(
+        findings(&every_key("")).len(),
+        1,
+        "nothing holds the damper"
+    );
     let mut missed = BTreeSet::new();
     for key in import_keys() {
         if matches!(
