@@ -1,7 +1,7 @@
 //! Mistuned wheels on the receptances of the tuned one: no basis and no eigenproblem of a pattern in its solution.
 //!
 //! The tuned wheel with stuck contact is one small matrix a wave and frequency (`tables.rs`). Blade deviations are eliminated
-//! exactly in few strain coordinates (`wheel_harmonic.rs`, `blade_shapes.rs`), and the motions at the contact are the only
+//! exactly in few strain coordinates (`elimination.rs`, `blade_shapes.rs`), and the motions at the contact are the only
 //! unknowns of the nonlinear equation (`contact_iteration.rs`).
 
 mod acceleration;
@@ -9,6 +9,7 @@ mod blade_shapes;
 mod contact_forces;
 mod contact_iteration;
 mod contact_places;
+mod elimination;
 mod engine;
 mod fields;
 mod free_waves;

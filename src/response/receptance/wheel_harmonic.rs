@@ -11,6 +11,7 @@
 use crate::linalg::{Complex64, LuWorkspace};
 use crate::response::harmonic_balance::MeanTangent;
 
+use super::elimination::{Elimination, fill_circulant};
 use super::fields::{Field, SectorTransform, padded};
 use super::wave_matrix::WaveMatrix;
 
@@ -23,13 +24,12 @@ pub(super) struct WheelHarmonic {
     pub(super) receptance: WaveMatrix,
     /// Deviation of every shape and sector, the loss factor included, shape after shape.
     deviations: Vec<Complex64>,
-    /// Of `I + R_zz D`, none without shapes.
-    elimination: Option<LuWorkspace<Complex64>>,
+    elimination: Elimination,
+    /// Whether a blade deviates.
+    is_mistuned: bool,
     /// Blade forces `D z` without contact forces beyond those of the springs.
     excited: Field,
     strain: Field,
-    strain_sectors: Field,
-    unknowns: Vec<Complex64>,
 }
 
 impl WheelHarmonic {
@@ -42,11 +42,10 @@ impl WheelHarmonic {
             shapes,
             receptance: WaveMatrix::zeros(contact + shapes + 3, contact + shapes, sectors),
             deviations: Vec::new(),
-            elimination: None,
+            elimination: Elimination::new(sectors, contact, shapes),
+            is_mistuned: false,
             excited: field(),
             strain: field(),
-            strain_sectors: field(),
-            unknowns: Vec::new(),
         }
     }
 
@@ -60,56 +59,22 @@ impl WheelHarmonic {
         self.deviations.clear();
         self.deviations.extend(deviations);
         self.excited.fill(0.0);
-        if self
-            .deviations
-            .iter()
-            .all(|deviation| deviation.norm_sqr() == 0.0)
-        {
-            self.elimination = None;
-            return true;
-        }
-        let (contact, shapes) = (self.contact, self.shapes);
-        let size = shapes * self.sectors;
-        let mut factors = match self.elimination.take() {
-            Some(factors) if factors.dimension() == size => factors,
-            _ => LuWorkspace::new(size),
-        };
-        let place = |row: usize, column: usize| (contact + row, contact + column);
-        let block = |row, column, h| {
-            let (row, column) = place(row, column);
-            self.receptance.at(h, row, column)
-        };
-        fill_circulant(
-            transform,
-            shapes,
-            block,
-            &self.deviations,
-            factors.matrix_mut(),
-        );
-        let regular = factors.factor();
-        self.elimination = Some(factors);
-        regular
+        let deviates = |own: &Complex64| own.norm_sqr() != 0.0;
+        self.is_mistuned = self.deviations.iter().any(deviates);
+        !self.is_mistuned
+            || self
+                .elimination
+                .prepare(transform, &self.receptance, &self.deviations)
     }
 
     /// Strain coordinates to blade forces `D (I + R_zz D)^-1 z`, in place.
     fn blade_forces(&mut self, transform: &SectorTransform) {
-        let Some(factors) = &mut self.elimination else {
+        if self.is_mistuned {
+            self.elimination
+                .blade_forces(transform, &self.receptance, &mut self.strain);
+        } else {
             self.strain.fill(0.0);
-            return;
-        };
-        let stride = padded(self.sectors);
-        transform.to_sectors(&self.strain, &mut self.strain_sectors);
-        self.unknowns.clear();
-        for shape in 0..self.shapes {
-            let own = (0..self.sectors).map(|n| self.strain_sectors.at(shape * stride + n));
-            self.unknowns.extend(own);
         }
-        factors.solve(&mut self.unknowns);
-        for (at, (z, deviation)) in self.unknowns.iter().zip(&self.deviations).enumerate() {
-            let (shape, n) = (at / self.sectors, at % self.sectors);
-            self.strain_sectors.set(shape * stride + n, z * deviation);
-        }
-        transform.to_waves(&self.strain_sectors, &mut self.strain);
     }
 
     /// Motion of the contact under an excitation whose tuned response of the motions [contact, strain, observed] is `response` in
@@ -149,7 +114,7 @@ impl WheelHarmonic {
         let (contact, shapes) = (self.contact, self.shapes);
         self.receptance
             .add_product(0..contact, 0..contact, 1.0, g, answer);
-        if self.elimination.is_none() {
+        if !self.is_mistuned {
             return;
         }
         let strained = contact..contact + shapes;
@@ -188,7 +153,7 @@ impl WheelHarmonic {
         }
         self.receptance
             .add_product(rows.clone(), 0..contact, -1.0, g, &mut waves);
-        if self.elimination.is_some() {
+        if self.is_mistuned {
             self.strain.fill(0.0);
             self.receptance
                 .add_product(strained.clone(), 0..contact, 1.0, g, &mut self.strain);
@@ -199,41 +164,6 @@ impl WheelHarmonic {
         let mut sectors = Field::zeros(3, self.sectors);
         transform.to_sectors(&waves, &mut sectors);
         sectors
-    }
-}
-
-/// `I + circ(R) D`, column-major, unknowns shape after shape and sector after sector.
-fn fill_circulant(
-    transform: &SectorTransform,
-    shapes: usize,
-    block: impl Fn(usize, usize, usize) -> Complex64,
-    deviations: &[Complex64],
-    matrix: &mut [Complex64],
-) {
-    let sectors = transform.sectors();
-    let stride = padded(sectors);
-    let size = shapes * sectors;
-    let scale = 1.0 / (sectors as f64).sqrt();
-    let mut waves = Field::zeros(shapes, sectors);
-    let mut circulant = Field::zeros(shapes, sectors);
-    for column in 0..shapes {
-        for row in 0..shapes {
-            for h in 0..sectors {
-                waves.set(row * stride + h, block(row, column, h) * scale);
-            }
-        }
-        transform.to_sectors(&waves, &mut circulant);
-        for m in 0..sectors {
-            let deviation = deviations[column * sectors + m];
-            let own = &mut matrix[(column * sectors + m) * size..][..size];
-            for row in 0..shapes {
-                for n in 0..sectors {
-                    let apart = if n >= m { n - m } else { n + sectors - m };
-                    own[row * sectors + n] = circulant.at(row * stride + apart) * deviation;
-                }
-            }
-            own[column * sectors + m] += 1.0;
-        }
     }
 }
 
@@ -275,7 +205,7 @@ impl Preconditioner {
         let mut inverse = product.leading_rows(contact);
         inverse.add_identity();
         inverse.invert();
-        let leading = (with_leading && harmonic.elimination.is_some())
+        let leading = (with_leading && harmonic.is_mistuned)
             .then(|| Leading::new(harmonic, transform, &product, &inverse))
             .flatten();
         Self {
