@@ -1,10 +1,11 @@
-"""Holds what README.md shows of its commands against a fresh run of them.
+"""Holds what README.md and docs/questions.md show of commands against a fresh run of them.
 
-    python readme.py README.md results/quickstart report.txt
+    python readme.py README.md docs/questions.md results/quickstart report.txt
 
 The folder is that of the README's main command, `report.txt` what `blisk report` printed for it. Every line of the
 README's excerpts must be one of the fresh output, in the same order: words as they are, numbers within 0.2 %, since
-another processor may round the last digit the other way. `--write` puts fresh lines into the README.
+another processor may round the last digit the other way. `--write` puts fresh lines into the README. Every quoted
+sentence (`> `) of docs/questions.md must stand in the report likewise.
 """
 
 import re
@@ -32,9 +33,21 @@ def numbers(line):
 def alike(shown, fresh):
     if words(shown) != words(fresh):
         return False
-    pairs = zip(numbers(shown), numbers(fresh), strict=True)
+    return near(numbers(shown), numbers(fresh))
+
+
+def near(shown, fresh):
     # Percentages of a few thousandths are rounded to two places.
+    pairs = zip(shown, fresh, strict=True)
     return all(abs(a - b) <= max(WITHIN * abs(b), 0.0101 if abs(b) < 3 else 0.0) for a, b in pairs)
+
+
+def stands_in(quote, line):
+    """Whether a quoted sentence is part of a line."""
+    place = words(line).find(words(quote))
+    before = words(line)[: max(place, 0)].count("#")
+    wanted = numbers(quote)
+    return place >= 0 and near(wanted, numbers(line)[before : before + len(wanted)])
 
 
 def excerpt(name, fresh):
@@ -44,7 +57,7 @@ def excerpt(name, fresh):
     return found
 
 
-def main(readme, results, report, *options):
+def main(readme, questions, results, report, *options):
     path = Path(readme)
     text = path.read_text(encoding="utf-8")
     fresh = {
@@ -66,12 +79,16 @@ def main(readme, results, report, *options):
             if not any(alike(line, other) for other in rest):
                 wrong.append(f"blisk {name} does not print (or not here): {line}")
                 rest = iter(fresh[name])
-    if count < 10:
-        wrong.append(f"only {count} lines are shown")
+    quotes = [line[2:] for line in Path(questions).read_text(encoding="utf-8").splitlines() if line.startswith("> ")]
+    for quote in quotes:
+        if not any(stands_in(quote, line) for line in fresh["report"]):
+            wrong.append(f"{questions} quotes what blisk report does not print: {quote}")
+    if count < 10 or len(quotes) < 8:
+        wrong.append(f"only {count} lines are shown, and {len(quotes)} quoted")
     for line in wrong:
         print("readme:", line)
     if not wrong:
-        print(f"readme: {count} lines of the README are those of a fresh run")
+        print(f"readme: {count} lines of the README and {len(quotes)} quotes are those of a fresh run")
     return 1 if wrong else 0
 
 
