@@ -29,7 +29,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 23] = [
+const NOT_RUN: [(&str, &str); 24] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -43,6 +43,7 @@ const NOT_RUN: [(&str, &str); 23] = [
         "cargo deny",
         "is a program of its own, and asks the network",
     ),
+    ("cargo publish", "sends the package to crates.io"),
     ("cd \"$PBS_O_WORKDIR\"", "is the scheduler's folder"),
     ("qsub", "needs PBS; the program's part of it is run"),
     ("array=$(qsub", "needs PBS"),
