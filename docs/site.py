@@ -3,7 +3,7 @@
     python3 docs/site.py FOLDER [MDBOOK]
 
 `docs/SUMMARY.md` names the pages and their order, `book.toml` the settings. Pages keep their places relative to each
-other below FOLDER/source. Files that they link to and that are no page of the book are copied beside them. The site is
+other below FOLDER/source. Other pages that they link to come last, other files are copied beside them. The site is
 FOLDER/html. Ends with 1 if mdBook warns, or if a link of the site leads to no file or to no heading.
 """
 
@@ -18,8 +18,6 @@ from urllib.parse import unquote, urlsplit
 
 ROOT = Path(__file__).resolve().parent.parent
 LINK = re.compile(r"(\]\()([^)\s]+)(\))")
-# What mdBook does not copy by itself: pages that are not in the book, and hidden folders.
-UNCOPIED = ".md"
 
 
 def inside(path):
@@ -40,7 +38,7 @@ def relative(target, page):
 
 
 def laid_out(page, book, source):
-    """The text of a page with its links as they are in the book; copies what they lead to beside the book's pages."""
+    """The text of a page with its links as they are in the book. Adds pages that they lead to, and copies files."""
     wrong = []
 
     def link(match):
@@ -50,10 +48,12 @@ def laid_out(page, book, source):
         target = Path(os.path.normpath(page.parent / address))
         if not (ROOT / target).exists():
             wrong.append(f"{page}: {address}: no such file")
-        elif target not in book:
-            if (ROOT / target).is_dir() or target.suffix == UNCOPIED:
-                wrong.append(f"{page}: {address}: neither a page of docs/SUMMARY.md nor a file")
-                return match[0]
+        elif (ROOT / target).is_dir():
+            wrong.append(f"{page}: {address}: a folder, not a file")
+        elif target.suffix == ".md":
+            if target not in book:
+                book.append(target)
+        else:
             place = source / inside(target)
             place.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(ROOT / target, place)
@@ -122,14 +122,18 @@ def main(folder, mdbook="mdbook"):
     shutil.copyfile(ROOT / "book.toml", folder / "book.toml")
     summary, book = pages()
     wrong = [f"docs/SUMMARY.md names {page} twice" for page in set(book) if book.count(page) > 1]
-    for page in book:
-        text, faults = laid_out(page, set(book), source)
+    listed, titles = len(book), {}
+    for page in book:  # which grows by the pages that its pages link to
+        text, faults = laid_out(page, book, source)
+        titles[page] = text.partition("\n")[0].lstrip("# ")
         wrong += faults
         place = source / inside(page)
         place.parent.mkdir(parents=True, exist_ok=True)
         place.write_text(text, encoding="utf-8")
-    named = iter(book)
+    named, others = iter(book), book[listed:]
     inner = LINK.sub(lambda match: f"{match[1]}{inside(next(named)).as_posix()}{match[3]}", summary)
+    if others:
+        inner += "\n# Others\n\n" + "".join(f"- [{titles[page]}]({inside(page).as_posix()})\n" for page in others)
     (source / "SUMMARY.md").write_text(inner, encoding="utf-8")
     ended = subprocess.run([mdbook, "build", str(folder)], capture_output=True, text=True, check=False)
     said = ended.stdout + ended.stderr
