@@ -129,15 +129,19 @@ fn a_broken_link_is_found() {
 }
 
 #[test]
-fn every_page_of_docs_stands_in_its_index() {
+fn every_page_of_docs_stands_in_its_index_and_on_the_site() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
-    let index = std::fs::read_to_string(docs.join("README.md")).unwrap();
-    let named: BTreeSet<String> = links(&index).into_iter().collect();
+    let named_by = |page: &str| -> BTreeSet<String> {
+        let text = std::fs::read_to_string(docs.join(page)).unwrap();
+        links(&text).into_iter().collect()
+    };
+    let (index, summary) = (named_by("README.md"), named_by("SUMMARY.md"));
     for entry in std::fs::read_dir(&docs).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        if is_page(&path) && name != "README.md" {
-            assert!(named.contains(&name), "{name} is not in docs/README.md");
+        if is_page(&path) && !["README.md", "SUMMARY.md"].contains(&name.as_str()) {
+            assert!(index.contains(&name), "{name} is not in docs/README.md");
+            assert!(summary.contains(&name), "{name} is not in docs/SUMMARY.md");
         }
     }
 }

@@ -13,6 +13,7 @@ mod long_tests;
 mod map;
 mod methods;
 mod paths;
+mod sentences;
 
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 
 use crate::blisk::{GOOD, Place};
 
@@ -128,17 +128,31 @@ fn every_command_of_the_documentation_is_one_of_the_program() {
     assert!(count > 60, "{count}");
 }
 
+fn page_of_commands() -> String {
+    let found = pages()
+        .into_iter()
+        .find(|(name, _)| name == "docs/commands.md");
+    found.expect("docs/commands.md").1
+}
+
 #[test]
-fn the_commands_of_the_readme_run_on_a_small_study() {
+fn the_page_of_commands_has_every_command() {
+    let page = page_of_commands();
+    let known = blisk::cli::Arguments::command();
+    let names = known.get_subcommands().map(clap::Command::get_name);
+    let lacks = |name: &&str| *name != "help" && !page.contains(&format!("\n| `blisk {name}"));
+    let missing: Vec<&str> = names.filter(lacks).collect();
+    assert!(missing.is_empty(), "docs/commands.md lacks {missing:?}");
+}
+
+#[test]
+fn the_commands_of_their_page_run_on_a_small_study() {
     let study = GOOD.replace("patterns = 10", "patterns = 75");
     let place = Place::with(&study);
     assert_eq!(place.run(&["run", "study.toml"]).code, 0);
-    let (_, readme) = pages()
-        .into_iter()
-        .find(|(name, _)| name == "README.md")
-        .expect("README.md");
+    let page = page_of_commands();
     let mut run = Vec::new();
-    for line in readme.lines().filter(|line| line.starts_with("| `blisk ")) {
+    for line in page.lines().filter(|line| line.starts_with("| `blisk ")) {
         let command = commands(line).into_iter().next().expect("a command");
         // What is in brackets may be left out; what needs a cluster, an import or another folder is tested elsewhere.
         let mut short = command;

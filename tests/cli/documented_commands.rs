@@ -29,7 +29,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 20] = [
+const NOT_RUN: [(&str, &str); 24] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -43,6 +43,7 @@ const NOT_RUN: [(&str, &str); 20] = [
         "cargo deny",
         "is a program of its own, and asks the network",
     ),
+    ("cargo publish", "sends the package to crates.io"),
     ("cd \"$PBS_O_WORKDIR\"", "is the scheduler's folder"),
     ("qsub", "needs PBS; the program's part of it is run"),
     ("array=$(qsub", "needs PBS"),
@@ -61,6 +62,15 @@ const NOT_RUN: [(&str, &str); 20] = [
         "needs the other programs that it measures",
     ),
     ("python3 benches/scaling/run.py", "measures for minutes"),
+    (
+        "python3 docs/site.py",
+        "needs mdBook; the stage site of .ci/run runs it",
+    ),
+    ("python docs/figures.py", "writes a figure of the clone"),
+    (
+        "python docs/quickstart.py",
+        "writes a figure of the clone, and needs pyarrow",
+    ),
     ("gmsh", "is no part of a clone"),
     ("ccx", "is no part of a clone"),
     ("pip install", "installs outside of the clone"),
