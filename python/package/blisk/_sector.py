@@ -11,7 +11,7 @@ from typing import Any, Optional, Union
 from . import _native
 from ._answer import Answer, answer_of
 from ._import import _abaqus, _ansys, _arrays, _nastran
-from ._import._run import Matrices, name_of, refused, symmetric
+from ._import._run import Held, Matrices, held_nodes, name_of, refused, symmetric
 from ._import._write import Import, Imported, Tables, Wheel, blade_of
 
 _Path = Union[str, "os.PathLike[str]"]
@@ -90,7 +90,7 @@ class Sector:
         blade_emat: Optional[_Path] = None,
         blade: Union[str, Iterable[int], None] = None,
         rst: Optional[_Path] = None,
-        held: Iterable[int] = (),
+        held: Held = (),
         name: Optional[str] = None,
         low_face: Optional[str] = None,
         high_face: Optional[str] = None,
@@ -112,12 +112,13 @@ class Sector:
         ``blade_emat``, the ``.emat`` file of the run itself, and ``blade``, a component or the numbers of the elements.
         ``rst``: a result file that is compared as well. One of a cyclic analysis: its frequencies by nodal diameter. One
         of the sector alone: each mode has to satisfy ``K u = omega^2 M u`` away from the faces and the held nodes.
-        ``held``: nodes whose rows are taken out as well, like free ones on the axis.
+        ``held``: nodes whose rows are taken out as well, like free ones on the axis: a set, or node numbers.
         ``ring``, ``damper`` with files of their own: the keys ``full`` and ``cdb``, and ``held``.
         """
-        own = _ansys.run(full, cdb, held)
+        own = _ansys.run(full, cdb, held, sets)
         others = {
-            body: _ansys.run(table["full"], table["cdb"], table.get("held", ())) for body, table in _with_files(ring, damper, ("full", "cdb"))
+            body: _ansys.run(table["full"], table["cdb"], table.get("held", ()))
+            for body, table in _with_files(ring, damper, ("full", "cdb"))
         }
         alone: Optional[Matrices] = None
         if blade_full is not None:
@@ -153,7 +154,7 @@ class Sector:
         stiffness_name: Optional[str] = None,
         mass_name: Optional[str] = None,
         blade_stiffness_name: Optional[str] = None,
-        held: Iterable[int] = (),
+        held: Held = (),
         name: Optional[str] = None,
         low_face: Optional[str] = None,
         high_face: Optional[str] = None,
@@ -175,12 +176,12 @@ class Sector:
         ``rows``: node and direction (1, 2, 3) of each row of an ``.op2`` or ``.op4``, shape (n, 2); unless given 3 or 6
         rows for each grid point in ascending order. Empty rows are left out, as those of rotations are.
         ``blade``: the stiffness of the blade's elements alone, likewise, with ``blade_rows`` and ``blade_stiffness_name``.
-        ``held``: grid points whose rows are taken out, where the matrices are those without SPC.
+        ``held``: grid points whose rows are taken out, where the matrices are those without SPC: a set, or numbers.
         ``ring``, ``damper`` with files of their own: the keys ``bdf`` and ``matrices``, and ``rows``, ``held``.
         """
         names = (stiffness_name, mass_name)
         made = _nastran.matrices(_nastran.grids(bdf), matrices, mass or matrices, rows, names)
-        own = _nastran.run(bdf, made, held)
+        own = _nastran.run(bdf, made, held, sets)
         others = {}
         for body, table in _with_files(ring, damper, ("bdf", "matrices")):
             points = _nastran.grids(table["bdf"])
@@ -190,7 +191,7 @@ class Sector:
         if blade is not None:
             of_blade = rows if blade_rows is None else blade_rows
             alone = _nastran.matrices(own.positions, blade, None, of_blade, (blade_stiffness_name, None)).without_held(
-                held
+                held_nodes(held, own.sets, sets)
             )
         alone = blade_of(own, alone, "blade, a file with the stiffness of the blade's elements alone")
         wheel = Wheel(
@@ -212,7 +213,7 @@ class Sector:
         observe: Tables,
         blade_stiffness: Optional[_Path] = None,
         blade_inp: Optional[_Path] = None,
-        held: Iterable[int] = (),
+        held: Held = (),
         name: Optional[str] = None,
         low_face: Optional[str] = None,
         high_face: Optional[str] = None,
@@ -233,10 +234,11 @@ class Sector:
         of its text formats. ``COORDINATE`` does not name its rows: they are those of the nodes of the elements.
         ``blade_stiffness``: that of a job with the blade's elements alone, same nodes; ``blade_inp``: the input file of
         that job, which ``COORDINATE`` needs.
-        ``held``: nodes whose rows are taken out; rows with a penalty of 1e30 or more on the diagonal are, too.
+        ``held``: nodes whose rows are taken out, a set or node numbers; rows with a penalty of 1e30 or more on the
+        diagonal are, too.
         ``ring``, ``damper`` with files of their own: the keys ``inp``, ``stiffness`` and ``mass``, and ``held``.
         """
-        own = _abaqus.run(inp, stiffness, mass, held)
+        own = _abaqus.run(inp, stiffness, mass, held, sets)
         others = {
             body: _abaqus.run(table["inp"], table["stiffness"], table["mass"], table.get("held", ()))
             for body, table in _with_files(ring, damper, ("inp", "stiffness", "mass"))
@@ -244,7 +246,7 @@ class Sector:
         alone = None
         if blade_stiffness is not None:
             deck = _abaqus.Deck(inp if blade_inp is None else blade_inp)
-            alone = _abaqus.matrices(deck, blade_stiffness, None).without_held(held)
+            alone = _abaqus.matrices(deck, blade_stiffness, None).without_held(held_nodes(held, own.sets, sets))
         alone = blade_of(own, alone, "blade_stiffness, the .mtx file of a job with the blade's elements alone")
         wheel = Wheel(
             name_of(name, inp), sectors, out, force, observe, low_face, high_face, ring, damper, contact, sets, units,
@@ -266,7 +268,7 @@ class Sector:
         observe: Tables,
         rows: Optional[Sequence[Sequence[int]]] = None,
         elements: Optional[Mapping[str, Any]] = None,
-        held: Iterable[int] = (),
+        held: Held = (),
         name: str = "wheel",
         low_face: Optional[str] = None,
         high_face: Optional[str] = None,
@@ -289,13 +291,13 @@ class Sector:
         ``rows``: node and direction (1, 2, 3 for x, y, z) of each row, shape (n, 2); three for each node unless given.
         ``elements``: node numbers of solid elements by their type in Abaqus or meshio, like ``{"C3D8": array of (k, 8)}``;
         a contact needs them, or a ``normal``.
-        ``held``: nodes whose rows are taken out.
+        ``held``: nodes whose rows are taken out: a set, or node numbers.
         """
-        own, named = _arrays.run(stiffness, mass, rows, nodes, elements, held)
+        own, named = _arrays.run(stiffness, mass, rows, nodes, elements, held, sets)
         blade = symmetric(blade_stiffness, "blade_stiffness")
         if blade.shape[0] != len(named):
             raise refused(f"blade_stiffness has {blade.shape[0]} rows, stiffness {len(named)}; accepted: the same rows")
-        alone = blade_of(own, Matrices(named, blade).without_held(held), "blade_stiffness")
+        alone = blade_of(own, Matrices(named, blade).without_held(held_nodes(held, own.sets, sets)), "blade_stiffness")
         wheel = Wheel(
             name, sectors, out, force, observe, low_face, high_face, ring, damper, contact, sets, units, axis,
             position_tolerance_m, frequencies, check,

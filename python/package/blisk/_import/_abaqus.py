@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Optional
 
 from .._needed import needed
-from ._run import Matrices, Path_, Run, refused, symmetric, text_of_file
+from ._run import Held, Matrices, Path_, Run, held_nodes, refused, symmetric, text_of_file
 
 _SOLID = re.compile(r"C3D(4|6|8|10|15|20)", re.IGNORECASE)
 """Solid elements by their number of nodes; letters after it say how they are integrated."""
@@ -223,12 +223,14 @@ def _named(
     return by_deck, own
 
 
-def run(inp: Path_, stiffness: Path_, mass: Path_, held: Iterable[int]) -> Run:
+def run(
+    inp: Path_, stiffness: Path_, mass: Path_, held: Held, more: Optional[Mapping[str, Iterable[int]]] = None
+) -> Run:
     """Mesh and matrices of a job of Abaqus."""
     deck = Deck(inp)
     own = matrices(deck, stiffness, mass)
     unknown = next((node for node, _ in own.rows if node not in deck.positions), None)
     if unknown is not None:
         raise refused(f"{stiffness} has node {unknown}, which is not in {inp}; accepted: files of one job")
-    elements = list(deck.elements.values())
-    return Run("calculix", deck.text(), deck.positions, elements, deck.sets(), own.without_held(held))
+    elements, sets = list(deck.elements.values()), deck.sets()
+    return Run("calculix", deck.text(), deck.positions, elements, sets, own.without_held(held_nodes(held, sets, more)))

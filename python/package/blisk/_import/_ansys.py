@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
-from typing import Any, Union
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, Optional, Union
 
 from .._needed import needed
 from . import _check
-from ._run import Matrices, Path_, Run, refused, symmetric, text_of_file
+from ._run import Held, Matrices, Path_, Run, held_nodes, refused, symmetric, text_of_file
 
 
 def reader() -> Any:
@@ -40,7 +40,7 @@ def matrices(path: Path_) -> Matrices:
     return Matrices([rows[row] for row in kept], *own)
 
 
-def run(full: Path_, cdb: Path_, held: Iterable[int]) -> Run:
+def run(full: Path_, cdb: Path_, held: Held, more: Optional[Mapping[str, Iterable[int]]] = None) -> Run:
     """Mesh and matrices of a run of Ansys."""
     archive = _archive(cdb)
     own = matrices(full)
@@ -57,7 +57,7 @@ def run(full: Path_, cdb: Path_, held: Iterable[int]) -> Run:
     for name, numbers in archive.element_components.items():
         nodes = {node for element in numbers for node in of_element.get(int(element), [])}
         sets.setdefault(name.upper(), nodes)
-    return Run("ansys", text_of_file(cdb), positions, elements, sets, own.without_held(held))  # type: ignore[arg-type]
+    return Run("ansys", text_of_file(cdb), positions, elements, sets, own.without_held(held_nodes(held, sets, more)))  # type: ignore[arg-type]
 
 
 def _archive(cdb: Path_) -> Any:

@@ -7,7 +7,7 @@ from typing import Any, Optional
 
 from .._needed import needed
 from ._abaqus import deck_text
-from ._run import Matrices, Run, refused, symmetric
+from ._run import Held, Matrices, Run, held_nodes, refused, symmetric
 
 _KINDS = {
     "tetra": "C3D4",
@@ -58,7 +58,8 @@ def run(
     rows: Optional[Sequence[Sequence[int]]],
     nodes: Any,
     elements: Optional[Mapping[str, Any]],
-    held: Iterable[int],
+    held: Held,
+    more: Optional[Mapping[str, Iterable[int]]] = None,
 ) -> tuple[Run, list[tuple[int, int]]]:
     """Mesh and matrices in memory, and the rows of the matrices as they were given."""
     positions, own, sets = mesh(nodes, elements)
@@ -66,7 +67,7 @@ def run(
     named = named_rows(rows, positions, k.shape[0])
     if m.shape != k.shape:
         raise refused(f"mass has {m.shape[0]} rows, stiffness {k.shape[0]}; accepted: the same rows")
-    matrices = Matrices(named, k, m).without_held(held)
+    matrices = Matrices(named, k, m).without_held(held_nodes(held, sets, more))
     text = deck_text(positions, own, {})
     made = Run("calculix", text, positions, [nodes_ for _, _, nodes_ in own], {}, matrices)
     made.add_sets({name: members for name, members in sets.items() if members})

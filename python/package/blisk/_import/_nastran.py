@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Optional
 
 from .._needed import needed
-from ._run import Matrices, Path_, Run, refused, symmetric, text_of_file
+from ._run import Held, Matrices, Path_, Run, held_nodes, refused, symmetric, text_of_file
 
 Rows = Optional[Sequence[Sequence[int]]]
 
@@ -129,10 +129,12 @@ def matrices(
     return Matrices(named, own, mass).keeping(kept)
 
 
-def run(bdf: Path_, own: Matrices, held: Iterable[int]) -> Run:
+def run(bdf: Path_, own: Matrices, held: Held, more: Optional[Mapping[str, Iterable[int]]] = None) -> Run:
     """Mesh and matrices of a run of Nastran."""
     positions = grids(bdf)
     unknown = next((node for node, _ in own.rows if node not in positions), None)
     if unknown is not None:
         raise refused(f"the matrices have grid point {unknown}, which is not in {bdf}; accepted: files of one model")
-    return Run("nastran", text_of_file(bdf), positions, elements(bdf), sets(bdf), own.without_held(held))
+    own_sets = sets(bdf)
+    kept = own.without_held(held_nodes(held, own_sets, more))
+    return Run("nastran", text_of_file(bdf), positions, elements(bdf), own_sets, kept)

@@ -126,6 +126,23 @@ def _set1(name: str, nodes: list[int]) -> str:
     return "\n".join(lines) + "\n"
 
 
+Held = Union[str, Iterable[int]]
+"""Nodes whose rows are taken out: a set by its name, or node numbers."""
+
+
+def held_nodes(
+    held: Held, sets: Mapping[str, Iterable[int]], more: Optional[Mapping[str, Iterable[int]]] = None
+) -> set[int]:
+    """The nodes of ``held``; ``more``: sets that stand in no file of the code."""
+    if not isinstance(held, str):
+        return {int(node) for node in held}
+    known = {name.upper(): nodes for name, nodes in {**sets, **(more or {})}.items()}
+    if held.upper() not in known:
+        names = ", ".join(sorted(known)) or "none: the mesh has no sets"
+        raise refused(f"held = {held!r} is not a set of the mesh; accepted: node numbers, or {names}")
+    return {int(node) for node in known[held.upper()]}
+
+
 def symmetric(matrix: Any, what: str) -> Any:
     """Both triangles of a matrix, of which one is stored, or both."""
     sparse = needed("scipy.sparse", "an import")
