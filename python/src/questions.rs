@@ -8,7 +8,6 @@ use blisk::model::sector::bundle;
 use blisk::population::monte_carlo::LoadCaseName;
 use blisk::population::statistics::EstimateTarget;
 use blisk::report::{FIGURES, GroupReport, StudyReport, Wheels, figure as drawn_figure};
-use blisk::response::reference::ReferenceSettings;
 use blisk::study::{
     CampbellRequest, EngineSource, EstimateRequest, FullSettings, PipelineError,
     ReducedEngineSource, ReplayRequest, ReportRequest, RotationLoad, StoredStudy,
@@ -18,6 +17,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::results::{Answer, answer_of};
+use crate::run::full_samples;
 use crate::study::CheckedStudy;
 use crate::watch::{OnSignal, watch};
 
@@ -50,7 +50,7 @@ pub fn campbell(
 ) -> PyResult<Answer> {
     let study = Arc::clone(&study.0);
     let report = watch(py, None, OnSignal::Leave, move |_| {
-        let models = if bundles.is_empty() {
+        let at_speeds = if bundles.is_empty() {
             vec![(None, load_sector_model(&study)?)]
         } else {
             { bundles.into_iter() }
@@ -59,7 +59,7 @@ pub fn campbell(
         };
         blisk::study::campbell(&CampbellRequest {
             study: &study,
-            models: &models,
+            models: &at_speeds,
             engine_orders: &engine_orders,
             modes,
             range_rpm,
@@ -94,13 +94,12 @@ pub fn replay(
 ) -> PyResult<Answer> {
     let answer = watch(py, None, OnSignal::Leave, move |_| {
         let stored = StoredStudy::open(&results, study_file.as_deref())?;
-        let least = stored.study.solver.samples_per_period;
         let request = ReplayRequest {
             scenario,
             pattern,
             full: full.then(|| FullSettings {
                 harmonics: None,
-                samples_per_period: ReferenceSettings::SAMPLES_PER_PERIOD.max(least),
+                samples_per_period: full_samples(&stored.study),
             }),
         };
         let replay = blisk::study::replay(&stored, &ReducedEngineSource, &request)?;

@@ -81,6 +81,8 @@ def response(
     load_case: Optional[str] = None,
     engine_order: Optional[int] = None,
     standard_deviation: Optional[float] = None,
+    fidelity: str = "reduced",
+    continuation: bool = False,
 ) -> Table:
     """Amplitude of every blade of one wheel over frequency.
 
@@ -91,7 +93,14 @@ def response(
     ``frequencies_hz``: frequencies of the excitation, Hz, positive and ascending.
     ``pattern``: id of the pattern; the tuned wheel unless given.
     Load case, engine order and standard deviation have to be named where the study has several.
+    ``fidelity``: ``full`` solves every contact dof of the whole wheel, finely sampled; slow.
+    ``continuation``: the curve is followed through its folds, upwards and downwards; the table has more columns
+    (``direction``, ``branch``, ...), and rows at folds as well.
     """
+    if fidelity not in ("reduced", "full"):
+        raise ValueError(f"fidelity = {fidelity!r} is not accepted; accepted: reduced, full")
+    if continuation and fidelity == "full":
+        raise ValueError("a curve is followed on the reduced model; accepted: continuation with fidelity = 'reduced'")
     frequencies = [float(frequency) for frequency in frequencies_hz]
     ascending = all(low < high for low, high in zip(frequencies, frequencies[1:]))
     if not frequencies or not ascending or not 0.0 < frequencies[0] <= frequencies[-1] < float("inf"):
@@ -99,7 +108,8 @@ def response(
     excitation = (load_case, engine_order, standard_deviation)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "response.parquet"
-        return _native.response(study._checked, pattern, load, frequencies, *excitation, path)
+        way = "followed" if continuation else fidelity
+        return _native.response(study._checked, pattern, load, frequencies, *excitation, way, path)
 
 
 def model(study: Study, export: Union[str, os.PathLike[str], None] = None) -> Answer:

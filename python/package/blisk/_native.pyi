@@ -119,6 +119,7 @@ def response(
     load_case: Optional[str],
     engine_order: Optional[int],
     standard_deviation: Optional[float],
+    way: str,
     path: _Path,
 ) -> Table: ...
 def compare(folders: Sequence[_Path], percent: float, baseline: Optional[int]) -> tuple[str, str]: ...
