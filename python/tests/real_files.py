@@ -64,7 +64,9 @@ def elements_of_ansys(path):
         for axis in numpy.eye(3):
             shift = [axis[dof % 3] for dof in dofs]
             turn = [numpy.cross(axis, positions[node])[dof % 3] for node, dof in zip(nodes, dofs)]
-            worst = max(worst, *(abs(stiffness @ numpy.array(own)).max() / abs(stiffness).max() for own in (shift, turn)))
+            worst = max(
+                worst, *(abs(stiffness @ numpy.array(own)).max() / abs(stiffness).max() for own in (shift, turn))
+            )
         count += 1
     assert count == 40 and worst < 1e-12, (count, worst)
     print(f"{path.name}: {count} elements, largest force of a rigid motion {worst:.1e} of the stiffness")

@@ -68,6 +68,7 @@ def test_a_campbell_table_is_that_of_the_command(study):
 def test_a_model_is_that_of_the_command_and_is_exported(study):
     answer = blisk.model(study, export="bundle")
     is_that_of(answer, "model", "study.toml")
+    assert answer._repr_html_().startswith("<pre>")
     sector = blisk.Sector.from_bundle("bundle")
     assert (sector.sectors, sector.model["source"]) == (6, "bundle")
     assert numpy.allclose(sector.frequencies_hz(3)[2], exact_hz(2, 0.0), rtol=1e-9)

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import matplotlib
 import meshio
 import numpy
 import pytest
@@ -24,6 +25,7 @@ import blisk
 from blisk._import import _ansys, _nastran
 from blisk._import._run import Matrices, Run
 
+matplotlib.use("Agg")
 CCX = ROOT / "tests" / "data" / "calculix_wheel"
 WORDS = {"force": {"set": "TIP", "component": "t"}, "observe": {"name": "tip", "set": "TIP"}}
 
@@ -129,6 +131,18 @@ def test_a_sector_is_the_model_of_a_study(solid, small, tmp_path):
     nearest = min(abs(hz / tuned["tuned_frequency_hz"] - 1) for hz in sector.frequencies_hz()[2])
     assert nearest < 1e-3
     assert blisk.Sector.from_bundle(sector.folder).frequencies_hz() == sector.report["frequencies_hz"]
+    lines = sector.plot(2).get_lines()
+    assert [list(line.get_ydata()) for line in lines] == [
+        [own[mode] for own in sector.frequencies_hz(2)] for mode in (0, 1)
+    ]
+
+
+def test_rows_that_a_penalty_holds_and_empty_rows_are_left_out():
+    stiffness = scipy.sparse.csr_matrix(numpy.diag([2.0, 1e36, 0.0, 3.0]))
+    kept = Matrices([(1, 0), (1, 1), (2, 0), (2, 1)], stiffness, stiffness).without_held(())
+    assert kept.rows == [(1, 0), (2, 1)] and (kept.mass.toarray() == numpy.diag([2.0, 3.0])).all()
+    with pytest.raises(blisk.InputError, match="no row that is free"):
+        kept.without_held([1, 2])
 
 
 # Abaqus

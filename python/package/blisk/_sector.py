@@ -13,6 +13,7 @@ from ._answer import Answer, answer_of
 from ._import import _abaqus, _ansys, _arrays, _nastran
 from ._import._run import Held, Matrices, held_nodes, name_of, refused, symmetric
 from ._import._write import Import, Imported, Tables, Wheel, blade_of
+from ._needed import needed
 
 _Path = Union[str, "os.PathLike[str]"]
 _Sets = Optional[Mapping[str, Iterable[int]]]
@@ -338,6 +339,17 @@ class Sector:
         if not 1 <= count <= 1000:
             raise ValueError(f"count = {count} is not accepted; accepted: 1 to 1000")
         return _native.bundle_frequencies(self.folder, count)
+
+    def plot(self, count: int = 6, *, ax: Any = None) -> Any:
+        """The contact-free frequencies over the nodal diameter as axes of matplotlib; ``ax``: axes to draw into."""
+        by_diameter = self.frequencies_hz(count)
+        if ax is None:
+            _, ax = needed("matplotlib.pyplot", "plot()").subplots()
+        for mode in range(min(map(len, by_diameter))):
+            ax.plot(range(len(by_diameter)), [own[mode] for own in by_diameter], marker="o", label=f"mode {mode + 1}")
+        ax.set_xlabel("nodal diameter")
+        ax.set_ylabel("natural frequency without contact, Hz")
+        return ax
 
     def __repr__(self) -> str:
         return f"<blisk.Sector {self.name}: {self.sectors} sectors, {self.dofs} dofs, {self.folder}>"
