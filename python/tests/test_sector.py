@@ -427,18 +427,36 @@ def test_a_result_file_of_another_model_fails_the_check(beam, tmp_path):
 
 
 def test_frequencies_that_differ_from_those_of_the_matrices_fail_the_check(solid, tmp_path, monkeypatch):
-    native = blisk._sector._native.bundle_frequencies
-    monkeypatch.setattr(
-        blisk._sector._native,
-        "bundle_frequencies",
-        lambda *own: [[1.00001 * hz for hz in each] for each in native(*own)],
-    )
+    native = blisk._sector._native.import_sector
+
+    def detuned(*own):
+        values, text = native(*own)
+        report = json.loads(values)
+        report["frequencies_hz"] = [[1.00001 * hz for hz in each] for each in report["frequencies_hz"]]
+        return json.dumps(report), text
+
+    monkeypatch.setattr(blisk._sector._native, "import_sector", detuned)
     with pytest.raises(blisk.BliskError, match="of nodal diameter .* Hz in the bundle and .* by a cyclic") as refused:
         blisk.Sector.from_arrays(
             solid.stiffness, solid.mass, solid.blade_stiffness, solid.positions, out=tmp_path, sectors=6,
             held=[node + 1 for node in solid.held], sets={"TIP": [solid.tip + 1]}, **WORDS,
         )  # fmt: skip
     assert refused.value.exit_code == 11
+
+
+def test_a_large_sector_is_checked_at_three_nodal_diameters_unless_others_are_named(solid, tmp_path, monkeypatch):
+    monkeypatch.setattr(blisk._import._write, "_ROWS_OF_ALL", 10)
+    for check, expected in ((True, [0, 1, 3]), ([2], [2]), ([], None), (False, None)):
+        sector = blisk.Sector.from_arrays(
+            solid.stiffness, solid.mass, solid.blade_stiffness, solid.positions, out=tmp_path, sectors=6, check=check,
+            held=[node + 1 for node in solid.held], sets={"TIP": [solid.tip + 1]}, **WORDS,
+        )  # fmt: skip
+        assert sector.check.get("nodal_diameters") == expected
+    with pytest.raises(ValueError, match="nodal diameters from 0 to 3"):
+        blisk.Sector.from_arrays(
+            solid.stiffness, solid.mass, solid.blade_stiffness, solid.positions, out=tmp_path, sectors=6, check=[4],
+            held=[node + 1 for node in solid.held], sets={"TIP": [solid.tip + 1]}, **WORDS,
+        )  # fmt: skip
 
 
 def test_a_cyclic_result_has_each_pair_of_modes_twice():

@@ -42,8 +42,8 @@ class Sector:
     ``position_tolerance_m``: how far the faces may be apart, m.
     ``frequencies``: so many contact-free frequencies per nodal diameter are computed, Hz.
     ``check``: these frequencies are compared with a cyclic eigenproblem of the same matrices in SciPy, which shares
-    nothing with the program: every nodal diameter, those that are listed, or none (``False``). A relative difference
-    beyond 1e-6 is a ``BliskError`` with the exit code 11, that of a failed verification.
+    nothing with the program: at every nodal diameter (of a sector of more than 5000 rows at 0, 1 and the last one), at
+    those that are listed, or at none (``False``). A relative difference beyond 1e-6 is a ``BliskError`` with the exit code 11, that of a failed verification.
 
     What is not accepted is an ``InputError`` with the words of ``blisk import``. A package that is missing is an
     ``ImportError`` that names it.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,6 +16,9 @@ from . import _check, _faces
 from ._run import Matrices, Path_, Run, refused
 
 Tables = Union[Mapping[str, Any], Sequence[Mapping[str, Any]], None]
+
+_ROWS_OF_ALL = 5000
+"""A sector of at most so many rows is checked at every nodal diameter; SciPy takes seconds for each of a larger one."""
 
 
 @dataclass
@@ -51,6 +55,11 @@ class Wheel:
             raise ValueError("low_face and high_face go together; accepted: both, or none and they are found")
         if self.sectors < 1:
             raise ValueError(f"sectors = {self.sectors} is not accepted; accepted: a whole number of at least 1")
+        if not isinstance(self.check, bool):
+            self.check = sorted({int(own) for own in self.check})
+            last = self.sectors // 2
+            if any(not 0 <= own <= last for own in self.check):
+                raise ValueError(f"check = {self.check} is not accepted; accepted: nodal diameters from 0 to {last}")
 
 
 @dataclass
@@ -161,20 +170,23 @@ class Import:
         """Writes all, makes the bundle, and compares its frequencies with those of a cyclic eigenproblem."""
         wheel, folder = self.wheel, Path(self.wheel.out)
         answer = _native.import_sector(self.write(), folder, wheel.frequencies)
-        return Imported(folder, answer, self._checked(folder) if wheel.frequencies else {})
+        ours = json.loads(answer[0])["frequencies_hz"] if wheel.frequencies else []
+        return Imported(folder, answer, self._checked(ours) if ours else {})
 
-    def _checked(self, folder: Path) -> dict[str, Any]:
+    def _checked(self, ours: list[list[float]]) -> dict[str, Any]:
         wheel = self.wheel
-        if wheel.check is False:
+        if wheel.check is False or wheel.check == []:
             return {}
         contacts = _several(wheel.contact) or []
         if any(contact.get("pairing") == "projection" for contact in contacts):
             # The matrices of the bundle are those of the projected ring.
             return {"skipped": "the ring is projected on the blisk: the bundle has other matrices than the files"}
         every = range(wheel.sectors // 2 + 1)
-        diameters = every if wheel.check is True else sorted({int(own) for own in wheel.check})
-        if any(own not in every for own in diameters):
-            raise ValueError(f"check = {diameters} is not accepted; accepted: nodal diameters from 0 to {every[-1]}")
+        size = sum(len(own.matrices.rows) for own in self.runs.values())
+        if wheel.check is not True:
+            diameters = list(wheel.check)
+        else:
+            diameters = list(every) if size <= _ROWS_OF_ALL else sorted({0, min(1, every[-1]), every[-1]})
         bodies = []
         run = self.runs["blisk"]
         inside = {
@@ -198,7 +210,6 @@ class Import:
             grounding_hz = float(self.tables[body].get("grounding_hz", 0.0))
             bodies.append((matrices, self.pairs.get(body, []), grounding_hz))
         theirs = _check.cyclic_frequencies_hz(bodies, wheel.axis, wheel.sectors, wheel.frequencies, diameters)
-        ours = _native.bundle_frequencies(folder, wheel.frequencies)
         return _check.compared(ours, theirs, wheel.check_tolerance, "a cyclic eigenproblem of the matrices by SciPy")
 
 
