@@ -19,7 +19,7 @@ from ansys.mapdl.reader import examples
 from conftest import ROOT, called
 from pyyeti.nastran import op4
 from scipy.linalg import eigh
-from solid import Solid, brick, of_wheel
+from solid import Solid, assembled, brick, of_wheel
 
 import blisk
 from blisk._import import _ansys, _nastran
@@ -209,6 +209,54 @@ def test_every_text_format_of_abaqus_is_read(solid, wheel_hz, tmp_path, layout):
     has_the_frequencies_of(sector, wheel_hz)
     assert sector.report["observed"] == [["tip", labels([solid.tip])[0]]]
     assert sector.report["blade_dofs"] == 24
+
+
+def test_a_ring_with_files_of_its_own(tmp_path):
+    # Blisk and ring are two jobs with the same node numbers, which are raised for the ring.
+    solid = Solid(with_ring=True)
+    jobs = {"blisk": [e for e in solid.elements if e[0] not in solid.ring]}
+    jobs["ring"] = [e for e in solid.elements if e[0] in solid.ring]
+    jobs["blade"] = [element for element, is_blade in zip(solid.elements, solid.blade) if is_blade]
+    for name, own in jobs.items():
+        used = sorted({node for element in own for node in element})
+        stiffness, mass = assembled(solid.positions, own)
+        lines = [
+            "*NODE",
+            *(f"{at + 1}, {x!r}, {y!r}, {z!r}" for at, (x, y, z) in enumerate(solid.positions[used].tolist())),
+        ]
+        number = {node: at + 1 for at, node in enumerate(used)}
+        for at, element in enumerate(own, start=1):
+            lines += ["*ELEMENT, TYPE=C3D8", ", ".join(map(str, [at, *(number[node] for node in element)]))]
+        sets = {"LANDING": solid.landing, "RING_TOP": solid.ring_top, "BORE": solid.held, "TIP": [solid.tip]}
+        for set_name, nodes in sets.items():
+            there = [str(number[node]) for node in nodes if node in number]
+            lines += [f"*NSET, NSET={set_name}", ", ".join(there)] if there else []
+        (tmp_path / f"{name}.inp").write_text("\n".join(lines) + "\n")
+        # The blade's nodes have the numbers that they have in the blisk.
+        whose = sorted({node for element in jobs["blisk" if name == "blade" else name] for node in element})
+        for kind, matrix in (("STIF1", stiffness), ("MASS1", mass)):
+            entries = scipy.sparse.tril(matrix).tocoo()
+            text = ""
+            for i, j, value in zip(entries.row.tolist(), entries.col.tolist(), entries.data.tolist()):
+                text += f"{whose.index(i // 3) + 1},{i % 3 + 1}, {whose.index(j // 3) + 1},{j % 3 + 1}, {value!r}\n"
+            (tmp_path / f"{name}_{kind}.mtx").write_text(text)
+
+    def files(name):
+        own = {"inp": f"{name}.inp", "stiffness": f"{name}_STIF1.mtx", "mass": f"{name}_MASS1.mtx"}
+        return {key: tmp_path / file for key, file in own.items()}
+
+    sector = blisk.Sector.from_abaqus(
+        **files("blisk"), blade_stiffness=tmp_path / "blade_STIF1.mtx", held="BORE", out=tmp_path / "bundle", sectors=6,
+        ring={**files("ring"), "grounding_hz": 100.0}, contact={"blisk": "LANDING", "ring": "RING_TOP"}, **WORDS,
+    )  # fmt: skip
+    has_the_frequencies_of(sector, solid.wheel_hz(ring_grounding_hz=100.0))
+    assert [own["body"] for own in sector.report["bodies"]] == ["blisk", "ring"]
+    assert sector.report["contact"]["pairs"] == 6
+    with pytest.raises(ValueError, match="ring has inp; accepted: inp, stiffness, mass, or `set`"):
+        blisk.Sector.from_abaqus(
+            **files("blisk"), blade_stiffness=tmp_path / "blade_STIF1.mtx", out=tmp_path / "out", sectors=6,
+            ring={"inp": tmp_path / "ring.inp"}, **WORDS,
+        )  # fmt: skip
 
 
 def test_what_abaqus_writes_and_cannot_be_used_is_refused(solid, tmp_path):
