@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use blisk::cli::ExitStatus;
+use blisk::model::sector::ModelError;
 use blisk::study::{Finding, PipelineError, Problem, StudyError};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
@@ -13,8 +14,12 @@ pub fn of_pipeline(py: Python<'_>, error: &PipelineError) -> PyErr {
         return of_study(py, error);
     }
     let status = ExitStatus::from(error);
-    let findings = match status {
-        ExitStatus::StudyInvalid | ExitStatus::ModelInvalid => Some(only(&error.to_string())),
+    let findings = match (error, status) {
+        (PipelineError::Model(ModelError::ImportFile { path, findings }), _) => {
+            let found = findings.iter().map(|finding| described(path, finding));
+            Some(found.collect())
+        }
+        (_, ExitStatus::StudyInvalid | ExitStatus::ModelInvalid) => Some(only(&error.to_string())),
         _ => None,
     };
     raised(py, status, &error.to_string(), findings)

@@ -4,8 +4,10 @@
 
 mod command;
 mod errors;
+mod questions;
 mod results;
 mod run;
+mod sector;
 mod study;
 mod table;
 mod watch;
@@ -32,5 +34,17 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(results::manifest, module)?)?;
     module.add_function(wrap_pyfunction!(results::report, module)?)?;
     module.add_function(wrap_pyfunction!(results::table, module)?)?;
+    module.add_function(wrap_pyfunction!(questions::model, module)?)?;
+    module.add_function(wrap_pyfunction!(questions::campbell, module)?)?;
+    module.add_function(wrap_pyfunction!(questions::merge, module)?)?;
+    module.add_function(wrap_pyfunction!(questions::replay, module)?)?;
+    module.add_function(wrap_pyfunction!(questions::verify, module)?)?;
+    module.add_function(wrap_pyfunction!(questions::tradeoff, module)?)?;
+    module.add_function(wrap_pyfunction!(questions::estimate, module)?)?;
+    module.add_function(wrap_pyfunction!(questions::figure_names, module)?)?;
+    module.add_function(wrap_pyfunction!(questions::figure, module)?)?;
+    module.add_function(wrap_pyfunction!(sector::import_sector, module)?)?;
+    module.add_function(wrap_pyfunction!(sector::bundle_facts, module)?)?;
+    module.add_function(wrap_pyfunction!(sector::bundle_frequencies, module)?)?;
     Ok(())
 }

@@ -6,11 +6,13 @@ use std::sync::Arc;
 use blisk::cli::threads as threads_of;
 use blisk::population::monte_carlo::{LoadCaseName, Scenario};
 use blisk::population::statistics::Quantity;
-use blisk::population::table::{CurveFormat, TableHeader, write_curve};
+use blisk::population::table::{CurveFormat, TableHeader, write_curve, write_traced_curve};
 use blisk::response::forced_response::ContactCondition;
+use blisk::response::friction::Ring;
+use blisk::response::reference::ReferenceSettings;
 use blisk::study::{
-    CurveRequest, OptimumRequest, PlanRequest, ReducedEngineSource, RunRequest, Study, StudyDigest,
-    set_other_builds_aside,
+    CurveRequest, FullSettings, OptimumRequest, PlanRequest, ReducedEngineSource, RunRequest,
+    Study, StudyDigest, set_other_builds_aside,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -112,10 +114,12 @@ pub fn response(
     load_case: Option<String>,
     engine_order: Option<u32>,
     standard_deviation: Option<f64>,
+    way: &str,
     path: PathBuf,
 ) -> PyResult<Table> {
     let study = Arc::clone(&study.0);
     let contact = load.contact()?;
+    let way = Way::of(way, &study, contact, frequencies_hz.len())?;
     let excited = excitation_of(&study, load_case.as_deref(), engine_order)?;
     let standard_deviation = match pattern {
         None => None,
@@ -130,15 +134,72 @@ pub fn response(
             standard_deviation,
             frequencies_hz: &frequencies_hz,
         };
-        let points = blisk::study::response_curve(&study, &ReducedEngineSource, request)?;
         let header = TableHeader {
             study_digest: StudyDigest::of(&study)?.hex(),
             compression: study.output.compression,
             load_cases: Vec::new(),
         };
+        if way == Way::Followed {
+            let curve = blisk::study::traced_response(&study, &ReducedEngineSource, request)?;
+            write_traced_curve(&path, CurveFormat::Parquet, &curve.points, &header)?;
+            return Ok(Table::read(&path)?);
+        }
+        let points = match way {
+            Way::Full => {
+                let settings = FullSettings {
+                    harmonics: None,
+                    samples_per_period: full_samples(&study),
+                };
+                blisk::study::full_response_curve(&study, &settings, request)?
+            }
+            _ => blisk::study::response_curve(&study, &ReducedEngineSource, request)?,
+        };
         write_curve(&path, CurveFormat::Parquet, &points, &header)?;
         Ok(Table::read(&path)?)
     })
+}
+
+/// How a curve is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// Each frequency on the reduced model.
+    Reduced,
+    /// Each frequency on the full-contact model.
+    Full,
+    /// Followed through its folds.
+    Followed,
+}
+
+impl Way {
+    fn of(
+        name: &str,
+        study: &Study,
+        contact: ContactCondition,
+        frequencies: usize,
+    ) -> PyResult<Self> {
+        let way = match name {
+            "full" => Self::Full,
+            "followed" => Self::Followed,
+            _ => Self::Reduced,
+        };
+        let ring = study.contact.as_ref().map(|contact| contact.ring);
+        let refused = match way {
+            Self::Followed if contact.normal_load_n().is_none() => {
+                "a linear response has one branch; accepted: a normal load in N"
+            }
+            Self::Followed if ring == Some(Ring::Creeping) => {
+                "the curve of a creeping ring is not followed; accepted: contact.ring = \"locked\""
+            }
+            Self::Followed if frequencies < 2 => "continuation needs at least two frequencies",
+            _ => return Ok(way),
+        };
+        Err(PyValueError::new_err(refused))
+    }
+}
+
+/// Samples per period on the full-contact model: finely, and not more coarsely than the study.
+pub fn full_samples(study: &Study) -> usize {
+    ReferenceSettings::SAMPLES_PER_PERIOD.max(study.solver.samples_per_period)
 }
 
 /// A number of newtons, or a linear limit by name.

@@ -2,6 +2,8 @@
 
 import json
 
+import pyarrow
+import pyarrow.parquet
 import pytest
 from conftest import called
 
@@ -54,12 +56,50 @@ def test_a_response_curve_is_that_of_the_command(small, tmp_path):
         asked = ["--pattern", "tuned" if pattern is None else pattern, "--out", "response.parquet"]
         ended = called(*line, *asked, cwd=tmp_path)
         assert ended.returncode == 0, ended.stderr
-        pyarrow = pytest.importorskip("pyarrow")
         assert pyarrow.table(curve).to_pylist() == pyarrow.parquet.read_table(tmp_path / "response.parquet").to_pylist()
         assert (len(curve), curve.units["amplitude_m"]) == (5 * 6, "m")
     assert max(curve["amplitude_m"]) > 1e-4
     slide = blisk.response(study, "slide", [360.0])
     assert slide["status"] == ["ok"] * 6
+
+
+@pytest.mark.parametrize(
+    ("more", "flags"), [({"fidelity": "full"}, ["--fidelity", "full"]), ({"continuation": True}, ["--continuation"])]
+)
+def test_a_curve_on_the_full_model_or_followed_is_that_of_the_command(small, tmp_path, more, flags):
+    study = blisk.Study(**small)
+    (tmp_path / "study.toml").write_text(study.to_toml())
+    curve = blisk.response(study, 50, range(340, 381, 10), 3, **more)
+    line = [
+        "response",
+        "study.toml",
+        "--load",
+        "50",
+        "--frequencies",
+        "340:380:5",
+        "--pattern",
+        3,
+        "--out",
+        "out.parquet",
+    ]
+    ended = called(*line, *flags, cwd=tmp_path)
+    assert ended.returncode == 0, ended.stderr
+    assert pyarrow.table(curve).to_pylist() == pyarrow.parquet.read_table(tmp_path / "out.parquet").to_pylist()
+    assert len(curve) >= 5 * 6
+    assert ("direction" in curve.columns) == ("continuation" in more)
+
+
+def test_a_curve_that_cannot_be_followed_is_refused(small):
+    study = blisk.Study(**small)
+    for load, frequencies, more, words in (
+        ("slide", [350.0, 360.0], {}, "one branch"),
+        (50, [350.0], {}, "two frequencies"),
+        (50, [350.0, 360.0], {"fidelity": "full"}, "reduced model"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            blisk.response(study, load, frequencies, continuation=True, **more)
+    with pytest.raises(ValueError, match="reduced, full"):
+        blisk.response(study, 50, [350.0], fidelity="best")
 
 
 def test_what_a_curve_is_of_has_to_be_clear(small):

@@ -5,18 +5,34 @@ import re
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
+import matplotlib
+from ansys.mapdl import reader
+from ansys.mapdl.reader import examples
 from conftest import ROOT, SMALL
+from pyyeti.nastran import op4
+from solid import Solid
+from test_sector import bulk_data, deck, labels, matrix_text
 
 import blisk
+from blisk._import._run import _component
+
+matplotlib.use("Agg")
 
 PAGE = ROOT / "docs" / "python.md"
+GUIDE = ROOT / "docs" / "import.md"
+
+
+def blocks_of(page):
+    """Language and text of each block of code."""
+    return re.findall(r"^```(\w*)\n(.*?)^```", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
 
 
 def test_every_code_block_of_the_page_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "study.toml").write_text(blisk.Study(**SMALL).to_toml())
-    blocks = re.findall(r"^```(\w*)\n(.*?)^```", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    blocks = blocks_of(PAGE)
     names = {"__name__": "page"}
     for number, (language, block) in enumerate(blocks):
         if language == "sh":
@@ -28,6 +44,44 @@ def test_every_code_block_of_the_page_runs(tmp_path, monkeypatch):
     assert len(blocks) >= 10
     assert len(names["more"].patterns) == (SMALL["study"]["patterns"] + 20) * 6
     assert (tmp_path / "results" / "first" / "report.html").exists()
+
+
+def test_every_block_of_python_of_the_guide_to_imports_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    solid = Solid()
+    own = [element for element, is_blade in zip(solid.elements, solid.blade) if is_blade]
+    of_blade = {node for element in own for node in element}
+    # Ansys: the beam, whose held end stands for both faces.
+    for name in ("wheel.full", "blade.full"):
+        shutil.copy(examples.fullfile, name)
+    shutil.copy(examples.rstfile, "wheel.rst")
+    held = sorted({int(node) for node, _ in reader.read_binary(examples.fullfile).const})
+    sets = {"LOW": held, "HIGH": held, "TIP": [27]}
+    components = "".join(_component(name, nodes) for name, nodes in sets.items())
+    Path("wheel.cdb").write_text(Path(examples.hexarchivefile).read_text() + components)
+    # Nastran and Abaqus: bricks.
+    Path("wheel.bdf").write_text(
+        bulk_data(solid).replace(
+            "ENDDATA", f"SET1,8,{','.join(map(str, labels(solid.held[:7])))}\n,{labels(solid.held)[7]}\nENDDATA"
+        )
+    )
+    op4.write("wheel.op4", {"KGG": solid.stiffness.toarray(), "MGG": solid.mass.toarray()})
+    op4.write("blade.op4", {"KGG": solid.blade_stiffness.toarray()})
+    Path("wheel.inp").write_text(deck(solid, solid.elements))
+    for name, matrix, used in (
+        ("wheel_STIF1", solid.stiffness, None),
+        ("wheel_MASS1", solid.mass, None),
+        ("blade_STIF1", solid.blade_stiffness, of_blade),
+    ):
+        Path(f"{name}.mtx").write_text(matrix_text(matrix, "matrix input", used or range(len(solid.positions))))
+    names = {"__name__": "page"}
+    found = []
+    for number, (language, block) in enumerate(blocks_of(GUIDE)):
+        if language == "python":
+            exec(compile(block, f"{GUIDE.name}: block {number}", "exec"), names)
+            found.append(names["sector"])
+            assert found[-1].check["worst_relative_difference"] < 1e-6
+    assert [sector.sectors for sector in found] == [24, 6, 6]
 
 
 def test_the_example_runs_unchanged(tmp_path):

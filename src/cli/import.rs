@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write as _};
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
@@ -58,15 +58,16 @@ pub enum BodyArgument {
 
 /// What was imported.
 #[derive(Debug, Serialize)]
-struct Outcome {
+pub struct ImportAnswer {
+    /// What was found.
     #[serde(flatten)]
-    report: ImportReport,
+    pub report: ImportReport,
     /// Contact-free natural frequencies, Hz, by nodal diameter; negative where the eigenvalue is.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    frequencies_hz: Vec<Vec<f64>>,
+    pub frequencies_hz: Vec<Vec<f64>>,
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for ImportAnswer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.report)?;
         if !self.frequencies_hz.is_empty() {
@@ -104,23 +105,35 @@ pub(super) fn command(arguments: &ImportArguments) -> Result<ExitStatus, Failure
     let Some(out) = &arguments.out else {
         return Err(Failure::usage("--out DIR is missing".to_owned()));
     };
-    let imported = import(file).map_err(PipelineError::from)?;
-    bundle::write(&imported.model, out).map_err(PipelineError::from)?;
+    let answer = import_bundle(file, out, arguments.frequencies)?;
+    output::message(&format!("wrote the sector bundle {}", out.display()));
+    output::result(arguments.json, &answer)?;
+    Ok(ExitStatus::Done)
+}
+
+/// Makes the sector bundle `out` from an import file; computes so many frequencies per nodal diameter, where that is
+/// asked for, and writes them to `frequencies.csv` there.
+///
+/// # Errors
+/// The import file or what it names is not accepted, or the bundle cannot be written.
+pub fn import_bundle(
+    file: &Path,
+    out: &Path,
+    frequencies: Option<u16>,
+) -> Result<ImportAnswer, PipelineError> {
+    let imported = import(file)?;
+    bundle::write(&imported.model, out)?;
     let mut frequencies_hz = Vec::new();
-    if let Some(count) = arguments.frequencies {
-        frequencies_hz = contact_free_frequencies_hz(&imported.model, usize::from(count))
-            .map_err(PipelineError::from)?;
+    if let Some(count) = frequencies {
+        frequencies_hz = contact_free_frequencies_hz(&imported.model, usize::from(count))?;
         let path = out.join("frequencies.csv");
         fs::write(&path, csv(&frequencies_hz))
-            .map_err(|source| PipelineError::from(ModelError::File { path, source }))?;
+            .map_err(|source| ModelError::File { path, source })?;
     }
-    output::message(&format!("wrote the sector bundle {}", out.display()));
-    let outcome = Outcome {
+    Ok(ImportAnswer {
         report: imported.report,
         frequencies_hz,
-    };
-    output::result(arguments.json, &outcome)?;
-    Ok(ExitStatus::Done)
+    })
 }
 
 fn csv(frequencies_hz: &[Vec<f64>]) -> String {

@@ -31,7 +31,10 @@ mod verify;
 
 pub use arguments::{Arguments, Command};
 pub use exit::ExitStatus;
+pub use import::{ImportAnswer, import_bundle};
+pub use replay::ReplayAnswer;
 pub use run_command::main;
 pub use scheduler::threads;
+pub use verify::IntegrityAnswer;
 
 mod run_command;

@@ -1,9 +1,10 @@
 //! `blisk replay`: one delivered row solved again.
 
-use std::fmt::Write;
+use std::fmt::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
+use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 use super::exit::Failure;
@@ -51,17 +52,33 @@ pub(super) fn command(arguments: &ReplayArguments) -> Result<ExitStatus, Failure
         pattern: arguments.pattern,
         full: fidelity.full(&stored.study)?,
     };
-    let replay = replay(&stored, &ReducedEngineSource, &request)?;
+    let answer = ReplayAnswer(replay(&stored, &ReducedEngineSource, &request)?);
     if arguments.json {
-        output::json_only(&as_json(&replay))?;
+        output::json_only(&answer)?;
     } else {
-        output::text(&as_text(&replay))?;
+        output::text(&answer)?;
     }
-    Ok(if replay.identical {
+    Ok(if answer.0.identical {
         ExitStatus::Done
     } else {
         ExitStatus::VerificationFailed
     })
+}
+
+/// A row solved again, as the command tells it.
+#[derive(Debug)]
+pub struct ReplayAnswer(pub Replay);
+
+impl Serialize for ReplayAnswer {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        as_json(&self.0).serialize(serializer)
+    }
+}
+
+impl fmt::Display for ReplayAnswer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&as_text(&self.0))
+    }
 }
 
 fn as_json(replay: &Replay) -> Value {

@@ -1,9 +1,9 @@
 //! `blisk verify`: a random sample of delivered rows solved again.
 
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::json;
 
 use super::exit::Failure;
@@ -101,17 +101,33 @@ fn looked_at(arguments: &VerifyArguments) -> Result<ExitStatus, Failure> {
     } else {
         Path::new("results").join(Study::read(&arguments.target)?.name)
     };
-    let found = integrity(&results)?;
+    let answer = IntegrityAnswer(integrity(&results)?);
     if arguments.json {
-        output::json_only(&json!({ "whole": found.is_whole(), "integrity": found }))?;
+        output::json_only(&answer)?;
     } else {
-        output::text(&of_files(&found).join("\n"))?;
+        output::text(&answer)?;
     }
-    Ok(if found.is_whole() {
+    Ok(if answer.0.is_whole() {
         ExitStatus::Done
     } else {
         ExitStatus::StoreDamaged
     })
+}
+
+/// What the files of a folder are found to be, as the command tells it.
+#[derive(Debug)]
+pub struct IntegrityAnswer(pub Integrity);
+
+impl Serialize for IntegrityAnswer {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        json!({ "whole": self.0.is_whole(), "integrity": self.0 }).serialize(serializer)
+    }
+}
+
+impl Display for IntegrityAnswer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&of_files(&self.0).join("\n"))
+    }
 }
 
 /// What the files of a folder are found to be: a line for each that is not whole, and the numbers.

@@ -2,7 +2,7 @@
 
     python ansys_files.py BLISK
 
-BLISK is the program. The recipe of docs/import.md turns the .full file into matrices. The imported bundle must
+BLISK is the program. studies/ansys/full_to_matrix_market.py turns the .full file into matrices. The imported bundle must
 have the frequencies of scipy, those of Ansys' own .rst file, and, as a sector of four, those of a cyclic
 reduction in scipy. What an earlier recipe wrote must be refused: one triangle of the matrices.
 """

@@ -9,31 +9,61 @@ A study says what is solved, ``run`` solves it, and its results are tables with 
 Numbers are those of the command ``blisk``, bit for bit. Units stand in the names of keys and columns: SI, Hz, N.
 """
 
-from ._answers import Answer, compare, optimum, plan, response
+from ._answer import Answer
+from ._answers import (
+    campbell,
+    compare,
+    estimate,
+    merge,
+    model,
+    modes,
+    optimum,
+    plan,
+    replay,
+    response,
+    tradeoff,
+    verify,
+)
 from ._errors import BliskError, Finding, InputError
+from ._figure import Figure, figures
 from ._native import BUILD as __build__
 from ._native import VERSION as __version__
 from ._native import Table
 from ._progress import Progress
 from ._results import Best, Results
 from ._run import run
+from ._sector import Sector
 from ._study import Study
+from ._wheel import Peak, Wheel
 
 __all__ = [
     "Answer",
     "Best",
     "BliskError",
+    "Figure",
     "Finding",
     "InputError",
+    "Peak",
     "Progress",
     "Results",
+    "Sector",
     "Study",
     "Table",
+    "Wheel",
     "__build__",
     "__version__",
+    "campbell",
     "compare",
+    "estimate",
+    "figures",
+    "merge",
+    "model",
+    "modes",
     "optimum",
     "plan",
+    "replay",
     "response",
     "run",
+    "tradeoff",
+    "verify",
 ]

@@ -10,18 +10,30 @@ __all__ = [
     "CheckedStudy",
     "Table",
     "VERSION",
+    "bundle_facts",
+    "bundle_frequencies",
+    "campbell",
     "compare",
+    "estimate",
+    "figure",
+    "figure_names",
+    "import_sector",
     "key_names",
     "main",
     "manifest",
+    "merge",
+    "model",
     "optimum",
     "plan",
+    "replay",
     "report",
     "response",
     "run",
     "summary",
     "table",
     "tables_of",
+    "tradeoff",
+    "verify",
 ]
 
 _Path = Union[str, os.PathLike[str]]
@@ -107,6 +119,7 @@ def response(
     load_case: Optional[str],
     engine_order: Optional[int],
     standard_deviation: Optional[float],
+    way: str,
     path: _Path,
 ) -> Table: ...
 def compare(folders: Sequence[_Path], percent: float, baseline: Optional[int]) -> tuple[str, str]: ...
@@ -114,3 +127,52 @@ def summary(results: _Path) -> tuple[tuple[str, str], Optional[tuple[int, int]]]
 def manifest(results: _Path) -> str: ...
 def report(results: _Path, path: _Path, curves: bool, study_file: Optional[_Path]) -> None: ...
 def table(results: _Path, name: str) -> Table: ...
+def model(study: CheckedStudy, export: Optional[_Path]) -> tuple[str, str]: ...
+def campbell(
+    study: CheckedStudy,
+    engine_orders: Sequence[int],
+    modes: int,
+    range_rpm: Optional[tuple[float, float]],
+    bundles: Sequence[tuple[float, _Path]],
+) -> tuple[str, str]: ...
+def merge(shards: Sequence[_Path], out: _Path, study_file: Optional[_Path]) -> None: ...
+def replay(results: _Path, scenario: int, pattern: int, full: bool, study_file: Optional[_Path]) -> tuple[str, str]: ...
+def verify(
+    results: _Path,
+    question: str,
+    sample: int,
+    seed: Optional[int],
+    row: Optional[tuple[int, int]],
+    threads: Optional[int],
+    study_file: Optional[_Path],
+    listener: Optional[_Listener],
+) -> tuple[str, str]: ...
+def tradeoff(
+    study: CheckedStudy,
+    patterns: int,
+    full: bool,
+    out: _Path,
+    threads: Optional[int],
+    listener: Optional[_Listener],
+) -> tuple[str, str]: ...
+def estimate(
+    study: CheckedStudy,
+    percent: Optional[float],
+    patterns: Optional[int],
+    solves: Optional[int],
+    out: _Path,
+    threads: Optional[int],
+    listener: Optional[_Listener],
+) -> tuple[str, str]: ...
+def figure_names() -> list[tuple[str, str]]: ...
+def figure(
+    results: _Path,
+    name: str,
+    load_case: Optional[str],
+    engine_order: Optional[int],
+    standard_deviation: Optional[float],
+    study_file: Optional[_Path],
+) -> tuple[str, str, str]: ...
+def import_sector(file: _Path, out: _Path, frequencies: int) -> tuple[str, str]: ...
+def bundle_facts(folder: _Path) -> str: ...
+def bundle_frequencies(folder: _Path, count: int) -> list[list[float]]: ...

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import Any, Optional, Union
 
 from . import _native
+from ._errors import BliskError
+from ._figure import Figure, plotted
 from ._native import Table
 
 
@@ -176,7 +180,48 @@ class Results:
         _native.report(self.folder, target, curves, None if study_file is None else Path(study_file))
         return target
 
+    def figure(
+        self,
+        name: str = "amplitude",
+        *,
+        load_case: Optional[str] = None,
+        engine_order: Optional[int] = None,
+        standard_deviation: Optional[float] = None,
+        study_file: Union[str, os.PathLike[str], None] = None,
+    ) -> Figure:
+        """A figure of the report as SVG, which a notebook shows; ``blisk.figures()`` has the names.
+
+        Figures of single wheels solve these again. Load case, engine order and standard deviation have to be named where
+        the study has several.
+        """
+        own = (load_case, engine_order, standard_deviation, None if study_file is None else Path(study_file))
+        return Figure(name, *_native.figure(self.folder, name, *own))
+
+    def plot(
+        self,
+        quantity: str = "peak_amplitude_m",
+        *,
+        percentiles: Sequence[float] = (50.0, 95.0, 99.0),
+        engine_order: Optional[int] = None,
+        standard_deviation: Optional[float] = None,
+        load_case: Optional[str] = None,
+        ax: Any = None,
+    ) -> Any:
+        """Percentiles over the normal load per sector (N) as axes of matplotlib, with 95 % bounds and the tuned wheel.
+
+        ``quantity``: ``peak_amplitude_m`` (m) or ``amplification_factor`` (1). ``percentiles``: in %; those without a
+        value are left out. ``ax``: axes to draw into; new ones unless given. The linear limits are levels at the sides.
+        """
+        wanted = {"engine_order": engine_order, "standard_deviation": standard_deviation, "load_case": load_case}
+        return plotted(self, quantity, percentiles, wanted, ax)
+
+    def _repr_html_(self) -> str:
+        text = f"<pre>{escape(self.summary_text)}</pre>"
+        try:
+            return self.figure().svg + text
+        except (BliskError, ValueError):
+            # Not finished, or several excitations.
+            return text
+
     def __repr__(self) -> str:
         return f"<blisk.Results {self.folder}>"
-
-

@@ -5,12 +5,15 @@ from __future__ import annotations
 import copy
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 from . import _native
 from ._toml import text_of
+
+if TYPE_CHECKING:
+    from ._wheel import Wheel
 
 _FILE = "<study>"
 """Stands for the study file of a study that has none."""
@@ -40,9 +43,7 @@ class Study:
         self._read(_path_in(base), text_of(own))
 
     @classmethod
-    def from_toml(
-        cls, source: Union[str, os.PathLike[str]], base: Union[str, os.PathLike[str], None] = None
-    ) -> Study:
+    def from_toml(cls, source: Union[str, os.PathLike[str]], base: Union[str, os.PathLike[str], None] = None) -> Study:
         """The study in a file, or in a text.
 
         A ``str`` with a line break or ``=`` is the text of a study file, any other one the path of a file. Files that
@@ -78,6 +79,16 @@ class Study:
         _put_all(own, changes or {})
         _put_all(own, tables)
         return self._of(self._path, text_of(own))
+
+    def wheel(self, deviations: Iterable[float]) -> Wheel:
+        """One wheel with known blades, for instance a measured one, under the loads and settings of this study.
+
+        ``deviations``: relative deviation of each blade's stiffness, one per sector; a deviation of the blade's frequency
+        is about half of it.
+        """
+        from ._wheel import Wheel
+
+        return Wheel(self, deviations)
 
     def check(self) -> list[str]:
         """Looks at model and patterns as well, and solves nothing; gives remarks on what is unusual.

@@ -1,0 +1,27 @@
+"""Packages that one function needs and the others do not."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+_INSTALLED_BY = {
+    "ansys.mapdl.reader": "ansys-mapdl-reader",
+    "pyyeti.nastran": "pyyeti",
+    "scipy.sparse": "scipy",
+    "scipy.sparse.linalg": "scipy",
+    "scipy.io": "scipy",
+    "scipy.spatial": "scipy",
+    "matplotlib.pyplot": "matplotlib",
+}
+
+
+def needed(module: str, what: str) -> Any:
+    """The module, which is needed for ``what``; ``ImportError`` says how to install it."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        package = _INSTALLED_BY.get(module, module)
+        raise ImportError(
+            f"{what} needs the package {package}, which cannot be imported ({error}); pip install {package}"
+        ) from error

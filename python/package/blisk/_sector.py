@@ -1,0 +1,372 @@
+"""Sectors: bundles, and where they come from."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Optional, Union
+
+from . import _native
+from ._answer import Answer, answer_of
+from ._import import _abaqus, _ansys, _arrays, _nastran
+from ._import._run import Held, Matrices, held_nodes, name_of, refused, symmetric
+from ._import._write import Import, Imported, Tables, Wheel, blade_of
+from ._needed import needed
+
+_Path = Union[str, "os.PathLike[str]"]
+_Sets = Optional[Mapping[str, Iterable[int]]]
+
+
+class Sector:
+    """One cyclic sector of a wheel: a sector bundle, the folder that a study reads with ``source = "bundle"``.
+
+    It is made from the files of a finite-element code (``from_ansys``, ``from_nastran``, ``from_abaqus``), from arrays
+    (``from_arrays``) or by an import file (``from_import_file``), or it is there already (``from_bundle``):
+
+        sector = blisk.Sector.from_ansys("file.full", "sector.cdb", out="wheel", sectors=24, ...)
+        study = blisk.Study(study={...}, model=sector.model, ...)
+
+    **What the makers have in common.** ``out`` is the folder of the bundle. The import file and the matrices that it
+    was made of are kept in ``out/import``; ``blisk import out/import/import.toml --out DIR`` makes the same bundle.
+
+    ``sectors``: number of sectors of the wheel. ``axis``: axis of rotation through the origin, ``x``, ``y`` or ``z``.
+    ``units``: of the files, ``m-kg-s`` (SI) or ``mm-t-s`` (mm, tonne, N).
+    ``low_face``, ``high_face``: sets of the cut faces; the high one is the low one turned by +360/sectors degrees. Where
+    they are not named, they are found: the nodes that lie where other ones lie after that turn.
+    ``force``, ``observe``, ``contact``, ``ring``, ``damper``: the tables of the import file as dictionaries
+    (docs/import.md), like ``force={"set": "TIP", "component": "z"}`` in N per newton of ``excitation.amplitude_n``. A
+    ring or damper stands in the same files (``{"set": "RING"}``) or has its own, which are named as those of the blisk.
+    ``sets``: further sets by node numbers, like ``{"TIP": [1204]}``.
+    ``position_tolerance_m``: how far the faces may be apart, m.
+    ``frequencies``: so many contact-free frequencies per nodal diameter are computed, Hz.
+    ``check``: these frequencies are compared with a cyclic eigenproblem of the same matrices in SciPy, which shares
+    nothing with the program: at every nodal diameter (of a sector of more than 5000 rows at 0, 1 and the last one), at
+    those that are listed, or at none (``False``). A relative difference beyond 1e-6 is a ``BliskError`` with the exit code 11, that of a failed verification.
+
+    What is not accepted is an ``InputError`` with the words of ``blisk import``. A package that is missing is an
+    ``ImportError`` that names it.
+    """
+
+    folder: Path
+    """The folder of the bundle."""
+    report: Optional[Answer]
+    """What the import found: bodies, faces, contact, ``frequencies_hz``; as ``blisk import --json``. ``None``: none was
+    made."""
+    check: dict[str, Any]
+    """The frequencies on another way: ``worst_relative_difference``, ``frequencies_compared``, ``nodal_diameters``, and
+    ``result_file`` where one was given. Empty: nothing was compared."""
+
+    def __init__(self, folder: _Path) -> None:
+        self.folder = Path(folder)
+        self.report = None
+        self.check = {}
+        self._facts: dict[str, Any] = json.loads(_native.bundle_facts(self.folder))
+
+    @classmethod
+    def from_bundle(cls, folder: _Path) -> Sector:
+        """A bundle that is there."""
+        return cls(folder)
+
+    @classmethod
+    def from_import_file(cls, file: _Path, out: _Path, frequencies: int = 0) -> Sector:
+        """The bundle that an import file makes, as ``blisk import FILE --out OUT --frequencies N`` does."""
+        if not 0 <= frequencies <= 1000:
+            raise ValueError(f"frequencies = {frequencies} is not accepted; accepted: 0 to 1000")
+        answer = _native.import_sector(Path(file), Path(out), frequencies)
+        return cls._of(Imported(Path(out), answer, {}))
+
+    @classmethod
+    def from_ansys(
+        cls,
+        full: _Path,
+        cdb: _Path,
+        *,
+        out: _Path,
+        sectors: int,
+        force: Tables,
+        observe: Tables,
+        blade_full: Optional[_Path] = None,
+        blade_emat: Optional[_Path] = None,
+        blade: Union[str, Iterable[int], None] = None,
+        rst: Optional[_Path] = None,
+        held: Held = (),
+        name: Optional[str] = None,
+        low_face: Optional[str] = None,
+        high_face: Optional[str] = None,
+        ring: Optional[Mapping[str, Any]] = None,
+        damper: Optional[Mapping[str, Any]] = None,
+        contact: Tables = None,
+        sets: _Sets = None,
+        units: str = "m-kg-s",
+        axis: str = "z",
+        position_tolerance_m: Optional[float] = None,
+        frequencies: int = 6,
+        check: Union[bool, Iterable[int]] = True,
+    ) -> Sector:
+        """A sector of Ansys. Needs ansys-mapdl-reader and SciPy, and no Ansys.
+
+        ``full``: the ``.full`` file of a modal analysis of the sector, its cut faces free.
+        ``cdb``: its mesh by ``CDWRITE``; the components are the sets.
+        The stiffness of the blade alone: ``blade_full``, the ``.full`` file of a run with the blade's elements alone; or
+        ``blade_emat``, the ``.emat`` file of the run itself, and ``blade``, a component or the numbers of the elements.
+        ``rst``: a result file that is compared as well. One of a cyclic analysis: its frequencies by nodal diameter. One
+        of the sector alone: each mode has to satisfy ``K u = omega^2 M u`` away from the faces and the held nodes.
+        ``held``: nodes whose rows are taken out as well, like free ones on the axis: a set, or node numbers.
+        ``ring``, ``damper`` with files of their own: the keys ``full`` and ``cdb``, and ``held``.
+        """
+        own = _ansys.run(full, cdb, held, sets)
+        others = {
+            body: _ansys.run(table["full"], table["cdb"], table.get("held", ()))
+            for body, table in _with_files(ring, damper, ("full", "cdb"))
+        }
+        alone: Optional[Matrices] = None
+        if blade_full is not None:
+            alone = _ansys.matrices(blade_full)
+        elif blade_emat is not None and blade is not None:
+            alone = _ansys.blade_of_elements(own, cdb, blade_emat, blade)
+        alone = blade_of(own, alone, "blade_full, or blade_emat and blade")
+        wheel = Wheel(
+            name_of(name, cdb), sectors, out, force, observe, low_face, high_face, ring, damper, contact, sets, units,
+            axis, position_tolerance_m, frequencies, check,
+        )  # fmt: skip
+        work = Import(wheel, own, alone, others)
+        sector = cls._of(work.carried_out())
+        if rst is not None:
+            faces = [node for pair in work.pairs["blisk"] for node in pair]
+            sector.check["result_file"] = _ansys.result_checked(rst, own, faces, sector.frequencies_hz, sectors)
+        return sector
+
+    @classmethod
+    def from_nastran(
+        cls,
+        bdf: _Path,
+        matrices: _Path,
+        *,
+        out: _Path,
+        sectors: int,
+        force: Tables,
+        observe: Tables,
+        blade: Optional[_Path] = None,
+        mass: Optional[_Path] = None,
+        rows: Optional[Sequence[Sequence[int]]] = None,
+        blade_rows: Optional[Sequence[Sequence[int]]] = None,
+        stiffness_name: Optional[str] = None,
+        mass_name: Optional[str] = None,
+        blade_stiffness_name: Optional[str] = None,
+        held: Held = (),
+        name: Optional[str] = None,
+        low_face: Optional[str] = None,
+        high_face: Optional[str] = None,
+        ring: Optional[Mapping[str, Any]] = None,
+        damper: Optional[Mapping[str, Any]] = None,
+        contact: Tables = None,
+        sets: _Sets = None,
+        units: str = "m-kg-s",
+        axis: str = "z",
+        position_tolerance_m: Optional[float] = None,
+        frequencies: int = 6,
+        check: Union[bool, Iterable[int]] = True,
+    ) -> Sector:
+        """A sector of Nastran. Needs pyYeti and SciPy, and no Nastran.
+
+        ``bdf``: the bulk data; the SET1 entries are the sets, and their names are their numbers.
+        ``matrices``: stiffness and mass, ``.op2``, ``.op4`` or a punch file ``.pch`` with DMIG; ``mass``: the file of the
+        mass, where it is another one. ``stiffness_name``, ``mass_name``: unless only one name begins with K or M.
+        ``rows``: node and direction (1, 2, 3) of each row of an ``.op2`` or ``.op4``, shape (n, 2); unless given 3 or 6
+        rows for each grid point in ascending order. Empty rows are left out, as those of rotations are.
+        ``blade``: the stiffness of the blade's elements alone, likewise, with ``blade_rows`` and ``blade_stiffness_name``.
+        ``held``: grid points whose rows are taken out, where the matrices are those without SPC: a set, or numbers.
+        ``ring``, ``damper`` with files of their own: the keys ``bdf`` and ``matrices``, and ``rows``, ``held``.
+        """
+        names = (stiffness_name, mass_name)
+        made = _nastran.matrices(_nastran.grids(bdf), matrices, mass or matrices, rows, names)
+        own = _nastran.run(bdf, made, held, sets)
+        others = {}
+        for body, table in _with_files(ring, damper, ("bdf", "matrices")):
+            points = _nastran.grids(table["bdf"])
+            of_body = _nastran.matrices(points, table["matrices"], table["matrices"], table.get("rows"), (None, None))
+            others[body] = _nastran.run(table["bdf"], of_body, table.get("held", ()))
+        alone = None
+        if blade is not None:
+            of_blade = rows if blade_rows is None else blade_rows
+            alone = _nastran.matrices(own.positions, blade, None, of_blade, (blade_stiffness_name, None)).without_held(
+                held_nodes(held, own.sets, sets)
+            )
+        alone = blade_of(own, alone, "blade, a file with the stiffness of the blade's elements alone")
+        wheel = Wheel(
+            name_of(name, bdf), sectors, out, force, observe, low_face, high_face, ring, damper, contact, sets, units,
+            axis, position_tolerance_m, frequencies, check,
+        )  # fmt: skip
+        return cls._of(Import(wheel, own, alone, others).carried_out())
+
+    @classmethod
+    def from_abaqus(
+        cls,
+        inp: _Path,
+        stiffness: _Path,
+        mass: _Path,
+        *,
+        out: _Path,
+        sectors: int,
+        force: Tables,
+        observe: Tables,
+        blade_stiffness: Optional[_Path] = None,
+        blade_inp: Optional[_Path] = None,
+        held: Held = (),
+        name: Optional[str] = None,
+        low_face: Optional[str] = None,
+        high_face: Optional[str] = None,
+        ring: Optional[Mapping[str, Any]] = None,
+        damper: Optional[Mapping[str, Any]] = None,
+        contact: Tables = None,
+        sets: _Sets = None,
+        units: str = "m-kg-s",
+        axis: str = "z",
+        position_tolerance_m: Optional[float] = None,
+        frequencies: int = 6,
+        check: Union[bool, Iterable[int]] = True,
+    ) -> Sector:
+        """A sector of Abaqus. Needs SciPy, and no Abaqus.
+
+        ``inp``: the input file, flat or with one instance that is not moved; its node and element sets are the sets.
+        ``stiffness``, ``mass``: the ``.mtx`` files of ``*MATRIX GENERATE, STIFFNESS, MASS`` and ``*MATRIX OUTPUT``, in any
+        of its text formats. ``COORDINATE`` does not name its rows: they are those of the nodes of the elements.
+        ``blade_stiffness``: that of a job with the blade's elements alone, same nodes; ``blade_inp``: the input file of
+        that job, which ``COORDINATE`` needs.
+        ``held``: nodes whose rows are taken out, a set or node numbers; rows with a penalty of 1e30 or more on the
+        diagonal are, too.
+        ``ring``, ``damper`` with files of their own: the keys ``inp``, ``stiffness`` and ``mass``, and ``held``.
+        """
+        own = _abaqus.run(inp, stiffness, mass, held, sets)
+        others = {
+            body: _abaqus.run(table["inp"], table["stiffness"], table["mass"], table.get("held", ()))
+            for body, table in _with_files(ring, damper, ("inp", "stiffness", "mass"))
+        }
+        alone = None
+        if blade_stiffness is not None:
+            deck = _abaqus.Deck(inp if blade_inp is None else blade_inp)
+            alone = _abaqus.matrices(deck, blade_stiffness, None).without_held(held_nodes(held, own.sets, sets))
+        alone = blade_of(own, alone, "blade_stiffness, the .mtx file of a job with the blade's elements alone")
+        wheel = Wheel(
+            name_of(name, inp), sectors, out, force, observe, low_face, high_face, ring, damper, contact, sets, units,
+            axis, position_tolerance_m, frequencies, check,
+        )  # fmt: skip
+        return cls._of(Import(wheel, own, alone, others).carried_out())
+
+    @classmethod
+    def from_arrays(
+        cls,
+        stiffness: Any,
+        mass: Any,
+        blade_stiffness: Any,
+        nodes: Any,
+        *,
+        out: _Path,
+        sectors: int,
+        force: Tables,
+        observe: Tables,
+        rows: Optional[Sequence[Sequence[int]]] = None,
+        elements: Optional[Mapping[str, Any]] = None,
+        held: Held = (),
+        name: str = "wheel",
+        low_face: Optional[str] = None,
+        high_face: Optional[str] = None,
+        ring: Optional[Mapping[str, Any]] = None,
+        damper: Optional[Mapping[str, Any]] = None,
+        contact: Tables = None,
+        sets: _Sets = None,
+        units: str = "m-kg-s",
+        axis: str = "z",
+        position_tolerance_m: Optional[float] = None,
+        frequencies: int = 6,
+        check: Union[bool, Iterable[int]] = True,
+    ) -> Sector:
+        """A sector from matrices in memory. Needs NumPy and SciPy.
+
+        ``stiffness``, ``mass``, ``blade_stiffness``: arrays or sparse matrices of shape (n, n) over the same rows, with
+        both triangles or one; in N/m and kg, or in the units that ``units`` says.
+        ``nodes``: positions in x, y, z, of shape (m, 3) and numbered from 1, or a dictionary by node number; or a mesh
+        of meshio, whose elements and ``point_sets`` are taken, its nodes numbered from 1.
+        ``rows``: node and direction (1, 2, 3 for x, y, z) of each row, shape (n, 2); three for each node unless given.
+        ``elements``: node numbers of solid elements by their type in Abaqus or meshio, like ``{"C3D8": array of (k, 8)}``;
+        a contact needs them, or a ``normal``.
+        ``held``: nodes whose rows are taken out: a set, or node numbers.
+        """
+        own, named = _arrays.run(stiffness, mass, rows, nodes, elements, held, sets)
+        blade = symmetric(blade_stiffness, "blade_stiffness")
+        if blade.shape[0] != len(named):
+            raise refused(f"blade_stiffness has {blade.shape[0]} rows, stiffness {len(named)}; accepted: the same rows")
+        alone = blade_of(own, Matrices(named, blade).without_held(held_nodes(held, own.sets, sets)), "blade_stiffness")
+        wheel = Wheel(
+            name, sectors, out, force, observe, low_face, high_face, ring, damper, contact, sets, units, axis,
+            position_tolerance_m, frequencies, check,
+        )  # fmt: skip
+        return cls._of(Import(wheel, own, alone, {}).carried_out())
+
+    @classmethod
+    def _of(cls, made: Imported) -> Sector:
+        sector = cls(made.folder)
+        sector.report, sector.check = answer_of(made.answer), made.check
+        return sector
+
+    @property
+    def model(self) -> dict[str, Any]:
+        """The table ``model`` of a study of this sector."""
+        return {"source": "bundle", "bundle": {"path": str(self.folder.resolve())}}
+
+    @property
+    def name(self) -> str:
+        """Name of the model."""
+        return str(self._facts["name"])
+
+    @property
+    def sectors(self) -> int:
+        """Number of sectors of the wheel."""
+        return int(self._facts["sectors"])
+
+    @property
+    def dofs(self) -> int:
+        """Number of dofs of the sector, both cut faces included."""
+        return int(self._facts["dofs"])
+
+    def frequencies_hz(self, count: int = 6) -> list[list[float]]:
+        """The lowest contact-free natural frequencies, Hz: ``count`` for each nodal diameter 0 to sectors/2.
+
+        A body that nothing holds has frequencies of nought.
+        """
+        if not 1 <= count <= 1000:
+            raise ValueError(f"count = {count} is not accepted; accepted: 1 to 1000")
+        return _native.bundle_frequencies(self.folder, count)
+
+    def plot(self, count: int = 6, *, ax: Any = None) -> Any:
+        """The contact-free frequencies over the nodal diameter as axes of matplotlib; ``ax``: axes to draw into."""
+        by_diameter = self.frequencies_hz(count)
+        if ax is None:
+            _, ax = needed("matplotlib.pyplot", "plot()").subplots()
+        for mode in range(min(map(len, by_diameter))):
+            ax.plot(range(len(by_diameter)), [own[mode] for own in by_diameter], marker="o", label=f"mode {mode + 1}")
+        ax.set_xlabel("nodal diameter")
+        ax.set_ylabel("natural frequency without contact, Hz")
+        return ax
+
+    def __repr__(self) -> str:
+        return f"<blisk.Sector {self.name}: {self.sectors} sectors, {self.dofs} dofs, {self.folder}>"
+
+
+def _with_files(
+    ring: Optional[Mapping[str, Any]], damper: Optional[Mapping[str, Any]], keys: Sequence[str]
+) -> list[tuple[str, Mapping[str, Any]]]:
+    """The bodies beside the blisk that have files of their own."""
+    found = []
+    for body, table in (("ring", ring), ("damper", damper)):
+        given = [] if table is None else [key for key in keys if key in table]
+        if table is None or not given:
+            continue
+        if len(given) < len(keys):
+            raise ValueError(
+                f"{body} has {', '.join(given)}; accepted: {', '.join(keys)}, or `set` in the files of the blisk"
+            )
+        found.append((body, table))
+    return found

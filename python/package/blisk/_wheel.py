@@ -1,0 +1,102 @@
+"""One wheel with known blades."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Optional, Union
+
+
+from ._native import Table
+from ._run import run
+from ._study import Study
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The peak of one wheel over blades and frequency at one load."""
+
+    contact: str
+    """``full`` under friction, or the linear limit ``stuck``, ``slide``, ``free``."""
+    normal_load_n: Optional[float]
+    """Normal load per sector, N; ``None`` for a linear limit."""
+    amplitude_m: Optional[float]
+    """Peak amplitude, m; ``None`` where ``status`` is not ``ok``."""
+    frequency_hz: Optional[float]
+    """Frequency of the peak, Hz."""
+    blade: Optional[int]
+    """The blade that has it, from 0."""
+    amplification_factor: Optional[float]
+    """Peak over that of the tuned wheel at the same load."""
+    status: str
+    """``ok``, or why there is no result."""
+
+
+class Wheel:
+    """One wheel with known blades, under the loads and settings of a study; ``Study.wheel`` makes it."""
+
+    deviations: tuple[float, ...]
+    """Relative deviation of each blade's stiffness."""
+
+    def __init__(self, study: Study, deviations: Iterable[float]) -> None:
+        self.deviations = tuple(float(own) for own in deviations)
+        if not self.deviations or not all(-1.0 < own < float("inf") for own in self.deviations):
+            raise ValueError("deviations is not accepted; accepted: a number above -1 for each blade")
+        self.study = study
+
+    def peaks(
+        self, loads: Optional[Sequence[Union[float, str]]] = None, *, threads: Optional[int] = None
+    ) -> list[Peak]:
+        """The peak at each of the loads, in the order of the study's scenarios.
+
+        ``loads``: normal loads per sector, N, and linear limits by name; those of the study unless given. The study has
+        one load case and engine order. ``InputError``: the study is not accepted with this wheel, for instance where
+        there are not as many deviations as sectors.
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            study = self._study(Path(folder), loads)
+            if study.scenarios != len(study.to_dict()["sweep"]["normal_load_n"]):
+                raise ValueError("the study has several load cases or engine orders; accepted: one, by study.replace")
+            rows = run(study, Path(folder) / "results", threads).responses.rows()
+        own = ("contact", "normal_load_n", "amplification_factor", "status")
+        renamed = {"amplitude_m": "peak_amplitude_m", "frequency_hz": "peak_frequency_hz", "blade": "peak_blade"}
+        return [
+            Peak(**{key: row[key] for key in own}, **{key: row[column] for key, column in renamed.items()})
+            for row in rows
+        ]
+
+    def peak(self, load: Union[float, str], *, threads: Optional[int] = None) -> Peak:
+        """The peak at one normal load per sector, N, or at a linear limit by name."""
+        return self.peaks([load], threads=threads)[0]
+
+    def response(self, load: Union[float, str], frequencies_hz: Iterable[float]) -> Table:
+        """Amplitude of every blade over frequency, as ``blisk.response`` gives it."""
+        from ._answers import response
+
+        with tempfile.TemporaryDirectory() as folder:
+            return response(self._study(Path(folder), [load]), load, frequencies_hz, pattern=0)
+
+    def _study(self, folder: Path, loads: Optional[Sequence[Union[float, str]]]) -> Study:
+        """The study of this wheel alone; its blades stand in a file in ``folder``."""
+        lines = [f"0,{blade},{deviation!r}\n" for blade, deviation in enumerate(self.deviations)]
+        (folder / "wheel.csv").write_text("pattern,blade,deviation\n" + "".join(lines), encoding="utf-8")
+        changes: dict[str, Any] = {
+            "mistuning.file": str(folder / "wheel.csv"),
+            "mistuning.distribution": None,
+            "sweep.standard_deviation": None,
+            "study.patterns": None,
+            # A population may stop early, and its contact may be random.
+            "stop": None,
+            "contact.variation": None,
+        }
+        if loads is not None:
+            changes["sweep.normal_load_n"] = list(loads)
+        own = self.study.to_dict()
+        if "contact" not in own:
+            del changes["contact.variation"]
+        return self.study.replace(changes)
+
+    def __repr__(self) -> str:
+        return f"<blisk.Wheel of {self.study.name}: {len(self.deviations)} blades>"

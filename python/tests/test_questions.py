@@ -1,0 +1,255 @@
+"""Models, Campbell tables, shards, rows solved again, estimates, figures, single wheels: what the commands give."""
+
+import json
+import math
+import pickle
+
+import matplotlib
+import numpy
+import pytest
+from conftest import SMALL, called
+
+import blisk
+
+matplotlib.use("Agg")
+
+
+@pytest.fixture
+def study(small, tmp_path, monkeypatch):
+    """The small study, and the same one in a file in the working directory."""
+    monkeypatch.chdir(tmp_path)
+    study = blisk.Study(**small)
+    (tmp_path / "study.toml").write_text(study.to_toml())
+    return study
+
+
+def is_that_of(answer, *line, code=0):
+    """The answer has the numbers and the words of the command."""
+    ended = called(*line, "--json")
+    assert ended.returncode == code, ended.stderr
+    assert answer == json.loads(ended.stdout)
+    assert str(answer).rstrip() + "\n" == called(*line).stdout
+
+
+def exact_hz(diameter, contact_stiffness, own=SMALL["model"]["lumped"]):
+    """Frequencies of blade, disk and ring with a phase from sector to sector: three masses, by NumPy."""
+    wave = 2 - 2 * math.cos(2 * math.pi * diameter / own["sectors"])
+    blade, joint = own["blade_stiffness_n_per_m"], own["ring_disk_stiffness_n_per_m"] + contact_stiffness
+    disk = own["disk_ground_stiffness_n_per_m"] + wave * own["disk_coupling_stiffness_n_per_m"]
+    ring = wave * own["ring_coupling_stiffness_n_per_m"]
+    stiffness = numpy.array([[blade, -blade, 0], [-blade, blade + disk + joint, -joint], [0, -joint, joint + ring]])
+    mass = numpy.array([own["blade_mass_kg"], own["disk_mass_kg"], own["ring_mass_kg"]])
+    squares = numpy.linalg.eigvalsh(stiffness / numpy.sqrt(numpy.outer(mass, mass)))
+    return numpy.sqrt(squares) / (2 * math.pi)
+
+
+def test_frequencies_of_the_tuned_wheel_are_those_of_three_masses(study):
+    rows = blisk.modes(study, 3)
+    assert {row["contact"] for row in rows} >= {"slide", "stuck"}
+    for row in rows:
+        springs = SMALL["contact"]["tangential_stiffness_n_per_m"] if row["contact"] == "stuck" else 0.0
+        expected = exact_hz(row["nodal_diameter"], springs)[row["mode"] - 1]
+        assert math.isclose(row["frequency_hz"], expected, rel_tol=1e-9), row
+    assert len([row for row in rows if row["contact"] == "stuck"]) == 4 * 3
+
+
+def test_a_campbell_table_is_that_of_the_command(study):
+    answer = blisk.campbell(study, [1, 2, 3], (0, 12000), modes=2)
+    is_that_of(answer, "campbell", "study.toml", "--engine-orders", "1:3", "--speed-rpm", "0:12000", "--modes", 2)
+    crossing = answer["crossings"][0]
+    springs = {"stuck": SMALL["contact"]["tangential_stiffness_n_per_m"]}.get(crossing["contact"], 0.0)
+    hz = exact_hz(crossing["nodal_diameter"], springs)[crossing["mode"] - 1]
+    assert math.isclose(crossing["speed_rpm"], 60 * hz / crossing["engine_order"], rel_tol=1e-9)
+    for more in ({"modes": 0}, {"engine_orders": [0]}, {"speed_rpm": (2, 1)}, {"at": {-1.0: "bundle"}}):
+        with pytest.raises(ValueError, match="accepted"):
+            blisk.campbell(study, **more)
+
+
+def test_a_model_is_that_of_the_command_and_is_exported(study):
+    answer = blisk.model(study, export="bundle")
+    is_that_of(answer, "model", "study.toml")
+    assert answer._repr_html_().startswith("<pre>")
+    sector = blisk.Sector.from_bundle("bundle")
+    assert (sector.sectors, sector.model["source"]) == (6, "bundle")
+    assert numpy.allclose(sector.frequencies_hz(3)[2], exact_hz(2, 0.0), rtol=1e-9)
+    at = blisk.campbell(study, at={0.0: "bundle", 6000.0: "bundle"})
+    is_that_of(at, "campbell", "study.toml", "--at", "0=bundle", "--at", "6000=bundle")
+
+
+def test_shards_are_joined(study, finished):
+    for number in (1, 2):
+        ended = called("run", "study.toml", "--out", "out", "--shard", f"{number}/2")
+        assert ended.returncode == 0, ended.stderr
+    results = blisk.merge("out", out="merged")
+    for name in ("responses", "scenarios", "percentiles"):
+        assert (results.folder / f"{name}.parquet").read_bytes() == (finished.folder / f"{name}.parquet").read_bytes()
+    with pytest.raises(blisk.BliskError) as refused:
+        blisk.merge("elsewhere", out="other")
+    assert refused.value.exit_code in (2, 7)
+    with pytest.raises(TypeError):
+        blisk.merge(out="other")
+
+
+def test_a_row_solved_again_is_the_same(finished):
+    answer = blisk.replay(finished, 1, 3)
+    assert answer["identical"]
+    is_that_of(answer, "replay", finished.folder, "--scenario", 1, "--pattern", 3)
+    full = blisk.replay(finished, 1, 3, fidelity="full")
+    is_that_of(full, "replay", finished.folder, "--scenario", 1, "--pattern", 3, "--fidelity", "full")
+    # The model is small: its reduced model is all of it, and harmonics are what differs.
+    assert abs(full["full"]["amplitude_error"]) < 0.01
+    with pytest.raises(blisk.BliskError, match="there is no"):
+        blisk.replay(finished, 99, 3)
+    with pytest.raises(ValueError, match="reduced, full"):
+        blisk.replay(finished, 1, 3, fidelity="best")
+
+
+@pytest.mark.parametrize(
+    ("question", "flags"), [("full_model", []), ("dense_sweep", ["--dense-sweep"]), ("time_domain", ["--time-domain"])]
+)
+def test_a_sample_solved_again_is_that_of_the_command(study, question, flags):
+    results = blisk.run(study.replace({"study.patterns": 6}), out="out")
+    stages = []
+    answer = blisk.verify(results, question, sample=2, seed=5, progress=stages.append)
+    assert answer["verified"]
+    is_that_of(answer, "verify", "out", "--sample", 2, "--seed", 5, *flags)
+    assert stages
+
+
+def test_files_are_looked_at(study):
+    results = blisk.run(study.replace({"study.patterns": 3}), out="out")
+    assert blisk.verify(results, "integrity")["whole"]
+    is_that_of(blisk.verify(results, "integrity"), "verify", "out", "--integrity")
+    path = results.folder / "scenarios.parquet"
+    path.write_bytes(path.read_bytes()[:-1])
+    answer = blisk.verify(results, "integrity")
+    assert not answer["whole"] and "scenarios.parquet" in str(answer)
+    is_that_of(answer, "verify", "out", "--integrity", code=8)
+    with pytest.raises(ValueError, match="full_model, dense_sweep"):
+        blisk.verify(results, "luck")
+    with pytest.raises(ValueError, match="time_domain"):
+        blisk.verify(results, row=(0, 0))
+
+
+def test_an_estimate_is_that_of_the_command(study):
+    own = {"patterns": 400, "solves": 80, "threads": 2}
+    answer = blisk.estimate(study, 95, out="own", **own)
+    is_that_of(answer, "estimate", "study.toml", "--target", 95, "--patterns", 400, "--solves", 80, "--out", "other")
+    for target in ("median", 10.0, 100.0):
+        with pytest.raises(ValueError, match="mean, or a percentile"):
+            blisk.estimate(study, target, out="own")
+    with pytest.raises(ValueError, match="solves = 0"):
+        blisk.estimate(study, solves=0)
+
+
+def test_what_accuracy_costs_is_measured(study):
+    answer = blisk.tradeoff(study, 2, out="own", threads=1)
+    ended = called("tradeoff", "study.toml", "--patterns", 2, "--out", "other", "--threads", 1, "--json")
+    assert ended.returncode == 0, ended.stderr
+    other = json.loads(ended.stdout)
+    assert answer.keys() == other.keys() and str(answer)
+    # Times differ; the errors do not.
+    assert errors_in(answer) == errors_in(other) != []
+    with pytest.raises(ValueError, match="at least 2"):
+        blisk.tradeoff(study, 1)
+    with pytest.raises(ValueError, match="reduced, full"):
+        blisk.tradeoff(study, reference="none")
+
+
+def errors_in(value):
+    """All numbers under a key that names an error, in order."""
+    if isinstance(value, dict):
+        return [own for key, inner in value.items() for own in ([inner] if "error" in key else errors_in(inner))]
+    return [own for inner in value for own in errors_in(inner)] if isinstance(value, list) else []
+
+
+def test_figures_are_those_of_the_command(finished, tmp_path):
+    names = blisk.figures()
+    assert "amplitude" in names and all(names.values())
+    for name in ("amplitude", "amplitude-distribution", "worst-response"):
+        figure = finished.figure(name)
+        ended = called("plot", finished.folder, name, "--out", tmp_path / "other.svg")
+        assert ended.returncode == 0, ended.stderr
+        assert figure.save(tmp_path / "own.svg").read_bytes() == (tmp_path / "other.svg").read_bytes()
+        assert figure._repr_svg_() == figure.svg and figure.title in ended.stdout
+    with pytest.raises(ValueError, match="accepted: amplitude"):
+        finished.figure("nothing")
+    with pytest.raises(ValueError, match="nothing to draw"):
+        finished.figure("accuracy")
+    page = finished._repr_html_()
+    assert "<svg" in page and "P95" in page
+
+
+def test_axes_hold_the_numbers_of_the_tables(finished):
+    axes = finished.plot(percentiles=[50, 95, 99])
+    lines = {line.get_label(): line for line in axes.get_lines()}
+    rows = [row for row in finished.scenarios.rows() if row["contact"] == "full"]
+    # 80 wheels have no P99.
+    assert {"P50", "P95", "tuned"} <= set(lines) and "P99" not in lines
+    assert list(lines["P95"].get_ydata()) == [row["peak_amplitude_m_p95"] for row in rows]
+    assert list(lines["P95"].get_xdata()) == [row["normal_load_n"] for row in rows] == [50, 150]
+    assert list(lines["tuned"].get_ydata()) == [row["tuned_amplitude_m"] for row in rows]
+    again = finished.plot("amplification_factor", ax=axes)
+    assert again is axes and axes.get_ylabel() == "amplification factor"
+    with pytest.raises(ValueError, match="accepted: peak_amplitude_m"):
+        finished.plot("luck")
+    with pytest.raises(ValueError, match="no scenario"):
+        finished.plot(engine_order=9)
+    matplotlib.pyplot.close("all")
+
+
+DEVIATIONS = [0.02, -0.01, 0.005, -0.03, 0.01, 0.0]
+
+
+def test_one_wheel_has_the_peaks_of_its_pattern_file(study, tmp_path):
+    wheel = study.wheel(DEVIATIONS)
+    peaks = wheel.peaks(threads=1)
+    lines = "".join(f"0,{blade},{deviation}\n" for blade, deviation in enumerate(DEVIATIONS))
+    (tmp_path / "wheel.csv").write_text("pattern,blade,deviation\n" + lines)
+    own = study.to_dict()
+    own["mistuning"] = {"file": "wheel.csv"}
+    del own["sweep"]["standard_deviation"], own["study"]["patterns"]
+    (tmp_path / "wheel.toml").write_text(blisk.Study(**own).to_toml())
+    ended = called("run", "wheel.toml", "--out", "wheel")
+    assert ended.returncode in (0, 5), ended.stderr
+    rows = blisk.Results("wheel").responses.rows()
+    assert [peak.amplitude_m for peak in peaks] == [row["peak_amplitude_m"] for row in rows]
+    assert [peak.normal_load_n for peak in peaks] == [None, 50, 150, None]
+    assert wheel.peak(50) == peaks[1] and pickle.loads(pickle.dumps(peaks)) == peaks
+    curve = wheel.response(50, [peaks[1].frequency_hz])
+    assert math.isclose(max(curve["amplitude_m"]), peaks[1].amplitude_m, rel_tol=1e-4)
+
+
+def test_one_wheel_at_the_linear_limit_is_masses_and_springs(study):
+    own, sectors = SMALL["model"]["lumped"], 6
+    stiffness, mass = numpy.zeros((18, 18)), numpy.zeros(18)
+    for n in range(sectors):
+        blade, disk, ring = n, sectors + n, 2 * sectors + n
+        mass[[blade, disk, ring]] = own["blade_mass_kg"], own["disk_mass_kg"], own["ring_mass_kg"]
+        stiffness[disk, disk] += own["disk_ground_stiffness_n_per_m"]
+        for a, b, k in (
+            (blade, disk, own["blade_stiffness_n_per_m"] * (1 + DEVIATIONS[n])),
+            (disk, sectors + (n + 1) % sectors, own["disk_coupling_stiffness_n_per_m"]),
+            (ring, 2 * sectors + (n + 1) % sectors, own["ring_coupling_stiffness_n_per_m"]),
+            (ring, disk, own["ring_disk_stiffness_n_per_m"]),
+        ):
+            stiffness[[a, b], [a, b]] += k
+            stiffness[[a, b], [b, a]] -= k
+    peak = study.wheel(DEVIATIONS).peak("slide")
+    force = numpy.zeros(18, complex)
+    force[:sectors] = 10.0 * numpy.exp(2j * math.pi * 2 * numpy.arange(sectors) / sectors)
+    omega = 2 * math.pi * peak.frequency_hz
+    solved = numpy.linalg.solve(stiffness * (1 + 0.002j) - omega**2 * numpy.diag(mass), force)
+    amplitude = abs(solved)[:sectors]
+    assert amplitude.argmax() == peak.blade
+    assert math.isclose(amplitude.max(), peak.amplitude_m, rel_tol=1e-6)
+
+
+def test_a_wheel_that_is_not_accepted_is_refused(study):
+    for deviations in ([], [-1.0], [float("nan")]):
+        with pytest.raises(ValueError, match="a number above -1"):
+            study.wheel(deviations)
+    with pytest.raises(blisk.BliskError):
+        study.wheel([0.0] * 5).peak(50)
+    with pytest.raises(ValueError, match="several load cases or engine orders"):
+        study.replace({"excitation.engine_orders": [1, 2]}).wheel(DEVIATIONS).peak(50)
