@@ -5,8 +5,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::folders_inside::shard_folders;
 use super::lock::{holder, unix_seconds};
-use super::merge::shard_folders;
 use super::summary::{planned_rows, row_store};
 use super::{LockHolder, PipelineError};
 use crate::population::statistics::Accounting;

@@ -6,10 +6,9 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::PipelineError;
+use super::folders_inside::{folders_of_loads, shard_folders};
 use super::lock::holder;
-use super::merge::shard_folders;
 use super::results_folder::RESPONSES;
-use super::solved_loads::folders_of_loads;
 use crate::model::{is_whole_entry, writer_of_leftover};
 use crate::population::table::{
     ASIDE, CHECKSUMS, FOLDERS, MANIFEST, Manifest, PartHeader, RunRecord, SIDE_FILES, SideTables,

@@ -1,8 +1,8 @@
 //! Which rows of a study settings are judged by: a few scenarios that stand for all of them, and a few patterns.
 
-use super::random_sample::draw_in;
 use super::{MistuningSource, Study};
 use crate::population::monte_carlo::{HarmonicChoice, LoadCaseName, Scenario};
+use crate::population::statistics::draw_in;
 use crate::response::mistuning::PatternSource;
 
 /// Stream of the sample of patterns of a file.

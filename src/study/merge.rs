@@ -1,16 +1,14 @@
 //! Shards of a study joined to its results.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use super::folders_inside::shard_folders;
 use super::pipeline::{Clock, RowCounts};
 use super::pipeline_tables::{Facts, TableWork};
 use super::results_folder::{ResultsFolder, finished_rows, verify_tables};
 use super::{EngineSource, PipelineError, RunOutcome, StoredStudy, StudyDigest};
 use crate::identity;
-use crate::population::table::{
-    Manifest, RowStore, RunState, ScenarioEntry, Shard, TableError, is_folder,
-};
+use crate::population::table::{Manifest, RowStore, RunState, ScenarioEntry, Shard};
 
 /// Missing shards that a message names.
 const NAMED: usize = 20;
@@ -105,31 +103,6 @@ fn expanded(folders: &[PathBuf]) -> Result<Vec<PathBuf>, PipelineError> {
         }
     }
     Ok(all)
-}
-
-/// The folders of shards below the results folder `results`, by count and number. Links are not followed.
-pub(super) fn shard_folders(
-    results: &Path,
-) -> Result<BTreeMap<(u32, u32), PathBuf>, PipelineError> {
-    let shards = results.join("shards");
-    let mut found = BTreeMap::new();
-    if !is_folder(&shards)? {
-        return Ok(found);
-    }
-    let unread = |source| TableError::Io {
-        action: "read",
-        path: shards.clone(),
-        source,
-    };
-    for entry in std::fs::read_dir(&shards).map_err(unread)? {
-        let path = entry.map_err(unread)?.path();
-        if let Some(shard) = Shard::of_folder(&path)
-            && is_folder(&path)?
-        {
-            found.insert((shard.count, shard.number), path);
-        }
-    }
-    Ok(found)
 }
 
 fn read(folder: PathBuf) -> Result<Part, PipelineError> {

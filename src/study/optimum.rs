@@ -12,12 +12,11 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use super::compare::{best_loads, same_patterns};
+use super::folders_inside::folders_of_loads;
 use super::load_search::{LoadRange, four_digits};
 use super::result_columns::sorted_values;
 use super::results_folder::ResultsFolder;
-use super::solved_loads::{
-    Holding, SolvedLoad, cpu_s_per_row, folders_of_loads, solved_loads, study_at,
-};
+use super::solved_loads::{Holding, SolvedLoad, cpu_s_per_row, solved_loads, study_at};
 use super::{
     AccuracyChoice, AccuracyOptions, EngineSource, PipelineError, Progress, ResultColumns,
     RunRequest, Stage, Study, load_sector_model, run,

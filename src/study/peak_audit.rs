@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::random_sample::draw;
 use super::results_folder::ResultsFolder;
 use super::{
     Engine, EngineSource, PipelineError, Progress, Stage, StoredModel, StoredStudy, VerifyRequest,
 };
 use crate::population::monte_carlo::{ResponseRow, Scenario};
+use crate::population::statistics::draw;
 use crate::population::table::{PeakAuditRecord, TableHeader, write_peak_audit, write_side_table};
 use crate::report::PeakAuditReport;
 use crate::response::forced_response::{DensePeak, FrequencyBand, dense_peak};

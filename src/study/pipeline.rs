@@ -1,11 +1,12 @@
 //! A study from file to tables: one call per stage.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use rayon::ThreadPool;
 
+use super::folders_inside::folder_of_shard;
 use super::lock::unix_seconds;
 use super::pipeline_goal::{Goal, can_be_cut, is_shard_of};
 use super::pipeline_rows::RowWork;
@@ -20,7 +21,7 @@ use crate::identity;
 use crate::platform;
 use crate::population::monte_carlo::{Interruption, block_size, plan_blocks, solve_blocks};
 use crate::population::table::{
-    Manifest, PartSink, RowStore, RunRecord, Shard, TableError, is_folder, remove_leftovers,
+    Manifest, PartSink, RowStore, RunRecord, Shard, is_folder, remove_leftovers,
 };
 use crate::report::StudySummary;
 use crate::response::mistuning::PatternSource;
@@ -92,18 +93,6 @@ pub fn run_shard(
         held: 0,
     };
     run_in(of_shard, scope, source, progress)
-}
-
-/// The folder of a shard below the results folder `results`, whether it is there or not.
-///
-/// # Errors
-/// Something else stands there, such as a link, or the file system refused.
-pub(super) fn folder_of_shard(results: &Path, shard: Shard) -> Result<PathBuf, TableError> {
-    let shards = results.join("shards");
-    is_folder(&shards)?;
-    let folder = shards.join(shard.folder_name());
-    is_folder(&folder)?;
-    Ok(folder)
 }
 
 /// What a run is about beside its study and folder.

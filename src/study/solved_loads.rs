@@ -1,7 +1,6 @@
 //! Loads of results folders that are solved already on the patterns of a search, and what their rows took.
 
-use std::fs::FileType;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::results_folder::GROWING;
 use super::{PipelineError, ResultColumns, Study, StudyDigest};
@@ -90,22 +89,6 @@ pub(super) fn solved_loads(study: &Study, results: &Path) -> Result<Holding, Pip
     Ok(Holding::Loads(
         loads.into_iter().filter_map(solved).collect(),
     ))
-}
-
-/// Folders of single loads that an earlier search in `results` made, by load.
-pub(super) fn folders_of_loads(results: &Path) -> Vec<(f64, PathBuf)> {
-    let entries = std::fs::read_dir(results).into_iter().flatten().flatten();
-    let mut folders: Vec<(f64, PathBuf)> = entries
-        .filter_map(|entry| {
-            // A link could lead out of the folder.
-            entry.file_type().ok().filter(FileType::is_dir)?;
-            let name = entry.file_name();
-            let load = name.to_str()?.strip_prefix("load-")?.parse().ok()?;
-            Some((load, entry.path()))
-        })
-        .collect();
-    folders.sort_by(|a, b| a.0.total_cmp(&b.0));
-    folders
 }
 
 /// Processor time of a row under friction, by the runs of the folder `results`, s: all threads count

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use super::folders_inside::folder_of_shard;
 use super::lock::FolderLock;
-use super::pipeline::folder_of_shard;
 use super::results_folder::{RESPONSES, VERSION, differences};
 use super::{PipelineError, Study, StudyDigest};
 use crate::identity;

@@ -1,8 +1,8 @@
 //! One delivered row integrated in time beside its harmonic balance.
 
-use super::random_sample::draw;
 use super::{EngineSource, PipelineError, Progress, Stage, StoredStudy, VerifyRequest};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
+use crate::population::statistics::draw;
 use crate::report::TimeDomainReport;
 use crate::response::forced_response::ContactCondition;
 use crate::response::friction::Ring;

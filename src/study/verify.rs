@@ -4,7 +4,6 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::random_sample::draw;
 use super::replay::{harmonics_of, same_bits};
 use super::results_folder::ResultsFolder;
 use super::{
@@ -12,6 +11,7 @@ use super::{
     StoredModel, StoredStudy,
 };
 use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use crate::population::statistics::draw;
 use crate::population::table::{
     TableHeader, VerificationRecord, write_side_table, write_verification,
 };

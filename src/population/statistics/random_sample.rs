@@ -9,12 +9,12 @@ use rand::{RngExt, SeedableRng};
 const SAMPLE_STREAM: u64 = u64::MAX;
 
 /// `count` different places of `0..rows`, ascending, each set of them as likely as any other (Floyd 1987).
-pub(super) fn draw(rows: usize, count: usize, seed: u64) -> Vec<usize> {
+pub(crate) fn draw(rows: usize, count: usize, seed: u64) -> Vec<usize> {
     draw_in(SAMPLE_STREAM, rows, count, seed)
 }
 
 /// Such places from a stream of their own.
-pub(super) fn draw_in(stream: u64, rows: usize, count: usize, seed: u64) -> Vec<usize> {
+pub(crate) fn draw_in(stream: u64, rows: usize, count: usize, seed: u64) -> Vec<usize> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(stream);
     let mut places = BTreeSet::new();
