@@ -13,9 +13,12 @@
 //! | [`response`] | `mistuning`, `friction`, `harmonic_balance`, `forced_response` | one wheel to its peak |
 //! | [`population`] | `monte_carlo`, `statistics`, `table` | all wheels to tables |
 //! | [`report`] | | the summary and its warnings |
-//! | [`study`] | | the study file and the pipeline |
+//! | [`study`] | | the study file |
+//! | [`settings`] | | what the numbers are solved with, chosen by measured error, and the engines |
+//! | [`campaign`] | `store`, `pipeline`, `commands` | a study carried out |
 //! | [`cli`] | | the commands; the only code that prints |
 
+pub mod campaign;
 pub mod cli;
 pub mod identity;
 pub mod input;
@@ -25,4 +28,5 @@ pub mod platform;
 pub mod population;
 pub mod report;
 pub mod response;
+pub mod settings;
 pub mod study;

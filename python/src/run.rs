@@ -3,15 +3,16 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use blisk::campaign::{
+    CurveRequest, OptimumRequest, PlanRequest, RunRequest, set_other_builds_aside,
+};
 use blisk::cli::threads as threads_of;
 use blisk::population::monte_carlo::{LoadCaseName, Scenario};
 use blisk::population::statistics::Quantity;
 use blisk::population::table::{CurveFormat, TableHeader, write_curve};
 use blisk::response::forced_response::ContactCondition;
-use blisk::study::{
-    CurveRequest, OptimumRequest, PlanRequest, ReducedEngineSource, RunRequest, Study, StudyDigest,
-    set_other_builds_aside,
-};
+use blisk::settings::ReducedEngineSource;
+use blisk::study::{Study, StudyDigest};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -40,7 +41,7 @@ pub fn run(
             results: &out,
             threads: threads_of(threads),
         };
-        blisk::study::run(request, &ReducedEngineSource, progress)
+        blisk::campaign::run(request, &ReducedEngineSource, progress)
     })?;
     Ok((outcome.rows_solved, outcome.rows_reused))
 }
@@ -75,7 +76,7 @@ pub fn optimum(
             resolution,
             threads: threads_of(threads),
         };
-        blisk::study::find_optimum(request, &ReducedEngineSource, progress)
+        blisk::campaign::find_optimum(request, &ReducedEngineSource, progress)
     })?;
     answer_of(&report)
 }
@@ -95,7 +96,7 @@ pub fn plan(
             pilot: pilot as usize,
             threads: threads_of(threads),
         };
-        blisk::study::plan(request, &ReducedEngineSource, progress)
+        blisk::campaign::plan(request, &ReducedEngineSource, progress)
     })?;
     answer_of(&plan)
 }
@@ -130,7 +131,7 @@ pub fn response(
             standard_deviation,
             frequencies_hz: &frequencies_hz,
         };
-        let points = blisk::study::response_curve(&study, &ReducedEngineSource, request)?;
+        let points = blisk::campaign::response_curve(&study, &ReducedEngineSource, request)?;
         let header = TableHeader {
             study_digest: StudyDigest::of(&study)?.hex(),
             compression: study.output.compression,

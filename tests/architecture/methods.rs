@@ -19,7 +19,11 @@ const OPEN: &[(&str, &str, usize)] = &[
         "NewtonWorkspace",
         3,
     ),
-    ("response/harmonic_balance/equation/system.rs", "HarmonicSystem", 9),
+    (
+        "response/harmonic_balance/equation/system.rs",
+        "HarmonicSystem",
+        9,
+    ),
 ];
 
 /// A type, by its file under `src/` and its name.

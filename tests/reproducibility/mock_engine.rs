@@ -11,7 +11,8 @@ use blisk::response::forced_response::{ResponseTrace, SearchPlan};
 use blisk::response::harmonic_balance::Status;
 use blisk::response::mistuning::{Deviations, Pattern};
 use blisk::response::time_integration::{PointComparison, TimeOptions};
-use blisk::study::{Engine, EngineSource, PipelineError, Study};
+use blisk::settings::{Engine, EngineSource};
+use blisk::study::{PipelineError, Study};
 use serde_json::{Value, json};
 
 /// Counts the patterns it solves and panics in pattern `panics_in`.
