@@ -10,7 +10,8 @@
 //! | [`linalg`] | | a thin layer over faer |
 //! | [`input`] | | the keys of TOML files, and what is wrong with them |
 //! | [`model`] | `sector`, `cyclic`, `reduced_model`, `reduction`, `cache` | from a sector to the reduced model |
-//! | [`response`] | `mistuning`, `friction`, `harmonic_balance`, `forced_response` | one wheel to its peak |
+//! | [`response`] | `mistuning`, `friction`, `harmonic_balance`, `receptance`, `forced_response`, `stability` | one wheel to its peak |
+//! | [`verification`] | `reference`, `time_integration` | what rows are verified by |
 //! | [`population`] | `monte_carlo`, `statistics`, `table` | all wheels to tables |
 //! | [`report`] | | the summary and its warnings |
 //! | [`study`] | | the study file |
@@ -30,3 +31,4 @@ pub mod report;
 pub mod response;
 pub mod settings;
 pub mod study;
+pub mod verification;

@@ -21,8 +21,8 @@ use crate::population::monte_carlo::{RowSettings, RowSolver, Scenario};
 use crate::response::forced_response::{SearchEnd, SearchPlan, SearchSettings, find_peak};
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::HarmonicTransform;
-use crate::response::reference::{ReferenceSettings, ReferenceSolver};
 use crate::study::{Excitation, MistuningSource, PipelineError, Study, excitations};
+use crate::verification::reference::{ReferenceSettings, ReferenceSolver};
 
 /// Modes beyond which none are added without being asked for.
 const MOST_MODES: usize = 200;

@@ -13,10 +13,10 @@ use crate::population::table::CurvePoint;
 use crate::response::forced_response::{FrequencyBand, Harmonics};
 use crate::response::harmonic_balance::{HarmonicTransform, Status, TransformError};
 use crate::response::mistuning::Pattern;
-use crate::response::reference::{
+use crate::study::{PipelineError, Study, excitations};
+use crate::verification::reference::{
     ReferencePeak, ReferenceSettings, ReferenceSolver, reference_peak,
 };
-use crate::study::{PipelineError, Study, excitations};
 
 /// Modes of either kind of the small model whose linear resonances bound the search for a peak.
 const SCOUT_MODES: usize = 6;

@@ -7,8 +7,8 @@ use crate::population::monte_carlo::RowSettings;
 use crate::response::forced_response::Harmonics;
 use crate::response::friction::{ContactOptions, PairParameters, Ring};
 use crate::response::harmonic_balance::HarmonicTransform;
-use crate::response::reference::ReferenceSettings;
 use crate::study::Study;
+use crate::verification::reference::ReferenceSettings;
 
 /// Harmonics that an automatic set begins with.
 const FIRST_HARMONICS: [u32; 1] = [1];

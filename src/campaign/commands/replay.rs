@@ -4,9 +4,9 @@ use crate::campaign::store::{StoredModel, StoredStudy};
 use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
 use crate::population::table::VerificationRecord;
 use crate::response::mistuning::Pattern;
-use crate::response::reference::ReferencePeak;
 use crate::settings::{EngineSource, FullModel, FullRow, FullSettings};
 use crate::study::PipelineError;
+use crate::verification::reference::ReferencePeak;
 
 /// Which row is to be solved again.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -8,9 +8,9 @@ use crate::report::TimeDomainReport;
 use crate::response::forced_response::ContactCondition;
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::Status;
-use crate::response::time_integration::TimeOptions;
 use crate::settings::{EngineSource, Progress, Stage};
 use crate::study::PipelineError;
+use crate::verification::time_integration::TimeOptions;
 
 /// Which row is to be integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,9 +12,9 @@ use crate::population::table::{
     TableHeader, VerificationRecord, write_side_table, write_verification,
 };
 use crate::report::{VerificationContext, VerificationReport};
-use crate::response::reference::{ReferencePeak, ReferenceSettings};
 use crate::settings::{Engine, EngineSource, FullModel, FullRow, FullSettings, Progress, Stage};
 use crate::study::PipelineError;
+use crate::verification::reference::{ReferencePeak, ReferenceSettings};
 
 /// What to verify.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,9 +12,9 @@ use crate::report::ModelReport;
 use crate::response::forced_response::{ResponseTrace, SearchPlan};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
-use crate::response::time_integration::{PointComparison, TimeOptions};
 use crate::settings::accuracy::AccuracyChoice;
 use crate::study::{AccuracyOptions, PipelineError, Study};
+use crate::verification::time_integration::{PointComparison, TimeOptions};
 
 /// An engine with the choice that made it.
 struct AccurateEngine {

@@ -13,8 +13,8 @@ use crate::report::ModelReport;
 use crate::response::forced_response::{ResponseTrace, SearchPlan};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
-use crate::response::time_integration::{PointComparison, TimeOptions};
 use crate::study::{PipelineError, Study};
+use crate::verification::time_integration::{PointComparison, TimeOptions};
 
 /// Approximate peak of a pattern.
 pub type SurrogateOf<'a> = Box<dyn Fn(&Pattern) -> Option<SurrogatePeak> + Send + Sync + 'a>;

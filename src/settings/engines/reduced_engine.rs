@@ -16,11 +16,11 @@ use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
 use crate::response::forced_response::{ResponseTrace, SearchPlan};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
-use crate::response::time_integration::{PointComparison, TimeOptions};
 use crate::settings::basis_choice::BasisEvidence;
 use crate::settings::fixed_interface::FixedInterface;
 use crate::settings::reduced_study::{models_digest, solver_of, stored_digest, stored_for};
 use crate::study::{PipelineError, Study};
+use crate::verification::time_integration::{PointComparison, TimeOptions};
 
 /// Reduces a model for a study with the basis that the study asks for.
 #[derive(Debug, Clone, Copy, Default)]

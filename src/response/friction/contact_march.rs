@@ -15,7 +15,7 @@
 //! & Menq 1998: slip at once if `kt |d_t'| > mu kn d_n'`, else stick).
 
 use super::friction_circle::slide_on_circle;
-use crate::response::friction::{ContactLaw, PairParameters};
+use super::{ContactLaw, PairParameters};
 
 /// What a pair remembers of an instant.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

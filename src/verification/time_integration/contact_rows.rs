@@ -1,7 +1,6 @@
 //! The pairs of the whole wheel on its contact rows.
 
-use super::contact_march::{PairMemory, march};
-use crate::response::friction::{ContactLaw, PairParameters};
+use crate::response::friction::{ContactLaw, PairMemory, PairParameters, march};
 use crate::response::harmonic_balance::ContactInterface;
 
 /// One pair of the wheel.

@@ -15,11 +15,11 @@
 
 use std::f64::consts::TAU;
 
-use super::contact_march::PairMemory;
 use super::contact_rows::ContactRows;
 use super::propagator::Propagator;
 use super::state::{MarchedWheel, WheelState};
 use crate::linalg::{Complex64, LuWorkspace, Matrix, add_times_vector, add_transpose_times_vector};
+use crate::response::friction::PairMemory;
 use crate::response::harmonic_balance::Status;
 
 /// Change of the corrections, relative to the largest spring force, at which they count as found.

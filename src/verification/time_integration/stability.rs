@@ -21,12 +21,12 @@
 
 use rayon::prelude::*;
 
-use super::contact_march::PairMemory;
 use super::contact_rows::ContactRows;
 use super::periods::{Period, blade_norms};
 use super::state::{MarchedWheel, WheelState};
 use super::stepper::TimeStepper;
 use crate::linalg::{Complex64, Matrix, eigenvalues, hermitian_eigen};
+use crate::response::friction::PairMemory;
 use crate::response::harmonic_balance::{ContactShares, Status};
 
 /// Components of the state at most: a march each, several times.

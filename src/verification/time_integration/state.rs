@@ -1,8 +1,8 @@
 //! The wheel that is marched, and its state at one instant.
 
-use super::contact_march::PairMemory;
 use super::contact_rows::ContactRows;
 use crate::linalg::Complex64;
+use crate::response::friction::PairMemory;
 use crate::response::harmonic_balance::{ContactInterface, Structure};
 
 /// What is marched: a whole wheel with its contact law under one excitation.

@@ -2,9 +2,7 @@
 //! code nor harmonics with harmonic balance.
 
 mod compare;
-mod contact_march;
 mod contact_rows;
-mod friction_circle;
 mod motion;
 mod options;
 mod periods;
@@ -17,7 +15,6 @@ mod stepper;
 pub use compare::{
     PointCase, PointComparison, SolvedPoint, Stability, StepStudy, compare_point, periodic_point,
 };
-pub use contact_march::{PairMemory, march};
 pub use motion::Motion;
 pub use options::TimeOptions;
 pub use settle::{Settled, settle};

@@ -3,12 +3,12 @@
 
 use std::f64::consts::TAU;
 
-use super::contact_march::PairMemory;
 use super::contact_rows::ContactRows;
 use super::state::{MarchedWheel, WheelState};
 use crate::linalg::Complex64;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::response::forced_response::{Excited, Point};
+use crate::response::friction::PairMemory;
 use crate::response::harmonic_balance::Structure;
 use crate::response::mistuning::{StructuralModes, WheelBasis};
 
