@@ -10,12 +10,16 @@
 //! | [`linalg`] | | a thin layer over faer |
 //! | [`input`] | | the keys of TOML files, and what is wrong with them |
 //! | [`model`] | `sector`, `cyclic`, `reduced_model`, `reduction`, `cache` | from a sector to the reduced model |
-//! | [`response`] | `mistuning`, `friction`, `harmonic_balance`, `forced_response` | one wheel to its peak |
+//! | [`response`] | `mistuning`, `friction`, `harmonic_balance`, `receptance`, `forced_response`, `stability` | one wheel to its peak |
+//! | [`verification`] | `reference`, `time_integration` | what rows are verified by |
 //! | [`population`] | `monte_carlo`, `statistics`, `table` | all wheels to tables |
 //! | [`report`] | | the summary and its warnings |
-//! | [`study`] | | the study file and the pipeline |
+//! | [`study`] | | the study file |
+//! | [`settings`] | | what the numbers are solved with, chosen by measured error, and the engines |
+//! | [`campaign`] | `store`, `pipeline`, `commands` | a study carried out |
 //! | [`cli`] | | the commands; the only code that prints |
 
+pub mod campaign;
 pub mod cli;
 pub mod identity;
 pub mod input;
@@ -25,4 +29,6 @@ pub mod platform;
 pub mod population;
 pub mod report;
 pub mod response;
+pub mod settings;
 pub mod study;
+pub mod verification;

@@ -12,10 +12,11 @@ use std::f64::consts::TAU;
 use std::num::NonZero;
 use std::time::{Duration, Instant};
 
+use blisk::campaign::{RunRequest, run};
 use blisk::linalg::LuWorkspace;
 use blisk::population::monte_carlo::Scenario;
 use blisk::response::forced_response::{ContactCondition, Work};
-use blisk::study::{Progress, ReducedEngineSource, RunRequest, run};
+use blisk::settings::{Progress, ReducedEngineSource};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 use common::case::{Case, study};

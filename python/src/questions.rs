@@ -3,16 +3,17 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use blisk::campaign::{
+    CampbellRequest, EstimateRequest, ReplayRequest, ReportRequest, StoredStudy, TimeDomainRequest,
+    TradeoffRequest, VerifyRequest,
+};
 use blisk::cli::{IntegrityAnswer, ReplayAnswer, threads as threads_of};
 use blisk::model::sector::bundle;
 use blisk::population::monte_carlo::LoadCaseName;
 use blisk::population::statistics::EstimateTarget;
 use blisk::report::{FIGURES, GroupReport, StudyReport, Wheels, figure as drawn_figure};
-use blisk::study::{
-    CampbellRequest, EngineSource, EstimateRequest, FullSettings, PipelineError,
-    ReducedEngineSource, ReplayRequest, ReportRequest, RotationLoad, StoredStudy,
-    TimeDomainRequest, TradeoffRequest, VerifyRequest, load_sector_model,
-};
+use blisk::settings::{EngineSource, FullSettings, ReducedEngineSource};
+use blisk::study::{PipelineError, RotationLoad, load_sector_model};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -57,7 +58,7 @@ pub fn campbell(
                 .map(|(speed_rpm, folder)| Ok((Some(speed_rpm), bundle::read(&folder)?)))
                 .collect::<Result<Vec<_>, PipelineError>>()?
         };
-        blisk::study::campbell(&CampbellRequest {
+        blisk::campaign::campbell(&CampbellRequest {
             study: &study,
             models: &at_speeds,
             engine_orders: &engine_orders,
@@ -77,7 +78,7 @@ pub fn merge(
     study_file: Option<PathBuf>,
 ) -> PyResult<()> {
     watch(py, None, OnSignal::Leave, move |_| {
-        blisk::study::merge(&shards, &out, study_file.as_deref(), &ReducedEngineSource)
+        blisk::campaign::merge(&shards, &out, study_file.as_deref(), &ReducedEngineSource)
     })?;
     Ok(())
 }
@@ -102,7 +103,7 @@ pub fn replay(
                 samples_per_period: full_samples(&stored.study),
             }),
         };
-        let replay = blisk::study::replay(&stored, &ReducedEngineSource, &request)?;
+        let replay = blisk::campaign::replay(&stored, &ReducedEngineSource, &request)?;
         Ok(ReplayAnswer(replay))
     })?;
     answer_of(&answer)
@@ -130,24 +131,24 @@ pub fn verify(
     let listener = listener.as_ref();
     if question == "integrity" {
         let found = watch(py, listener, OnSignal::Leave, move |_| {
-            blisk::study::integrity(&results)
+            blisk::campaign::integrity(&results)
         })?;
         return answer_of(&IntegrityAnswer(found));
     }
     let stored = move || StoredStudy::open(&results, study_file.as_deref());
     match question {
         "full_model" => answer_of(&watch(py, listener, OnSignal::Leave, move |progress| {
-            blisk::study::verify(&stored()?, &ReducedEngineSource, request, progress)
+            blisk::campaign::verify(&stored()?, &ReducedEngineSource, request, progress)
         })?),
         "dense_sweep" => answer_of(&watch(py, listener, OnSignal::Leave, move |progress| {
-            blisk::study::audit_peaks(&stored()?, &ReducedEngineSource, request, progress)
+            blisk::campaign::audit_peaks(&stored()?, &ReducedEngineSource, request, progress)
         })?),
         "time_domain" => answer_of(&watch(py, listener, OnSignal::Leave, move |progress| {
             let request = TimeDomainRequest {
                 row,
                 sample: request,
             };
-            blisk::study::verify_in_time(&stored()?, &ReducedEngineSource, request, progress)
+            blisk::campaign::verify_in_time(&stored()?, &ReducedEngineSource, request, progress)
         })?),
         other => Err(PyValueError::new_err(format!(
             "question = {other} is not accepted; accepted: full_model, dense_sweep, time_domain, integrity"
@@ -175,7 +176,7 @@ pub fn tradeoff(
             full,
             threads: threads_of(threads),
         };
-        blisk::study::tradeoff(request, progress)
+        blisk::campaign::tradeoff(request, progress)
     })?;
     answer_of(&report)
 }
@@ -205,7 +206,7 @@ pub fn estimate(
             target: percent.map_or(EstimateTarget::Mean, EstimateTarget::Percentile),
             threads: threads_of(threads),
         };
-        blisk::study::estimate(request, &ReducedEngineSource, progress)
+        blisk::campaign::estimate(request, &ReducedEngineSource, progress)
     })?;
     answer_of(&report)
 }
@@ -245,7 +246,7 @@ pub fn figure(
         curves: own.is_of_wheels(),
     };
     let found = watch(py, None, OnSignal::Leave, move |_| {
-        blisk::study::report(&request, &ReducedEngineSource)
+        blisk::campaign::report(&request, &ReducedEngineSource)
     })?;
     let group = chosen(
         &found,

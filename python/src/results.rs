@@ -3,12 +3,11 @@
 use std::fmt::Display;
 use std::path::PathBuf;
 
+use blisk::campaign::{CompareRequest, ReportRequest, checked_table, summarise, summarise_partly};
 use blisk::population::table::{Manifest, write_atomically};
 use blisk::report::html_report;
-use blisk::study::{
-    CompareRequest, PipelineError, ReducedEngineSource, ReportRequest, checked_table, summarise,
-    summarise_partly,
-};
+use blisk::settings::ReducedEngineSource;
+use blisk::study::PipelineError;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use serde::Serialize;
@@ -62,7 +61,7 @@ pub fn report(
         curves,
     };
     watch(py, None, OnSignal::Leave, move |_| {
-        let found = blisk::study::report(&request, &ReducedEngineSource)?;
+        let found = blisk::campaign::report(&request, &ReducedEngineSource)?;
         Ok(write_atomically(&path, html_report(&found).as_bytes())?)
     })
 }
@@ -81,7 +80,7 @@ pub fn compare(
         percent,
     };
     let report = watch(py, None, OnSignal::Leave, move |_| {
-        blisk::study::compare(&request)
+        blisk::campaign::compare(&request)
     })?;
     answer_of(&report)
 }

@@ -3,17 +3,18 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use blisk::campaign::{
+    CurveRequest, OptimumRequest, PlanRequest, RunRequest, set_other_builds_aside,
+};
 use blisk::cli::threads as threads_of;
 use blisk::population::monte_carlo::{LoadCaseName, Scenario};
 use blisk::population::statistics::Quantity;
 use blisk::population::table::{CurveFormat, TableHeader, write_curve, write_traced_curve};
 use blisk::response::forced_response::ContactCondition;
 use blisk::response::friction::Ring;
-use blisk::response::reference::ReferenceSettings;
-use blisk::study::{
-    CurveRequest, FullSettings, OptimumRequest, PlanRequest, ReducedEngineSource, RunRequest,
-    Study, StudyDigest, set_other_builds_aside,
-};
+use blisk::settings::{FullSettings, ReducedEngineSource};
+use blisk::study::{Study, StudyDigest};
+use blisk::verification::reference::ReferenceSettings;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -42,7 +43,7 @@ pub fn run(
             results: &out,
             threads: threads_of(threads),
         };
-        blisk::study::run(request, &ReducedEngineSource, progress)
+        blisk::campaign::run(request, &ReducedEngineSource, progress)
     })?;
     Ok((outcome.rows_solved, outcome.rows_reused))
 }
@@ -77,7 +78,7 @@ pub fn optimum(
             resolution,
             threads: threads_of(threads),
         };
-        blisk::study::find_optimum(request, &ReducedEngineSource, progress)
+        blisk::campaign::find_optimum(request, &ReducedEngineSource, progress)
     })?;
     answer_of(&report)
 }
@@ -97,7 +98,7 @@ pub fn plan(
             pilot: pilot as usize,
             threads: threads_of(threads),
         };
-        blisk::study::plan(request, &ReducedEngineSource, progress)
+        blisk::campaign::plan(request, &ReducedEngineSource, progress)
     })?;
     answer_of(&plan)
 }
@@ -140,7 +141,7 @@ pub fn response(
             load_cases: Vec::new(),
         };
         if way == Way::Followed {
-            let curve = blisk::study::traced_response(&study, &ReducedEngineSource, request)?;
+            let curve = blisk::campaign::traced_response(&study, &ReducedEngineSource, request)?;
             write_traced_curve(&path, CurveFormat::Parquet, &curve.points, &header)?;
             return Ok(Table::read(&path)?);
         }
@@ -150,9 +151,9 @@ pub fn response(
                     harmonics: None,
                     samples_per_period: full_samples(&study),
                 };
-                blisk::study::full_response_curve(&study, &settings, request)?
+                blisk::campaign::full_response_curve(&study, &settings, request)?
             }
-            _ => blisk::study::response_curve(&study, &ReducedEngineSource, request)?,
+            _ => blisk::campaign::response_curve(&study, &ReducedEngineSource, request)?,
         };
         write_curve(&path, CurveFormat::Parquet, &points, &header)?;
         Ok(Table::read(&path)?)

@@ -8,7 +8,8 @@ use std::thread;
 use std::time::Duration;
 
 use blisk::response::harmonic_balance::Status;
-use blisk::study::{PipelineError, Progress, Stage};
+use blisk::settings::{Progress, Stage};
+use blisk::study::PipelineError;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 

@@ -7,8 +7,9 @@ use clap::Args;
 
 use super::exit::Failure;
 use super::{ExitStatus, output};
+use crate::campaign::{CampbellRequest, campbell};
 use crate::model::sector::bundle;
-use crate::study::{CampbellRequest, PipelineError, Study, campbell, load_sector_model};
+use crate::study::{PipelineError, Study, load_sector_model};
 
 /// Arguments of the command.
 #[derive(Debug, Args)]

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::exit::Failure;
 use super::{ExitStatus, output};
-use crate::study::{CompareRequest, compare};
+use crate::campaign::{CompareRequest, compare};
 
 /// Arguments of `blisk compare`.
 #[derive(Debug, Args)]

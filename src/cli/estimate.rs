@@ -9,8 +9,10 @@ use super::exit::Failure;
 use super::progress::RunProgress;
 use super::scheduler::threads;
 use super::{ExitStatus, output};
+use crate::campaign::{EstimateRequest, estimate};
 use crate::population::statistics::EstimateTarget;
-use crate::study::{EstimateRequest, ReducedEngineSource, Study, estimate};
+use crate::settings::ReducedEngineSource;
+use crate::study::Study;
 
 /// Arguments of `blisk estimate`.
 #[derive(Debug, Args)]

@@ -6,8 +6,9 @@ use clap::{Args, ValueEnum};
 
 use super::exit::Failure;
 use crate::response::forced_response::Harmonics;
-use crate::response::reference::ReferenceSettings;
-use crate::study::{FullSettings, Study};
+use crate::settings::FullSettings;
+use crate::study::Study;
+use crate::verification::reference::ReferenceSettings;
 
 /// Highest harmonic accepted, as in a study.
 const MAX_HARMONIC: u32 = 100;

@@ -6,7 +6,8 @@ use clap::Args;
 
 use super::exit::Failure;
 use super::{ExitStatus, output};
-use crate::study::{ReducedEngineSource, merge};
+use crate::campaign::merge;
+use crate::settings::ReducedEngineSource;
 
 /// Arguments of the command.
 #[derive(Debug, Args)]

@@ -5,9 +5,8 @@ use std::path::Path;
 use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::model::sector::bundle;
-use crate::study::{
-    EngineSource, PipelineError, ReducedEngineSource, RotationLoad, Study, load_sector_model,
-};
+use crate::settings::{EngineSource, ReducedEngineSource};
+use crate::study::{PipelineError, RotationLoad, Study, load_sector_model};
 
 pub(super) fn command(
     study: &Path,

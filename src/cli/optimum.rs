@@ -9,8 +9,10 @@ use super::exit::Failure;
 use super::progress::RunProgress;
 use super::scheduler::threads;
 use super::{ExitStatus, output};
+use crate::campaign::{OptimumRequest, find_optimum};
 use crate::population::statistics::Quantity;
-use crate::study::{OptimumRequest, ReducedEngineSource, Study, find_optimum};
+use crate::settings::ReducedEngineSource;
+use crate::study::Study;
 
 /// Arguments of `blisk optimum`.
 #[derive(Debug, Args)]

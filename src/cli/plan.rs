@@ -8,7 +8,9 @@ use super::exit::Failure;
 use super::progress::RunProgress;
 use super::scheduler::threads;
 use super::{ExitStatus, output};
-use crate::study::{PlanRequest, ReducedEngineSource, Study, plan};
+use crate::campaign::{PlanRequest, plan};
+use crate::settings::ReducedEngineSource;
+use crate::study::Study;
 
 /// Arguments of `blisk plan`.
 #[derive(Debug, Args)]

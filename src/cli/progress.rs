@@ -11,7 +11,7 @@ use super::interrupt::{Signals, signals_of_process};
 use super::output;
 use crate::report::ExpectedCost;
 use crate::response::harmonic_balance::Status;
-use crate::study::{Progress, Stage};
+use crate::settings::{Progress, Stage};
 
 /// Time between plain lines.
 const PLAIN_INTERVAL: Duration = Duration::from_secs(30);

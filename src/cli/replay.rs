@@ -10,9 +10,10 @@ use serde_json::{Value, json};
 use super::exit::Failure;
 use super::fidelity::{Fidelity, FidelityArguments};
 use super::{ExitStatus, output, verify};
+use crate::campaign::{Replay, ReplayRequest, StoredStudy, replay};
 use crate::population::monte_carlo::{ResponseRow, harmonics_name};
 use crate::report::LengthUnit;
-use crate::study::{ReducedEngineSource, Replay, ReplayRequest, StoredStudy, replay};
+use crate::settings::ReducedEngineSource;
 
 /// Arguments of `blisk replay`.
 #[derive(Debug, Args)]

@@ -8,12 +8,13 @@ use clap::builder::PossibleValuesParser;
 
 use super::exit::Failure;
 use super::{ExitStatus, output};
+use crate::campaign::{ReportRequest, report};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::table::write_atomically;
 use crate::report::{
     Answer, FIGURES, GroupReport, StudyReport, Wheels, answers, figure, html_report, setting,
 };
-use crate::study::{ReducedEngineSource, ReportRequest, report};
+use crate::settings::ReducedEngineSource;
 
 /// Arguments of `blisk report`.
 #[derive(Debug, Args)]

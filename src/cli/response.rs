@@ -8,16 +8,17 @@ use serde_json::json;
 use super::exit::Failure;
 use super::fidelity::{Fidelity, FidelityArguments};
 use super::{ExitStatus, output};
+use crate::campaign::{
+    CurveRequest, TracedCurve, full_response_curve, response_curve, traced_response,
+};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::table::{CurveFormat, TableHeader, write_curve, write_traced_curve};
 use crate::report::LengthUnit;
 use crate::response::forced_response::ContactCondition;
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::Status;
-use crate::study::{
-    CurveRequest, ReducedEngineSource, Study, StudyDigest, TracedCurve, full_response_curve,
-    response_curve, traced_response,
-};
+use crate::settings::ReducedEngineSource;
+use crate::study::{Study, StudyDigest};
 
 /// Largest number of frequencies of a curve.
 const MAX_FREQUENCIES: usize = 1_000_000;

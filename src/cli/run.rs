@@ -8,9 +8,9 @@ use super::exit::Failure;
 use super::progress::RunProgress;
 use super::scheduler::{ShardArgument, threads};
 use super::{ExitStatus, output};
-use crate::study::{
-    AccuracyOptions, ReducedEngineSource, RunRequest, Study, run, run_shard, set_other_builds_aside,
-};
+use crate::campaign::{RunRequest, run, run_shard, set_other_builds_aside};
+use crate::settings::ReducedEngineSource;
+use crate::study::{AccuracyOptions, Study};
 
 /// Arguments of the command.
 #[derive(Debug, Args)]

@@ -6,8 +6,9 @@ use clap::Args;
 
 use super::exit::Failure;
 use super::{ExitStatus, output};
+use crate::campaign::{can_be_cut, is_shard_of};
 use crate::population::table::{Shard, write_atomically};
-use crate::study::{Study, can_be_cut, is_shard_of};
+use crate::study::Study;
 
 /// Arguments of the command.
 #[derive(Debug, Args)]

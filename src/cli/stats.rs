@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::exit::Failure;
 use super::{ExitStatus, output};
+use crate::campaign::{PartialSummary, fit_result_tails, summarise, summarise_partly};
 use crate::report::{StatisticsReport, StudySummary};
-use crate::study::{PartialSummary, fit_result_tails, summarise, summarise_partly};
 
 /// Arguments of `blisk stats`.
 #[derive(Debug, Args)]

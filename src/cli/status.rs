@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::exit::Failure;
 use super::{ExitStatus, output};
-use crate::study::{FolderStatus, Work, status_of_folder};
+use crate::campaign::{FolderStatus, Work, status_of_folder};
 
 /// Arguments of the command.
 #[derive(Debug, Args)]

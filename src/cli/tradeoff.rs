@@ -8,7 +8,8 @@ use super::exit::Failure;
 use super::progress::RunProgress;
 use super::scheduler::threads;
 use super::{ExitStatus, output};
-use crate::study::{Study, TradeoffRequest, tradeoff};
+use crate::campaign::{TradeoffRequest, tradeoff};
+use crate::study::Study;
 
 /// Arguments of the command.
 #[derive(Debug, Args)]

@@ -10,11 +10,13 @@ use super::exit::Failure;
 use super::progress::RunProgress;
 use super::scheduler::threads;
 use super::{ExitStatus, output};
-use crate::identity;
-use crate::study::{
-    FileState, Integrity, PipelineError, ReducedEngineSource, Repair, StoredStudy, Study,
-    TimeDomainRequest, VerifyRequest, audit_peaks, integrity, repair, verify, verify_in_time,
+use crate::campaign::{
+    FileState, Integrity, Repair, StoredStudy, TimeDomainRequest, VerifyRequest, audit_peaks,
+    integrity, repair, verify, verify_in_time,
 };
+use crate::identity;
+use crate::settings::ReducedEngineSource;
+use crate::study::{PipelineError, Study};
 
 /// Arguments of the command.
 #[derive(Debug)]

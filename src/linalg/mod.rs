@@ -10,6 +10,7 @@ mod matrix;
 mod row_blocks;
 mod sparse;
 mod symmetric_sparse;
+mod vector_sums;
 mod vectors;
 
 pub use complex_cholesky::{ComplexCholesky, ComplexSymmetric};
@@ -28,4 +29,5 @@ pub use row_blocks::{BlockVector, RowBlocks};
 pub use rustfft::num_complex::Complex64;
 pub use sparse::{HermitianSparse, SparseFactor, lowest_modes};
 pub use symmetric_sparse::SymmetricSparse;
+pub(crate) use vector_sums::{Columns, ComplexProduct, Dots, Orthogonalised, Subtracted};
 pub use vectors::{Loops, vectorized};

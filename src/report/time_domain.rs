@@ -8,7 +8,7 @@ use super::text_table::TextTable;
 use super::words::{LengthUnit, excitation, load_per_sector};
 use crate::population::monte_carlo::{LoadCaseName, ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;
-use crate::response::time_integration::{PeriodicMotion, PointComparison, Stability};
+use crate::verification::time_integration::{PeriodicMotion, PointComparison, Stability};
 
 /// Difference of a blade's amplitude that is accepted besides the stated error of the row, relative
 /// to the largest amplitude.

@@ -5,6 +5,4 @@ pub mod friction;
 pub mod harmonic_balance;
 pub mod mistuning;
 pub mod receptance;
-pub mod reference;
 pub mod stability;
-pub mod time_integration;

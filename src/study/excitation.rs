@@ -9,17 +9,17 @@ use crate::population::monte_carlo::{LoadCaseName, RowSolver};
 
 /// A study under one of its force vectors.
 #[derive(Debug, Clone)]
-pub(super) struct Excitation {
+pub(crate) struct Excitation {
     /// The load case; none in a study without.
-    pub(super) name: Option<LoadCaseName>,
+    pub(crate) name: Option<LoadCaseName>,
     /// The study with this force vector alone.
-    pub(super) study: Study,
+    pub(crate) study: Study,
     column: usize,
 }
 
 impl Excitation {
     /// A reduced model of the study under this force vector.
-    pub(super) fn of(&self, model: &ReducedModel) -> ReducedModel {
+    pub(crate) fn of(&self, model: &ReducedModel) -> ReducedModel {
         match self.name {
             None => model.clone(),
             Some(_) => model.under(self.column, self.study.force_factors()),
@@ -28,7 +28,7 @@ impl Excitation {
 }
 
 /// One solver for all of `excitations`, of a solver for each: that of the first, which knows the others.
-pub(super) fn solver_under<E>(
+pub(crate) fn solver_under<E>(
     excitations: &[Excitation],
     solver: impl FnMut(&Excitation) -> Result<RowSolver, E>,
 ) -> Result<RowSolver, E> {
@@ -45,7 +45,7 @@ pub(super) fn solver_under<E>(
 }
 
 /// `study` under each of its force vectors; of a study without load cases, the study itself.
-pub(super) fn excitations(study: &Study) -> Vec<Excitation> {
+pub(crate) fn excitations(study: &Study) -> Vec<Excitation> {
     if study.load_cases.is_empty() {
         return vec![Excitation {
             name: None,

@@ -125,7 +125,7 @@ impl Study {
     }
 
     /// Load cases with their engine orders; one without name where the study has none.
-    pub(super) fn excited_orders(&self) -> Vec<(Option<LoadCaseName>, &[u32])> {
+    pub(crate) fn excited_orders(&self) -> Vec<(Option<LoadCaseName>, &[u32])> {
         if self.load_cases.is_empty() {
             return vec![(None, &self.engine_orders)];
         }
@@ -161,7 +161,7 @@ impl Study {
     }
 
     /// Whether the study file says the key `key`, which nothing chosen takes the place of.
-    pub(super) fn states(&self, key: &str) -> bool {
+    pub(crate) fn states(&self, key: &str) -> bool {
         self.map.holds(key)
     }
 

@@ -72,7 +72,7 @@ pub fn pattern_source(study: &Study, model: &SectorModel) -> Result<PatternSourc
 ///
 /// # Errors
 /// The file of patterns does not fit to the wheel.
-pub(super) fn judging_patterns(
+pub(crate) fn judging_patterns(
     study: &Study,
     model: &SectorModel,
 ) -> Result<Vec<Pattern>, StudyError> {

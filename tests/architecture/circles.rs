@@ -82,11 +82,18 @@ fn a_planted_circle_is_seen_through_what_a_module_offers() {
         Source::new(std::path::Path::new(name), module, text)
     };
     let files = [
-        source("/src/a/mod.rs", &["a"], "mod one;\npub use one::One;\n"),
+        source(
+            "/src/a/mod.rs",
+            &["a"],
+            "mod one;\npub use one::One;\nmod other;\npub(crate) use other::Other;\n",
+        ),
+        source("/src/a/other.rs", &["a", "other"], "use crate::d::four;\n"),
+        source("/src/d.rs", &["d"], "use crate::a::Other;\nfn four() {}\n"),
         source("/src/a/one.rs", &["a", "one"], "use crate::b::two;\n"),
         source("/src/b.rs", &["b"], "use crate::a::One;\nfn two() {}\n"),
         source("/src/c.rs", &["c"], "use crate::a::One;\n"),
     ];
     let expected: BTreeSet<String> = ["a/one.rs".to_owned(), "b.rs".to_owned()].into();
-    assert_eq!(circles(&files), [expected]);
+    let within: BTreeSet<String> = ["a/other.rs".to_owned(), "d.rs".to_owned()].into();
+    assert_eq!(circles(&files), [expected, within]);
 }

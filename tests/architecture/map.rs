@@ -5,6 +5,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::paths::Source;
+use super::rooms::ROOMS;
 use super::{WINGS, complain, source_files};
 
 const INTRODUCTION: &str = "\
@@ -113,13 +114,17 @@ fn place(folder: &str) -> (usize, usize, String) {
     (found.map_or(0, |found| found + 1), room, folder.to_owned())
 }
 
-/// The wings from the last to the first, each with its rooms.
+/// The wings from the last to the first, each with its rooms, and the folders whose own files stand before their rooms.
 fn order() -> String {
     let mut text = String::from("\n```text\n");
     for (wing, rooms) in WINGS.iter().rev() {
         let line = format!("{wing:<12}{}", rooms.join("  "));
         text += line.trim_end();
         text.push('\n');
+    }
+    text += "```\n\nIn these folders the files that stand in no folder inside come first, then:\n\n```text\n";
+    for (folder, rooms) in ROOMS {
+        let _ = writeln!(text, "{:<28}{}", folder.join("/"), rooms.join("  "));
     }
     text + "```\n"
 }

@@ -15,11 +15,15 @@ const OPEN: &[(&str, &str, usize)] = &[
     ("response/forced_response/peak_search.rs", "Search", 3),
     ("response/forced_response/point_solver.rs", "PointSolver", 5),
     (
-        "response/harmonic_balance/newton_workspace.rs",
+        "response/harmonic_balance/solver/newton_workspace.rs",
         "NewtonWorkspace",
         3,
     ),
-    ("response/harmonic_balance/system.rs", "HarmonicSystem", 9),
+    (
+        "response/harmonic_balance/equation/system.rs",
+        "HarmonicSystem",
+        9,
+    ),
 ];
 
 /// A type, by its file under `src/` and its name.

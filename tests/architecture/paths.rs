@@ -156,9 +156,13 @@ fn paths_of(code: &str, module: &[String], is_mod: bool) -> Vec<Vec<String>> {
         }
     }
     if is_mod {
-        // What a module re-exports from its own children: `pub use child::{...};`
-        for (at, _) in code.match_indices("pub use ") {
-            let rest = &code[at + "pub use ".len()..];
+        // What a module offers of its own children: `pub use child::{...};`, or within the crate, `pub(crate) use`.
+        for (at, _) in code.match_indices(" use ") {
+            let line = code[..at].rsplit('\n').next().unwrap_or_default();
+            if !line.trim_start().starts_with("pub") {
+                continue;
+            }
+            let rest = &code[at + " use ".len()..];
             if !rest.starts_with("crate::") && !rest.starts_with("super::") {
                 let mut found = Vec::new();
                 tree(rest, module, &mut found);

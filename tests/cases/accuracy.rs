@@ -2,9 +2,8 @@
 
 use blisk::population::statistics::ErrorBound;
 use blisk::response::forced_response::{ContactCondition, Harmonics, SearchHarmonics};
-use blisk::study::{
-    AccuracyChoice, AccuracyEvidence, AccuracyOptions, ChosenSetting, Study, load_sector_model,
-};
+use blisk::settings::{AccuracyChoice, AccuracyEvidence, ChosenSetting};
+use blisk::study::{AccuracyOptions, Study, load_sector_model};
 use rayon::prelude::*;
 
 use super::support::{Case, package};

@@ -5,8 +5,9 @@ use std::fmt::Write;
 use blisk::population::monte_carlo::Scenario;
 use blisk::response::forced_response::ContactCondition;
 use blisk::response::mistuning::PatternSource;
-use blisk::response::reference::ReferencePeak;
-use blisk::study::{FullModel, FullRow, FullSettings, Study, load_sector_model, pattern_source};
+use blisk::settings::{FullModel, FullRow, FullSettings};
+use blisk::study::{Study, load_sector_model, pattern_source};
+use blisk::verification::reference::ReferencePeak;
 
 use super::support::{Case, Row};
 use super::wheels::{WHEEL8, WHEEL24, Wheel, solved_for, stands_out};

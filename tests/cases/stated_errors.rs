@@ -3,7 +3,8 @@
 use blisk::model::reduction::ReductionOptions;
 use blisk::population::monte_carlo::{HARMONIC_SAFETY, ScenarioError, stated_error};
 use blisk::response::forced_response::{ContactCondition, Harmonics, SolverOptions};
-use blisk::study::{FullModel, FullRow, FullSettings, Study, load_sector_model};
+use blisk::settings::{FullModel, FullRow, FullSettings};
+use blisk::study::{Study, load_sector_model};
 
 use super::support::{Case, package};
 

@@ -6,9 +6,8 @@ use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
 use blisk::report::Warning;
 use blisk::response::forced_response::ContactCondition;
 use blisk::response::mistuning::{Pattern, PatternSource};
-use blisk::study::{
-    Engine, EngineSource, ReducedEngineSource, Study, load_sector_model, pattern_source,
-};
+use blisk::settings::{Engine, EngineSource, ReducedEngineSource};
+use blisk::study::{Study, load_sector_model, pattern_source};
 
 /// A file or folder of this package.
 pub fn package(path: &str) -> PathBuf {

@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use blisk::response::forced_response::ContactCondition;
-use blisk::study::{EngineSource, ReducedEngineSource, Study, load_sector_model, pattern_source};
+use blisk::settings::{EngineSource, ReducedEngineSource};
+use blisk::study::{Study, load_sector_model, pattern_source};
 
 use super::support::package;
 

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use blisk::study::{ReducedEngineSource, ReportRequest, report};
+use blisk::campaign::{ReportRequest, report};
+use blisk::settings::ReducedEngineSource;
 
 use crate::blisk::{GOOD, Place};
 use crate::forgery::{Numbers, forge};

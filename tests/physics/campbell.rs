@@ -3,9 +3,10 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
+use blisk::campaign::{CampbellRequest, campbell};
 use blisk::model::sector::{LumpedOptions, SectorModel, lumped};
 use blisk::report::CampbellReport;
-use blisk::study::{CampbellRequest, Study, campbell, load_sector_model};
+use blisk::study::{Study, load_sector_model};
 
 use crate::sector_sources::lumped::one_dof;
 

@@ -11,7 +11,7 @@ use blisk::response::forced_response::{ContactCondition, SolverOptions};
 use blisk::response::friction::{ContactLaw, PairParameters, Ring};
 use blisk::response::harmonic_balance::{Damping, Status};
 use blisk::response::mistuning::{ContactFactors, Projection, WheelBasis};
-use blisk::response::time_integration::{PointCase, TimeOptions, compare_point};
+use blisk::verification::time_integration::{PointCase, TimeOptions, compare_point};
 
 use crate::sector_sources::lumped::{lumped24, one_dof};
 use crate::wheels::{LUMPED_KT, pattern, springs};

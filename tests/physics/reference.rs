@@ -9,7 +9,7 @@ use blisk::response::forced_response::{AmplitudeMeasure, ContactCondition, Solve
 use blisk::response::friction::{ContactLaw, Ring};
 use blisk::response::harmonic_balance::{Damping, HarmonicTransform, Status};
 use blisk::response::mistuning::{ContactFactors, Deviations, PairFactors, Pattern, Projection};
-use blisk::response::reference::{ReferenceSettings, ReferenceSolver, reference_peak};
+use blisk::verification::reference::{ReferenceSettings, ReferenceSolver, reference_peak};
 
 use super::contact::random::Random;
 use super::wheels::{

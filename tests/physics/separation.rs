@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
+use blisk::campaign::{ReplayRequest, RunRequest, StoredStudy, VerifyRequest, replay, run, verify};
 use blisk::linalg::SymmetricSparse;
 use blisk::model::sector::{Component, Dof, SectorModel, bundle};
 use blisk::population::monte_carlo::ResponseRow;
 use blisk::population::table::ResponseReader;
 use blisk::response::harmonic_balance::Status;
-use blisk::study::{
-    FullSettings, Progress, ReducedEngineSource, ReplayRequest, RunRequest, StoredStudy, Study,
-    VerifyRequest, replay, run, verify,
-};
+use blisk::settings::{FullSettings, Progress, ReducedEngineSource};
+use blisk::study::Study;
 
 use crate::extremes::wheels::spatial_sector;
 use crate::wheels::relative;

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use blisk::population::monte_carlo::ResponseRow;
 use blisk::response::mistuning::{Pattern, PatternSource};
-use blisk::study::{EngineSource, ReducedEngineSource, Study, load_sector_model, pattern_source};
+use blisk::settings::{EngineSource, ReducedEngineSource};
+use blisk::study::{Study, load_sector_model, pattern_source};
 use rayon::prelude::*;
 
 /// First patterns of the quickstart.

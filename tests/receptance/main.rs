@@ -25,7 +25,7 @@ use blisk::response::receptance::{
     EngineModel, EngineOptions, EngineWheel, Limit, ReceptanceEngine, WaveForce, WheelSolver,
     embedded,
 };
-use blisk::response::reference::{ReferenceSettings, ReferenceSolver};
+use blisk::verification::reference::{ReferenceSettings, ReferenceSolver};
 
 fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))

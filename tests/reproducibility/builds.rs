@@ -7,9 +7,10 @@ mod build_script;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use blisk::campaign::{repair, set_other_builds_aside};
 use blisk::identity;
 use blisk::population::table::{Manifest, PartHeader};
-use blisk::study::{PipelineError, repair, set_other_builds_aside};
+use blisk::study::PipelineError;
 
 use crate::folder::{Silent, bytes, copy, files, interrupt_in, reference, run_in};
 use crate::mock_engine::{MockSource, study};

@@ -2,8 +2,10 @@
 
 use std::sync::atomic::{AtomicI64, Ordering};
 
+use blisk::campaign::{RunRequest, run};
 use blisk::response::harmonic_balance::Status;
-use blisk::study::{PipelineError, Progress, RunRequest, run};
+use blisk::settings::Progress;
+use blisk::study::PipelineError;
 
 use crate::folder::{bytes, reference, run_in};
 use crate::mock_engine::{MockSource, study};
@@ -180,7 +182,7 @@ fn a_damaged_table_is_found_and_named() {
     let whole = std::fs::read(&table).expect("read");
     let refused = |content: &[u8]| {
         std::fs::write(&table, content).expect("write");
-        let error = blisk::study::summarise(folder.path()).expect_err("damaged");
+        let error = blisk::campaign::summarise(folder.path()).expect_err("damaged");
         assert!(error.to_string().contains("responses.parquet"), "{error}");
         let study = study(30, |text| text);
         let error = run_in(folder.path(), &study, 1, &MockSource::default()).expect_err("damaged");
@@ -195,9 +197,9 @@ fn a_damaged_table_is_found_and_named() {
         refused(&flipped);
     }
     std::fs::write(&table, &whole).expect("restore");
-    assert!(blisk::study::summarise(folder.path()).is_ok());
+    assert!(blisk::campaign::summarise(folder.path()).is_ok());
     std::fs::remove_file(&table).expect("remove");
-    let error = blisk::study::summarise(folder.path()).expect_err("missing");
+    let error = blisk::campaign::summarise(folder.path()).expect_err("missing");
     assert!(error.to_string().contains("missing"), "{error}");
 }
 

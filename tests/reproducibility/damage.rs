@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::Duration;
 
+use blisk::campaign::{
+    RunOutcome, RunRequest, integrity, repair, run, status_of_folder, summarise,
+};
 use blisk::population::table::{Manifest, PartHeader, RunState, TableError, write_estimate};
 use blisk::response::harmonic_balance::Status;
-use blisk::study::{
-    PipelineError, Progress, RunOutcome, RunRequest, Study, integrity, repair, run,
-    status_of_folder, summarise,
-};
+use blisk::settings::Progress;
+use blisk::study::{PipelineError, Study};
 
 use crate::folder::{Silent, bytes, copy, files, interrupt_in, reference, run_in};
 use crate::forgery::Numbers;

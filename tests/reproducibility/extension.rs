@@ -53,7 +53,7 @@ fn a_broken_off_extension_leaves_the_finished_results_and_is_continued_or_droppe
     interrupt_in(folder.path(), &grown, 30);
     assert!(files(&folder.path().join("parts")).len() > 1);
     assert!(bytes(folder.path()) == before);
-    assert!(blisk::study::summarise(folder.path()).is_ok());
+    assert!(blisk::campaign::summarise(folder.path()).is_ok());
     let source = MockSource::default();
     let back = run_in(folder.path(), &first, 2, &source).expect("the former study");
     assert_eq!(

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicI64, Ordering};
 
+use blisk::campaign::{RunOutcome, RunRequest, run};
 use blisk::response::harmonic_balance::Status;
-use blisk::study::{PipelineError, Progress, RunOutcome, RunRequest, Study, run};
+use blisk::settings::Progress;
+use blisk::study::{PipelineError, Study};
 
 use crate::mock_engine::{MockSource, study};
 

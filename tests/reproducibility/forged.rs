@@ -5,12 +5,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use blisk::campaign::{
+    CompareRequest, ReportRequest, compare, integrity, merge, repair, report, status_of_folder,
+    summarise, summarise_partly,
+};
 use blisk::population::table::TableError;
 use blisk::report::html_report;
-use blisk::study::{
-    CompareRequest, PipelineError, ReducedEngineSource, ReportRequest, compare, integrity, merge,
-    repair, report, status_of_folder, summarise, summarise_partly,
-};
+use blisk::settings::ReducedEngineSource;
+use blisk::study::PipelineError;
 use serde_json::{Value, json};
 
 use crate::folder::{Silent, copy, files, interrupt_in, run_in};

@@ -4,12 +4,11 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use blisk::campaign::{FileState, StoredStudy, VerifyRequest, audit_peaks, integrity, verify};
 use blisk::population::table::{
     Compression, PartHeader, TableHeader, remove_leftovers, write_estimate, write_sample,
 };
-use blisk::study::{
-    FileState, PipelineError, StoredStudy, VerifyRequest, audit_peaks, integrity, verify,
-};
+use blisk::study::PipelineError;
 
 use crate::folder::{Silent, bytes, files, interrupt_in, reference, run_in};
 use crate::mock_engine::{MockSource, study};

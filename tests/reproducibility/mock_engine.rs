@@ -10,8 +10,9 @@ use blisk::report::ModelReport;
 use blisk::response::forced_response::{ResponseTrace, SearchPlan};
 use blisk::response::harmonic_balance::Status;
 use blisk::response::mistuning::{Deviations, Pattern};
-use blisk::response::time_integration::{PointComparison, TimeOptions};
-use blisk::study::{Engine, EngineSource, PipelineError, Study};
+use blisk::settings::{Engine, EngineSource};
+use blisk::study::{PipelineError, Study};
+use blisk::verification::time_integration::{PointComparison, TimeOptions};
 use serde_json::{Value, json};
 
 /// Counts the patterns it solves and panics in pattern `panics_in`.

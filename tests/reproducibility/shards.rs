@@ -2,11 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use blisk::campaign::{RunRequest, merge, run_shard, set_other_builds_aside, status_of_folder};
 use blisk::population::table::Shard;
-use blisk::study::{
-    PipelineError, ReducedEngineSource, RunRequest, Study, merge, run_shard,
-    set_other_builds_aside, status_of_folder,
-};
+use blisk::settings::ReducedEngineSource;
+use blisk::study::{PipelineError, Study};
 
 use crate::folder::{Silent, bytes, copy, files, reference, run_in};
 use crate::mock_engine::{MockSource, study};

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use blisk::campaign::{RunRequest, merge, run, run_shard};
 use blisk::population::table::{Manifest, Shard};
-use blisk::study::{ReducedEngineSource, RunRequest, Study, merge, run, run_shard};
+use blisk::settings::ReducedEngineSource;
+use blisk::study::Study;
 
 use crate::folder::{Silent, bytes};
 

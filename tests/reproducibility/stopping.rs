@@ -2,14 +2,13 @@
 
 use std::sync::atomic::Ordering;
 
+use blisk::campaign::{ResultColumns, RunRequest, merge, repair, run_shard, summarise};
 use blisk::population::statistics::{
     CONFIDENCE, Quantity, StopOutcome, percentile_at, percentile_ranks_at,
 };
 use blisk::population::table::{Manifest, Shard};
-use blisk::study::{
-    PipelineError, ReducedEngineSource, ResultColumns, RunRequest, Study, merge, repair, run_shard,
-    summarise,
-};
+use blisk::settings::ReducedEngineSource;
+use blisk::study::{PipelineError, Study};
 
 use crate::folder::{Silent, bytes, interrupt_in, reference, run_in};
 use crate::mock_engine::{MockSource, study};
@@ -287,7 +286,7 @@ fn repair_comes_to_the_same_bytes_where_more_is_held_than_the_rule_needs() {
             results: &results,
             threads: 1,
         };
-        blisk::study::run(request, &ReducedEngineSource, &Silent).expect("a run");
+        blisk::campaign::run(request, &ReducedEngineSource, &Silent).expect("a run");
     };
     request(&chain(0.3));
     let (few, _) = outcome_in(&results);

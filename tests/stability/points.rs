@@ -16,7 +16,7 @@ use blisk::response::receptance::{
     EngineModel, EngineOptions, EngineWheel, ReceptanceEngine, WaveForce,
 };
 use blisk::response::stability::{ContactMotion, Multipliers, StabilityOptions, multipliers};
-use blisk::response::time_integration::{PointCase, SolvedPoint, TimeStepper};
+use blisk::verification::time_integration::{PointCase, SolvedPoint, TimeStepper};
 
 const ENGINE_ORDER: u32 = 3;
 

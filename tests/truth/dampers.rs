@@ -2,7 +2,8 @@
 
 use blisk::model::sector::{ContactSide, SectorModel};
 use blisk::response::harmonic_balance::Status;
-use blisk::study::{EngineSource, ReducedEngineSource, Study, load_sector_model, pattern_source};
+use blisk::settings::{EngineSource, ReducedEngineSource};
+use blisk::study::{Study, load_sector_model, pattern_source};
 use rayon::prelude::*;
 
 use super::contact::{Law, Period};

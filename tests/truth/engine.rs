@@ -3,7 +3,8 @@
 use blisk::model::sector::SectorModel;
 use blisk::population::monte_carlo::{ResponseRow, Scenario};
 use blisk::response::mistuning::{Pattern, PatternSource};
-use blisk::study::{EngineSource, ReducedEngineSource, Study, load_sector_model, pattern_source};
+use blisk::settings::{EngineSource, ReducedEngineSource};
+use blisk::study::{Study, load_sector_model, pattern_source};
 
 use super::cases::folder;
 use super::rows::{Row, stored};

@@ -3,7 +3,8 @@
 use blisk::population::monte_carlo::Scenario;
 use blisk::response::forced_response::ContactCondition;
 use blisk::response::mistuning::PatternSource;
-use blisk::study::{Engine, EngineSource, ReducedEngineSource, Study, pattern_source};
+use blisk::settings::{Engine, EngineSource, ReducedEngineSource};
+use blisk::study::{Study, pattern_source};
 
 use super::cases::{Condition, Wheel, folder};
 

@@ -5,7 +5,9 @@ use crate::response::forced_response::ContactCondition;
 use crate::response::friction::PairParameters;
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
-use crate::response::time_integration::{PointCase, PointComparison, TimeOptions, compare_point};
+use crate::verification::time_integration::{
+    PointCase, PointComparison, TimeOptions, compare_point,
+};
 
 impl RowSolver {
     /// The point of `row` by harmonic balance and by time integration, on the reduced model and

@@ -7,7 +7,7 @@ use super::writer::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;
-use crate::response::reference::ReferencePeak;
+use crate::verification::reference::ReferencePeak;
 
 use ColumnKind::{Boolean, Float64, Int32, Int64, String as Text};
 

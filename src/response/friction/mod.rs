@@ -1,14 +1,18 @@
-//! Contact laws as pure functions of a displacement history: force, derivative, contact state.
+//! Contact laws as pure functions of a displacement history: force, derivative, contact state. They are also marched from
+//! one instant to the next.
 
+mod contact_march;
 mod contact_pair;
 mod coulomb_3d;
 mod coupled_slider;
+mod friction_circle;
 mod macro_slip;
 mod options;
 mod periodic_slider;
 mod respond;
 mod simplified_3d;
 
+pub use contact_march::{PairMemory, march};
 pub use contact_pair::{ContactHistory, PairDisplacement, PairParameters, PairState};
 pub use coupled_slider::{CoupledSlider, Slip};
 pub use options::{ContactLaw, ContactOptions, Ring};

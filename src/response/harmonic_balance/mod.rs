@@ -1,70 +1,28 @@
 //! Harmonic balance: dynamic stiffness, alternating frequency/time, Newton, convergence, outcome.
 
-mod anderson;
-mod clip_slopes;
 mod condensed;
-mod contact_coordinates;
-mod contact_couplings;
-mod contact_interface;
-mod contact_motions;
-mod contact_states;
-mod continuation;
-mod convergence;
-mod coupled_derivative;
-mod curve;
 mod damping;
-mod enlarged;
-mod equivalent_contact;
-mod frequency_derivative;
-mod harmonic_block;
-mod jacobian;
-mod kept_jacobian;
-mod lanes;
+mod equation;
+mod follow;
 mod largest_norm;
-mod linear;
-mod linear_factors;
-mod linear_part;
-mod macro_slip_pairs;
-mod newton;
-mod newton_iteration;
-mod newton_workspace;
-mod other_contact;
-mod pair_harmonics;
-mod pair_jacobian;
-mod pivoted_factors;
-mod quarter_waves;
-mod response_slope;
-mod ring_drift;
-mod serves;
-mod simplified_3d_pairs;
-mod slider_march;
+mod pairs;
+mod solver;
 mod status;
-mod structure;
-mod system;
 mod transform;
-mod vector_sums;
-mod wheel_contact;
-mod wheel_pairs;
 
 pub use condensed::condensing_pays;
-pub use contact_interface::ContactInterface;
-pub use contact_states::PairContact;
-pub use continuation::{Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint};
-pub use convergence::NewtonBounds;
 pub use damping::Damping;
-pub use enlarged::{Effects, Enlarged, EnlargedSet, enlarge};
-pub use harmonic_block::HarmonicBlock;
-pub use jacobian::LARGEST_WHOLE_JACOBIAN;
-pub use linear::linear_response;
-pub use newton::solve;
-pub use newton_iteration::{NewtonOutcome, Settled, Steps};
-pub use newton_workspace::NewtonWorkspace;
-pub use pair_harmonics::PairHarmonics;
-pub use pair_jacobian::PairJacobian;
-pub use ring_drift::solve_creeping;
+pub use equation::{
+    ContactStiffnessMatrix, HarmonicBlock, HarmonicSystem, LARGEST_WHOLE_JACOBIAN, MeanTangent,
+    PairContact, Structure, SystemWorkspace, WheelContact, linear_response,
+};
+pub use follow::{
+    Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint, solve_creeping,
+};
+pub use pairs::{ContactInterface, ContactShares, PairHarmonics, PairJacobian};
+pub use solver::{
+    Effects, Enlarged, EnlargedSet, NewtonBounds, NewtonOutcome, NewtonWorkspace, Settled, Steps,
+    enlarge, solve,
+};
 pub use status::Status;
-pub use structure::{ContactStiffnessMatrix, Structure};
-pub use system::{HarmonicSystem, SystemWorkspace};
 pub use transform::{HarmonicTransform, TransformError, TransformScratch};
-pub use wheel_contact::{MeanTangent, WheelContact};
-pub use wheel_pairs::ContactShares;

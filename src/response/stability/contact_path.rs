@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use super::contact_tangent::{FrictionChange, StepChange, step_change};
 use crate::linalg::Complex64;
+use crate::response::friction::{PairMemory, march};
 use crate::response::harmonic_balance::ContactInterface;
-use crate::response::time_integration::{PairMemory, march};
 
 /// Periods in which sliders find their places on the motion.
 const SLIDER_PERIODS: usize = 3;

@@ -13,8 +13,7 @@
 //!
 //! Both tangents of `coulomb_3d` slip round the friction circle together: there the step itself is differenced.
 
-use crate::response::friction::{ContactLaw, PairParameters};
-use crate::response::time_integration::{PairMemory, march};
+use crate::response::friction::{ContactLaw, PairMemory, PairParameters, march};
 
 /// Disturbance of the differences, relative to the size of the motion.
 const DISTURBANCE: f64 = 1e-6;

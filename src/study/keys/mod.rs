@@ -4,7 +4,7 @@ mod contact_keys;
 mod key;
 mod model_keys;
 mod schema;
-mod study_keys;
+pub(super) mod study_keys;
 mod terms;
 
 pub use crate::input::{KeySpec, Range, Value};

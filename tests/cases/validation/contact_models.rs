@@ -3,8 +3,9 @@
 use blisk::population::monte_carlo::Scenario;
 use blisk::response::forced_response::ContactCondition;
 use blisk::response::mistuning::Pattern;
-use blisk::response::reference::ReferencePeak;
-use blisk::study::{FullModel, FullRow, FullSettings, Study, load_sector_model};
+use blisk::settings::{FullModel, FullRow, FullSettings};
+use blisk::study::{Study, load_sector_model};
+use blisk::verification::reference::ReferencePeak;
 use rayon::prelude::*;
 
 use super::super::support::{Case, Row, Table, package};

@@ -2,7 +2,8 @@
 
 use blisk::population::monte_carlo::TunedReference;
 use blisk::response::forced_response::{ContactCondition, Harmonics};
-use blisk::study::{Engine, EngineSource, ReducedEngineSource, Study, load_sector_model};
+use blisk::settings::{Engine, EngineSource, ReducedEngineSource};
+use blisk::study::{Study, load_sector_model};
 use rayon::prelude::*;
 
 use super::super::support::package;

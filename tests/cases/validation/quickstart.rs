@@ -2,11 +2,10 @@
 
 use std::process::Command;
 
+use blisk::campaign::{ReplayRequest, StoredStudy, replay, summarise};
 use blisk::population::statistics::Percentile;
 use blisk::report::{ScenarioSummary, StudySummary};
-use blisk::study::{
-    FullSettings, ReducedEngineSource, ReplayRequest, StoredStudy, replay, summarise,
-};
+use blisk::settings::{FullSettings, ReducedEngineSource};
 use rayon::prelude::*;
 
 use super::super::support::package;

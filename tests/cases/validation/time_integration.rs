@@ -8,8 +8,10 @@ use blisk::response::forced_response::{AmplitudeMeasure, SolverOptions};
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{Damping, Status};
 use blisk::response::mistuning::{Deviations, WheelBasis};
-use blisk::response::time_integration::{PointCase, PointComparison, TimeOptions, compare_point};
 use blisk::study::{Study, load_sector_model, pattern_source};
+use blisk::verification::time_integration::{
+    PointCase, PointComparison, TimeOptions, compare_point,
+};
 use rayon::prelude::*;
 
 use super::super::support::package;

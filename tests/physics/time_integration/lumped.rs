@@ -7,7 +7,7 @@ use blisk::response::forced_response::{AmplitudeMeasure, SolverOptions, wheel_fo
 use blisk::response::friction::PairParameters;
 use blisk::response::harmonic_balance::{ContactInterface, Status, Structure};
 use blisk::response::mistuning::{StructuralModes, WheelBasis};
-use blisk::response::time_integration::{
+use blisk::verification::time_integration::{
     MarchedWheel, PointCase, PointComparison, TimeOptions, WheelState, compare_point, settle,
 };
 

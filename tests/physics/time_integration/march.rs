@@ -2,8 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use blisk::response::friction::{ContactLaw, PairParameters};
-use blisk::response::time_integration::{PairMemory, march};
+use blisk::response::friction::{ContactLaw, PairMemory, PairParameters, march};
 
 fn pair(normal_load_n: f64, kn: f64, kt: f64, mu: f64) -> PairParameters {
     PairParameters {

@@ -7,7 +7,7 @@ use blisk::model::cyclic::ContactGeometry;
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{ContactInterface, Damping, Status, Structure};
 use blisk::response::mistuning::{ModalRows, StructuralModes};
-use blisk::response::time_integration::{
+use blisk::verification::time_integration::{
     MarchedWheel, Settled, TimeOptions, TimeStepper, WheelState, settle,
 };
 

@@ -10,7 +10,7 @@ use blisk::response::forced_response::SolverOptions;
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{Damping, Status};
 use blisk::response::mistuning::WheelBasis;
-use blisk::response::time_integration::{
+use blisk::verification::time_integration::{
     PeriodicMotion, PointCase, PointComparison, TimeOptions, compare_point, periodic_point,
 };
 
