@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod accuracy;
+mod default_dampers;
 mod full_model;
 mod lumped24;
 mod one_dof;

@@ -152,9 +152,13 @@ impl ContactEquation<'_> {
             step: f64::INFINITY,
             shares: ContactShares::default(),
         };
-        let warm = (!starts.is_empty()).then_some((&WARM, &start));
-        let plans = [(&COLD, &cold), (&SLOW, &cold), (&SLOW, &start)];
-        for (rung, (plan, begin)) in warm.into_iter().chain(plans).enumerate() {
+        // Without a start every attempt begins at the linear response.
+        let is_warm = !starts.is_empty();
+        let warm = is_warm.then_some((&WARM, &start));
+        let plans = [(&COLD, &cold), (&SLOW, &cold)];
+        let again = is_warm.then_some((&SLOW, &start));
+        let plans = warm.into_iter().chain(plans).chain(again);
+        for (rung, (plan, begin)) in plans.enumerate() {
             if rung > 0 {
                 self.buffers.motions.clone_from(begin);
             }
@@ -165,7 +169,8 @@ impl ContactEquation<'_> {
             }
         }
         self.contact.couple(true);
-        for begin in [&start, &cold] {
+        let begins = [Some(&start), is_warm.then_some(&cold)];
+        for begin in begins.into_iter().flatten() {
             self.buffers.motions.clone_from(begin);
             let outcome = self.newton(tolerance);
             total = total.followed_by(outcome, 1);
