@@ -10,12 +10,13 @@ const WHEELS: u32 = 3;
 
 /// The tuned peak and that of some wheels under every condition of a study, in its order, the linear limits at both ends.
 fn assert_u_shaped(name: &str) {
-    let study = Study::from_path(&package(&format!("studies/{name}.toml"))).unwrap();
+    let study = Study::read(&package(&format!("studies/{name}.toml"))).unwrap();
     let conditions = study.contacts.clone();
-    let standard_deviation = study.mistuning.standard_deviations.first().copied();
+    let standard_deviation = study.standard_deviations[0];
     let case = Case::new(study);
     let tuned: Vec<_> = conditions.iter().map(|&own| case.tuned(own)).collect();
-    let mut curves = vec![tuned.iter().map(|own| own.amplitude_m.unwrap()).collect()];
+    let mut curves: Vec<Vec<f64>> =
+        vec![tuned.iter().map(|own| own.amplitude_m.unwrap()).collect()];
     for id in 0..WHEELS {
         let pattern = case.pattern(id, standard_deviation);
         let row = |(&condition, tuned)| {
