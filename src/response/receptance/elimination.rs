@@ -151,6 +151,7 @@ impl Elimination {
         strain: &mut Field,
     ) {
         if !self.sweep(transform, receptance, strain) {
+            // Forces by a singular matrix are not finite, and the iteration on the contact ends by that.
             self.factorise(transform, receptance, self.shapes);
             self.sweep(transform, receptance, strain);
         }
@@ -172,16 +173,15 @@ impl Elimination {
         receptance: &WaveMatrix,
         strain: &Field,
     ) -> bool {
-        let split = self.leading * padded(self.sectors);
-        let all = split * self.shapes / self.leading.max(1);
+        let stride = padded(self.sectors);
+        let (split, all) = (self.leading * stride, self.shapes * stride);
         for (side, part) in self.sides.iter_mut().zip([0..split, split..all]) {
             side.right.re.copy_from_slice(&strain.re[part.clone()]);
             side.right.im.copy_from_slice(&strain.im[part]);
             side.forces.fill(0.0);
         }
-        let (first, last) = (self.contact, self.contact + self.shapes);
-        let ranges = [first..first + self.leading, first + self.leading..last];
-        let [leading, others] = ranges;
+        let (first, middle) = (self.contact, self.contact + self.leading);
+        let (leading, others) = (first..middle, middle..first + self.shapes);
         for _ in 0..SWEEPS {
             let [one, two] = &mut self.sides;
             one.waves.clone_from(&one.right);
