@@ -16,6 +16,8 @@ const SAMPLES: usize = 512;
 /// Fixed-interface modes of a sector in the truth; those of a nodal diameter in the program are 120.
 const MODES: usize = 480;
 const PATTERNS: u32 = 3;
+/// Those of the long tests.
+const MANY_PATTERNS: u32 = 10;
 /// Largest relative difference of a row.
 const BAR: f64 = 5e-4;
 
@@ -99,9 +101,9 @@ fn within_one_sector(mut model: SectorModel) -> SectorModel {
     model
 }
 
-fn study(kind: &Kind) -> Study {
+fn study(kind: &Kind, patterns: u32) -> Study {
     let text = format!(
-        "schema = 1\n[study]\nname = \"{}\"\nseed = 20261125\npatterns = {PATTERNS}\n\
+        "schema = 1\n[study]\nname = \"{}\"\nseed = 20261125\npatterns = {patterns}\n\
          [model]\nsource = \"parametric\"\n[model.parametric]\nsectors = 8\ndamper = \"{}\"\nblade_radial_elements = 4\n\
          [reduction]\nbasis = \"tuned_receptances\"\ncraig_bampton_modes = 120\nerror = 2e-4\n\
          [contact]\nfriction_coefficient = {FRICTION_COEFFICIENT}\ntangential_stiffness_n_per_m = {:e}\n\
@@ -116,22 +118,22 @@ fn study(kind: &Kind) -> Study {
 }
 
 /// Rows of some patterns under three loads: none further from the truth than the bar, some that open and some that slip.
-fn hold(kind: &Kind) {
+fn hold(kind: &Kind, patterns: u32) {
     faer::set_global_parallelism(faer::Par::Seq);
-    let study = study(kind);
+    let study = study(kind, patterns);
     let model = load_sector_model(&study).expect("a model");
     let engine = ReducedEngineSource
         .build(&study, &model, None)
         .expect("an engine");
-    let patterns = pattern_source(&study, &model).expect("patterns");
+    let source = pattern_source(&study, &model).expect("patterns");
     let sector = Sector::new(&within_one_sector(model), MODES);
     let period = Period::new(&HARMONICS, SAMPLES);
     let scenarios = study.scenarios();
     let tuned: Vec<_> = scenarios.iter().map(|own| engine.tuned(own)).collect();
-    let solved: Vec<[bool; 2]> = (0..PATTERNS)
+    let solved: Vec<[bool; 2]> = (0..patterns)
         .into_par_iter()
         .flat_map_iter(|id| {
-            let pattern = patterns
+            let pattern = source
                 .pattern(id, Some(STANDARD_DEVIATION))
                 .expect("a pattern");
             let wanted: Vec<_> = scenarios.iter().zip(&tuned).collect();
@@ -175,7 +177,7 @@ fn hold(kind: &Kind) {
         })
         .collect();
     let all = solved.len();
-    assert_eq!(all, PATTERNS as usize * kind.loads_n.len());
+    assert_eq!(all, patterns as usize * kind.loads_n.len());
     let [opening, slipping] = [0, 1].map(|what| solved.iter().filter(|own| own[what]).count());
     println!(
         "{}: {opening} rows with opening pairs, {slipping} with slip",
@@ -190,20 +192,44 @@ fn hold(kind: &Kind) {
 
 #[test]
 fn mistuned_wheels_with_a_ring_are_the_full_contact_model() {
-    hold(&KINDS[0]);
+    hold(&KINDS[0], PATTERNS);
 }
 
 #[test]
 fn mistuned_wheels_with_wedges_are_the_full_contact_model() {
-    hold(&KINDS[1]);
+    hold(&KINDS[1], PATTERNS);
 }
 
 #[test]
 fn mistuned_wheels_with_shrouds_are_the_full_contact_model() {
-    hold(&KINDS[2]);
+    hold(&KINDS[2], PATTERNS);
 }
 
 #[test]
 fn mistuned_wheels_on_the_ground_are_the_full_contact_model() {
-    hold(&KINDS[3]);
+    hold(&KINDS[3], PATTERNS);
+}
+
+#[test]
+#[ignore = "minutes: 30 rows"]
+fn thirty_rows_with_a_ring_are_the_full_contact_model() {
+    hold(&KINDS[0], MANY_PATTERNS);
+}
+
+#[test]
+#[ignore = "minutes: 30 rows"]
+fn thirty_rows_with_wedges_are_the_full_contact_model() {
+    hold(&KINDS[1], MANY_PATTERNS);
+}
+
+#[test]
+#[ignore = "minutes: 30 rows"]
+fn thirty_rows_with_shrouds_are_the_full_contact_model() {
+    hold(&KINDS[2], MANY_PATTERNS);
+}
+
+#[test]
+#[ignore = "minutes: 30 rows"]
+fn thirty_rows_on_the_ground_are_the_full_contact_model() {
+    hold(&KINDS[3], MANY_PATTERNS);
 }

@@ -273,8 +273,7 @@ impl ContactEquation<'_> {
         harmonics
             .map(|(place, harmonic)| {
                 let tangent = contact.mean_tangent(place);
-                let leading = place == self.fundamental;
-                Preconditioner::new(harmonic, self.transform, &tangent, pairs, leading)
+                Preconditioner::new(harmonic, self.transform, &tangent, pairs)
             })
             .collect()
     }

@@ -38,6 +38,8 @@ pub(super) struct Elimination {
     contact: usize,
     /// Shapes that are factorised.
     leading: usize,
+    /// Shapes that are not nearly static, ascending.
+    resonant: Vec<usize>,
     factors: LuWorkspace<Complex64>,
     /// Deviation of every shape and sector, the loss factor included, shape after shape.
     deviations: Vec<Complex64>,
@@ -62,6 +64,7 @@ impl Elimination {
             shapes,
             contact,
             leading: 0,
+            resonant: Vec::new(),
             factors: LuWorkspace::new(0),
             deviations: Vec::new(),
             unknowns: Vec::new(),
@@ -78,12 +81,18 @@ impl Elimination {
     ) -> bool {
         self.deviations.clear();
         self.deviations.extend_from_slice(deviations);
-        let leading = self.cheapest(self.resonant_shapes(receptance));
+        self.find_resonant(receptance);
+        let up_to_last = self.resonant.last().map_or(1, |last| last + 1);
+        let leading = self.cheapest(up_to_last);
         self.factorise(transform, receptance, leading)
     }
 
-    /// Shapes up to the last that is not nearly static.
-    fn resonant_shapes(&self, receptance: &WaveMatrix) -> usize {
+    /// Shapes that are not nearly static, ascending.
+    pub(super) fn resonant(&self) -> &[usize] {
+        &self.resonant
+    }
+
+    fn find_resonant(&mut self, receptance: &WaveMatrix) {
         let largest = self.deviations.iter().map(|own| own.norm());
         let largest = largest.fold(0.0, f64::max);
         let answer = |shape: usize| {
@@ -91,9 +100,8 @@ impl Elimination {
             let of_wave = (0..self.sectors).map(|h| receptance.at(h, place, place).norm());
             of_wave.fold(0.0, f64::max)
         };
-        let nearly_static = |shape: usize| largest * answer(shape) <= NEARLY_STATIC;
-        let last = (0..self.shapes).rev().find(|&shape| !nearly_static(shape));
-        last.map_or(0, |shape| shape + 1).max(1)
+        let is_resonant = |shape: &usize| largest * answer(*shape) > NEARLY_STATIC;
+        self.resonant = (0..self.shapes).filter(is_resonant).collect();
     }
 
     /// As many shapes as are factorised for the fewest operations: these or all.

@@ -167,50 +167,62 @@ impl WheelHarmonic {
     }
 }
 
+/// Unknowns of all sectors up to which a preconditioner takes in more than one shape of the blades.
+const UNKNOWNS: usize = 192;
+
 /// Approximate inverse of the derivative `I + A G` of the equation of a harmonic: with the mean tangent G of the contact and
-/// the leading shape of the blades.
+/// those shapes of the blades that are not nearly static.
 #[derive(Default)]
 pub(super) struct Preconditioner {
     /// `(I + R_cc G)^-1`.
     inverse: WaveMatrix,
-    leading: Option<Leading>,
+    mistuned: Option<MistunedShapes>,
     turned: Field,
 }
 
-/// The part of the leading shape, by Woodbury's formula.
-struct Leading {
-    /// `(I + R_cc G)^-1 R_c1`, a channel per row.
-    motion: Field,
-    /// `R_1c G (I + R_cc G)^-1`, a channel per row.
-    strain: Field,
+/// The part of some shapes (index s) of the deviating blades, by Woodbury's formula.
+struct MistunedShapes {
+    /// `(I + R_cc G)^-1 R_cs` of every shape, a channel per row.
+    motions: Vec<Field>,
+    /// `R_sc G (I + R_cc G)^-1` of every shape, a channel per row.
+    strains: Vec<Field>,
     factors: LuWorkspace<Complex64>,
+    /// Of every shape and sector, shape after shape.
     deviations: Vec<Complex64>,
 }
 
 impl Preconditioner {
-    /// For a harmonic under the mean tangent of the contact; with its leading shape where that is wanted.
+    /// For a harmonic under the mean tangent of the contact.
     pub(super) fn new(
         harmonic: &WheelHarmonic,
         transform: &SectorTransform,
         tangent: &MeanTangent,
         pairs: &[[Option<usize>; 3]],
-        with_leading: bool,
     ) -> Self {
         let (sectors, contact) = (harmonic.sectors, harmonic.contact);
         let receptance = &harmonic.receptance;
-        // R G of the motions of the contact, and of the leading shape.
-        let rows = contact + usize::from(with_leading && harmonic.shapes > 0);
+        let shapes: Vec<usize> = if harmonic.is_mistuned {
+            let resonant = harmonic.elimination.resonant().iter();
+            resonant
+                .take((UNKNOWNS / sectors).max(1))
+                .copied()
+                .collect()
+        } else {
+            Vec::new()
+        };
+        // R G of the motions of the contact, and of the shapes.
+        let rows = contact + shapes.last().map_or(0, |last| last + 1);
         let mut product = WaveMatrix::zeros(rows, contact, sectors);
         product.add_times_pairs(receptance, pairs, tangent);
         let mut inverse = product.leading_rows(contact);
         inverse.add_identity();
         inverse.invert();
-        let leading = (with_leading && harmonic.is_mistuned)
-            .then(|| Leading::new(harmonic, transform, &product, &inverse))
+        let mistuned = (!shapes.is_empty())
+            .then(|| MistunedShapes::new(harmonic, transform, (&product, &inverse), &shapes))
             .flatten();
         Self {
             inverse,
-            leading,
+            mistuned,
             turned: Field::zeros(contact, sectors),
         }
     }
@@ -221,61 +233,93 @@ impl Preconditioner {
         self.turned.fill(0.0);
         self.inverse
             .add_product(0..contact, 0..contact, 1.0, residual, &mut self.turned);
-        if let Some(leading) = &mut self.leading {
-            leading.add(transform, residual, &mut self.turned);
+        if let Some(mistuned) = &mut self.mistuned {
+            mistuned.add(transform, residual, &mut self.turned);
         }
         std::mem::swap(&mut self.turned, residual);
     }
 }
 
-impl Leading {
+impl MistunedShapes {
     fn new(
         harmonic: &WheelHarmonic,
         transform: &SectorTransform,
-        product: &WaveMatrix,
-        inverse: &WaveMatrix,
+        (product, inverse): (&WaveMatrix, &WaveMatrix),
+        shapes: &[usize],
     ) -> Option<Self> {
         let (sectors, contact) = (harmonic.sectors, harmonic.contact);
         let stride = padded(sectors);
         let receptance = &harmonic.receptance;
-        let mut motion = Field::zeros(contact, sectors);
-        let own = receptance.column(contact, 0..contact);
-        inverse.add_product(0..contact, 0..contact, 1.0, &own, &mut motion);
-        let mut strain = Field::zeros(contact, sectors);
-        inverse.add_transposed_product(&product.row(contact), &mut strain);
-        let mut taken = Field::zeros(1, sectors);
-        add_channels(&strain, &own, &mut taken, stride);
-        let left = |h: usize| receptance.at(h, contact, contact) - taken.at(h);
-        let deviations = harmonic.deviations[..sectors].to_vec();
-        let mut factors = LuWorkspace::new(sectors);
+        let (mut motions, mut strains, mut answers) = (Vec::new(), Vec::new(), Vec::new());
+        for shape in shapes {
+            let answer = receptance.column(contact + shape, 0..contact);
+            let mut motion = Field::zeros(contact, sectors);
+            inverse.add_product(0..contact, 0..contact, 1.0, &answer, &mut motion);
+            let mut strain = Field::zeros(contact, sectors);
+            inverse.add_transposed_product(&product.row(contact + shape), &mut strain);
+            motions.push(motion);
+            strains.push(strain);
+            answers.push(answer);
+        }
+        // R_sc G (I + R_cc G)^-1 R_cs of every shape by every one.
+        let taken: Vec<Field> = strains
+            .iter()
+            .flat_map(|strain| answers.iter().map(move |answer| (strain, answer)))
+            .map(|(strain, answer)| {
+                let mut taken = Field::zeros(1, sectors);
+                add_channels(strain, answer, &mut taken, stride);
+                taken
+            })
+            .collect();
+        let left = |row: usize, column: usize, h: usize| {
+            let own = receptance.at(h, contact + shapes[row], contact + shapes[column]);
+            own - taken[row * shapes.len() + column].at(h)
+        };
+        let of_shape = |shape: &usize| &harmonic.deviations[shape * sectors..][..sectors];
+        let deviations: Vec<Complex64> = shapes.iter().flat_map(of_shape).copied().collect();
+        let mut factors = LuWorkspace::new(shapes.len() * sectors);
         let matrix = factors.matrix_mut();
-        fill_circulant(transform, 1, |_, _, h| left(h), &deviations, matrix);
+        fill_circulant(transform, shapes.len(), left, &deviations, matrix);
         factors.factor().then_some(Self {
-            motion,
-            strain,
+            motions,
+            strains,
             factors,
             deviations,
         })
     }
 
-    /// Adds `M^-1 R_c1 D (I + (R_11 - X) D)^-1 R_1c G M^-1 r` with `X = R_1c G M^-1 R_c1`.
+    /// Adds `M^-1 R_cs D (I + (R_ss - X) D)^-1 R_sc G M^-1 r` with `M = I + R_cc G`, `X = R_sc G M^-1 R_cs`.
     fn add(&mut self, transform: &SectorTransform, residual: &Field, step: &mut Field) {
         let sectors = transform.sectors();
         let stride = padded(sectors);
-        let mut waves = Field::zeros(1, sectors);
-        add_channels(&self.strain, residual, &mut waves, stride);
-        let mut own = Field::zeros(1, sectors);
+        let count = self.strains.len();
+        let mut waves = Field::zeros(count, sectors);
+        for (shape, strain) in self.strains.iter().enumerate() {
+            let mut own = Field::zeros(1, sectors);
+            add_channels(strain, residual, &mut own, stride);
+            waves.re[shape * stride..][..stride].copy_from_slice(&own.re);
+            waves.im[shape * stride..][..stride].copy_from_slice(&own.im);
+        }
+        let mut own = Field::zeros(count, sectors);
         transform.to_sectors(&waves, &mut own);
-        let mut unknowns: Vec<Complex64> = (0..sectors).map(|n| own.at(n)).collect();
+        let place = |at: usize| at / sectors * stride + at % sectors;
+        let mut unknowns: Vec<Complex64> =
+            (0..count * sectors).map(|at| own.at(place(at))).collect();
         self.factors.solve(&mut unknowns);
-        for (n, (z, deviation)) in unknowns.iter().zip(&self.deviations).enumerate() {
-            own.set(n, z * deviation);
+        for (at, (z, deviation)) in unknowns.iter().zip(&self.deviations).enumerate() {
+            own.set(place(at), z * deviation);
         }
         transform.to_waves(&own, &mut waves);
-        for (place, (x, y)) in self.motion.re.iter().zip(&self.motion.im).enumerate() {
-            let (a, b) = (waves.re[place % stride], waves.im[place % stride]);
-            step.re[place] += x * a - y * b;
-            step.im[place] += x * b + y * a;
+        for (shape, motion) in self.motions.iter().enumerate() {
+            let forces = (
+                &waves.re[shape * stride..][..stride],
+                &waves.im[shape * stride..][..stride],
+            );
+            for (place, (x, y)) in motion.re.iter().zip(&motion.im).enumerate() {
+                let (a, b) = (forces.0[place % stride], forces.1[place % stride]);
+                step.re[place] += x * a - y * b;
+                step.im[place] += x * b + y * a;
+            }
         }
     }
 }
