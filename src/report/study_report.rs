@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::{AccuracyTrials, BestLoads, PercentileError, StatedErrors, StudySummary, WheelReport};
+use super::{
+    AccuracyTrials, BestLoads, PercentileError, ShownModel, StatedErrors, StudySummary, WheelReport,
+};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{Percentile, Quantity, TailFit};
 use crate::population::table::AccuracyLadder;
@@ -17,6 +19,8 @@ pub struct StudyReport {
     pub summary: StudySummary,
     /// Engine orders and standard deviations, each with its loads.
     pub groups: Vec<GroupReport>,
+    /// The model of the study.
+    pub model: ShownModel,
     /// What accuracy costs, where it was measured.
     pub accuracy_ladder: Option<AccuracyLadder>,
     /// What was tried before the settings were chosen, where `[accuracy]` chose them.

@@ -1,0 +1,136 @@
+//! The model of a study for its report: masses of its bodies, frequencies, and where its parts are.
+
+use std::collections::BTreeMap;
+
+use super::campbell::{CampbellRequest, campbell};
+use crate::model::sector::{Body, Component, ContactSide, SectorModel};
+use crate::report::{
+    BodyMass, ContactFacts, ContactPlace, ModelSection, PictureNode, SectorPicture, ShownModel,
+};
+use crate::study::{Study, echo};
+
+/// Modes of each nodal diameter and contact.
+const MODES: usize = 6;
+/// Nodes up to which a sector is shown as masses and springs.
+const FEW_NODES: usize = 60;
+
+/// The model of a study on `sector`; one without natural frequencies is not shown, and the reason is kept.
+pub(super) fn shown_model(study: &Study, sector: &SectorModel) -> ShownModel {
+    let models = [(None, sector.clone())];
+    let request = CampbellRequest {
+        study,
+        models: &models,
+        engine_orders: &[],
+        modes: MODES,
+        range_rpm: None,
+    };
+    match campbell(&request) {
+        Ok(campbell) => ShownModel::Shown(Box::new(ModelSection {
+            echo: echo(study, sector),
+            contact: study.contact.as_ref().map(|contact| ContactFacts {
+                law: contact.law.name(),
+                friction_coefficient: contact.friction_coefficient,
+                tangential_stiffness_n_per_m: contact.tangential_stiffness_n_per_m,
+                normal_stiffness_n_per_m: contact.normal_stiffness_n_per_m,
+            }),
+            masses: masses(sector),
+            campbell,
+            sector: picture(sector),
+        })),
+        Err(error) => ShownModel::NotShown {
+            reason: error.to_string(),
+        },
+    }
+}
+
+/// Mass of each body: `1^T M 1` over its dofs in one direction. Axial where there is such a dof, as its direction
+/// is the same at every node.
+fn masses(sector: &SectorModel) -> Vec<BodyMass> {
+    let directions = [Component::Axial, Component::Tangential, Component::Radial];
+    let of_body = |body: Body| {
+        let along = |direction: Component| -> Vec<bool> {
+            { sector.dofs.iter() }
+                .map(|dof| dof.body == body && dof.component == direction)
+                .collect()
+        };
+        let counted = { directions.into_iter().map(along) }
+            .find(|counted| counted.iter().any(|&is_counted| is_counted))?;
+        let sector_kg = { sector.mass.lower_entries() }
+            .filter(|&(row, column, _)| counted[row] && counted[column])
+            .map(|(row, column, kg)| if row == column { kg } else { 2.0 * kg })
+            .sum();
+        Some(BodyMass { body, sector_kg })
+    };
+    [Body::Blisk, Body::Ring, Body::Damper]
+        .into_iter()
+        .filter_map(of_body)
+        .collect()
+}
+
+fn picture(sector: &SectorModel) -> SectorPicture {
+    let mut places: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut nodes = Vec::new();
+    for dof in &sector.dofs {
+        places.entry(dof.node).or_insert_with(|| {
+            nodes.push(PictureNode {
+                body: dof.body,
+                position_m: dof.position_m,
+            });
+            nodes.len() - 1
+        });
+    }
+    let position = |node: usize| sector.place_of(node).map(|(_, position_m)| position_m);
+    let side = |side: ContactSide| match side {
+        ContactSide::Node(node) => position(node),
+        ContactSide::NextSector(node) => position(node).map(|own| advanced(own, sector.sectors)),
+        ContactSide::Ground => None,
+    };
+    let contacts = { sector.contact_pairs.iter() }
+        .filter_map(|pair| {
+            Some(ContactPlace {
+                first_m: side(pair.first)?,
+                second_m: side(pair.second),
+                weight: pair.weight,
+            })
+        })
+        .collect();
+    let forces = std::iter::once(&sector.force).chain(&sector.load_case_forces);
+    let mut forced: Vec<usize> = forces
+        .flatten()
+        .filter(|(_, newtons)| newtons.norm_sqr() > 0.0)
+        .map(|&(dof, _)| sector.dofs[dof].node)
+        .collect();
+    forced.sort_unstable();
+    forced.dedup();
+    SectorPicture {
+        springs: springs(sector, &places),
+        nodes,
+        contacts,
+        forced_m: forced.into_iter().filter_map(position).collect(),
+        observed_m: { sector.observed.iter() }
+            .filter_map(|own| position(own.node))
+            .collect(),
+    }
+}
+
+/// Pairs of nodes with a stiffness between them; empty where there are too many to tell apart.
+fn springs(sector: &SectorModel, places: &BTreeMap<usize, usize>) -> Vec<(usize, usize)> {
+    if places.len() > FEW_NODES {
+        return Vec::new();
+    }
+    let place = |dof: usize| places[&sector.dofs[dof].node];
+    let mut springs: Vec<(usize, usize)> = { sector.stiffness.lower_entries() }
+        .filter(|&(_, _, stiffness)| stiffness.abs() > 0.0)
+        .map(|(row, column, _)| (place(column), place(row)))
+        .filter(|(a, b)| a != b)
+        .collect();
+    springs.sort_unstable();
+    springs.dedup();
+    springs
+}
+
+/// The same place in the next sector.
+fn advanced([x, y, z]: [f64; 3], sectors: usize) -> [f64; 3] {
+    let (sin, cos) = (std::f64::consts::TAU / sectors as f64).sin_cos();
+    [cos * x - sin * y, sin * x + cos * y, z]
+}
