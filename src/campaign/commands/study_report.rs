@@ -8,9 +8,7 @@ use serde_json::Value;
 use super::compare::{HALF_ERROR, best_loads};
 use super::report_model::shown_model;
 use super::report_wheels::solve_wheels;
-use crate::campaign::store::{
-    ResultColumns, ScenarioColumns, StoredModel, StoredStudy, summarise,
-};
+use crate::campaign::store::{ResultColumns, ScenarioColumns, StoredModel, StoredStudy, summarise};
 use crate::identity;
 use crate::population::monte_carlo::{LoadCaseName, ResponseRow};
 use crate::population::statistics::{

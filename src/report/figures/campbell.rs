@@ -151,7 +151,11 @@ pub(super) fn over_nodal_diameter(report: &StudyReport) -> Option<Figure> {
         svg.text("small strong", (x, y - 7.0), anchor, &format!("EO {order}"));
     }
     let mut entries = contact_entries(model, Some(()));
-    entries.push(LegendEntry::Line("median", None, "engine orders at one speed"));
+    entries.push(LegendEntry::Line(
+        "median",
+        None,
+        "engine orders at one speed",
+    ));
     legend(&mut svg, &entries);
     Some(Figure {
         name: FigureName::Safe,
@@ -170,12 +174,7 @@ pub(super) fn over_nodal_diameter(report: &StudyReport) -> Option<Figure> {
 }
 
 /// Frequencies of the orders at one speed, folded at half the number of sectors.
-fn impulse(
-    frame: &Frame<'_>,
-    speed_rpm: f64,
-    sectors: usize,
-    top_hz: f64,
-) -> Vec<(f64, f64)> {
+fn impulse(frame: &Frame<'_>, speed_rpm: f64, sectors: usize, top_hz: f64) -> Vec<(f64, f64)> {
     let per_order = speed_rpm / 60.0;
     let half = sectors as f64 / 2.0;
     let last = top_hz / per_order;
@@ -204,7 +203,9 @@ fn axis(top: f64, ends: (f64, f64)) -> Axis {
 /// Upper end of the frequencies shown.
 fn top_hz(report: &StudyReport, model: &CampbellReport) -> Option<f64> {
     let peaks = report.summary.scenarios.iter();
-    let peak = peaks.filter_map(|own| own.tuned_frequency_hz).reduce(f64::max);
+    let peak = peaks
+        .filter_map(|own| own.tuned_frequency_hz)
+        .reduce(f64::max);
     let modes = model.modes.iter().filter(|mode| mode.mode <= WITHOUT_PEAK);
     let lowest = || modes.map(|mode| mode.frequency_hz[0]).reduce(f64::max);
     let top = peak.map(|hz| SHOWN * hz).or_else(lowest)?;

@@ -42,7 +42,10 @@ pub(super) fn of_model(report: &StudyReport) -> Option<Figure> {
     let views: Vec<(&str, View<'_>)> = if is_flat(sector) {
         vec![("along the axis", &along_axis)]
     } else {
-        vec![("from the side", &from_side), ("along the axis", &along_axis)]
+        vec![
+            ("from the side", &from_side),
+            ("along the axis", &along_axis),
+        ]
     };
     let boxes: Vec<[f64; 4]> = views
         .iter()
@@ -50,10 +53,7 @@ pub(super) fn of_model(report: &StudyReport) -> Option<Figure> {
         .collect::<Option<_>>()?;
     // One scale for all views.
     let width: f64 = boxes.iter().map(|own| own[1] - own[0]).sum();
-    let height = boxes
-        .iter()
-        .map(|own| own[3] - own[2])
-        .fold(0.0, f64::max);
+    let height = boxes.iter().map(|own| own[3] - own[2]).fold(0.0, f64::max);
     let room = WIDTH - MARGIN * (views.len() as f64 + 1.0);
     let scale = (room / width).min((BOTTOM - TOP) / height).min(LARGEST);
     let mut left = 0.5 * (WIDTH - scale * width - MARGIN * (views.len() as f64 - 1.0));
@@ -84,7 +84,11 @@ pub(super) fn of_model(report: &StudyReport) -> Option<Figure> {
 
 /// Whether the sector is a few masses, whose places say nothing of their shape.
 fn is_flat(sector: &SectorPicture) -> bool {
-    !sector.springs.is_empty() && sector.nodes.iter().all(|node| node.position_m[2].abs() <= 0.0)
+    !sector.springs.is_empty()
+        && sector
+            .nodes
+            .iter()
+            .all(|node| node.position_m[2].abs() <= 0.0)
 }
 
 /// Least and largest horizontal, least and largest vertical place of the nodes.
@@ -94,7 +98,12 @@ fn bounds(sector: &SectorPicture, view: View<'_>) -> Option<[f64; 4]> {
     let touching = contacts.flat_map(|own| [Some(own.first_m), own.second_m]);
     let places = nodes.chain(touching.flatten()).map(view);
     let bounds = places.fold(
-        [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY],
+        [
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+        ],
         |own, (x, y)| [own[0].min(x), own[1].max(x), own[2].min(y), own[3].max(y)],
     );
     bounds.iter().all(|end| end.is_finite()).then_some(bounds)
