@@ -72,9 +72,12 @@ pub struct SectorPicture {
     /// Every node of the sector, those of both cyclic faces included; too many for the JSON of a report.
     #[serde(skip)]
     pub nodes: Vec<PictureNode>,
-    /// Pairs of places in `nodes` with a stiffness between them, where the sector is a few masses and springs.
+    /// Whether the nodes are masses that move along one line each, whose places say nothing of their shape.
     #[serde(skip)]
-    pub springs: Vec<(usize, usize)>,
+    pub is_of_masses: bool,
+    /// Pairs of places in `nodes`: springs between masses, neighbours in a mesh.
+    #[serde(skip)]
+    pub links: Vec<(usize, usize)>,
     /// Contact pairs.
     pub contacts: Vec<ContactPlace>,
     /// Nodes on which the excitation acts.

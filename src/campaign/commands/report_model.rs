@@ -11,8 +11,8 @@ use crate::study::{Study, echo};
 
 /// Modes of each nodal diameter and contact.
 const MODES: usize = 6;
-/// Nodes up to which a sector is shown as masses and springs.
-const FEW_NODES: usize = 60;
+/// Nodes of a mesh up to which its neighbours are joined.
+const JOINED_NODES: usize = 20_000;
 
 /// The model of a study on `sector`; one without natural frequencies is not shown, and the reason is kept.
 pub(super) fn shown_model(study: &Study, sector: &SectorModel) -> ShownModel {
@@ -102,8 +102,14 @@ fn picture(sector: &SectorModel) -> SectorPicture {
         .collect();
     forced.sort_unstable();
     forced.dedup();
+    let is_of_masses = nodes.len() == sector.dofs.len();
+    let mut links = coupled(sector, &places);
+    if !is_of_masses {
+        links = neighbours(&nodes, &links);
+    }
     SectorPicture {
-        springs: springs(sector, &places),
+        is_of_masses,
+        links,
         nodes,
         contacts,
         forced_m: forced.into_iter().filter_map(position).collect(),
@@ -113,20 +119,45 @@ fn picture(sector: &SectorModel) -> SectorPicture {
     }
 }
 
-/// Pairs of nodes with a stiffness between them; empty where there are too many to tell apart.
-fn springs(sector: &SectorModel, places: &BTreeMap<usize, usize>) -> Vec<(usize, usize)> {
-    if places.len() > FEW_NODES {
+/// Pairs of nodes with a stiffness between them.
+fn coupled(sector: &SectorModel, places: &BTreeMap<usize, usize>) -> Vec<(usize, usize)> {
+    if places.len() > JOINED_NODES {
         return Vec::new();
     }
-    let place = |dof: usize| places[&sector.dofs[dof].node];
-    let mut springs: Vec<(usize, usize)> = { sector.stiffness.lower_entries() }
-        .filter(|&(_, _, stiffness)| stiffness.abs() > 0.0)
-        .map(|(row, column, _)| (place(column), place(row)))
-        .filter(|(a, b)| a != b)
+    let of_dof: Vec<usize> = { sector.dofs.iter() }
+        .map(|dof| places[&dof.node])
         .collect();
-    springs.sort_unstable();
-    springs.dedup();
-    springs
+    let mut pairs: Vec<(usize, usize)> = { sector.stiffness.lower_entries() }
+        .filter(|&(_, _, stiffness)| stiffness.abs() > 0.0)
+        .map(|(row, column, _)| (of_dof[column], of_dof[row]))
+        .filter(|(a, b)| a != b)
+        .map(|(a, b)| (a.min(b), a.max(b)))
+        .collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+/// The pairs that no third node coupled to both lies between: the relative neighbours of Toussaint (1980), which are
+/// the edges of elements and not the diagonals through them.
+fn neighbours(nodes: &[PictureNode], coupled: &[(usize, usize)]) -> Vec<(usize, usize)> {
+    let mut beside: Vec<Vec<usize>> = vec![Vec::new(); nodes.len()];
+    for &(a, b) in coupled {
+        beside[a].push(b);
+        beside[b].push(a);
+    }
+    let distance = |a: usize, b: usize| {
+        let (a, b) = (nodes[a].position_m, nodes[b].position_m);
+        let squares = [0, 1, 2].map(|axis| (a[axis] - b[axis]).powi(2));
+        squares.iter().sum::<f64>()
+    };
+    let between = |a: usize, b: usize| {
+        // Rounding must not part the sides of a cube.
+        let own = (1.0 - 1e-6) * distance(a, b);
+        { beside[a].iter() }.any(|&c| c != b && distance(a, c) < own && distance(b, c) < own)
+    };
+    let kept = coupled.iter().filter(|&&(a, b)| !between(a, b));
+    kept.copied().collect()
 }
 
 /// The same place in the next sector.

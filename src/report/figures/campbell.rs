@@ -48,7 +48,7 @@ pub(super) fn over_speed(report: &StudyReport) -> Option<Figure> {
     for mode in shown(model, top_hz).filter(|mode| excited.contains(&mode.nodal_diameter)) {
         let hz = mode.frequency_hz[0];
         svg.polyline(
-            class_of(mode.contact).0,
+            &format!("curve {}", drawn(mode.contact).line),
             &[frame.at(0.0, hz), frame.at(top_rpm, hz)],
         );
         let y = frame.y.at(hz) - 4.0;
@@ -64,7 +64,8 @@ pub(super) fn over_speed(report: &StudyReport) -> Option<Figure> {
         let end = frame.at(end_rpm, per_rpm * end_rpm);
         svg.polyline("curve median", &[frame.at(0.0, 0.0), end]);
         let name = format!("EO {order}");
-        svg.text("small", (end.0 - 3.0, end.1 + 15.0), Anchor::End, &name);
+        let y = (end.1 - 2.0).max(TOP + 12.0);
+        svg.text("small strong", (end.0 - 12.0, y), Anchor::End, &name);
     }
     for (scenario, speed_rpm, hz) in &peaks {
         let words = format!(
@@ -74,7 +75,7 @@ pub(super) fn over_speed(report: &StudyReport) -> Option<Figure> {
         );
         Mark::Diamond.draw(&mut svg, "high", frame.at(*speed_rpm, *hz), &words);
     }
-    let mut entries = contact_entries(model, None);
+    let mut entries = contact_entries(model, false);
     entries.push(LegendEntry::Line("median", None, "engine order"));
     legend(&mut svg, &entries);
     Some(Figure {
@@ -84,7 +85,7 @@ pub(super) fn over_speed(report: &StudyReport) -> Option<Figure> {
         caption: format!(
             "Lines across: natural frequencies of the nodal diameters that the engine orders excite. They are horizontal \
              because the study has one model for every speed: without centrifugal stiffening and without spin softening. \
-             `blisk campbell --at` takes models at several speeds. Diamonds: peaks of the tuned wheel under each load, at \
+             The command blisk campbell with --at takes models at several speeds. Diamonds: peaks of the tuned wheel under each load, at \
              the speed of its engine order.{}",
             contact_words(model)
         ),
@@ -123,18 +124,15 @@ pub(super) fn over_nodal_diameter(report: &StudyReport) -> Option<Figure> {
         ));
     }
     for mode in shown(model, top_hz) {
-        let (_, class, mark) = class_of(mode.contact);
+        let drawn = drawn(mode.contact);
         let hz = mode.frequency_hz[0];
         let words = format!(
             "nodal diameter {}, mode {}, {}: {hz:.2} Hz",
             mode.nodal_diameter, mode.mode, mode.contact
         );
-        mark.draw(
-            &mut svg,
-            class,
-            frame.at(mode.nodal_diameter as f64, hz),
-            &words,
-        );
+        let (x, y) = frame.at(mode.nodal_diameter as f64, hz);
+        let at = (x + drawn.beside, y);
+        drawn.mark.draw(&mut svg, drawn.point, at, &words);
     }
     for (order, speed_rpm) in &peaks {
         let at = nodal_diameter_of(1, *order, model.sectors).index as f64;
@@ -150,7 +148,7 @@ pub(super) fn over_nodal_diameter(report: &StudyReport) -> Option<Figure> {
         };
         svg.text("small strong", (x, y - 7.0), anchor, &format!("EO {order}"));
     }
-    let mut entries = contact_entries(model, Some(()));
+    let mut entries = contact_entries(model, true);
     entries.push(LegendEntry::Line(
         "median",
         None,
@@ -249,24 +247,41 @@ fn shown_peaks(report: &StudyReport) -> Vec<(u32, f64)> {
     orders(report).into_iter().filter_map(crossing).collect()
 }
 
-/// How the frequencies of a contact condition are drawn: as a line, and as a point.
-fn class_of(contact: &str) -> (&'static str, &'static str, Mark) {
-    match contact {
-        "stuck" => ("curve stuck", "median", Mark::Circle),
-        "slide" => ("curve slide", "extreme", Mark::Square),
-        _ => ("curve quiet", "median", Mark::Circle),
+/// How the frequencies of a contact condition are drawn.
+struct Drawn {
+    /// Class of their lines over speed.
+    line: &'static str,
+    /// Class of their points over nodal diameter.
+    point: &'static str,
+    mark: Mark,
+    /// How far beside their nodal diameter they stand, so that no point hides another, user units.
+    beside: f64,
+}
+
+fn drawn(contact: &str) -> Drawn {
+    let (line, point, mark, beside) = match contact {
+        "stuck" => ("stuck", "median", Mark::Circle, -4.5),
+        "slide" => ("slide", "extreme", Mark::Square, 4.5),
+        _ => ("quiet", "median", Mark::Circle, 0.0),
+    };
+    Drawn {
+        line,
+        point,
+        mark,
+        beside,
     }
 }
 
-/// Entries of the contact conditions; with points where `points` is there.
-fn contact_entries(model: &CampbellReport, points: Option<()>) -> Vec<LegendEntry<'static>> {
+/// Entries of the contact conditions, as points or as lines.
+fn contact_entries(model: &CampbellReport, are_points: bool) -> Vec<LegendEntry<'static>> {
     let mut entries = Vec::new();
     for contact in ["stuck", "slide", "free"] {
         if model.modes.iter().any(|mode| mode.contact == contact) {
-            let (line, point, mark) = class_of(contact);
-            entries.push(match points {
-                Some(()) => LegendEntry::Line(point, Some(mark), contact),
-                None => LegendEntry::Line(line.trim_start_matches("curve "), None, contact),
+            let drawn = drawn(contact);
+            entries.push(if are_points {
+                LegendEntry::Point(drawn.point, drawn.mark, contact)
+            } else {
+                LegendEntry::Line(drawn.line, None, contact)
             });
         }
     }

@@ -39,7 +39,7 @@ pub(super) fn of_model(report: &StudyReport) -> Option<Figure> {
     let (cos, sin) = (cos / length, sin / length);
     let from_side = |[x, y, z]: [f64; 3]| (z, x.hypot(y));
     let along_axis = |[x, y, _]: [f64; 3]| (sin * x - cos * y, cos * x + sin * y);
-    let views: Vec<(&str, View<'_>)> = if is_flat(sector) {
+    let views: Vec<(&str, View<'_>)> = if sector.is_of_masses {
         vec![("along the axis", &along_axis)]
     } else {
         vec![
@@ -82,15 +82,6 @@ pub(super) fn of_model(report: &StudyReport) -> Option<Figure> {
     })
 }
 
-/// Whether the sector is a few masses, whose places say nothing of their shape.
-fn is_flat(sector: &SectorPicture) -> bool {
-    !sector.springs.is_empty()
-        && sector
-            .nodes
-            .iter()
-            .all(|node| node.position_m[2].abs() <= 0.0)
-}
-
 /// Least and largest horizontal, least and largest vertical place of the nodes.
 fn bounds(sector: &SectorPicture, view: View<'_>) -> Option<[f64; 4]> {
     let nodes = sector.nodes.iter().map(|node| node.position_m);
@@ -110,11 +101,17 @@ fn bounds(sector: &SectorPicture, view: View<'_>) -> Option<[f64; 4]> {
 }
 
 fn draw(svg: &mut Svg, sector: &SectorPicture, at: &dyn Fn([f64; 3]) -> (f64, f64)) {
-    for &(a, b) in &sector.springs {
+    let (line, radius) = if sector.is_of_masses {
+        ("curve quiet", 9.0)
+    } else {
+        ("mesh", 1.1)
+    };
+    for &(a, b) in &sector.links {
         let ends = [a, b].map(|place| at(sector.nodes[place].position_m));
-        svg.polyline("curve quiet", &ends);
+        if (ends[0].0 - ends[1].0).hypot(ends[0].1 - ends[1].1) > FINE {
+            svg.polyline(line, &ends);
+        }
     }
-    let radius = if sector.springs.is_empty() { 1.1 } else { 9.0 };
     let mut drawn = BTreeSet::new();
     for node in &sector.nodes {
         let (x, y) = at(node.position_m);
@@ -187,18 +184,18 @@ fn entries(section: &ModelSection) -> Vec<LegendEntry<'static>> {
     if !sector.contacts.is_empty() {
         entries.push(LegendEntry::Area("touch", "contact"));
     }
-    entries.push(LegendEntry::Line("none", Some(Mark::Diamond), "force"));
-    entries.push(LegendEntry::Line("none", Some(Mark::Triangle), "observed"));
+    entries.push(LegendEntry::Point("high", Mark::Diamond, "force"));
+    entries.push(LegendEntry::Point("extreme", Mark::Triangle, "observed"));
     entries
 }
 
 fn caption(section: &ModelSection) -> String {
     let sector = &section.sector;
-    let shape = if is_flat(sector) {
+    let shape = if sector.is_of_masses {
         "Discs: masses, at places without a meaning; lines: springs, those to the ground left out. The masses of the next \
          sector stand where springs reach them."
     } else {
-        "Points: nodes of the sector, those of both cyclic faces included, in one scale."
+        "Points: nodes of the sector, those of both cyclic faces included, in one scale; lines: neighbours in the mesh."
     };
     let contacts = match sector.contacts.len() {
         0 => "It has no contact.".to_owned(),

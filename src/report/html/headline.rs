@@ -6,6 +6,9 @@ use crate::report::words::{
 };
 use crate::report::{GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport};
 
+/// Warnings that the first screen names.
+const NAMED: usize = 3;
+
 /// A number in large type.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct BigNumber {
@@ -172,12 +175,11 @@ fn notes_of_percentile(
     notes.extend(
         stress.map(|(pa_per_m, value)| format!("{} MPa", four_digits(1e-6 * pa_per_m * value))),
     );
-    notes.push(format!("from {} random wheels", summary.patterns));
     let higher = { group.choices.iter() }
         .filter(|own| own.percent > choice.percent && summary.patterns < own.needed_patterns);
     notes.extend(higher.last().map(|own| {
         format!(
-            "P{} needs {} wheels",
+            "P{} needs {} patterns",
             percent_words(own.percent),
             own.needed_patterns
         )
@@ -211,19 +213,18 @@ fn number_of_error(
         };
     };
     let largest = (1.0 - low / value).max(high / value - 1.0);
-    let mut notes = vec!["if every row is wrong by all that it states".to_owned()];
     let widths = error.and_then(|own| Some((own.numerical_width()?, own.statistical_width()?)));
-    notes.extend(widths.map(|(numerical, statistical)| {
+    let beside = widths.map(|(numerical, statistical)| {
         if numerical > statistical {
-            format!("wider than the interval of P{percent}: finer solutions help more than wheels")
+            format!("more than the interval of P{percent}: finer solutions help more")
         } else {
-            format!("narrower than the interval of P{percent}: more wheels help more")
+            format!("less than the interval of P{percent}: more patterns help more")
         }
-    }));
+    });
     BigNumber {
         label,
         value: share_words(largest),
-        notes,
+        notes: beside.into_iter().collect(),
     }
 }
 
@@ -264,6 +265,11 @@ pub(super) fn health(report: &StudyReport) -> Health {
             ),
         )
     };
+    let more = findings.len().saturating_sub(NAMED);
+    findings.truncate(NAMED);
+    if more > 0 {
+        findings.push(format!("and {more} more"));
+    }
     Health {
         class,
         verdict,

@@ -61,7 +61,6 @@ const RULES: &[(&str, &str)] = &[
         "stroke:$quiet;stroke-width:1;stroke-dasharray:3 4",
     ),
     (".curve.touch", "stroke:$slip;stroke-width:3"),
-    (".curve.none", "stroke:none"),
     (".bound", "fill:none;stroke-width:1.4"),
     (".bound.median", "stroke:$median"),
     (".bound.high", "stroke:$high"),
@@ -87,6 +86,10 @@ const RULES: &[(&str, &str)] = &[
     (".cell.slip2", "fill:$slip;fill-opacity:.8"),
     (".cell.slip3", "fill:$slip"),
     (".cell.separation", "fill:$open"),
+    (
+        ".mesh",
+        "fill:none;stroke:$quiet;stroke-width:.6;stroke-opacity:.55",
+    ),
     (".node", "fill:$quiet;stroke:none"),
     (".node.ring", "fill:$median"),
     (".node.damper", "fill:$good"),
