@@ -92,6 +92,15 @@ pub enum Warning {
 }
 
 impl Warning {
+    /// Whether failures leave a percentile or a tuned reference without value.
+    #[must_use]
+    pub fn costs_a_statistic(&self) -> bool {
+        matches!(
+            self,
+            Self::TooManyFailures { .. } | Self::TunedFailures { .. }
+        )
+    }
+
     /// What is wrong in a few words; [`fmt::Display`] adds what to do about it.
     #[must_use]
     pub fn headline(&self) -> String {

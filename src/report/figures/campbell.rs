@@ -18,6 +18,8 @@ const SHOWN: f64 = 1.6;
 const SPEEDS: f64 = 1.25;
 /// Modes of a nodal diameter whose frequencies are shown where there is no tuned peak.
 const WITHOUT_PEAK: usize = 3;
+/// Folds of the line of an engine order at most; a wheel that hardly turns has no line.
+const MOST_FOLDS: f64 = 50.0;
 /// Least distance of two names, user units.
 const APART: f64 = 13.0;
 /// Nodal diameters with a name at most.
@@ -30,6 +32,9 @@ pub(super) fn over_speed(report: &StudyReport) -> Option<Figure> {
     let peaks = peaks(report);
     let speeds = peaks.iter().map(|(_, speed, _)| *speed);
     let top_rpm = SPEEDS * speeds.reduce(f64::max)?;
+    if !top_rpm.is_finite() {
+        return None;
+    }
     let frame = Frame {
         x: axis(top_rpm, SIDES),
         y: axis(top_hz, (BOTTOM, TOP)),
@@ -176,7 +181,12 @@ fn impulse(frame: &Frame<'_>, speed_rpm: f64, sectors: usize, top_hz: f64) -> Ve
     let per_order = speed_rpm / 60.0;
     let half = sectors as f64 / 2.0;
     let last = top_hz / per_order;
-    let folds = (last / half).floor() as u32;
+    let folds = (last / half).floor();
+    let is_drawn = folds <= MOST_FOLDS;
+    if !is_drawn {
+        return Vec::new();
+    }
+    let folds = folds as u32;
     let folded = |order: f64| {
         let rest = order.rem_euclid(2.0 * half);
         rest.min(2.0 * half - rest)
@@ -207,7 +217,8 @@ fn top_hz(report: &StudyReport, model: &CampbellReport) -> Option<f64> {
     let modes = model.modes.iter().filter(|mode| mode.mode <= WITHOUT_PEAK);
     let lowest = || modes.map(|mode| mode.frequency_hz[0]).reduce(f64::max);
     let top = peak.map(|hz| SHOWN * hz).or_else(lowest)?;
-    (top > 0.0 && top.is_finite()).then(|| nice_top(top, 5))
+    let top = nice_top(top, 5);
+    (top > 0.0 && top.is_finite()).then_some(top)
 }
 
 /// Modes that the axis has room for; rotation may soften others to nothing.

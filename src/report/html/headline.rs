@@ -4,7 +4,9 @@ use crate::population::statistics::CONFIDENCE;
 use crate::report::words::{
     LengthUnit, four_digits, load_with_unit, percent_words, setting, share_words,
 };
-use crate::report::{GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport};
+use crate::report::{
+    GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, Warning,
+};
 
 /// Warnings that the first screen names.
 const NAMED: usize = 3;
@@ -231,8 +233,11 @@ fn number_of_error(
 /// Whether anything is wrong with the study.
 pub(super) fn health(report: &StudyReport) -> Health {
     let summary = &report.summary;
-    let mut findings: Vec<String> = { summary.warnings.iter() }
-        .map(|warning| warning.headline())
+    // What costs a result comes first.
+    let (costly, others): (Vec<&Warning>, Vec<&Warning>) =
+        { summary.warnings.iter() }.partition(|warning| warning.costs_a_statistic());
+    let mut findings: Vec<String> = { costly.into_iter().chain(others) }
+        .map(Warning::headline)
         .collect();
     if summary.misses_its_target() {
         findings.insert(
