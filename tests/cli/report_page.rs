@@ -138,6 +138,37 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
 }
 
 #[test]
+fn a_load_of_a_speed_has_four_digits_and_its_speed() {
+    let of_speed = study()
+        .replace(
+            "tangential_stiffness_n_per_m = 8.0e5",
+            "tangential_stiffness_n_per_m = 8.0e5\n\
+             normal_load = { from = \"rotation\", speed_rpm = [800, 1000], ring_radius_m = 0.2 }",
+        )
+        .replace("normal_load_n = [\"slide\", 50, 100, 200, \"stuck\"]\n", "");
+    let (_place, page, report) = reported(&of_speed, 0);
+    let [load, ..] = &big_numbers(&page)[..] else {
+        panic!("three numbers: {page}");
+    };
+    let lowest = report["groups"][0]["choices"][1]["lowest"]
+        .as_u64()
+        .expect("a scenario");
+    let scenario = &report["summary"]["scenarios"][lowest as usize];
+    let newtons = scenario["normal_load_n"].as_f64().expect("a load");
+    let shown = numbers_in(&load[1])[0];
+    assert!(
+        (shown / newtons - 1.0).abs() < 1e-3 && load[1].len() <= 8,
+        "{load:?}"
+    );
+    let speed = scenario["speed_rpm"].as_f64().expect("a speed");
+    assert!(
+        load[2].contains(&format!("that of {speed} rpm")),
+        "{load:?}"
+    );
+    assert!(load[2].contains("the optimum may lie beyond"), "{load:?}");
+}
+
+#[test]
 fn the_first_screen_says_whether_anything_is_wrong() {
     // No warning: enough patterns for all percentiles of the summary are not cheap, so that few rows and a wide
     // tolerance say it of a study without friction.

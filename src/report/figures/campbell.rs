@@ -145,11 +145,11 @@ pub(super) fn over_nodal_diameter(report: &StudyReport) -> Option<Figure> {
         let (x, y) = frame.at(at, hz);
         let words = format!("engine order {order} at {speed_rpm:.0} rpm: {hz:.2} Hz");
         Mark::Diamond.draw(&mut svg, "high", (x, y), &words);
-        let right = at > 0.7 * half;
-        let (x, anchor) = if right {
-            (x - 9.0, Anchor::End)
+        // The line comes from the lower left, so that there is room above it on that side.
+        let (x, anchor) = if at < 0.2 * half {
+            (x + 12.0, Anchor::Start)
         } else {
-            (x + 9.0, Anchor::Start)
+            (x - 12.0, Anchor::End)
         };
         svg.text("small strong", (x, y - 7.0), anchor, &format!("EO {order}"));
     }

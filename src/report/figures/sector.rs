@@ -10,7 +10,7 @@ use crate::report::{ContactPlace, ModelSection, SectorPicture, StudyReport};
 /// Lower end of the views.
 const BOTTOM: f64 = 352.0;
 /// Height of the drawing.
-const HEIGHT: f64 = 392.0;
+const HEIGHT: f64 = 404.0;
 /// Margin beside and between the views.
 const MARGIN: f64 = 24.0;
 /// Largest scale, user units per m, for a sector that is a point.
@@ -66,7 +66,7 @@ pub(super) fn of_model(report: &StudyReport) -> Option<Figure> {
         };
         draw(&mut svg, sector, &at);
         let middle = left + 0.5 * scale * (own[1] - own[0]);
-        svg.text("small quiet", (middle, BOTTOM + 24.0), Anchor::Middle, name);
+        svg.text("small quiet", (middle, BOTTOM + 17.0), Anchor::Middle, name);
         left += scale * (own[1] - own[0]) + MARGIN;
     }
     scale_bar(&mut svg, scale);

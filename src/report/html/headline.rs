@@ -2,7 +2,7 @@
 
 use crate::population::statistics::CONFIDENCE;
 use crate::report::words::{
-    LengthUnit, four_digits, load_with_unit, percent_words, setting, share_words,
+    LengthUnit, force, four_digits, load_with_unit, percent_words, setting, share_words,
 };
 use crate::report::{
     GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, Warning,
@@ -10,6 +10,9 @@ use crate::report::{
 
 /// Warnings that the first screen names.
 const NAMED: usize = 3;
+
+/// Letters of a load that is shown as it is written.
+const LONGEST_LOAD: usize = 8;
 
 /// A number in large type.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -51,7 +54,7 @@ pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumb
     [
         BigNumber {
             label: "Normal load per sector".to_owned(),
-            value: load_with_unit(scenario.contact, scenario.normal_load_n),
+            value: short_load(scenario),
             notes: notes_of_load(report, group, choice, scenario),
         },
         BigNumber {
@@ -75,6 +78,15 @@ pub(super) fn in_one_line(report: &StudyReport, group: &GroupReport) -> String {
         percentile.label.split(' ').next().unwrap_or_default(),
         percentile.value
     )
+}
+
+/// A load as written, or with four digits where more are written: those of a rotation have many.
+fn short_load(scenario: &ScenarioSummary) -> String {
+    let written = load_with_unit(scenario.contact, scenario.normal_load_n);
+    match scenario.normal_load_n {
+        Some(newtons) if written.len() > LONGEST_LOAD => force(newtons),
+        _ => written,
+    }
 }
 
 fn error_of(group: &GroupReport, scenario: usize, percent: f64) -> Option<&PercentileError> {
@@ -129,7 +141,7 @@ fn notes_of_load(
         .filter(|own| own.could_be_best && own.scenario.scenario != scenario.scenario)
         .map(|own| {
             let other = &report.summary.scenarios[own.scenario.scenario];
-            load_with_unit(other.contact, other.normal_load_n)
+            short_load(other)
         })
         .collect();
     let percent = percent_words(choice.percent);
