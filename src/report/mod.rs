@@ -58,7 +58,7 @@ pub use statistics_csv::statistics_csv;
 pub use study_echo::{EchoedExcitation, EchoedLoad, EchoedModel, Remark, StudyEcho, Travel};
 pub use study_report::{
     CommonErrors, DistributionReport, GroupReport, LoadChoice, Provenance, ScenarioErrors,
-    StudyReport, Wheels,
+    StudyReport, Wheels, setting,
 };
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use tail_report::StatisticsReport;
@@ -68,4 +68,4 @@ pub use verification::{ErrorDistribution, RegimeErrors, VerificationContext, Ver
 pub use visible::{is_order, visible, with_orders_escaped};
 pub use warning::Warning;
 pub use wheel_report::{PairReport, ResponseCurve, WheelCurves, WheelReport, WheelStateReport};
-pub use words::{LengthUnit, setting};
+pub use words::LengthUnit;

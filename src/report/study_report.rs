@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::Value;
 
+use super::words::excitation_and_deviation;
 use super::{
     AccuracyTrials, BestLoads, PercentileError, ShownModel, StatedErrors, StudySummary, WheelReport,
 };
@@ -140,4 +141,14 @@ pub enum Wheels {
         /// Why.
         reason: String,
     },
+}
+
+/// Load case, engine order and standard deviation of a group, in words.
+#[must_use]
+pub fn setting(group: &GroupReport) -> String {
+    excitation_and_deviation(
+        group.load_case,
+        group.engine_order,
+        group.standard_deviation,
+    )
 }

@@ -1,5 +1,7 @@
 //! Campbell and SAFE diagram of the tuned wheel: where the engine orders of a study meet its natural frequencies.
 
+use std::fmt::Write;
+
 use super::{Figure, FigureName};
 use crate::model::cyclic::nodal_diameter_of;
 use crate::report::plot::{
@@ -50,7 +52,12 @@ pub(super) fn over_speed(report: &StudyReport) -> Option<Figure> {
         .map(|&order| nodal_diameter_of(1, order, model.sectors).index)
         .collect();
     let mut named: Vec<f64> = Vec::new();
-    for mode in shown(model, top_hz).filter(|mode| excited.contains(&mode.nodal_diameter)) {
+    let mut modes: Vec<&CampbellMode> = shown(model, top_hz)
+        .filter(|mode| excited.contains(&mode.nodal_diameter))
+        .collect();
+    // A name stands above the highest of lines that lie close together.
+    modes.sort_by(|a, b| b.frequency_hz[0].total_cmp(&a.frequency_hz[0]));
+    for mode in modes {
         let hz = mode.frequency_hz[0];
         svg.polyline(
             &format!("curve {}", drawn(mode.contact).line),
@@ -124,9 +131,11 @@ pub(super) fn over_nodal_diameter(report: &StudyReport) -> Option<Figure> {
             "curve median",
             &impulse(&frame, *speed_rpm, model.sectors, top_hz),
         );
-        told.push_str(&format!(
+        // Writing to a String cannot fail.
+        let _ = write!(
+            told,
             " Line of engine order {order}: {speed_rpm:.0} rpm, where it meets the tuned peak at the chosen load."
-        ));
+        );
     }
     for mode in shown(model, top_hz) {
         let drawn = drawn(mode.contact);

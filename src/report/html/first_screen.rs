@@ -5,8 +5,8 @@ use std::fmt::Write;
 use super::headline::{BigNumber, big_numbers, health, in_one_line};
 use super::model::figure_html;
 use crate::report::plot::escaped;
-use crate::report::words::{setting, tied};
-use crate::report::{Answer, FigureName, GroupReport, StudyReport, answers, figure};
+use crate::report::words::tied;
+use crate::report::{Answer, FigureName, GroupReport, StudyReport, answers, figure, setting};
 
 /// Numbers, main figure and answers of a group.
 pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usize) -> String {

@@ -2,10 +2,10 @@
 
 use crate::population::statistics::CONFIDENCE;
 use crate::report::words::{
-    LengthUnit, force, four_digits, load_with_unit, percent_words, setting, share_words,
+    LengthUnit, force, four_digits, load_with_unit, percent_words, share_words,
 };
 use crate::report::{
-    GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, Warning,
+    GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, Warning, setting,
 };
 
 /// Warnings that the first screen names.
@@ -189,9 +189,9 @@ fn notes_of_percentile(
     notes.extend(
         stress.map(|(pa_per_m, value)| format!("{} MPa", four_digits(1e-6 * pa_per_m * value))),
     );
-    let higher = { group.choices.iter() }
+    let mut higher = { group.choices.iter() }
         .filter(|own| own.percent > choice.percent && summary.patterns < own.needed_patterns);
-    notes.extend(higher.last().map(|own| {
+    notes.extend(higher.next_back().map(|own| {
         format!(
             "P{} needs {} patterns",
             percent_words(own.percent),

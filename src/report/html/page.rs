@@ -7,9 +7,8 @@ use super::model::{figure_html, model};
 use super::table::Table;
 use super::tables;
 use crate::report::plot::{escaped, page_style};
-use crate::report::words::setting;
 use crate::report::words::tied;
-use crate::report::{FIGURES, FigureName, GroupReport, StudyReport, Wheels, figure};
+use crate::report::{FIGURES, FigureName, GroupReport, StudyReport, Wheels, figure, setting};
 
 /// Style of everything but the plots.
 const STYLE: &str = include_str!("page.css");

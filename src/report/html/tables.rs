@@ -9,10 +9,10 @@ use crate::population::statistics::{
     FitStatus, Percentile, PointStatus, Quantity, SampleStatistics,
 };
 use crate::report::plot::escaped;
-use crate::report::words::{
-    LengthUnit, four_digits, load_words, percent_words, setting, share_words,
+use crate::report::words::{LengthUnit, four_digits, load_words, percent_words, share_words};
+use crate::report::{
+    ErrorSpread, GroupReport, PercentileError, ScenarioSummary, StudyReport, setting,
 };
-use crate::report::{ErrorSpread, GroupReport, PercentileError, ScenarioSummary, StudyReport};
 
 /// What stands where there is nothing.
 const NONE: &str = "<span title=\"no value\">–</span>";
