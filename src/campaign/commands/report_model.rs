@@ -165,3 +165,31 @@ fn advanced([x, y, z]: [f64; 3], sectors: usize) -> [f64; 3] {
     let (sin, cos) = (std::f64::consts::TAU / sectors as f64).sin_cos();
     [cos * x - sin * y, sin * x + cos * y, z]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_in_a_brick_are_its_edges_and_not_its_diagonals() {
+        let nodes: Vec<PictureNode> = (0..8)
+            .map(|corner| PictureNode {
+                body: Body::Blisk,
+                position_m: [
+                    f64::from(corner & 1),
+                    0.4 * f64::from((corner >> 1) & 1),
+                    0.1 * f64::from((corner >> 2) & 1),
+                ],
+            })
+            .collect();
+        // An element couples each of its nodes with every other.
+        let coupled: Vec<(usize, usize)> = (0..8)
+            .flat_map(|a| (a + 1..8).map(move |b| (a, b)))
+            .collect();
+        let found = neighbours(&nodes, &coupled);
+        assert_eq!(found.len(), 12, "{found:?}");
+        for (a, b) in found {
+            assert_eq!((a ^ b).count_ones(), 1, "corners {a} and {b}");
+        }
+    }
+}
