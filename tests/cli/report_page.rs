@@ -240,6 +240,14 @@ fn every_link_of_the_page_leads_to_a_part_of_it() {
         let contents = between(&page, "<nav ", "</nav>");
         let answers = contents.matches("#answer-").count();
         assert_eq!(answers, if groups > 1 { groups } else { 0 }, "{contents}");
+        let unknown = contents.matches(": not known<").count();
+        let none = { report["groups"].as_array().expect("a list").iter() }
+            .filter(|group| {
+                let choices = group["choices"].as_array().expect("a list");
+                choices.iter().all(|choice| choice["lowest"].is_null())
+            })
+            .count();
+        assert_eq!(unknown, none, "{contents}");
     }
 }
 

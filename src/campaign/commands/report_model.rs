@@ -169,6 +169,23 @@ fn advanced([x, y, z]: [f64; 3], sectors: usize) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::sector::{ParametricOptions, parametric};
+
+    #[test]
+    fn the_mass_of_the_ring_is_that_of_its_section_times_its_circumference() {
+        let options = ParametricOptions::default();
+        let sector = parametric::build(&options).expect("a sector");
+        let found = masses(&sector);
+        let ring = found.iter().find(|own| own.body == Body::Ring);
+        let outer_m = options.rim_radius_m - options.flange_thickness_m;
+        let inner_m = outer_m - options.ring_thickness_m;
+        let section_m2 = std::f64::consts::PI * (outer_m.powi(2) - inner_m.powi(2));
+        let wheel_kg = options.ring_density_kg_per_m3 * options.ring_axial_width_m * section_m2;
+        let sector_kg = wheel_kg / options.sectors as f64;
+        let error = ring.expect("a ring").sector_kg / sector_kg - 1.0;
+        // Elements follow the arc by parabolas.
+        assert!(error.abs() < 1e-4, "{error}");
+    }
 
     #[test]
     fn neighbours_in_a_brick_are_its_edges_and_not_its_diagonals() {

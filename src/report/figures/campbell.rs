@@ -38,7 +38,8 @@ pub(super) fn over_speed(report: &StudyReport) -> Option<Figure> {
         return None;
     }
     let frame = Frame {
-        x: axis(top_rpm, SIDES),
+        // Room for the half of the last name.
+        x: axis(top_rpm, (SIDES.0, SIDES.1 - 12.0)),
         y: axis(top_hz, (BOTTOM, TOP)),
         x_title: "speed, rpm",
         y_title: "frequency, Hz",

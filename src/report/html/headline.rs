@@ -68,16 +68,17 @@ pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumb
     ]
 }
 
-/// The load that a group is answered by and its percentile, in one line; none where nothing is known.
+/// The load that a group is answered by and its percentile, in one line.
 pub(super) fn in_one_line(report: &StudyReport, group: &GroupReport) -> String {
-    let [load, percentile, _] = big_numbers(report, group);
-    format!(
-        "{}: {}, {} = {}",
-        setting(group),
-        load.value,
-        percentile.label.split(' ').next().unwrap_or_default(),
-        percentile.value
-    )
+    let answer = known_choice(group).map_or_else(
+        || "not known".to_owned(),
+        |(choice, _)| {
+            let [load, percentile, _] = big_numbers(report, group);
+            let percent = percent_words(choice.percent);
+            format!("{}, P{percent} = {}", load.value, percentile.value)
+        },
+    );
+    format!("{}: {answer}", setting(group))
 }
 
 /// A load as written, or with four digits where more are written: those of a rotation have many.
