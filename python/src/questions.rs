@@ -11,7 +11,7 @@ use blisk::cli::{IntegrityAnswer, ReplayAnswer, threads as threads_of};
 use blisk::model::sector::bundle;
 use blisk::population::monte_carlo::LoadCaseName;
 use blisk::population::statistics::EstimateTarget;
-use blisk::report::{FIGURES, GroupReport, StudyReport, Wheels, figure as drawn_figure};
+use blisk::report::{FIGURES, GroupReport, StudyReport, figure as drawn_figure, missing};
 use blisk::settings::{EngineSource, FullSettings, ReducedEngineSource};
 use blisk::study::{PipelineError, RotationLoad, load_sector_model};
 use pyo3::exceptions::PyValueError;
@@ -244,6 +244,7 @@ pub fn figure(
         results,
         study_file,
         curves: own.is_of_wheels(),
+        model: own.is_of_model(),
     };
     let found = watch(py, None, OnSignal::Leave, move |_| {
         blisk::campaign::report(&request, &ReducedEngineSource)
@@ -255,10 +256,8 @@ pub fn figure(
         standard_deviation,
     )?;
     let Some(drawn) = drawn_figure(&found, group, own) else {
-        let reason = match &group.wheels {
-            Wheels::NotSolved { reason } if own.is_of_wheels() => format!(": {reason}"),
-            _ => String::new(),
-        };
+        let reason = missing(&found, group, own);
+        let reason = reason.map_or_else(String::new, |reason| format!(": {reason}"));
         return Err(PyValueError::new_err(format!(
             "these results have nothing to draw in {name}{reason}"
         )));

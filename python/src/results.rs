@@ -59,6 +59,7 @@ pub fn report(
         results,
         study_file,
         curves,
+        model: true,
     };
     watch(py, None, OnSignal::Leave, move |_| {
         let found = blisk::campaign::report(&request, &ReducedEngineSource)?;

@@ -12,7 +12,8 @@ use crate::campaign::{ReportRequest, report};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::table::write_atomically;
 use crate::report::{
-    Answer, FIGURES, GroupReport, StudyReport, Wheels, answers, figure, html_report, setting,
+    Answer, FIGURES, GroupReport, StudyReport, Wheels, answers, figure, html_report, missing,
+    setting,
 };
 use crate::settings::ReducedEngineSource;
 
@@ -68,6 +69,7 @@ pub(super) fn command(arguments: &ReportArguments) -> Result<ExitStatus, Failure
             results: arguments.results.clone(),
             study_file: arguments.study.clone(),
             curves: !arguments.no_curves,
+            model: true,
         },
         &ReducedEngineSource,
     )?;
@@ -114,15 +116,14 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<ExitStatus, Failure> {
             results: arguments.results.clone(),
             study_file: arguments.study.clone(),
             curves: name.is_of_wheels(),
+            model: name.is_of_model(),
         },
         &ReducedEngineSource,
     )?;
     let group = chosen(&found, arguments)?;
     let Some(drawn) = figure(&found, group, name) else {
-        let reason = match &group.wheels {
-            Wheels::NotSolved { reason } if name.is_of_wheels() => format!(": {reason}"),
-            _ => String::new(),
-        };
+        let reason = missing(&found, group, name);
+        let reason = reason.map_or_else(String::new, |reason| format!(": {reason}"));
         return Err(Failure::usage(format!(
             "these results have nothing to draw in {}{reason}",
             arguments.figure

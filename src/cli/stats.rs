@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::campaign::{PartialSummary, fit_result_tails, summarise, summarise_partly};
-use crate::report::{StatisticsReport, StudySummary};
+use crate::report::{StatisticsReport, StudySummary, statistics_csv};
 
 /// Arguments of `blisk stats`.
 #[derive(Debug, Args)]
@@ -24,12 +24,19 @@ pub struct StatsArguments {
     /// Print JSON.
     #[arg(long)]
     json: bool,
+    /// Print one table of comma-separated values, a row per scenario, for a spreadsheet.
+    #[arg(long, conflicts_with_all = ["json", "tails"])]
+    csv: bool,
 }
 
 pub(super) fn command(arguments: &StatsArguments) -> Result<ExitStatus, Failure> {
     let results = &arguments.results;
     let Some(partial) = summarise_partly(results)? else {
         let summary = summarise(results)?;
+        if arguments.csv {
+            output::text(&statistics_csv(&summary).trim_end())?;
+            return Ok(status_of(&summary));
+        }
         let report = StatisticsReport {
             tails: arguments
                 .tails
@@ -48,7 +55,10 @@ pub(super) fn command(arguments: &StatsArguments) -> Result<ExitStatus, Failure>
     let warning = format!(
         "UNFINISHED: these are the statistics of {stored} of {planned} rows; `blisk run` continues the study"
     );
-    if arguments.json {
+    if arguments.csv {
+        output::message(&warning);
+        output::text(&statistics_csv(summary).trim_end())?;
+    } else if arguments.json {
         output::json_only(&PartialJson {
             unfinished: true,
             rows_stored: *stored,

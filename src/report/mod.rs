@@ -10,6 +10,7 @@ mod estimate;
 mod figures;
 mod html;
 mod model_report;
+mod model_section;
 mod numerical_error;
 mod optimum;
 mod peak_audit;
@@ -17,6 +18,7 @@ mod plan;
 mod plot;
 mod rotation;
 mod stated_errors;
+mod statistics_csv;
 mod study_echo;
 mod study_report;
 mod summary;
@@ -40,19 +42,23 @@ pub use comparison::{
 };
 pub use cost::{ExpectedCost, ExpectedTime};
 pub use estimate::{EstimateReport, QuantityEstimate, ScenarioEstimate};
-pub use figures::{FIGURES, Figure, FigureName, figure};
+pub use figures::{FIGURES, Figure, FigureName, figure, missing};
 pub use html::html_report;
 pub use model_report::{ModelReport, NodalDiameterFacts};
+pub use model_section::{
+    BodyMass, ContactFacts, ContactPlace, ModelSection, PictureNode, SectorPicture, ShownModel,
+};
 pub use numerical_error::{NumericalError, NumericalFinding};
 pub use optimum::{OptimumExcitation, OptimumReport};
 pub use peak_audit::PeakAuditReport;
 pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};
 pub use rotation::RotationFacts;
 pub use stated_errors::{ErrorRows, ErrorSpread, PercentileError, StatedErrors};
+pub use statistics_csv::statistics_csv;
 pub use study_echo::{EchoedExcitation, EchoedLoad, EchoedModel, Remark, StudyEcho, Travel};
 pub use study_report::{
     CommonErrors, DistributionReport, GroupReport, LoadChoice, Provenance, ScenarioErrors,
-    StudyReport, Wheels,
+    StudyReport, Wheels, setting,
 };
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use tail_report::StatisticsReport;
@@ -62,4 +68,4 @@ pub use verification::{ErrorDistribution, RegimeErrors, VerificationContext, Ver
 pub use visible::{is_order, visible, with_orders_escaped};
 pub use warning::Warning;
 pub use wheel_report::{PairReport, ResponseCurve, WheelCurves, WheelReport, WheelStateReport};
-pub use words::{LengthUnit, setting};
+pub use words::LengthUnit;

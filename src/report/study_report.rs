@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::{AccuracyTrials, BestLoads, PercentileError, StatedErrors, StudySummary, WheelReport};
+use super::words::excitation_and_deviation;
+use super::{
+    AccuracyTrials, BestLoads, PercentileError, ShownModel, StatedErrors, StudySummary, WheelReport,
+};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{Percentile, Quantity, TailFit};
 use crate::population::table::AccuracyLadder;
@@ -17,6 +20,8 @@ pub struct StudyReport {
     pub summary: StudySummary,
     /// Engine orders and standard deviations, each with its loads.
     pub groups: Vec<GroupReport>,
+    /// The model of the study.
+    pub model: ShownModel,
     /// What accuracy costs, where it was measured.
     pub accuracy_ladder: Option<AccuracyLadder>,
     /// What was tried before the settings were chosen, where `[accuracy]` chose them.
@@ -136,4 +141,14 @@ pub enum Wheels {
         /// Why.
         reason: String,
     },
+}
+
+/// Load case, engine order and standard deviation of a group, in words.
+#[must_use]
+pub fn setting(group: &GroupReport) -> String {
+    excitation_and_deviation(
+        group.load_case,
+        group.engine_order,
+        group.standard_deviation,
+    )
 }

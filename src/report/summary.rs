@@ -250,12 +250,7 @@ impl StudySummary {
     /// Whether failures leave a percentile or a tuned reference without value.
     #[must_use]
     pub fn failures_cost_a_statistic(&self) -> bool {
-        self.warnings.iter().any(|warning| {
-            matches!(
-                warning,
-                Warning::TooManyFailures { .. } | Warning::TunedFailures { .. }
-            )
-        })
+        self.warnings.iter().any(Warning::costs_a_statistic)
     }
 }
 

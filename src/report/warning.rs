@@ -91,6 +91,70 @@ pub enum Warning {
     },
 }
 
+impl Warning {
+    /// Whether failures leave a percentile or a tuned reference without value.
+    #[must_use]
+    pub fn costs_a_statistic(&self) -> bool {
+        matches!(
+            self,
+            Self::TooManyFailures { .. } | Self::TunedFailures { .. }
+        )
+    }
+
+    /// What is wrong in a few words; [`fmt::Display`] adds what to do about it.
+    #[must_use]
+    pub fn headline(&self) -> String {
+        let share = |ratio: f64| format!("{:.2} %", 100.0 * ratio);
+        match self {
+            Self::SeparationWithFewHarmonics { scenarios, .. } => format!(
+                "contacts separate in scenarios {}, which the harmonics cannot show",
+                list(scenarios)
+            ),
+            Self::BeyondTolerance { rows, planned, .. } => {
+                format!("{rows} of {planned} rows state a numerical error beyond their tolerance")
+            }
+            Self::ReplacedBasis { .. } => "the basis of the study is replaced".to_owned(),
+            Self::Unstable { rows, tuned, .. } => {
+                let tuned = tuned.len();
+                format!("unstable motions: {rows} rows, {tuned} tuned wheels")
+            }
+            Self::BasisError { error, wanted, .. } => format!(
+                "the basis misses the tuned peak by {} instead of {}",
+                share(*error),
+                share(*wanted)
+            ),
+            Self::CraigBamptonModes { .. } => "too few fixed-interface modes".to_owned(),
+            Self::CraigBamptonError { error, wanted } => format!(
+                "more fixed-interface modes change the tuned peak by {} instead of {}",
+                share(*error),
+                share(*wanted)
+            ),
+            Self::NumericalError(NumericalFinding::Missed { accepted, .. }) => {
+                format!("the accepted error of {} is not kept", share(*accepted))
+            }
+            Self::NumericalError(NumericalFinding::Large { percent, .. }) => {
+                format!("the numerical error is not small beside the interval of P{percent}")
+            }
+            Self::NumericalError(NumericalFinding::Needless { percent, .. }) => {
+                format!("the numerical error is needlessly small beside the interval of P{percent}")
+            }
+            Self::Failures { failed, planned } => {
+                format!("{failed} of {planned} rows have no result")
+            }
+            Self::TunedFailures { scenarios } => {
+                format!("no tuned peak in scenarios {}", list(scenarios))
+            }
+            Self::TooFewPatterns { percent, needed } => {
+                format!("P{percent} has no value: it needs {needed} patterns")
+            }
+            Self::TooManyFailures { percent, scenarios } => format!(
+                "P{percent} has no value in scenarios {}: too many rows failed",
+                list(scenarios)
+            ),
+        }
+    }
+}
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

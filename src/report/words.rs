@@ -1,6 +1,6 @@
 //! Words, units and number formats of everything that people read: texts for a terminal, tables and figures of a report.
 
-use super::{GroupReport, StudySummary};
+use super::StudySummary;
 use crate::population::monte_carlo::LoadCaseName;
 
 /// Units of length, the largest first: name, metres, and the length in m from which on it is taken. Amplitudes
@@ -158,16 +158,6 @@ pub(super) fn share_words(ratio: f64) -> String {
         return "below 0.0001 %".to_owned();
     }
     format!("{percent:.decimals$} %")
-}
-
-/// Load case, engine order and standard deviation of a group, in words.
-#[must_use]
-pub fn setting(group: &GroupReport) -> String {
-    excitation_and_deviation(
-        group.load_case,
-        group.engine_order,
-        group.standard_deviation,
-    )
 }
 
 /// `text` with its units held to their numbers by spaces that do not break.

@@ -17,6 +17,7 @@ mod load_cases;
 mod manual;
 mod output;
 mod report;
+mod report_page;
 mod rotation;
 mod runs;
 mod statistics;

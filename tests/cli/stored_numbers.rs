@@ -170,6 +170,7 @@ fn flip_reported(place: &Place, bits: usize) -> usize {
         results: results.clone(),
         study_file: None,
         curves: false,
+        model: true,
     };
     let of_folder = || {
         let found = report(&request, &ReducedEngineSource);

@@ -89,6 +89,7 @@ fn carry_out(command: &str, place: &Path) -> Result<(), PipelineError> {
                 results,
                 study_file: Some(file),
                 curves: false,
+                model: true,
             };
             report(&request, &source).map(|found| drop(html_report(&found)))
         }

@@ -12,6 +12,7 @@ mod peak_audit;
 mod plan;
 mod repair;
 mod replay;
+mod report_model;
 mod report_wheels;
 mod response_curve;
 mod solved_loads;

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::compare::{HALF_ERROR, best_loads};
+use super::report_model::shown_model;
 use super::report_wheels::solve_wheels;
-use crate::campaign::store::{ResultColumns, ScenarioColumns, StoredStudy, summarise};
+use crate::campaign::store::{ResultColumns, ScenarioColumns, StoredModel, StoredStudy, summarise};
 use crate::identity;
 use crate::population::monte_carlo::{LoadCaseName, ResponseRow};
 use crate::population::statistics::{
@@ -17,7 +18,7 @@ use crate::population::statistics::{
 use crate::population::table::{AccuracyLadder, Manifest, ResponseReader, TableError};
 use crate::report::{
     AccuracyTrials, CommonErrors, ComparedScenario, DistributionReport, ErrorRows, GroupReport,
-    LoadChoice, Provenance, ScenarioErrors, StudyReport, Wheels,
+    LoadChoice, Provenance, ScenarioErrors, ShownModel, StudyReport, Wheels,
 };
 use crate::settings::EngineSource;
 use crate::study::PipelineError;
@@ -38,11 +39,13 @@ pub struct ReportRequest {
     pub study_file: Option<PathBuf>,
     /// Whether wheels are solved again for their response curves.
     pub curves: bool,
+    /// Whether the model is shown: its masses, frequencies and places.
+    pub model: bool,
 }
 
 /// Collects the report of a finished study.
 ///
-/// A study whose inputs are gone or have changed has no curves, and the report says why.
+/// A study whose inputs are gone or have changed has neither model nor curves, and the report says why.
 ///
 /// # Errors
 /// The folder holds no finished study, or a file of it is damaged.
@@ -57,14 +60,26 @@ pub fn report(
         .into_iter()
         .map(|group| group_report(&columns, &rows, group))
         .collect();
-    if request.curves {
-        add_wheels(request, source, &columns, &mut groups)?;
+    let asked = request.curves || request.model;
+    let inputs = asked.then(|| inputs_of(request)).transpose()?;
+    if let (true, Some(inputs)) = (request.curves, &inputs) {
+        add_wheels(inputs, source, &columns, &mut groups)?;
     }
+    let model = match &inputs {
+        Some(Ok((stored, model))) if request.model => shown_model(&stored.study, &model.sector),
+        Some(Err(reason)) if request.model => ShownModel::NotShown {
+            reason: reason.clone(),
+        },
+        _ => ShownModel::NotShown {
+            reason: "not asked for".to_owned(),
+        },
+    };
     let manifest = columns.manifest;
     let accuracy_ladder = ladder_of(&request.results, &manifest)?;
     Ok(StudyReport {
         summary,
         groups,
+        model,
         accuracy_ladder,
         accuracy_trials: AccuracyTrials::from_choice(&manifest.chosen["accuracy"]),
         provenance: Provenance {
@@ -292,33 +307,48 @@ fn law_probabilities() -> impl Iterator<Item = f64> {
     })
 }
 
+/// What a study is solved from; the reason where that is gone or has changed.
+type Inputs = Result<(StoredStudy, StoredModel), String>;
+
+fn inputs_of(request: &ReportRequest) -> Result<Inputs, PipelineError> {
+    let stored = StoredStudy::open(&request.results, request.study_file.as_deref());
+    let opened = stored.and_then(|stored| {
+        let model = stored.model()?;
+        Ok((stored, model))
+    });
+    match opened {
+        Ok(inputs) => Ok(Ok(inputs)),
+        Err(PipelineError::Table(error)) => Err(error.into()),
+        Err(error) => Ok(Err(error.to_string())),
+    }
+}
+
 /// Solves the wheels of every group, unless what they are made from is no longer there or another build
 /// solved the rows.
 fn add_wheels(
-    request: &ReportRequest,
+    inputs: &Inputs,
     source: &dyn EngineSource,
     columns: &ResultColumns,
     groups: &mut [GroupReport],
 ) -> Result<(), PipelineError> {
-    let stored = StoredStudy::open(&request.results, request.study_file.as_deref());
-    if let Some(reason) = stored.as_ref().ok().and_then(StoredStudy::other_build) {
-        let reason = format!("{reason}: its curves need not be those of the rows");
-        for group in groups {
-            group.wheels = Wheels::NotSolved {
-                reason: reason.clone(),
-            };
+    let (stored, model) = match inputs {
+        Ok(inputs) => inputs,
+        Err(reason) => {
+            leave_out_wheels(groups, reason);
+            return Ok(());
         }
+    };
+    if let Some(reason) = stored.other_build() {
+        let reason = format!("{reason}: its curves need not be those of the rows");
+        leave_out_wheels(groups, &reason);
         return Ok(());
     }
-    let solved = stored.and_then(|stored| {
-        let model = stored.model()?;
-        let engine = stored.engine(&model, source)?;
+    let solved = stored.engine(model, source).and_then(|engine| {
         let shown = groups.iter().map(|group| group.shown);
         shown
             .map(|scenario| {
-                let (stored, engine) = (&stored, engine.as_ref());
                 let columns = &columns.scenarios[scenario];
-                solve_wheels(stored, &model, engine, columns)
+                solve_wheels(stored, model, engine.as_ref(), columns)
             })
             .collect::<Result<Vec<Wheels>, PipelineError>>()
     });
@@ -329,13 +359,15 @@ fn add_wheels(
             }
         }
         Err(PipelineError::Table(error)) => return Err(error.into()),
-        Err(error) => {
-            for group in groups {
-                group.wheels = Wheels::NotSolved {
-                    reason: error.to_string(),
-                };
-            }
-        }
+        Err(error) => leave_out_wheels(groups, &error.to_string()),
     }
     Ok(())
+}
+
+fn leave_out_wheels(groups: &mut [GroupReport], reason: &str) {
+    for group in groups {
+        group.wheels = Wheels::NotSolved {
+            reason: reason.to_owned(),
+        };
+    }
 }

@@ -3,8 +3,8 @@
 use super::{Figure, FigureName};
 use crate::population::statistics::{FitStatus, Quantity, TailLaw};
 use crate::report::plot::{Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend};
-use crate::report::words::{LengthUnit, load_with_unit, setting};
-use crate::report::{DistributionReport, GroupReport, ScenarioSummary, StudyReport};
+use crate::report::words::{LengthUnit, load_with_unit};
+use crate::report::{DistributionReport, GroupReport, ScenarioSummary, StudyReport, setting};
 
 /// Lower end of the vertical axis.
 const BOTTOM: f64 = 330.0;

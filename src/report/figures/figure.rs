@@ -28,10 +28,16 @@ pub enum FigureName {
     WorstBlades,
     /// Contact of the worst wheel at its peak.
     Contact,
+    /// The sector of the model with its contact.
+    Sector,
+    /// Natural frequencies over speed.
+    Campbell,
+    /// Natural frequencies over nodal diameter.
+    Safe,
 }
 
 /// Every figure in the order of a report, with its name on the command line and what it shows.
-pub const FIGURES: [(FigureName, &str, &str); 10] = [
+pub const FIGURES: [(FigureName, &str, &str); 13] = [
     (
         FigureName::Amplitude,
         "amplitude",
@@ -82,6 +88,21 @@ pub const FIGURES: [(FigureName, &str, &str); 10] = [
         "contact",
         "stick, slip and separation of the contact pairs of the worst wheel at its peak",
     ),
+    (
+        FigureName::Sector,
+        "sector",
+        "the sector of the model: bodies, contact, force, observed nodes",
+    ),
+    (
+        FigureName::Campbell,
+        "campbell",
+        "Campbell diagram: natural frequencies of the tuned wheel over speed, with the engine orders",
+    ),
+    (
+        FigureName::Safe,
+        "safe",
+        "SAFE diagram: natural frequencies over nodal diameter, with the engine orders at one speed",
+    ),
 ];
 
 impl FigureName {
@@ -92,6 +113,12 @@ impl FigureName {
             self,
             Self::MedianResponse | Self::WorstResponse | Self::WorstBlades | Self::Contact
         )
+    }
+
+    /// Whether it shows the model of the study, for which its inputs are read.
+    #[must_use]
+    pub fn is_of_model(self) -> bool {
+        matches!(self, Self::Sector | Self::Campbell | Self::Safe)
     }
 
     /// Its name on the command line.

@@ -7,8 +7,8 @@ use crate::population::statistics::{Percentile, SampleStatistics};
 use crate::report::plot::{
     Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend, nice_top,
 };
-use crate::report::words::{LengthUnit, load_words, percent_words, setting};
-use crate::report::{GroupReport, LoadChoice, ScenarioSummary, StudyReport};
+use crate::report::words::{LengthUnit, load_words, percent_words};
+use crate::report::{GroupReport, LoadChoice, ScenarioSummary, StudyReport, setting};
 
 /// Lower end of the vertical axis.
 const BOTTOM: f64 = 330.0;

@@ -1,16 +1,18 @@
 //! The figures of a report, each drawn from its numbers.
 
+mod campbell;
 mod distribution;
 mod figure;
 mod ladder;
 mod load;
 mod response;
+mod sector;
 mod uncertainty;
 mod wheel;
 
 pub use figure::{FIGURES, Figure, FigureName};
 
-use super::{GroupReport, StudyReport, Wheels};
+use super::{GroupReport, ShownModel, StudyReport, Wheels};
 
 /// The figure `name` of a group; none where the report has no numbers for it.
 #[must_use]
@@ -33,5 +35,22 @@ pub fn figure(report: &StudyReport, group: &GroupReport, name: FigureName) -> Op
         }
         FigureName::WorstBlades => wheel::blades(report, group, wheels?),
         FigureName::Contact => wheel::contact(group, wheels?),
+        FigureName::Sector => sector::of_model(report),
+        FigureName::Campbell => campbell::over_speed(report),
+        FigureName::Safe => campbell::over_nodal_diameter(report),
+    }
+}
+
+/// Why a report has nothing to draw in the figure `name`, where that is known.
+#[must_use]
+pub fn missing<'a>(
+    report: &'a StudyReport,
+    group: &'a GroupReport,
+    name: FigureName,
+) -> Option<&'a str> {
+    match (&group.wheels, &report.model) {
+        (Wheels::NotSolved { reason }, _) if name.is_of_wheels() => Some(reason),
+        (_, ShownModel::NotShown { reason }) if name.is_of_model() => Some(reason),
+        _ => None,
     }
 }

@@ -2,8 +2,8 @@
 
 use super::{Figure, FigureName};
 use crate::report::plot::{Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend};
-use crate::report::words::{LengthUnit, load_with_unit, setting, share_words};
-use crate::report::{GroupReport, ResponseCurve, StudyReport, WheelCurves, WheelReport};
+use crate::report::words::{LengthUnit, load_with_unit, share_words};
+use crate::report::{GroupReport, ResponseCurve, StudyReport, WheelCurves, WheelReport, setting};
 
 /// Lower end of the vertical axis.
 const BOTTOM: f64 = 330.0;

@@ -3,8 +3,8 @@
 use super::load::LoadAxis;
 use super::{Figure, FigureName};
 use crate::report::plot::{Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend};
-use crate::report::words::{load_words, percent_words, setting, share_words};
-use crate::report::{GroupReport, PercentileError, ScenarioSummary, StudyReport};
+use crate::report::words::{load_words, percent_words, share_words};
+use crate::report::{GroupReport, PercentileError, ScenarioSummary, StudyReport, setting};
 
 /// Lower end of the vertical axis.
 const BOTTOM: f64 = 260.0;

@@ -6,8 +6,8 @@ use super::{Figure, FigureName};
 use crate::report::plot::{
     Anchor, Axis, Frame, LegendEntry, SIDES, Scale, Svg, TOP, legend, nice_top,
 };
-use crate::report::words::{LengthUnit, setting, share_words};
-use crate::report::{GroupReport, PairReport, StudyReport, WheelReport, WheelStateReport};
+use crate::report::words::{LengthUnit, share_words};
+use crate::report::{GroupReport, PairReport, StudyReport, WheelReport, WheelStateReport, setting};
 
 /// Lower ends of the panels of amplitudes and deviations, and upper end of the second.
 const AMPLITUDES: f64 = 210.0;

@@ -1,5 +1,8 @@
 //! The report as one HTML file that needs nothing else.
 
+mod first_screen;
+mod headline;
+mod model;
 mod page;
 mod table;
 mod tables;

@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
+use super::first_screen::{contents, first_screen};
+use super::model::{figure_html, model};
+use super::table::Table;
 use super::tables;
 use crate::report::plot::{escaped, page_style};
-use crate::report::words::setting;
 use crate::report::words::tied;
-use crate::report::{
-    Answer, FIGURES, FigureName, GroupReport, StudyReport, Wheels, answers, figure,
-};
+use crate::report::{FIGURES, FigureName, GroupReport, StudyReport, Wheels, figure, setting};
 
 /// Style of everything but the plots.
 const STYLE: &str = include_str!("page.css");
@@ -36,12 +36,14 @@ pub fn html_report(report: &StudyReport) -> String {
         } else {
             String::new()
         };
-        page.push_str(&answers_of(report, group));
+        page.push_str(&first_screen(report, group, place));
         if place == 0 {
+            page.push_str(&contents(report));
             page.push_str(&warnings(report));
+            page.push_str(&model(report));
         }
         page.push_str(&figures_of(report, group, place));
-        page.push_str(&tables_of(report, group, &settings));
+        page.push_str(&tables_of(report, group, place, &settings));
     }
     page.push_str(&end(report));
     page.push_str("</main>\n");
@@ -49,7 +51,7 @@ pub fn html_report(report: &StudyReport) -> String {
     let _ = writeln!(
         page,
         "<footer>Made by blisk {} from the tables of this study; the same numbers are in \
-         <code>blisk report DIR --json</code>. Definitions of every statistic: docs/statistics.md.</footer>\n</body>\n</html>",
+         <code>blisk report DIR --json</code>, and one table for a spreadsheet in <code>blisk stats DIR --csv</code>.</footer>\n</body>\n</html>",
         escaped(&report.provenance.version)
     );
     page
@@ -76,32 +78,6 @@ fn header(report: &StudyReport) -> String {
     )
 }
 
-fn answers_of(report: &StudyReport, group: &GroupReport) -> String {
-    let mut html = format!(
-        "<section>\n<h2>Which normal load: {}</h2>\n<div class=\"answers\">\n",
-        escaped(&setting(group))
-    );
-    for Answer {
-        question,
-        verdict,
-        reasons,
-    } in answers(report, group)
-    {
-        let _ = writeln!(
-            html,
-            "<div class=\"answer\"><h3>{}</h3><p class=\"verdict\">{}</p>",
-            escaped(&tied(&question)),
-            escaped(&tied(&verdict))
-        );
-        for reason in reasons {
-            let _ = writeln!(html, "<p>{}</p>", escaped(&tied(&reason)));
-        }
-        html.push_str("</div>\n");
-    }
-    html.push_str("</div>\n</section>\n");
-    html
-}
-
 fn warnings(report: &StudyReport) -> String {
     if report.summary.warnings.is_empty() {
         return String::new();
@@ -110,7 +86,64 @@ fn warnings(report: &StudyReport) -> String {
     for warning in &report.summary.warnings {
         let _ = writeln!(items, "<li>{}</li>", escaped(&tied(&warning.to_string())));
     }
-    format!("<section>\n<h2>Warnings</h2>\n<ul class=\"warnings\">\n{items}</ul>\n</section>\n")
+    format!(
+        "<section id=\"warnings\">\n<h2>Warnings</h2>\n<ul class=\"warnings\">\n{items}</ul>\n</section>\n"
+    )
+}
+
+/// Words of the page and what they mean.
+const WORDS: [(&str, &str); 10] = [
+    (
+        "normal load per sector",
+        "the force with which the damper presses on one sector; the wheel has N times that",
+    ),
+    (
+        "stuck, slide, free",
+        "linear limits: welded contact, frictionless contact, no contact",
+    ),
+    (
+        "pattern, wheel",
+        "one random draw of the deviations of all blades",
+    ),
+    (
+        "tuned",
+        "the wheel whose blades are all alike, under the same load and excitation",
+    ),
+    (
+        "peak amplitude",
+        "the largest amplitude of any blade at any frequency near the resonance, at the first observed node",
+    ),
+    (
+        "amplification factor",
+        "peak amplitude of a mistuned wheel over that of the tuned wheel under the same load",
+    ),
+    (
+        "P50, P95, P99",
+        "percentile: 50, 95, 99 % of such wheels have a lower value",
+    ),
+    (
+        "95 % interval, bounds",
+        "the percentile of all such wheels lies in it with 95 % confidence, whatever its law; failed rows are taken as infinitely low and high",
+    ),
+    (
+        "numerical error, stated error",
+        "bound on the relative error of a row by its harmonics, samples, basis and peak search; not of the model that was given",
+    ),
+    (
+        "crossing",
+        "the speed 60 f / EO at which the engine order EO meets the frequency f",
+    ),
+];
+
+fn words() -> String {
+    let mut table = Table::of_facts();
+    for (word, meaning) in WORDS {
+        table.fact(word, meaning);
+    }
+    format!(
+        "<section id=\"words\">\n<h2>Words</h2>\n<details><summary>What the words of this page mean</summary>\n{}</details>\n</section>\n",
+        table.html()
+    )
 }
 
 /// Figures of the population, then those of single wheels.
@@ -124,8 +157,15 @@ fn figures_of(report: &StudyReport, group: &GroupReport, place: usize) -> String
         }
     };
     let mut html = String::new();
-    for (words, wheels) in [("The population", false), ("Single wheels", true)] {
-        let _ = writeln!(html, "<section>\n<h2>{}</h2>", escaped(&heading(words)));
+    for (id, words, wheels) in [
+        ("population", "The population", false),
+        ("wheels", "Single wheels", true),
+    ] {
+        let _ = writeln!(
+            html,
+            "<section id=\"{id}-{place}\">\n<h2>{}</h2>",
+            escaped(&heading(words))
+        );
         if let (true, Wheels::NotSolved { reason }) = (wheels, &group.wheels) {
             let _ = writeln!(
                 html,
@@ -135,18 +175,14 @@ fn figures_of(report: &StudyReport, group: &GroupReport, place: usize) -> String
         }
         html.push_str("<div class=\"figures\">\n");
         for (name, words, _) in FIGURES {
+            // The main figure stands beside the answer, those of the model in its section.
+            let elsewhere = name == FigureName::Amplitude || name.is_of_model();
             let again = name == FigureName::Accuracy && place > 0;
-            if name.is_of_wheels() != wheels || again {
+            if name.is_of_wheels() != wheels || elsewhere || again {
                 continue;
             }
             if let Some(drawn) = figure(report, group, name) {
-                let _ = writeln!(
-                    html,
-                    "<figure id=\"{words}-{place}\"><h3>{}</h3>\n{}<figcaption>{}</figcaption></figure>",
-                    escaped(&tied(&drawn.title)),
-                    drawn.inline(&format!("{words}-{place}")),
-                    escaped(&tied(&drawn.caption))
-                );
+                html.push_str(&figure_html(&drawn, &format!("{words}-{place}")));
             }
         }
         html.push_str("</div>\n</section>\n");
@@ -154,9 +190,9 @@ fn figures_of(report: &StudyReport, group: &GroupReport, place: usize) -> String
     html
 }
 
-fn tables_of(report: &StudyReport, group: &GroupReport, settings: &str) -> String {
+fn tables_of(report: &StudyReport, group: &GroupReport, place: usize, settings: &str) -> String {
     format!(
-        "<section>\n<h2>Numbers: {}</h2>\n<h3>Peak amplitude, 95 % bounds in brackets</h3>\n{}{}\
+        "<section id=\"numbers-{place}\">\n<h2>Numbers: {}</h2>\n<h3>Peak amplitude, 95 % bounds in brackets</h3>\n{}{}\
          <h3>Amplification factor, 95 % bounds in brackets</h3>\n{}\
          <h3>Numerical error (median of the rows) beside the statistical interval, both relative</h3>\n{}\
          <h3>Tail fits at the chosen load, a second opinion beside the sample</h3>\n{}\
@@ -178,12 +214,13 @@ fn end(report: &StudyReport) -> String {
         escaped(&text)
     };
     format!(
-        "<section>\n<h2>Accounting</h2>\n<p class=\"quiet\">Every planned row by status; failed rows stand at both \
-         infinities in the bounds. Last column: one-sided 95 % bound.</p>\n{}</section>\n\
-         <section>\n<h2>Provenance</h2>\n{}<details><summary>The study with every default filled in</summary>\n\
+        "<section id=\"accounting\">\n<h2>Accounting</h2>\n<p class=\"quiet\">Every planned row by status; failed rows stand at both \
+         infinities in the bounds. Last column: one-sided 95 % bound.</p>\n{}</section>\n{}\
+         <section id=\"provenance\">\n<h2>Provenance</h2>\n{}<details><summary>The study with every default filled in</summary>\n\
          <pre>{}</pre></details>\n<details><summary>Settings that the program chose</summary>\n<pre>{}</pre></details>\n\
          </section>\n",
         tables::accounting(report),
+        words(),
         tables::provenance(report),
         pretty(&made.study),
         pretty(&made.chosen),

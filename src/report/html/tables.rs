@@ -5,15 +5,17 @@ use std::collections::BTreeSet;
 
 use super::table::Table;
 use crate::identity;
-use crate::population::statistics::{FitStatus, Percentile, Quantity, SampleStatistics};
-use crate::report::plot::escaped;
-use crate::report::words::{
-    LengthUnit, four_digits, load_words, percent_words, setting, share_words,
+use crate::population::statistics::{
+    FitStatus, Percentile, PointStatus, Quantity, SampleStatistics,
 };
-use crate::report::{ErrorSpread, GroupReport, PercentileError, ScenarioSummary, StudyReport};
+use crate::report::plot::escaped;
+use crate::report::words::{LengthUnit, four_digits, load_words, percent_words, share_words};
+use crate::report::{
+    ErrorSpread, GroupReport, PercentileError, ScenarioSummary, StudyReport, setting,
+};
 
 /// What stands where there is nothing.
-const NONE: &str = "–";
+const NONE: &str = "<span title=\"no value\">–</span>";
 
 /// Amplitudes of every load.
 pub(super) fn amplitudes(report: &StudyReport, group: &GroupReport) -> String {
@@ -203,7 +205,15 @@ fn percentiles(sample: &SampleStatistics, show: impl Fn(f64) -> String) -> Vec<S
 /// A value with its bounds.
 fn bounded(found: Option<&Percentile>, show: impl Fn(f64) -> String) -> String {
     let Some((found, value)) = found.and_then(|found| Some((found, found.value?))) else {
-        return NONE.to_owned();
+        return match found.map(|found| found.status) {
+            Some(PointStatus::TooFewPatterns { needed }) => {
+                format!("<span title=\"needs {needed} patterns\">–</span>")
+            }
+            Some(PointStatus::TooManyFailures) => {
+                "<span title=\"too many rows failed\">–</span>".to_owned()
+            }
+            _ => NONE.to_owned(),
+        };
     };
     let bound = |bound: Option<f64>| bound.map_or(NONE.to_owned(), &show);
     format!(
@@ -262,7 +272,14 @@ pub(super) fn errors(report: &StudyReport, group: &GroupReport) -> String {
 /// Percentiles of fitted laws beside those of the sample, at the load shown.
 pub(super) fn tails(report: &StudyReport, group: &GroupReport) -> String {
     let units = LengthUnit::of_summary(&report.summary);
-    let mut table = Table::new(&["", "P95", "P99", "P99.9", "P99.99", "goodness of fit"]);
+    let mut table = Table::new(&[
+        "quantity and law",
+        "P95",
+        "P99",
+        "P99.9",
+        "P99.99",
+        "goodness of fit",
+    ]);
     for found in &group.distributions {
         let (quantity, unit) = match found.quantity {
             Quantity::PeakAmplitudeM => ("peak amplitude", units.metres()),
@@ -279,7 +296,7 @@ pub(super) fn tails(report: &StudyReport, group: &GroupReport) -> String {
                 .iter()
                 .map(|percentile| bounded(Some(&percentile.empirical), show)),
         );
-        row.push(String::new());
+        row.push("<span title=\"nothing is fitted\">–</span>".to_owned());
         table.row(row);
         for fit in &found.fits {
             let mut row = vec![format!(
@@ -324,7 +341,7 @@ pub(super) fn accounting(report: &StudyReport) -> String {
         .into_keys()
         .filter(|status| *status != "ok")
         .collect();
-    let mut header = vec!["scenario", "", "planned", "ok", "failed"];
+    let mut header = vec!["scenario", "of", "planned", "ok", "failed"];
     header.extend(&statuses);
     header.push("share that fails in the population");
     let mut table = Table::new(&header);
@@ -363,7 +380,7 @@ pub(super) fn accounting(report: &StudyReport) -> String {
             table.row(row);
         }
     }
-    let mut row = vec!["all".to_owned(), String::new()];
+    let mut row = vec!["all".to_owned(), "all loads".to_owned()];
     row.extend(counts(&summary.rows));
     table.row(row);
     table.html()

@@ -47,6 +47,8 @@ impl Mark {
 pub(in crate::report) enum LegendEntry<'a> {
     /// A line of the classes `curve` and this, with a mark.
     Line(&'a str, Option<Mark>, &'a str),
+    /// A mark of this class alone.
+    Point(&'a str, Mark, &'a str),
     /// An area of this class.
     Area(&'a str, &'a str),
 }
@@ -112,7 +114,9 @@ impl Frame<'_> {
 pub(in crate::report) fn legend(svg: &mut Svg, entries: &[LegendEntry<'_>]) {
     let mut at = (SIDES.0, 14.0);
     for entry in entries {
-        let (LegendEntry::Line(_, _, words) | LegendEntry::Area(_, words)) = entry;
+        let (LegendEntry::Line(_, _, words)
+        | LegendEntry::Point(_, _, words)
+        | LegendEntry::Area(_, words)) = entry;
         let width = LEGEND.0 + LEGEND.1 * words.chars().count() as f64;
         if at.0 + width > WIDTH + 10.0 && at.0 > SIDES.0 {
             at = (SIDES.0, at.1 + 19.0);
@@ -124,6 +128,9 @@ pub(in crate::report) fn legend(svg: &mut Svg, entries: &[LegendEntry<'_>]) {
                 if let Some(mark) = mark {
                     mark.draw(svg, class, (x + 12.0, y - 4.0), "");
                 }
+            }
+            LegendEntry::Point(class, mark, _) => {
+                mark.draw(svg, class, (x + 12.0, y - 4.0), "");
             }
             LegendEntry::Area(class, _) => {
                 svg.rectangle(class, (x, y - 9.0), (x + 24.0, y + 1.0), "");

@@ -6,7 +6,7 @@
 use std::fmt::Write;
 
 /// Colours: name, in light, in dark.
-const COLOURS: [(&str, &str, &str); 12] = [
+const COLOURS: [(&str, &str, &str); 13] = [
     ("paper", "#ffffff", "#15191f"),
     ("panel", "#f6f8fa", "#1c222a"),
     ("ink", "#1b2733", "#e8ecf1"),
@@ -19,6 +19,7 @@ const COLOURS: [(&str, &str, &str); 12] = [
     ("stick", "#0072b2", "#3d8fc4"),
     ("slip", "#e69f00", "#f0b429"),
     ("open", "#8f2d6b", "#d979b4"),
+    ("good", "#1a7f4b", "#4cc38a"),
 ];
 
 /// Rules of the classes of a plot; `$name` stands for a colour.
@@ -59,6 +60,7 @@ const RULES: &[(&str, &str)] = &[
         ".curve.limit",
         "stroke:$quiet;stroke-width:1;stroke-dasharray:3 4",
     ),
+    (".curve.touch", "stroke:$slip;stroke-width:3"),
     (".bound", "fill:none;stroke-width:1.4"),
     (".bound.median", "stroke:$median"),
     (".bound.high", "stroke:$high"),
@@ -84,6 +86,14 @@ const RULES: &[(&str, &str)] = &[
     (".cell.slip2", "fill:$slip;fill-opacity:.8"),
     (".cell.slip3", "fill:$slip"),
     (".cell.separation", "fill:$open"),
+    (
+        ".mesh",
+        "fill:none;stroke:$quiet;stroke-width:.6;stroke-opacity:.55",
+    ),
+    (".node", "fill:$quiet;stroke:none"),
+    (".node.ring", "fill:$median"),
+    (".node.damper", "fill:$good"),
+    (".touch", "fill:$slip;stroke:$ink;stroke-width:.8"),
 ];
 
 /// Rules for narrow pages, where a drawing is scaled down.
@@ -173,17 +183,20 @@ mod tests {
                 .find(|(own, ..)| *own == name)
                 .expect("a colour")
         };
-        let (_, light, dark) = of("paper");
         for (name, least) in [
             ("ink", 7.0),
             ("quiet", 4.5),
             ("median", 3.0),
             ("high", 3.0),
             ("extreme", 3.0),
+            ("good", 3.0),
         ] {
             let (_, own_light, own_dark) = of(name);
-            assert!(contrast(light, own_light) >= least, "{name} in light");
-            assert!(contrast(dark, own_dark) >= least, "{name} in dark");
+            // Answers, figures and tables of code stand on panels.
+            for (_, light, dark) in [of("paper"), of("panel")] {
+                assert!(contrast(light, own_light) >= least, "{name} in light");
+                assert!(contrast(dark, own_dark) >= least, "{name} in dark");
+            }
         }
     }
 }

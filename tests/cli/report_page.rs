@@ -1,0 +1,511 @@
+//! The page of a report: what its first screen says, the model, links, cells, and the table for spreadsheets.
+
+use serde_json::Value;
+
+use crate::blisk::{GOOD, Place};
+use crate::forgery::forge;
+
+/// Friction between both linear limits, enough patterns for a P95 and not for a P99.
+fn study() -> String {
+    GOOD.replace("patterns = 10", "patterns = 80").replace(
+        "[\"slide\", 50, \"stuck\"]",
+        "[\"slide\", 50, 100, 200, \"stuck\"]",
+    )
+}
+
+/// Blades that lose their stiffness in some patterns, and two groups.
+fn with_failures() -> String {
+    study()
+        .replace(
+            "standard_deviation = [0.03]",
+            "standard_deviation = [0.05, 0.5]",
+        )
+        .replace("[\"slide\", 50, 100, 200, \"stuck\"]", "[\"slide\", 50]")
+}
+
+/// The page and the numbers of a study that ends with `code`.
+fn reported(study: &str, code: i32) -> (Place, String, Value) {
+    let place = Place::with(study);
+    let run = place.run(&["run", "study.toml"]);
+    assert_eq!(run.code, code, "{}", run.stderr);
+    let ended = place.run(&[
+        "report",
+        "results/small",
+        "--no-curves",
+        "--json",
+        "--out",
+        "report.html",
+    ]);
+    assert_eq!(ended.code, 0, "{}", ended.stderr);
+    let page = std::fs::read_to_string(place.path("report.html")).expect("a page");
+    let numbers = serde_json::from_str(&ended.stdout).expect("JSON");
+    (place, page, numbers)
+}
+
+/// The text of the element that begins with `head`, up to `end`, its spaces those of a keyboard.
+fn between<'a>(page: &'a str, head: &str, end: &str) -> &'a str {
+    let (_, rest) = page
+        .split_once(head)
+        .unwrap_or_else(|| panic!("no {head} in the page"));
+    rest.split_once(end).expect("an end").0
+}
+
+/// Label, value and notes of the large numbers of the first group.
+fn big_numbers(page: &str) -> Vec<[String; 3]> {
+    let section = between(page, "id=\"answer-0\"", "</section>");
+    section
+        .split("<div class=\"number\">")
+        .skip(1)
+        .map(|number| {
+            let number = number.replace('\u{a0}', " ");
+            let part = |class: &str| {
+                between(&number, &format!("<p class=\"{class}\">"), "</p>").to_owned()
+            };
+            let notes: Vec<&str> = number
+                .split("<p class=\"note\">")
+                .skip(1)
+                .map(|note| note.split_once("</p>").expect("an end").0)
+                .collect();
+            [part("label"), part("value"), notes.join("; ")]
+        })
+        .collect()
+}
+
+/// Ends of a range, `A to B unit`, in a note.
+fn numbers_in(text: &str) -> Vec<f64> {
+    text.split(|c: char| !(c.is_ascii_digit() || c == '.'))
+        .filter_map(|word| word.parse().ok())
+        .collect()
+}
+
+#[test]
+fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
+    let (_place, page, report) = reported(&study(), 0);
+    let [load, percentile, error] = &big_numbers(&page)[..] else {
+        panic!("three numbers: {page}");
+    };
+    let group = &report["groups"][0];
+    let lowest = group["choices"][1]["lowest"].as_u64().expect("a scenario") as usize;
+    let scenario = &report["summary"]["scenarios"][lowest];
+    assert_eq!(load[0], "Normal load per sector");
+    assert_eq!(
+        load[1],
+        format!("{} N", scenario["normal_load_n"].as_f64().expect("a load"))
+    );
+    // Which other loads could be as good is that of the comparison.
+    let could = group["choices"][1]["best"]["loads"]
+        .as_array()
+        .expect("a list");
+    let others = could
+        .iter()
+        .filter(|own| own["could_be_best"] == true)
+        .count()
+        - 1;
+    assert_eq!(
+        load[2].contains("could be as good"),
+        others > 0,
+        "{}",
+        load[2]
+    );
+    // 80 patterns give no P99: the page says so, and how many do.
+    assert_eq!(percentile[0], "P95 of the peak amplitude");
+    assert!(
+        percentile[2].contains("P99 needs 368 patterns"),
+        "{}",
+        percentile[2]
+    );
+    let of_p95 = &group["errors"][lowest]["percentiles"][1];
+    let um = |value: &Value| 1e6 * value.as_f64().expect("an amplitude");
+    let shown = numbers_in(&percentile[1])[0];
+    let value = um(&of_p95["percentile"]["value"]);
+    assert!((shown / value - 1.0).abs() < 1e-3, "{shown} {value}");
+    let bounds = &numbers_in(percentile[2].split_once("interval").expect("an interval").1)[..2];
+    for (shown, end) in bounds.iter().zip(["lower", "upper"]) {
+        let bound = um(&of_p95["percentile"][end]);
+        assert!((shown / bound - 1.0).abs() < 1e-3, "{shown} {bound}");
+    }
+    // The larger side of what the rows state.
+    let (low, high) = (um(&of_p95["lowest"]), um(&of_p95["highest"]));
+    let largest = 100.0 * (1.0 - low / value).max(high / value - 1.0);
+    let shown = numbers_in(&error[1])[0];
+    assert!((shown / largest - 1.0).abs() < 0.06, "{shown} {largest}");
+    // The main figure stands beside them, and what the answers rest on is folded.
+    let section = between(&page, "id=\"answer-0\"", "</section>");
+    assert!(section.contains("<figure id=\"amplitude-0\">"));
+    assert!(section.contains("<details class=\"answer\"><summary>"));
+    assert!(!section.contains("<details open"));
+    assert_eq!(page.matches("<figure id=\"amplitude-0\">").count(), 1);
+}
+
+#[test]
+fn a_load_of_a_speed_has_four_digits_and_its_speed() {
+    let of_speed = study()
+        .replace(
+            "tangential_stiffness_n_per_m = 8.0e5",
+            "tangential_stiffness_n_per_m = 8.0e5\n\
+             normal_load = { from = \"rotation\", speed_rpm = [800, 1000], ring_radius_m = 0.2 }",
+        )
+        .replace("normal_load_n = [\"slide\", 50, 100, 200, \"stuck\"]\n", "");
+    let (_place, page, report) = reported(&of_speed, 0);
+    let [load, ..] = &big_numbers(&page)[..] else {
+        panic!("three numbers: {page}");
+    };
+    let lowest = report["groups"][0]["choices"][1]["lowest"]
+        .as_u64()
+        .expect("a scenario");
+    let scenario = &report["summary"]["scenarios"][lowest as usize];
+    let newtons = scenario["normal_load_n"].as_f64().expect("a load");
+    let shown = numbers_in(&load[1])[0];
+    assert!(
+        (shown / newtons - 1.0).abs() < 1e-3 && load[1].len() <= 8,
+        "{load:?}"
+    );
+    let speed = scenario["speed_rpm"].as_f64().expect("a speed");
+    assert!(
+        load[2].contains(&format!("that of {speed} rpm")),
+        "{load:?}"
+    );
+    assert!(load[2].contains("the optimum may lie beyond"), "{load:?}");
+}
+
+#[test]
+fn the_first_screen_says_whether_anything_is_wrong() {
+    // No warning: enough patterns for all percentiles of the summary are not cheap, so that few rows and a wide
+    // tolerance say it of a study without friction.
+    let quiet = study().replace("patterns = 80", "patterns = 400").replace(
+        "[\"slide\", 50, 100, 200, \"stuck\"]",
+        "[\"slide\", \"stuck\"]",
+    );
+    let (_place, page, report) = reported(&quiet, 0);
+    assert_eq!(report["summary"]["warnings"], serde_json::json!([]));
+    assert!(page.contains("<div class=\"health good\">"));
+    assert!(page.contains("Nothing is wrong: all 800 rows have a result"));
+    assert!(!page.contains("#warnings"));
+
+    let (_place, page, report) = reported(&study(), 0);
+    let warnings = report["summary"]["warnings"]
+        .as_array()
+        .expect("a list")
+        .len();
+    assert!(warnings > 0);
+    let health = between(&page, "<div class=\"health look\">", "</div>");
+    assert_eq!(health.matches("<li>").count(), warnings.min(4), "{health}");
+    assert!(
+        health.contains("P99 has no value: it needs 368 patterns"),
+        "{health}"
+    );
+    assert!(health.contains("400 of 400 rows have a result"), "{health}");
+
+    let (_place, page, report) = reported(&with_failures(), 5);
+    let health = between(&page, "<div class=\"health bad\">", "</div>");
+    let rows = &report["summary"]["rows"];
+    let failed = format!(
+        "{} of {} rows have no result",
+        rows["failed"], rows["planned"]
+    );
+    assert!(health.contains("Something is wrong"), "{health}");
+    // What costs a percentile comes first.
+    let first = health.split("<li>").nth(1).expect("a finding");
+    assert!(first.contains("too many rows failed"), "{health}");
+    let all = between(&page, "<section id=\"warnings\">", "</section>");
+    assert!(all.contains(&failed), "{all}");
+}
+
+#[test]
+fn every_link_of_the_page_leads_to_a_part_of_it() {
+    for (study, code) in [(study(), 0), (with_failures(), 5)] {
+        let (_place, page, report) = reported(&study, code);
+        let mut ids: Vec<&str> = page
+            .split(" id=\"")
+            .skip(1)
+            .map(|rest| rest.split_once('"').expect("an end").0)
+            .collect();
+        let all = ids.len();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), all, "an id stands twice");
+        let links: Vec<&str> = page
+            .split(" href=\"")
+            .skip(1)
+            .map(|rest| rest.split_once('"').expect("an end").0)
+            .filter(|link| *link != "data:,")
+            .collect();
+        assert!(links.len() >= 5, "{links:?}");
+        for link in &links {
+            let target = link.strip_prefix('#').expect("a link inside of the page");
+            assert!(ids.contains(&target), "{link}");
+        }
+        // Of several groups each has a link with its answer.
+        let groups = report["groups"].as_array().expect("a list").len();
+        let contents = between(&page, "<nav ", "</nav>");
+        let answers = contents.matches("#answer-").count();
+        assert_eq!(answers, if groups > 1 { groups } else { 0 }, "{contents}");
+        let unknown = contents.matches(": not known<").count();
+        let none = { report["groups"].as_array().expect("a list").iter() }
+            .filter(|group| {
+                let choices = group["choices"].as_array().expect("a list");
+                choices.iter().all(|choice| choice["lowest"].is_null())
+            })
+            .count();
+        assert_eq!(unknown, none, "{contents}");
+    }
+}
+
+#[test]
+fn no_cell_of_the_page_is_empty() {
+    for (study, code) in [(study(), 0), (with_failures(), 5)] {
+        let (_place, page, _) = reported(&study, code);
+        for (tag, end) in [("<td>", "</td>"), ("<th>", "</th>")] {
+            let mut cells = page.split(tag).skip(1);
+            let empty = cells.find(|rest| {
+                let (cell, _) = rest.split_once(end).expect("an end");
+                cell.trim().is_empty() || cell.trim() == "–"
+            });
+            assert!(empty.is_none(), "a cell without a word: {empty:?}");
+        }
+    }
+    let (_place, page, _) = reported(&study(), 0);
+    assert!(page.contains("<span title=\"needs 368 patterns\">–</span>"));
+}
+
+/// Values of the facts of the section of the model, by name.
+fn fact<'a>(page: &'a str, name: &str) -> &'a str {
+    let section = between(page, "<section id=\"model\">", "</section>");
+    between(section, &format!("<tr><td>{name}</td><td>"), "</td>")
+}
+
+#[test]
+fn the_model_on_the_page_is_that_of_the_study() {
+    let (place, page, report) = reported(&study(), 0);
+    assert_eq!(fact(&page, "sectors"), "6");
+    assert_eq!(
+        fact(&page, "mass of the ring"),
+        "0.03000 kg per sector, 0.1800 kg on the wheel"
+    );
+    assert!(fact(&page, "mass of disk and blade").starts_with("1.250 kg per sector, 7.500 kg"));
+    assert_eq!(fact(&page, "friction coefficient μ"), "0.3");
+    assert_eq!(
+        fact(&page, "tangential contact stiffness kt"),
+        "8e5 N/m per sector"
+    );
+    assert_eq!(
+        fact(&page, "normal contact stiffness kn"),
+        "none: the normal load is constant"
+    );
+    assert_eq!(fact(&page, "damping"), "structural loss factor 0.002");
+    // Frequencies are those of `blisk campbell`.
+    let campbell = place.run(&["campbell", "study.toml", "--json"]);
+    let campbell: Value = serde_json::from_str(&campbell.stdout).expect("JSON");
+    assert_eq!(report["model"]["campbell"], campbell);
+    for contact in ["stuck", "slide"] {
+        let first = campbell["modes"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .find(|mode| {
+                mode["contact"] == contact && mode["nodal_diameter"] == 2 && mode["mode"] == 1
+            });
+        let hz = first.expect("a mode")["frequency_hz"][0]
+            .as_f64()
+            .expect("Hz");
+        let name = format!("frequencies, nodal diameter 2, {contact}");
+        assert!(fact(&page, &name).starts_with(&format!("{hz:.2}")));
+    }
+    assert_eq!(
+        report["model"]["sector"]["contacts"]
+            .as_array()
+            .expect("a list")
+            .len(),
+        1
+    );
+}
+
+/// Ends of the drawn lines of a class, `[x, y]` each.
+fn polylines(drawing: &str, class: &str) -> Vec<Vec<[f64; 2]>> {
+    drawing
+        .split(&format!("<polyline class=\"{class}\" points=\""))
+        .skip(1)
+        .map(|rest| {
+            let (points, _) = rest.split_once('"').expect("an end");
+            points
+                .split(' ')
+                .map(|point| {
+                    let (x, y) = point.split_once(',').expect("two numbers");
+                    [x, y].map(|own| own.parse().expect("a number"))
+                })
+                .collect()
+        })
+        .collect()
+}
+
+#[test]
+fn campbell_and_safe_diagram_and_the_sector_are_drawn() {
+    let (place, page, report) = reported(&study(), 0);
+    for figure in ["sector", "campbell", "safe"] {
+        assert!(
+            page.contains(&format!("<figure id=\"{figure}-0\">")),
+            "{figure}"
+        );
+        let ended = place.run(&["plot", "results/small", figure]);
+        assert_eq!(ended.code, 0, "{figure}: {}", ended.stderr);
+    }
+    let drawing = |name: &str| std::fs::read_to_string(place.path(name)).expect("a figure");
+    let campbell = drawing("campbell.svg");
+    assert!(campbell.contains("without centrifugal stiffening"));
+    // Engine order 2 excites nodal diameter 2 alone: every line of a frequency is horizontal, that of the order rises.
+    let frequencies = polylines(&campbell, "curve stuck");
+    assert!(!frequencies.is_empty());
+    for line in &frequencies {
+        assert!((line[0][1] - line[1][1]).abs() < 1e-9 && line[1][0] > line[0][0]);
+    }
+    let orders = polylines(&campbell, "curve median");
+    assert_eq!(orders.len(), 1);
+    assert!(orders[0][1][1] < orders[0][0][1] && orders[0][1][0] > orders[0][0][0]);
+    // A diamond per load lies on the line of the order.
+    let scenarios = report["summary"]["scenarios"].as_array().expect("a list");
+    let loads = scenarios.len();
+    assert_eq!(campbell.matches(" rpm</title></polygon>").count(), loads);
+    // SAFE: the line of the order folds at half the number of sectors, between nodal diameters 0 and 3.
+    let safe = drawing("safe.svg");
+    let impulse = &polylines(&safe, "curve median")[0];
+    assert!(impulse.len() >= 2);
+    for pair in impulse.windows(2) {
+        assert!(pair[1][1] < pair[0][1], "frequencies rise along the line");
+    }
+    let modes = report["model"]["campbell"]["modes"]
+        .as_array()
+        .expect("a list");
+    let diameters: Vec<u64> = modes
+        .iter()
+        .filter_map(|mode| mode["nodal_diameter"].as_u64())
+        .collect();
+    assert_eq!(diameters.iter().max(), Some(&3));
+    for diameter in 0..=3 {
+        assert!(
+            safe.contains(&format!("nodal diameter {diameter}, mode 1, stuck")),
+            "{diameter}"
+        );
+    }
+    let sector = drawing("sector.svg");
+    assert_eq!(sector.matches("class=\"touch\" cx").count(), 1);
+    assert!(sector.contains("It has one contact pair."));
+}
+
+/// A line that folds at every unit of such an axis takes for ever.
+#[test]
+fn a_frequency_at_the_end_of_the_range_of_numbers_is_drawn_or_left_out_at_once() {
+    let (place, ..) = reported(&study(), 0);
+    for hz in [1e308, 1e-308] {
+        forge(&place.path("results/small/manifest.json"), |manifest| {
+            let scenarios = manifest["scenarios"].as_array_mut().expect("a list");
+            for (index, scenario) in scenarios.iter_mut().enumerate() {
+                // One ordinary peak keeps the axis of frequencies ordinary.
+                let own = if index == 0 { 400.0 } else { hz };
+                scenario["tuned_frequency_hz"] = own.into();
+            }
+        });
+        let began = std::time::Instant::now();
+        let ended = place.run(&["report", "results/small", "--no-curves"]);
+        assert!(matches!(ended.code, 0 | 8), "{hz:e} Hz: {}", ended.stderr);
+        assert!(began.elapsed().as_secs() < 60, "{hz:e} Hz");
+    }
+}
+
+#[test]
+fn a_report_without_the_inputs_has_no_model_and_says_why() {
+    let place = Place::with(&study());
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+    let of_file = GOOD
+        .replace("patterns = 10\n", "")
+        .replace(
+            "distribution = { kind = \"normal\" }",
+            "file = \"patterns.csv\"",
+        )
+        .replace("standard_deviation = [0.03]\n", "")
+        .replace("name = \"small\"", "name = \"file\"");
+    place.write("study.toml", &of_file);
+    let table =
+        "pattern,blade,deviation\n0,0,0.01\n0,1,0.0\n0,2,-0.01\n0,3,0.02\n0,4,0.0\n0,5,0.01\n";
+    place.write("patterns.csv", table);
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+    place.write("patterns.csv", &table.replace("0.02", "0.03"));
+    assert_eq!(place.run(&["report", "results/file"]).code, 0);
+    let page = std::fs::read_to_string(place.path("results/file/report.html")).expect("a page");
+    assert!(page.contains("The model is not shown: "));
+    assert!(!page.contains("campbell-0"));
+    let plot = place.run(&["plot", "results/file", "safe"]);
+    assert_eq!(plot.code, 2);
+    assert!(plot.stderr.contains("mistuning.file"), "{}", plot.stderr);
+}
+
+/// Rows of a table of comma-separated values, by column.
+fn table(text: &str) -> Vec<std::collections::BTreeMap<&str, &str>> {
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    lines
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            assert_eq!(cells.len(), names.len(), "{line}");
+            names.iter().copied().zip(cells).collect()
+        })
+        .collect()
+}
+
+#[test]
+fn statistics_are_one_table_for_a_spreadsheet() {
+    let (place, _, report) = reported(&study(), 0);
+    let ended = place.run(&["stats", "results/small", "--csv"]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (0, ""));
+    assert!(ended.stdout.is_ascii() && !ended.stdout.contains('"'));
+    let rows = table(&ended.stdout);
+    let scenarios = report["summary"]["scenarios"].as_array().expect("a list");
+    assert_eq!(rows.len(), scenarios.len());
+    for (row, scenario) in rows.iter().zip(scenarios) {
+        let same = |name: &str, value: &Value| {
+            let cell = row[name];
+            match value.as_f64() {
+                Some(value) => assert!(
+                    cell.parse::<f64>()
+                        .is_ok_and(|own| own.total_cmp(&value).is_eq()),
+                    "{name}: {cell} {value}"
+                ),
+                None => assert_eq!(cell, "", "{name}"),
+            }
+        };
+        same("normal_load_n", &scenario["normal_load_n"]);
+        same("tuned_frequency_hz", &scenario["tuned_frequency_hz"]);
+        same("rows_ok", &scenario["rows"]["ok"]);
+        for quantity in ["peak_amplitude_m", "amplification_factor"] {
+            for found in scenario[quantity]["percentiles"]
+                .as_array()
+                .expect("a list")
+            {
+                if ![5.0, 50.0, 95.0, 99.0].contains(&found["percent"].as_f64().expect("a percent"))
+                {
+                    continue;
+                }
+                let name = format!("{quantity}_p{}", found["percent"]);
+                let name = name.trim_end_matches(".0");
+                same(name, &found["value"]);
+                same(&format!("{name}_lower"), &found["lower"]);
+                same(&format!("{name}_upper"), &found["upper"]);
+            }
+        }
+        assert_eq!(
+            row["contact"],
+            scenario["contact"].as_str().expect("a name")
+        );
+    }
+    // One table alone.
+    for other in ["--json", "--tails"] {
+        assert_eq!(
+            place.run(&["stats", "results/small", "--csv", other]).code,
+            2
+        );
+    }
+    // Exit codes are those of the summary.
+    let (place, ..) = reported(&with_failures(), 5);
+    let ended = place.run(&["stats", "results/small", "--csv"]);
+    assert_eq!(ended.code, 5);
+    assert_eq!(table(&ended.stdout).len(), 4);
+}
