@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::contact::{Law, Period};
 use super::iteration::{Case, Contact};
-use super::peak::peak;
+use super::peak::close_peak;
 use super::sector::Sector;
 
 const HARMONICS: [u32; 4] = [0, 1, 2, 3];
@@ -161,7 +161,7 @@ fn hold(kind: &Kind, patterns: u32) {
                         }),
                     };
                     let hint_hz = row.peak_frequency_hz.expect("a peak");
-                    let truth = peak(sector, &case, period, hint_hz, None).expect("a peak");
+                    let truth = close_peak(sector, &case, period, hint_hz).expect("a peak");
                     let error =
                         row.peak_amplitude_m.expect("a peak") / truth.top.amplitude_m() - 1.0;
                     println!(

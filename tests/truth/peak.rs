@@ -9,6 +9,8 @@ use super::sector::Sector;
 
 /// Distance of the three frequencies, relative: a quarter of the half-bandwidth of the structure alone.
 const SPACING_OF_LOSS_FACTOR: f64 = 0.125;
+/// Distance of the closer ones over this.
+const CLOSER: f64 = 0.125;
 /// Most frequencies of one peak.
 const MOST_POINTS: usize = 24;
 
@@ -26,7 +28,29 @@ pub fn peak(
     hint_hz: f64,
     start: Option<&Mat<f64>>,
 ) -> Option<Peak> {
-    let spacing_hz = SPACING_OF_LOSS_FACTOR * case.loss_factor * hint_hz;
+    peak_spaced(sector, case, period, (hint_hz, start), 1.0)
+}
+
+/// The peak by frequencies beside each other and then once more by closer ones, for a top with a kink, where contacts begin to
+/// open: a parabola through three points that stand apart has its vertex beside it.
+pub fn close_peak(sector: &Sector, case: &Case, period: &Period, hint_hz: f64) -> Option<Peak> {
+    let first = peak(sector, case, period, hint_hz, None)?;
+    let top = (first.top.frequency_hz, Some(&first.top.motion));
+    let second = peak_spaced(sector, case, period, top, CLOSER)?;
+    Some(Peak {
+        points: first.points + second.points,
+        top: second.top,
+    })
+}
+
+fn peak_spaced(
+    sector: &Sector,
+    case: &Case,
+    period: &Period,
+    (hint_hz, start): (f64, Option<&Mat<f64>>),
+    share: f64,
+) -> Option<Peak> {
+    let spacing_hz = share * SPACING_OF_LOSS_FACTOR * case.loss_factor * hint_hz;
     let mut points: Vec<Point> = Vec::new();
     let add = |points: &mut Vec<Point>, frequency_hz: f64| -> Option<f64> {
         let distance = |own: &&Point| (own.frequency_hz - frequency_hz).abs();
