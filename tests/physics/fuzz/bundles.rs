@@ -254,7 +254,7 @@ fn a_bundle_of_too_many_sectors_is_refused() {
 fn matrices_at_the_ends_of_the_range_are_judged_by_their_own_entries() {
     for scale in [1e-250, 1e250] {
         let model = models()[0].clone();
-        let scaled = |matrix: &blisk::linalg::SymmetricSparse, factor: f64| {
+        let scaled = |matrix: &SymmetricSparse, factor: f64| {
             let entries: Vec<_> = matrix
                 .lower_entries()
                 .map(|(row, column, value)| {
@@ -265,7 +265,7 @@ fn matrices_at_the_ends_of_the_range_are_judged_by_their_own_entries() {
                     )
                 })
                 .collect();
-            blisk::linalg::SymmetricSparse::from_lower_triplets(matrix.dimension(), &entries)
+            SymmetricSparse::from_lower_triplets(matrix.dimension(), &entries)
         };
         let of = |factor: f64| SectorModel {
             stiffness: scaled(&model.stiffness, factor),
