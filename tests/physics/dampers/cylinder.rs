@@ -301,6 +301,7 @@ fn the_form_says_nothing_to_other_dampers() {
 /// A cylinder that reaches the rim or the blades is refused by its key; within the limit it is built.
 #[test]
 fn a_cylinder_needs_room_under_the_platforms() {
+    type Key = fn(&mut ParametricOptions) -> &mut f64;
     let narrow =
         |sectors: usize, height_m: f64, thickness_m: f64, angle_deg: f64| ParametricOptions {
             sectors,
@@ -308,7 +309,6 @@ fn a_cylinder_needs_room_under_the_platforms() {
             platform_thickness_m: thickness_m,
             ..options(DamperBody::Rigid, angle_deg)
         };
-    type Key = fn(&mut ParametricOptions) -> &mut f64;
     let cases: [(ParametricOptions, &str, Key, f64); 3] = [
         (
             narrow(12, 1e-3, 6e-3, 35.0),
