@@ -1,4 +1,4 @@
-//! What rotation makes of the ring: its load, and what of it the contact takes.
+//! What rotation makes of ring or damper body: its load, and what of it the contact takes.
 
 use std::fmt;
 
@@ -11,11 +11,14 @@ pub struct RotationFacts {
     pub speed_rpm: Vec<f64>,
     /// Normal load per sector at each, N.
     pub normal_load_n: Vec<f64>,
-    /// Mass of the ring's sector, kg.
+    /// Whether it presses a damper body of each sector, and no ring.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_damper_body: bool,
+    /// Mass of a sector's ring or damper body, kg.
     pub ring_mass_kg: f64,
-    /// Radius at which that mass has the centrifugal load of the ring, m.
+    /// Radius at which that mass has its centrifugal load, m.
     pub ring_radius_m: f64,
-    /// Sum of the normal loads over the centrifugal load of the ring; the rest is hoop force.
+    /// Sum of the normal loads over that centrifugal load; the rest is hoop force.
     pub contact_fraction: f64,
     /// Normal load of each pair in the equilibrium over the square of the angular velocity, kg m.
     pub pair_load_kg_m: Vec<f64>,
@@ -48,7 +51,12 @@ impl fmt::Display for RotationFacts {
         let pressed = self.pair_load_kg_m.iter().filter(|load| **load > 0.0);
         write!(
             f,
-            "rotation: ring of {:.4} kg per sector at {:.4} m, contact takes {:.1} % of its load, {} of {} pairs pressed; {}",
+            "rotation: {} of {:.4} kg per sector at {:.4} m, contact takes {:.1} % of its load, {} of {} pairs pressed; {}",
+            if self.is_damper_body {
+                "damper body"
+            } else {
+                "ring"
+            },
             self.ring_mass_kg,
             self.ring_radius_m,
             100.0 * self.contact_fraction,

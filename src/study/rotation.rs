@@ -1,9 +1,9 @@
-//! Normal loads by rotation: from speeds to newtons, and what of the ring is pressed how hard.
+//! Normal loads by rotation: from speeds to newtons, and what of ring or damper body is pressed how hard.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
-use super::rotation_load::with_ring_mass;
+use super::rotation_load::{pressed_body, with_ring_mass};
 use super::sector_model::sector_of;
 use super::{LoadShare, Problem, RotationLoad, RotationOptions, Study, StudyError};
 use crate::model::cyclic::{CentrifugalContact, CentrifugalError, centrifugal_contact};
@@ -18,7 +18,7 @@ const DIGITS: usize = 9;
 /// `study` with the normal loads of the speeds of `options` after those written in newtons.
 ///
 /// # Errors
-/// The model is refused, or rotation presses no ring of it on.
+/// The model is refused, or rotation presses nothing of it on.
 pub(super) fn pressed_by(
     mut study: Study,
     options: Option<RotationOptions>,
@@ -27,15 +27,18 @@ pub(super) fn pressed_by(
         return Ok(study);
     };
     let model = with_ring_mass(sector_of(&study)?, options.ring_mass_factor);
-    let contact = ring_under_rotation(&study, &model, &options)?;
+    let contact = body_under_rotation(&study, &model, &options)?;
     let whole = contact.sector_load_kg_m();
     if whole <= 0.0 {
-        return Err(no_rotation(
-            &study,
-            KEY,
-            "rotation does not press the ring on: the blisk gives way further than the ring, or the ring \
-             lies outside; accepted: hoop = \"split\", or newtons in sweep.normal_load_n",
-        ));
+        let (body, split) = match pressed_body(&model) {
+            Some(Body::Ring) => ("ring", "hoop = \"split\", or "),
+            _ => ("damper body", ""),
+        };
+        let reason = format!(
+            "rotation does not press the {body} on: the blisk gives way further than the {body}, or the {body} \
+             lies outside; accepted: {split}newtons in sweep.normal_load_n"
+        );
+        return Err(no_rotation(&study, KEY, &reason));
     }
     let mut normal_loads_n = Vec::new();
     let loads = study.contacts.iter().filter_map(|own| own.normal_load_n());
@@ -64,16 +67,18 @@ pub(super) fn pressed_by(
             .map(|load| load / whole)
             .collect()
     });
+    let is_damper_body = pressed_body(&model) == Some(Body::Damper);
     study.rotation = Some(RotationLoad {
         options,
         normal_loads_n,
         load_weights,
         contact,
+        is_damper_body,
     });
     Ok(study)
 }
 
-fn ring_under_rotation(
+fn body_under_rotation(
     study: &Study,
     model: &SectorModel,
     options: &RotationOptions,
@@ -82,6 +87,25 @@ fn ring_under_rotation(
         .contact
         .as_ref()
         .and_then(|contact| contact.normal_stiffness_n_per_m);
+    if model.contact_pairs.is_empty() {
+        return Err(no_rotation(
+            study,
+            KEY,
+            "the model has no contact; accepted: no [contact], and normal_load_n = [\"free\"]",
+        ));
+    }
+    let body = match pressed_body(model) {
+        Some(Body::Ring) => "ring",
+        Some(_) => "damper body",
+        None => {
+            return Err(no_rotation(
+                study,
+                KEY,
+                "rotation presses nothing on in this model: its contacts join blades with each other or with the ground; \
+                 accepted: newtons in sweep.normal_load_n",
+            ));
+        }
+    };
     let equilibrium = centrifugal_contact(model, stiffness.unwrap_or(0.0), options.hoop);
     match (equilibrium, options.ring_radius_m) {
         (Err(CentrifugalError::NoRadialMotion), Some(radius_m)) => {
@@ -90,23 +114,22 @@ fn ring_under_rotation(
         (Err(CentrifugalError::NoRadialMotion), None) => Err(missing(
             study,
             "contact.normal_load.ring_radius_m",
-            "a number above 0 in m, because the ring of this model has no radial degree of freedom; or \
-             newtons in sweep.normal_load_n",
-        )),
-        (Err(CentrifugalError::NoContact), _) => Err(no_rotation(
-            study,
-            KEY,
-            "the model has no contact; accepted: no [contact], and normal_load_n = [\"free\"]",
+            &format!(
+                "a number above 0 in m, because the {body} of this model has no radial degree of freedom; or \
+                 newtons in sweep.normal_load_n"
+            ),
         )),
         (_, Some(_)) => Err(no_rotation(
             study,
             "contact.normal_load.ring_radius_m",
-            "the model says where its ring lies; accepted: no ring_radius_m",
+            &format!("the model says where its {body} lies; accepted: no ring_radius_m"),
         )),
         (_, None) if stiffness.is_none() => Err(missing(
             study,
             "contact.normal_stiffness_n_per_m",
-            "a finite number above 0, in N/m: the equilibrium of the ring under rotation needs it",
+            &format!(
+                "a finite number above 0, in N/m: the equilibrium of the {body} under rotation needs it"
+            ),
         )),
         (Err(error), None) => {
             let reason = format!("{error}; accepted: newtons in sweep.normal_load_n");
@@ -143,7 +166,7 @@ fn refused(study: &Study, key: &str, problem: Problem) -> StudyError {
     }
 }
 
-/// A ring of one mass per sector at a radius, in which nothing carries hoop force: `N0 = m r Omega^2`.
+/// Masses of ring or damper body at a radius, in which nothing carries hoop force: `N0 = m r Omega^2`.
 fn ring_of_masses(model: &SectorModel, radius_m: f64) -> CentrifugalContact {
     let on_ring: Vec<f64> = model
         .dofs

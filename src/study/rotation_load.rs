@@ -29,7 +29,7 @@ pub struct RotationOptions {
     pub hoop: Hoop,
     /// How the load is shared out.
     pub share: LoadShare,
-    /// Factor on the ring's mass, in its load and in its vibration.
+    /// Factor on the mass of ring or damper body, in its load and in its vibration.
     pub ring_mass_factor: f64,
     /// Radius of a ring of masses and springs, m.
     pub ring_radius_m: Option<f64>,
@@ -44,8 +44,10 @@ pub struct RotationLoad {
     pub normal_loads_n: Vec<f64>,
     /// Share of each pair of a sector; none where it is that of the stiffness.
     pub load_weights: Option<Vec<f64>>,
-    /// The ring under rotation, and the pairs that are pressed.
+    /// Ring or damper body under rotation, and the pairs that are pressed.
     pub contact: CentrifugalContact,
+    /// Whether that is a damper body of each sector, and no ring.
+    pub is_damper_body: bool,
 }
 
 impl RotationOptions {
@@ -83,7 +85,7 @@ impl RotationLoad {
             .next()
     }
 
-    /// Part of the ring's centrifugal load that the contact takes; the rest is hoop force.
+    /// Part of its centrifugal load that the contact takes; the rest is hoop force.
     #[must_use]
     pub fn contact_fraction(&self) -> f64 {
         self.contact.sector_load_kg_m() / self.contact.ring_load_kg_m
@@ -95,6 +97,7 @@ impl RotationLoad {
         RotationFacts {
             speed_rpm: self.options.speeds_rpm.clone(),
             normal_load_n: self.normal_loads_n.clone(),
+            is_damper_body: self.is_damper_body,
             ring_mass_kg: self.contact.ring_mass_kg,
             ring_radius_m: self.contact.ring_radius_m(),
             contact_fraction: self.contact_fraction(),
@@ -102,7 +105,7 @@ impl RotationLoad {
         }
     }
 
-    /// The sector as the study has it: the mass of its ring, and the shares of the load.
+    /// The sector as the study has it: the mass of its ring or damper body, and the shares of the load.
     pub(super) fn applied_to(&self, mut model: SectorModel) -> SectorModel {
         model = with_ring_mass(model, self.options.ring_mass_factor);
         if let Some(weights) = &self.load_weights {
@@ -114,7 +117,7 @@ impl RotationLoad {
     }
 }
 
-/// The model with the mass of its ring multiplied by `factor`.
+/// The model with the mass of its ring or damper body multiplied by `factor`.
 pub(super) fn with_ring_mass(model: SectorModel, factor: f64) -> SectorModel {
     let scaled: Vec<_> = model
         .mass
@@ -128,4 +131,10 @@ pub(super) fn with_ring_mass(model: SectorModel, factor: f64) -> SectorModel {
         mass: SymmetricSparse::from_lower_triplets(model.mass.dimension(), &scaled),
         ..model
     }
+}
+
+/// The body that its own centrifugal force presses on; none where contacts join blades or the ground alone.
+pub(super) fn pressed_body(model: &SectorModel) -> Option<Body> {
+    let is_there = |body: &Body| model.dofs.iter().any(|dof| dof.body == *body);
+    [Body::Ring, Body::Damper].into_iter().find(is_there)
 }

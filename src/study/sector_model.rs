@@ -1,9 +1,10 @@
 //! The sector model that a study names, and the checks that need both.
 
 use super::excitation::with_load_cases;
+use super::rotation_load::pressed_body;
 use super::{MistuningSource, ModelSource, PipelineError, Problem, Study, StudyError};
 use crate::model::cyclic::ring_free;
-use crate::model::sector::{ModelError, SectorModel, bundle, lumped, parametric};
+use crate::model::sector::{Body, ModelError, SectorModel, bundle, lumped, parametric};
 use crate::response::forced_response::ContactCondition;
 use crate::response::friction::{ContactOptions, Ring};
 use crate::response::mistuning::{ContactSource, Pattern, PatternSource};
@@ -100,19 +101,34 @@ pub(crate) fn judging_patterns(
 
 /// A refused option is a mistake of the study file, which has its line.
 fn refused(study: &Study, error: ModelError) -> StudyError {
-    match error {
-        ModelError::Option { ref key, .. }
-        | ModelError::NeedsMass { ref key, .. }
-        | ModelError::Chain { ref key, .. } => StudyError::Invalid {
-            path: study.path.clone(),
-            findings: vec![study.map.finding(
-                key,
-                Problem::Conflict {
-                    reason: error.to_string(),
-                },
-            )],
-        },
-        error => StudyError::Model(Box::new(error)),
+    let not_accepted = |value: f64, accepted: String| Problem::NotAccepted {
+        value: value.to_string(),
+        accepted,
+        suggestion: None,
+    };
+    let (key, problem) = match error {
+        ModelError::Option {
+            key,
+            value,
+            accepted,
+        } => (key, not_accepted(value, accepted.to_string())),
+        ModelError::NeedsMass {
+            key,
+            value,
+            mass_key,
+        } => {
+            let accepted = format!("0, or a positive {mass_key} that holds it");
+            (key, not_accepted(value, accepted))
+        }
+        ModelError::Chain { key, problem } => {
+            let reason = problem.to_string();
+            (key, Problem::Conflict { reason })
+        }
+        error => return StudyError::Model(Box::new(error)),
+    };
+    StudyError::Invalid {
+        path: study.path.clone(),
+        findings: vec![study.map.finding(&key, problem)],
     }
 }
 
@@ -161,13 +177,16 @@ fn check_contact(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
     }
     let creeping = |contact: &ContactOptions| contact.ring == Ring::Creeping;
     if study.contact.as_ref().is_some_and(creeping) && !ring_free(model).contains(&true) {
+        let held = if pressed_body(model) == Some(Body::Ring) {
+            "springs or contact normals hold the ring of this model"
+        } else {
+            "this model has no ring"
+        };
         return finding(
             "contact.ring",
             Problem::NotAccepted {
                 value: study.map.value("contact.ring"),
-                accepted:
-                    "\"locked\", because springs or contact normals hold the ring of this model"
-                        .to_owned(),
+                accepted: format!("\"locked\", because {held}"),
                 suggestion: None,
             },
         );

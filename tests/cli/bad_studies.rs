@@ -67,7 +67,7 @@ fn what_is_wrong_is_underlined_in_its_line() {
         (
             "blade_mass_kg = 0.25",
             "blade_mass_kg = -1",
-            "13 | blade_mass_kg = -1\n     | ^^^^^^^^^^^^^\n",
+            "13 | blade_mass_kg = -1\n     |                 ^^\n",
         ),
     ] {
         assert!(GOOD.contains(good), "{good}");

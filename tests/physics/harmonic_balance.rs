@@ -76,7 +76,7 @@ fn contact_rows(structure: &Structure) -> Matrix<Complex64> {
 }
 
 /// Complex modal amplitudes of the harmonic at `index`.
-fn amplitudes(system: &HarmonicSystem, index: usize, x: &[f64]) -> Vec<Complex64> {
+pub fn amplitudes(system: &HarmonicSystem, index: usize, x: &[f64]) -> Vec<Complex64> {
     let block = &system.blocks()[index];
     let x = &x[system.block_start(index)..system.block_start(index + 1)];
     let (re, im) = x.split_at(block.structure.size());
@@ -326,15 +326,15 @@ mod derivative {
 }
 
 /// A converged solution of one point.
-struct Solved {
-    system: HarmonicSystem,
-    omega: f64,
-    x: Vec<f64>,
+pub struct Solved {
+    pub system: HarmonicSystem,
+    pub omega: f64,
+    pub x: Vec<f64>,
 }
 
-const SAMPLES: usize = 128;
+pub const SAMPLES: usize = 128;
 
-fn converge(wheel: &Wheel, excited: &Excited, load: f64, frequency_hz: f64) -> Solved {
+pub fn converge(wheel: &Wheel, excited: &Excited, load: f64, frequency_hz: f64) -> Solved {
     let options = SolverOptions {
         samples_per_period: SAMPLES,
         residual_tolerance: 1e-12,
@@ -361,16 +361,16 @@ fn converge(wheel: &Wheel, excited: &Excited, load: f64, frequency_hz: f64) -> S
 /// Histories of one contact row: displacement without and with its mean, velocity per radian,
 /// and the force on it.
 #[derive(Clone)]
-struct RowHistory {
+pub struct RowHistory {
     oscillation: Vec<f64>,
     mean: f64,
-    velocity: Vec<f64>,
-    force: Vec<f64>,
+    pub velocity: Vec<f64>,
+    pub force: Vec<f64>,
 }
 
 /// Marches every pair from rest for three periods and keeps the third: `T += kt dx`, confined to
 /// the friction limit.
-fn march(wheel: &Wheel, solved: &Solved) -> Vec<RowHistory> {
+pub fn march(wheel: &Wheel, solved: &Solved) -> Vec<RowHistory> {
     let motion = contact_motion(&solved.system, &solved.x);
     let mut rows: Vec<RowHistory> = (0..motion[0].len())
         .map(|row| synthesize(&solved.system, &motion, row))

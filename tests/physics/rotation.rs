@@ -373,6 +373,8 @@ fn parametric_study(keys: &str, law: &str, normal_load: &str) -> String {
 fn what_presses_no_ring_is_refused_with_its_key_and_a_way_out() {
     let full = "law = \"simplified_3d\"\nnormal_stiffness_n_per_m = 2e8";
     let stiff = "[model.parametric]\nring_youngs_modulus_pa = 2.1e13\n";
+    let damper = |name: &str| format!("[model.parametric]\ndamper = \"{name}\"\n");
+    let nothing = "rotation presses nothing on in this model: its contacts join blades with each other or with the ground";
     let cases = [
         (
             parametric_study("", full, ", ring_radius_m = 0.2"),
@@ -388,6 +390,26 @@ fn what_presses_no_ring_is_refused_with_its_key_and_a_way_out() {
             parametric_study(stiff, full, ""),
             "contact.normal_load",
             "rotation does not press the ring on",
+        ),
+        (
+            parametric_study(&damper("shroud"), full, ""),
+            "contact.normal_load: ",
+            nothing,
+        ),
+        (
+            parametric_study(&damper("blade_to_ground"), full, ", ring_radius_m = 0.2"),
+            "contact.normal_load: ",
+            nothing,
+        ),
+        (
+            parametric_study(&damper("underplatform"), full, ", ring_radius_m = 0.2"),
+            "contact.normal_load.ring_radius_m",
+            "the model says where its damper body lies; accepted: no ring_radius_m",
+        ),
+        (
+            parametric_study(&damper("underplatform"), "law = \"macro_slip_1d\"", ""),
+            "contact.normal_stiffness_n_per_m is missing",
+            "the equilibrium of the damper body under rotation needs it",
         ),
         (
             STUDY.replace("ring_mass_kg = 0.03\n", ""),
@@ -406,6 +428,12 @@ fn what_presses_no_ring_is_refused_with_its_key_and_a_way_out() {
             .to_string();
         assert!(told.contains(key) && told.contains(reason), "{told}");
     }
+    // A damper body is called one where a run says what is pressed, a ring a ring.
+    let said = |text: &str| study(text).rotation.unwrap().facts().to_string();
+    let wedge = said(&parametric_study(&damper("underplatform"), full, ""));
+    assert!(wedge.starts_with("rotation: damper body of "), "{wedge}");
+    let ring = said(&parametric_study("", full, ""));
+    assert!(ring.starts_with("rotation: ring of "), "{ring}");
     // A stiff ring that is split presses all the same.
     let split = parametric_study(stiff, full, ", hoop = \"split\"");
     assert!(study(&split).rotation.unwrap().contact_fraction() > 0.99);

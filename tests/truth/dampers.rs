@@ -24,34 +24,47 @@ const BAR: f64 = 5e-4;
 /// A damper, its stiffness along tangents and normal in N/m, three loads, N, and whether pairs open under some of them.
 struct Kind {
     name: &'static str,
+    /// The damper in the words of the study.
+    keys: &'static str,
     stiffness_n_per_m: [f64; 2],
     loads_n: [f64; 3],
     opens: bool,
 }
 
-const KINDS: [Kind; 4] = [
+const KINDS: [Kind; 5] = [
     Kind {
         name: "ring",
+        keys: "damper = \"ring\"",
         stiffness_n_per_m: [1e8, 1e8],
         loads_n: [40.0, 80.0, 160.0],
         opens: true,
     },
     Kind {
         name: "underplatform",
+        keys: "damper = \"underplatform\"",
         stiffness_n_per_m: [4e7, 8e7],
         loads_n: [20.0, 60.0, 400.0],
         opens: true,
     },
     Kind {
         name: "shroud",
+        keys: "damper = \"shroud\"",
         stiffness_n_per_m: [1e7, 2e7],
         loads_n: [40.0, 80.0, 600.0],
         opens: true,
     },
     Kind {
         name: "blade_to_ground",
+        keys: "damper = \"blade_to_ground\"",
         stiffness_n_per_m: [4e7, 8e7],
         loads_n: [20.0, 200.0, 800.0],
+        opens: false,
+    },
+    Kind {
+        name: "cylinder",
+        keys: "damper = \"underplatform\"\ndamper_shape = \"cylinder\"",
+        stiffness_n_per_m: [4e7, 8e7],
+        loads_n: [100.0, 200.0, 400.0],
         opens: false,
     },
 ];
@@ -104,7 +117,7 @@ fn within_one_sector(mut model: SectorModel) -> SectorModel {
 fn study(kind: &Kind, patterns: u32) -> Study {
     let text = format!(
         "schema = 1\n[study]\nname = \"{}\"\nseed = 20261125\npatterns = {patterns}\n\
-         [model]\nsource = \"parametric\"\n[model.parametric]\nsectors = 8\ndamper = \"{}\"\nblade_radial_elements = 4\n\
+         [model]\nsource = \"parametric\"\n[model.parametric]\nsectors = 8\n{}\nblade_radial_elements = 4\n\
          [reduction]\nbasis = \"tuned_receptances\"\ncraig_bampton_modes = 120\nerror = 2e-4\n\
          [contact]\nfriction_coefficient = {FRICTION_COEFFICIENT}\ntangential_stiffness_n_per_m = {:e}\n\
          normal_stiffness_n_per_m = {:e}\n[damping]\nstructural_loss_factor = {LOSS_FACTOR}\n\
@@ -112,7 +125,7 @@ fn study(kind: &Kind, patterns: u32) -> Study {
          [mistuning]\ndistribution = {{ kind = \"normal\", standard_deviation = {STANDARD_DEVIATION} }}\n\
          [sweep]\nnormal_load_n = {:?}\n\
          [solver]\nharmonics = {HARMONICS:?}\nsamples_per_period = {SAMPLES}\npeak_tolerance = 1e-5\nsearch_harmonics = \"all\"\n",
-        kind.name, kind.name, kind.stiffness_n_per_m[0], kind.stiffness_n_per_m[1], kind.loads_n
+        kind.name, kind.keys, kind.stiffness_n_per_m[0], kind.stiffness_n_per_m[1], kind.loads_n
     );
     Study::parse(std::path::Path::new("dampers.toml"), &text).expect("a study")
 }
@@ -232,4 +245,15 @@ fn thirty_rows_with_shrouds_are_the_full_contact_model() {
 #[ignore = "minutes: 30 rows"]
 fn thirty_rows_on_the_ground_are_the_full_contact_model() {
     hold(&KINDS[3], MANY_PATTERNS);
+}
+
+#[test]
+fn mistuned_wheels_with_cylinders_are_the_full_contact_model() {
+    hold(&KINDS[4], PATTERNS);
+}
+
+#[test]
+#[ignore = "minutes: 30 rows"]
+fn thirty_rows_with_cylinders_are_the_full_contact_model() {
+    hold(&KINDS[4], MANY_PATTERNS);
 }

@@ -128,7 +128,7 @@ pub enum ModelError {
     },
     /// An element shares a node with an element of the other body.
     #[error(
-        "element {element} shares node {node} with the other body; accepted: blisk and ring with nodes of their own"
+        "element {element} shares node {node} with the other body; accepted: bodies with nodes of their own"
     )]
     ElementBody {
         /// Index of the element.
@@ -234,7 +234,7 @@ pub enum ModelError {
     },
     /// A stiffness of a nodal diameter is not positive definite.
     #[error(
-        "the {what} stiffness of nodal diameter {nodal_diameter} is not positive definite; accepted: a model that is held, by its clamp and a weak ring grounding"
+        "the {what} stiffness of nodal diameter {nodal_diameter} is not positive definite; accepted: a model that is held, by its clamp and a weak grounding of ring or damper body"
     )]
     StiffnessNotPositiveDefinite {
         /// Nodal diameter h.

@@ -19,6 +19,8 @@ pub enum Accepted {
     AtMostM(&'static str, f64),
     /// Less than a length given by other options, m.
     BelowM(&'static str, f64),
+    /// More than a length given by other options, m.
+    AboveM(&'static str, f64),
 }
 
 impl fmt::Display for Accepted {
@@ -30,6 +32,7 @@ impl fmt::Display for Accepted {
             Self::Range(low, high) => write!(f, "a number from {low} to below {high}"),
             Self::AtMostM(what, limit) => write!(f, "at most {what} = {limit} m"),
             Self::BelowM(what, limit) => write!(f, "below {what} = {limit} m"),
+            Self::AboveM(what, limit) => write!(f, "above {what} = {limit} m"),
         }
     }
 }

@@ -14,6 +14,8 @@ mod line_problem;
 pub mod lumped;
 pub mod matrix_market;
 pub mod parametric;
+mod parametric_axis;
+mod parametric_cylinder;
 mod parametric_mesh;
 mod parametric_options;
 mod parametric_shelf;
@@ -33,7 +35,7 @@ pub use error_place::{Accepted, Item, Matrix, Place, StiffnessKind};
 pub use hexahedron20::Material;
 pub use line_problem::{LinePart, LineProblem};
 pub use lumped::{LumpedOptions, NamedContact, NamedMass, NamedSpring};
-pub use parametric_options::{Damper, DamperBody, ParametricOptions};
+pub use parametric_options::{Damper, DamperBody, DamperShape, ParametricOptions};
 pub use rigid::rigid_motion;
 pub use rigid_problem::RigidProblem;
 pub use sector_model::{

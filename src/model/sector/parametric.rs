@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 use super::error::ModelError;
+use super::parametric_cylinder::Cylinder;
 use super::parametric_mesh::ParametricMesh;
 use super::parametric_options::{Damper, DamperBody, ParametricOptions};
 use super::rigid::with_rigid_damper;
@@ -22,6 +23,9 @@ use crate::linalg::{Complex64, SymmetricSparse};
 /// If an option is out of range or the geometry folds an element.
 pub fn build(options: &ParametricOptions) -> Result<SectorModel, ModelError> {
     options.check()?;
+    if let Some(cylinder) = Cylinder::of(options) {
+        cylinder.check(options)?;
+    }
     let layout = ParametricMesh::new(options);
     let assembled = layout.mesh.assemble()?;
     let first_dof: HashMap<usize, usize> = assembled

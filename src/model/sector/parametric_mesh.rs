@@ -5,58 +5,14 @@ use std::f64::consts::TAU;
 
 use super::assembly::{SolidElement, SolidMesh};
 use super::hexahedron20::NATURAL_COORDINATES;
+use super::parametric_axis::Axis;
+use super::parametric_cylinder::Cylinder;
 use super::parametric_options::{Damper, ParametricOptions};
 use super::parametric_shelf::Shelf;
 use super::sector_model::{Body, ContactPair, ContactSide};
 
 /// Lattice point in half elements: (theta, z, r); even in all three = corner of elements.
 type Point = [usize; 3];
-
-/// Coordinates along one direction in half elements: entry `2 e` begins element `e`.
-#[derive(Debug, Clone)]
-struct Axis(Vec<f64>);
-
-impl Axis {
-    /// Divides each interval between ascending `levels` into its number of elements; levels that
-    /// coincide (within 1e-9 of the span) are one.
-    fn new(levels: &[f64], elements: impl Fn(f64) -> usize) -> Self {
-        let span = levels[levels.len() - 1] - levels[0];
-        let mut values = vec![levels[0]];
-        let mut start = levels[0];
-        for &end in &levels[1..] {
-            if end - start <= 1e-9 * span {
-                continue;
-            }
-            let halves = 2 * elements(0.5 * (start + end));
-            for half in 1..halves {
-                values.push(start + (end - start) * half as f64 / halves as f64);
-            }
-            values.push(end);
-            start = end;
-        }
-        Self(values)
-    }
-
-    fn elements(&self) -> usize {
-        (self.0.len() - 1) / 2
-    }
-
-    /// Middle of element `e`.
-    fn middle(&self, element: usize) -> f64 {
-        self.0[2 * element + 1]
-    }
-
-    /// Index of the half-element point nearest to a level.
-    fn index_of(&self, level: f64) -> usize {
-        let mut nearest = 0;
-        for (index, value) in self.0.iter().enumerate() {
-            if (value - level).abs() < (self.0[nearest] - level).abs() {
-                nearest = index;
-            }
-        }
-        nearest
-    }
-}
 
 /// The mesh and where to find its faces, contact and tip.
 pub(super) struct ParametricMesh<'a> {
@@ -70,12 +26,14 @@ pub(super) struct ParametricMesh<'a> {
     ring_r: Axis,
     /// The platform or shroud of the blade, where the damper needs one.
     shelf: Option<Shelf>,
+    /// The body between two platforms, where it is a cylinder.
+    cylinder: Option<Cylinder>,
     nodes: BTreeMap<(Body, Point), usize>,
     pub(super) mesh: SolidMesh,
 }
 
-/// Half elements across a damper body between two platforms.
-const ACROSS_DAMPER: usize = 4;
+/// Half elements across a wedge between two platforms.
+const ACROSS_WEDGE: usize = 4;
 
 impl<'a> ParametricMesh<'a> {
     /// Lays out the mesh; the options have been checked.
@@ -123,13 +81,14 @@ impl<'a> ParametricMesh<'a> {
         });
         let rim = options.rim_radius_m;
         let shelf = Shelf::of(options);
+        let cylinder = Cylinder::of(options);
         let mut levels = vec![
             options.bore_radius_m,
             options.rim_inner_radius_m(),
             options.flange_inner_radius_m(),
             rim,
         ];
-        levels.extend(shelf.iter().flat_map(|shelf| shelf.radii_m));
+        levels.extend(shelf.iter().flat_map(Shelf::levels_m));
         levels.push(rim + options.blade_height_m);
         let r = Axis::new(&levels, |radius| {
             if radius < options.rim_inner_radius_m() {
@@ -158,6 +117,7 @@ impl<'a> ParametricMesh<'a> {
             r,
             ring_r,
             shelf,
+            cylinder,
             nodes: BTreeMap::new(),
             mesh,
         };
@@ -199,19 +159,31 @@ impl<'a> ParametricMesh<'a> {
         }
     }
 
-    /// The body between the platform of the blade and that of the next one: their lattice in z and r.
+    /// The body between the platform of the blade and that of the next one: their lattice in z, and that of a wedge in r.
     fn add_damper(&mut self) {
         let Some(radii_m) = self.shelf.as_ref().map(|shelf| shelf.radii_m) else {
             return;
         };
+        let half_chord = 0.5 * self.options.blade_root_axial_chord_m;
+        let beside: Vec<usize> = (0..self.z.elements())
+            .filter(|&j| self.z.middle(j).abs() < half_chord)
+            .collect();
+        if self.cylinder.is_some() {
+            for [i, k] in Cylinder::cells() {
+                for &j in &beside {
+                    self.add_element([i, j, k], Body::Damper, false);
+                }
+            }
+            return;
+        }
         for k in 0..self.r.elements() {
-            for j in 0..self.z.elements() {
-                let (z, r) = (self.z.middle(j), self.r.middle(k));
-                let is_beside = z.abs() < 0.5 * self.options.blade_root_axial_chord_m;
-                if is_beside && radii_m[0] < r && r < radii_m[1] {
-                    for i in 0..ACROSS_DAMPER / 2 {
-                        self.add_element([i, j, k], Body::Damper, false);
-                    }
+            let r = self.r.middle(k);
+            if r < radii_m[0] || radii_m[1] < r {
+                continue;
+            }
+            for &j in &beside {
+                for i in 0..ACROSS_WEDGE / 2 {
+                    self.add_element([i, j, k], Body::Damper, false);
                 }
             }
         }
@@ -254,7 +226,10 @@ impl<'a> ParametricMesh<'a> {
     }
 
     /// Node at a lattice point of a body, made when first asked for.
-    fn node(&mut self, body: Body, point: Point) -> usize {
+    fn node(&mut self, body: Body, mut point: Point) -> usize {
+        if body == Body::Damper && self.cylinder.is_some() {
+            point = Cylinder::own_point(point);
+        }
         let position = self.position(body, point);
         let next = self.mesh.nodes_m.len();
         let node = *self.nodes.entry((body, point)).or_insert(next);
@@ -310,17 +285,24 @@ impl<'a> ParametricMesh<'a> {
         [r * angle.cos(), r * angle.sin(), z]
     }
 
-    /// Position of a lattice point of a damper body, m: its edges are those of the platforms on both sides.
+    /// Position of a lattice point of a damper body, m: the edges of a wedge are those of the platforms on both sides.
     fn damper_position(&self, [i, j, k]: Point) -> [f64; 3] {
         let Some(shelf) = &self.shelf else {
             return [0.0; 3];
         };
+        let z_m =
+            |r: f64| self.z.0[j] * self.axial_chord_m(r) / self.options.blade_root_axial_chord_m;
+        if let Some(cylinder) = &self.cylinder {
+            let [x, y] = cylinder.section_m([i, k]);
+            let (sin, cos) = self.half_pitch().sin_cos();
+            return [x * cos - y * sin, x * sin + y * cos, z_m(cylinder.touch_m)];
+        }
         let r = self.r.0[k];
-        let z = self.z.0[j] * self.axial_chord_m(r) / self.options.blade_root_axial_chord_m;
+        let z = z_m(r);
         let (sin, cos) = (2.0 * self.half_pitch()).sin_cos();
         let [x, y, _] = shelf.edge(-1.0, r, z);
         let next = [x * cos - y * sin, x * sin + y * cos, z];
-        between(shelf.edge(1.0, r, z), next, i as f64 / ACROSS_DAMPER as f64)
+        between(shelf.edge(1.0, r, z), next, i as f64 / ACROSS_WEDGE as f64)
     }
 
     /// Axial chord of the blade at a radius, m.
@@ -427,23 +409,23 @@ impl<'a> ParametricMesh<'a> {
     }
 
     /// The four corners of each edge of the shelf, a quarter of its face each, with what they touch: the damper body, the
-    /// shelf of the next blade, or the ground.
+    /// shelf of the next blade, or the ground. A cylinder touches the two ends of a line.
     fn shelf_pairs(&self) -> Vec<ContactPair> {
         let Some(shelf) = &self.shelf else {
             return Vec::new();
         };
         let o = self.options;
         let ends_z = [-0.5, 0.5].map(|side| self.z.index_of(side * o.blade_root_axial_chord_m));
-        let ends_r = shelf.radii_m.map(|radius| self.r.index_of(radius));
+        let touched_m = match &self.cylinder {
+            Some(cylinder) => vec![cylinder.touch_m],
+            // On the ground stands the underside alone.
+            None if o.damper == Damper::BladeToGround => vec![shelf.radii_m[0]],
+            None => shelf.radii_m.to_vec(),
+        };
         let last = self.theta.0.len() - 1;
         let node = |body: Body, point: Point| self.nodes[&(body, point)];
-        // On the ground stands the underside alone.
-        let touching = match o.damper {
-            Damper::BladeToGround => &ends_r[..1],
-            Damper::Ring | Damper::Underplatform | Damper::Shroud => &ends_r[..],
-        };
         let mut pairs = Vec::new();
-        for &k in touching {
+        for k in touched_m.into_iter().map(|radius| self.r.index_of(radius)) {
             for j in ends_z {
                 let [low, high] = [0, last].map(|i| node(Body::Blisk, [i, j, k]));
                 let r = self.r.0[k];
@@ -459,7 +441,11 @@ impl<'a> ParametricMesh<'a> {
                 match o.damper {
                     Damper::Ring => {}
                     Damper::Underplatform => {
-                        let body = [0, ACROSS_DAMPER].map(|i| node(Body::Damper, [i, j, k]));
+                        let body = match self.cylinder {
+                            Some(_) => Cylinder::TOUCHING.map(|[i, k]| [i, j, k]),
+                            None => [0, ACROSS_WEDGE].map(|i| [i, j, k]),
+                        };
+                        let body = body.map(|point| node(Body::Damper, point));
                         add(ContactSide::Node(high), ContactSide::Node(body[0]), 1.0);
                         add(
                             ContactSide::NextSector(low),

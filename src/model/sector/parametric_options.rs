@@ -13,7 +13,7 @@ pub enum Damper {
     /// A ring under the rim's flange.
     #[default]
     Ring,
-    /// A wedge between the platforms of neighbouring blades, pressed outwards into their gap.
+    /// A wedge or a cylinder between the platforms of neighbouring blades, pressed outwards into their gap.
     Underplatform,
     /// Shrouds of neighbouring blades, that touch one another.
     Shroud,
@@ -21,7 +21,18 @@ pub enum Damper {
     BladeToGround,
 }
 
-/// What the wedge of an underplatform damper is made of.
+/// The form of an underplatform damper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DamperShape {
+    /// A wedge, whose flanks lie on those of the platforms.
+    #[default]
+    Wedge,
+    /// A cylinder along the axis, that touches either flank on a line in its middle.
+    Cylinder,
+}
+
+/// What the body of an underplatform damper is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DamperBody {
@@ -45,7 +56,9 @@ pub struct ParametricOptions {
     pub sectors: usize,
     /// The damper. Default ring.
     pub damper: Damper,
-    /// The body of the wedge. Default elastic.
+    /// The form of an underplatform damper. Default wedge.
+    pub damper_shape: DamperShape,
+    /// The body of an underplatform damper. Default elastic.
     pub damper_body: DamperBody,
     /// Radius of the bore, where the disk is clamped. Default 0.06.
     pub bore_radius_m: f64,
@@ -85,7 +98,7 @@ pub struct ParametricOptions {
     pub platform_thickness_m: f64,
     /// Gap between two platforms at their outer side. Default 0.003.
     pub platform_gap_m: f64,
-    /// Angle between the flank of the wedge and the radius. Default 35.0.
+    /// Angle between the flank of the platform and the radius. Default 35.0.
     pub flank_angle_deg: f64,
     /// Height of the shroud's outer side above the rim, as a share of the blade's. Default 1.0.
     pub shroud_height_share: f64,
@@ -99,13 +112,13 @@ pub struct ParametricOptions {
     pub blisk_poisson_ratio: f64,
     /// Density of disk and blade. Default 7850.0.
     pub blisk_density_kg_per_m3: f64,
-    /// Young's modulus of ring or wedge, Pa. Default 2.1e11.
+    /// Young's modulus of ring or damper body, Pa. Default 2.1e11.
     pub ring_youngs_modulus_pa: f64,
-    /// Poisson's ratio of ring or wedge. Default 0.3.
+    /// Poisson's ratio of ring or damper body. Default 0.3.
     pub ring_poisson_ratio: f64,
-    /// Density of ring or wedge. Default 7850.0.
+    /// Density of ring or damper body. Default 7850.0.
     pub ring_density_kg_per_m3: f64,
-    /// Frequency f of the weak grounding `(2 pi f)^2 M` of ring or wedge, which contact alone holds otherwise. Default 5.0.
+    /// Frequency f of the weak grounding `(2 pi f)^2 M` of ring or damper body, which contact alone holds otherwise. Default 5.0.
     pub ring_grounding_frequency_hz: f64,
     /// Elements along the radius of the web. Default 3.
     pub disk_radial_elements: usize,
@@ -130,6 +143,7 @@ impl Default for ParametricOptions {
         Self {
             sectors: 24,
             damper: Damper::Ring,
+            damper_shape: DamperShape::Wedge,
             damper_body: DamperBody::Elastic,
             bore_radius_m: 0.06,
             rim_radius_m: 0.205,
@@ -202,7 +216,7 @@ impl ParametricOptions {
         self.blade_root_thickness_m / (2.0 * self.rim_radius_m * cosine)
     }
 
-    /// Material of disk and blade, then of ring or wedge.
+    /// Material of disk and blade, then of ring or damper body.
     #[must_use]
     pub fn materials(&self) -> [Material; 2] {
         [
@@ -353,16 +367,7 @@ impl ParametricOptions {
             Damper::Underplatform => self.flank_angle_deg,
             Damper::BladeToGround => 0.0,
         };
-        let share = self.platform_height_m / self.blade_height_m;
-        let between = |root: f64, tip: f64| root + share * (tip - root);
-        let radius_m = self.rim_radius_m + self.platform_height_m;
-        let stagger = (self.blade_stagger_angle_deg + share * self.blade_twist_deg).to_radians();
-        let chord_m = between(self.blade_root_axial_chord_m, self.blade_tip_axial_chord_m);
-        let thickness_m = between(self.blade_root_thickness_m, self.blade_tip_thickness_m);
-        // The blade's surface at the end of its chord reaches furthest along theta.
-        let reach_m = 0.5 * (chord_m * stagger.tan().abs() + thickness_m / stagger.cos());
-        let half_pitch = std::f64::consts::PI / self.sectors as f64;
-        let room_m = radius_m * (half_pitch - reach_m / radius_m).tan();
+        let room_m = self.room_m(self.platform_height_m);
         let flank_m = |angle_deg: f64| self.platform_thickness_m * angle_deg.to_radians().tan();
         let limit_m = 2.0 * (room_m - flank_m(flank_deg));
         if limit_m <= 0.0 && room_m > flank_m(LEAST_FLANK_DEG) {
@@ -373,6 +378,20 @@ impl ParametricOptions {
         let gap_m = self.platform_gap_m;
         let accepted = Accepted::BelowM("what blade and flank leave of the pitch", limit_m);
         accept("platform_gap_m", gap_m, gap_m < limit_m, accepted)
+    }
+
+    /// Half of the room between two blades at a height above the rim, m: the blade's surface at the end of its chord
+    /// reaches furthest along theta.
+    pub(super) fn room_m(&self, height_m: f64) -> f64 {
+        let share = height_m / self.blade_height_m;
+        let between = |root: f64, tip: f64| root + share * (tip - root);
+        let radius_m = self.rim_radius_m + height_m;
+        let stagger = (self.blade_stagger_angle_deg + share * self.blade_twist_deg).to_radians();
+        let chord_m = between(self.blade_root_axial_chord_m, self.blade_tip_axial_chord_m);
+        let thickness_m = between(self.blade_root_thickness_m, self.blade_tip_thickness_m);
+        let reach_m = 0.5 * (chord_m * stagger.tan().abs() + thickness_m / stagger.cos());
+        let half_pitch = std::f64::consts::PI / self.sectors as f64;
+        radius_m * (half_pitch - reach_m / radius_m).tan()
     }
 
     fn check_order(&self) -> Result<(), ModelError> {
@@ -434,7 +453,12 @@ impl ParametricOptions {
     }
 }
 
-fn accept(key: &str, value: f64, valid: bool, accepted: Accepted) -> Result<(), ModelError> {
+pub(super) fn accept(
+    key: &str,
+    value: f64,
+    valid: bool,
+    accepted: Accepted,
+) -> Result<(), ModelError> {
     if valid {
         return Ok(());
     }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::parametric_cylinder::Cylinder;
 use super::parametric_options::{Damper, ParametricOptions};
 
 /// A plate of the blade between two radii, from edge to edge.
@@ -10,6 +11,8 @@ pub(super) struct Shelf {
     damper: Damper,
     /// Inner and outer radius, m.
     pub(super) radii_m: [f64; 2],
+    /// Radius at which a cylinder touches it, m.
+    touch_m: Option<f64>,
     /// Radii where the blade begins and ends, m.
     blade_m: [f64; 2],
     /// Half of the angle of a sector, rad.
@@ -42,6 +45,7 @@ impl Shelf {
         Some(Self {
             damper: options.damper,
             radii_m,
+            touch_m: Cylinder::of(options).map(|cylinder| cylinder.touch_m),
             blade_m: [rim, tip],
             half_pitch_rad: 0.5 * TAU / options.sectors as f64,
             half_gap_m: 0.5 * options.platform_gap_m,
@@ -49,12 +53,19 @@ impl Shelf {
         })
     }
 
+    /// Radii at which its elements end, ascending, m.
+    pub(super) fn levels_m(&self) -> Vec<f64> {
+        let [inner, outer] = self.radii_m;
+        let ends = [Some(inner), self.touch_m, Some(outer)];
+        ends.into_iter().flatten().collect()
+    }
+
     /// Whether a radius lies within it.
     pub(super) fn holds(&self, radius_m: f64) -> bool {
         self.radii_m[0] < radius_m && radius_m < self.radii_m[1]
     }
 
-    /// Elements of the part of the blade round a radius: one of the shelf, of the others their share of `all`.
+    /// Elements of the part of the blade round a radius: one between two levels of the shelf, of the others their share of `all`.
     pub(super) fn elements(&self, radius_m: f64, all: usize) -> usize {
         let [inner, outer] = self.radii_m;
         let [root, tip] = self.blade_m;

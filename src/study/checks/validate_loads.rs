@@ -77,7 +77,7 @@ pub(super) fn rotation(check: &mut Check, raw: &RawNormalLoad) -> Option<Rotatio
             if check.is_written(key) {
                 check.conflict(
                     key,
-                    "with ring_radius_m the load is m r Omega^2, no equilibrium of a ring; accepted: one of the two keys",
+                    "with ring_radius_m the load is m r Omega^2, no equilibrium of a ring or damper body; accepted: one of the two keys",
                 );
             }
         }

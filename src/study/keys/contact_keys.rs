@@ -1,4 +1,4 @@
-//! The keys of a study file that say what the contact between blisk and ring is.
+//! The keys of a study file that say what the contacts of the damper are.
 
 use super::Value::{Either, List, Name, Number, Table};
 use super::study_keys::{ABOVE_ZERO, TRUNCATION};
@@ -8,7 +8,12 @@ use crate::input::{Entry, REQUIRED, entry};
 const SPEED: Value = Number(Range::above(0.0).up_to(1e6));
 
 pub(super) const CONTACT_KEYS: &[Entry] = &[
-    entry("contact", Table, "", "the contact between blisk and ring"),
+    entry(
+        "contact",
+        Table,
+        "",
+        "the contacts of the damper: with ring or damper body, of neighbouring blades, or with the ground",
+    ),
     entry(
         "contact.law",
         Name(&[
@@ -54,7 +59,7 @@ pub(super) const CONTACT_KEYS: &[Entry] = &[
         "contact.normal_load.from",
         Name(&["rotation"]),
         REQUIRED,
-        "the ring's centrifugal load",
+        "the centrifugal load of ring or damper body",
     ),
     entry(
         "contact.normal_load.speed_rpm",
@@ -78,13 +83,13 @@ pub(super) const CONTACT_KEYS: &[Entry] = &[
         "contact.normal_load.ring_mass_factor",
         Number(Range::from_to(1e-3, 1e3)),
         "1.0",
-        "on the ring's mass, in its load and in its vibration",
+        "on the mass of ring or damper body, in its load and in its vibration",
     ),
     entry(
         "contact.normal_load.ring_radius_m",
         ABOVE_ZERO,
-        "required for a ring without radial dofs",
-        "radius r of a ring of masses: `N0 = m r Omega^2`, without `hoop` and `share`; m",
+        "required for a ring or damper body without radial dofs",
+        "radius r of masses on springs: `N0 = m r Omega^2`, without `hoop` and `share`; m",
     ),
     entry(
         "contact.variation",

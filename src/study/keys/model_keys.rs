@@ -180,13 +180,19 @@ pub(super) const MODEL_KEYS: &[Entry] = &[
         "model.parametric.damper",
         Name(&["ring", "underplatform", "shroud", "blade_to_ground"]),
         "`\"ring\"`",
-        "what damps: a ring under the flange; a wedge between the platforms of neighbouring blades; shrouds that touch; the platform on the ground. All but `ring` go without flange and ring",
+        "what damps: a ring under the flange; a wedge or cylinder between the platforms of neighbouring blades; shrouds that touch; the platform on the ground. All but `ring` go without flange and ring",
+    ),
+    entry(
+        "model.parametric.damper_shape",
+        Name(&["wedge", "cylinder"]),
+        "`\"wedge\"`",
+        "the damper of `underplatform`: a wedge that fills the gap between the flanks, or a cylinder that touches each flank on a line in its middle",
     ),
     entry(
         "model.parametric.damper_body",
         Name(&["elastic", "rigid"]),
         "`\"elastic\"`",
-        "the wedge (`underplatform`): solid elements, or a rigid body with six degrees of freedom",
+        "the damper of `underplatform`: solid elements, or a rigid body with six degrees of freedom",
     ),
     entry(
         "model.parametric.bore_radius_m",
@@ -294,7 +300,7 @@ pub(super) const MODEL_KEYS: &[Entry] = &[
         "model.parametric.platform_thickness_m",
         ABOVE_ZERO,
         "0.006",
-        "radial, of the platform and of the wedge, m",
+        "radial, of the platform and of a wedge, m",
     ),
     entry(
         "model.parametric.platform_gap_m",
@@ -306,7 +312,7 @@ pub(super) const MODEL_KEYS: &[Entry] = &[
         "model.parametric.flank_angle_deg",
         Number(Range::at_least(5.0).below(65.0)),
         "35.0",
-        "between the flank of the wedge and the radius, deg",
+        "between the flank of the platform and the radius, deg",
     ),
     entry(
         "model.parametric.shroud_height_share",
@@ -366,7 +372,7 @@ pub(super) const MODEL_KEYS: &[Entry] = &[
         "model.parametric.ring_grounding_frequency_hz",
         AT_LEAST_ZERO,
         "5.0",
-        "weak grounding `(2 pi f)^2 M` of ring or wedge, which only contact holds otherwise, Hz",
+        "weak grounding `(2 pi f)^2 M` of ring or damper body, which only contact holds otherwise, Hz",
     ),
     entry(
         "model.parametric.disk_radial_elements",

@@ -18,11 +18,11 @@ use blisk::response::harmonic_balance::{Damping, Status};
 use crate::extremes::wheels::{under, uneven};
 use crate::wheels::{Wheel, full, pattern, relative};
 
-const SECTORS: usize = 12;
+pub const SECTORS: usize = 12;
 const ORDER: u32 = 3;
-const NORMAL_STIFFNESS: f64 = 8e7;
+pub const NORMAL_STIFFNESS: f64 = 8e7;
 
-fn options(damper_body: DamperBody) -> ParametricOptions {
+pub fn options(damper_body: DamperBody) -> ParametricOptions {
     ParametricOptions {
         sectors: SECTORS,
         damper: Damper::Underplatform,
@@ -36,13 +36,13 @@ fn rigid() -> SectorModel {
 }
 
 /// Dofs and position of the centre of mass.
-fn reference(model: &SectorModel) -> ([usize; 6], [f64; 3]) {
+pub fn reference(model: &SectorModel) -> ([usize; 6], [f64; 3]) {
     let node = model.rigid_points[0].reference;
     let dofs = Component::RIGID.map(|component| model.dof_of(node, component).unwrap());
     (dofs, model.dofs[dofs[0]].position_m)
 }
 
-fn entry(matrix: &SymmetricSparse, row: usize, column: usize) -> f64 {
+pub fn entry(matrix: &SymmetricSparse, row: usize, column: usize) -> f64 {
     let (row, column) = (row.max(column), row.min(column));
     let mut entries = matrix.lower_entries();
     entries
@@ -50,17 +50,17 @@ fn entry(matrix: &SymmetricSparse, row: usize, column: usize) -> f64 {
         .map_or(0.0, |(.., value)| value)
 }
 
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }
 
 /// Cartesian components of a vector given in (r, theta, z) at an angle.
-fn cartesian([r, theta, z]: [f64; 3], angle: f64) -> [f64; 3] {
+pub fn cartesian([r, theta, z]: [f64; 3], angle: f64) -> [f64; 3] {
     let (sin, cos) = angle.sin_cos();
     [r * cos - theta * sin, r * sin + theta * cos, z]
 }
 
-fn angle_of([x, y, _]: [f64; 3]) -> f64 {
+pub fn angle_of([x, y, _]: [f64; 3]) -> f64 {
     y.atan2(x)
 }
 
@@ -181,7 +181,7 @@ fn rows_of_a_rigid_wedge_are_those_of_the_elastic_one_in_rigid_motion() {
     }
 }
 
-fn rows(
+pub fn rows(
     options: &ParametricOptions,
     deviations: &[f64],
     conditions: &[ContactCondition],
@@ -211,7 +211,7 @@ fn rows(
 }
 
 /// A load under which the contact slips, N for 1 N of excitation.
-const SLIPPING_N: f64 = 500.0;
+pub const SLIPPING_N: f64 = 500.0;
 
 #[test]
 fn a_rigid_wedge_is_the_limit_of_an_elastic_one() {

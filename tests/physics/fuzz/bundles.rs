@@ -3,8 +3,12 @@
 use std::fs;
 use std::path::Path;
 
+use blisk::linalg::SymmetricSparse;
 use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction};
-use blisk::model::sector::{LumpedOptions, ModelError, SectorModel, bundle, lumped, validate};
+use blisk::model::sector::{
+    Body, Component, ContactPair, ContactSide, Dof, LumpedOptions, ModelError, RigidPoint,
+    SectorModel, bundle, lumped, validate,
+};
 
 use super::mutator::Mutator;
 use super::{assert_clear, run};
@@ -12,7 +16,8 @@ use crate::contact::random::Random;
 use crate::extremes::wheels::spatial_sector;
 use crate::sector_sources::lumped::lumped24;
 
-const FILES: [&str; 9] = [
+/// Those of every bundle, and that of the points of rigid bodies.
+const FILES: [&str; 10] = [
     "model.toml",
     "K.mtx",
     "M.mtx",
@@ -22,7 +27,10 @@ const FILES: [&str; 9] = [
     "contact.csv",
     "force.csv",
     "observe.csv",
+    "rigid.csv",
 ];
+/// Files of a bundle without rigid bodies.
+const WITHOUT_RIGID: usize = FILES.len() - 1;
 
 fn models() -> [SectorModel; 2] {
     let options = LumpedOptions {
@@ -32,12 +40,65 @@ fn models() -> [SectorModel; 2] {
     [lumped::build(&options).unwrap(), spatial_sector(3)]
 }
 
+/// A sector between whose disk and that of the next one a rigid body lies, held by two pairs and a weak spring.
+fn with_a_rigid_body() -> SectorModel {
+    let mut model = spatial_sector(3);
+    let n = model.dofs.len();
+    let (disk, reference) = (1, 10);
+    let (_, [x, y, _]) = model.place_of(disk).unwrap();
+    let turned = |angle: f64, z_m: f64| {
+        let (sin, cos) = angle.sin_cos();
+        [x * cos - y * sin, x * sin + y * cos, z_m]
+    };
+    let alpha = std::f64::consts::TAU / 3.0;
+    model.dofs.extend(Component::RIGID.map(|component| Dof {
+        node: reference,
+        component,
+        position_m: turned(0.5 * alpha, 0.0),
+        body: Body::Damper,
+    }));
+    let diagonal = |value: f64| (0..6).map(move |own| (n + own, n + own, value));
+    for (matrix, value) in [
+        (&mut model.stiffness, Some(1e3)),
+        (&mut model.mass, Some(1e-2)),
+        (&mut model.blade_stiffness, None),
+    ] {
+        let entries = matrix
+            .lower_entries()
+            .chain(value.into_iter().flat_map(diagonal));
+        let entries: Vec<_> = entries.collect();
+        *matrix = SymmetricSparse::from_lower_triplets(n + 6, &entries);
+    }
+    for (node, angle, first) in [
+        (11, 0.0, ContactSide::Node(disk)),
+        (12, alpha, ContactSide::NextSector(disk)),
+    ] {
+        model.rigid_points.push(RigidPoint {
+            node,
+            reference,
+            position_m: turned(angle, 0.01),
+        });
+        model.contact_pairs.push(ContactPair {
+            first,
+            second: ContactSide::Node(node),
+            normal: [-1.0, 0.0, 0.0],
+            weight: 1.0,
+            load_weight: None,
+        });
+    }
+    for pair in &mut model.contact_pairs {
+        pair.weight = 1.0 / 3.0;
+    }
+    validate(&model).unwrap();
+    model
+}
+
 /// Which model, which file, and the bytes that take its place.
-fn spoiled(case: u64, originals: &[Vec<Vec<u8>>; 2]) -> (usize, usize, Vec<u8>) {
+fn spoiled(case: u64, originals: &[Vec<Vec<u8>>]) -> (usize, usize, Vec<u8>) {
     let mut mutator = Mutator::new(case);
     let (model, file) = (
-        mutator.0.integer(0, 1),
-        mutator.0.integer(0, FILES.len() - 1),
+        mutator.0.integer(0, originals.len() - 1),
+        mutator.0.integer(0, originals[0].len() - 1),
     );
     let bytes = mutator.spoil(&originals[model][file]);
     (model, file, bytes)
@@ -65,13 +126,22 @@ fn read_with(
 
 #[test]
 fn a_spoiled_bundle_is_read_or_refused() {
+    hold(&models(), &FILES[..WITHOUT_RIGID]);
+}
+
+#[test]
+fn a_spoiled_bundle_with_a_rigid_body_is_read_or_refused() {
+    hold(&[with_a_rigid_body()], &FILES);
+}
+
+fn hold(models: &[SectorModel], files: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
-    let originals = models().map(|model| {
-        bundle::write(&model, folder.path()).unwrap();
-        FILES
-            .map(|file| fs::read(folder.path().join(file)).unwrap())
-            .to_vec()
-    });
+    let written = |model: &SectorModel| -> Vec<Vec<u8>> {
+        bundle::write(model, folder.path()).unwrap();
+        let read = |file: &&str| fs::read(folder.path().join(file)).unwrap();
+        files.iter().map(read).collect()
+    };
+    let originals: Vec<_> = models.iter().map(written).collect();
     let accepted = run(
         |case| spoiled(case, &originals).2,
         |case, bytes| {
@@ -184,7 +254,7 @@ fn a_bundle_of_too_many_sectors_is_refused() {
 fn matrices_at_the_ends_of_the_range_are_judged_by_their_own_entries() {
     for scale in [1e-250, 1e250] {
         let model = models()[0].clone();
-        let scaled = |matrix: &blisk::linalg::SymmetricSparse, factor: f64| {
+        let scaled = |matrix: &SymmetricSparse, factor: f64| {
             let entries: Vec<_> = matrix
                 .lower_entries()
                 .map(|(row, column, value)| {
@@ -195,7 +265,7 @@ fn matrices_at_the_ends_of_the_range_are_judged_by_their_own_entries() {
                     )
                 })
                 .collect();
-            blisk::linalg::SymmetricSparse::from_lower_triplets(matrix.dimension(), &entries)
+            SymmetricSparse::from_lower_triplets(matrix.dimension(), &entries)
         };
         let of = |factor: f64| SectorModel {
             stiffness: scaled(&model.stiffness, factor),

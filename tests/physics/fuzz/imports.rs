@@ -7,17 +7,42 @@ use blisk::model::sector::import::import;
 
 use super::mutator::Mutator;
 use super::{assert_clear, run};
+use crate::imports::lumped::wedge;
 use crate::imports::small::Small;
 
 #[test]
 fn spoiled_files_of_other_codes_are_read_or_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let sources = [
+    hold(&[
         Small::calculix(),
         Small::ansys(),
         Small::nastran(),
         Small::op4(),
-    ];
+    ]);
+}
+
+/// A ring that a list states, and a damper body between a sector and the next one.
+#[test]
+fn spoiled_files_with_lists_of_contacts_are_read_or_refused() {
+    let mut ring = Small::calculix();
+    for (name, text) in &mut ring.files {
+        if *name == "import.toml" {
+            assert!(text.contains("[contact]\nblisk = \""), "{text}");
+            *text = text
+                .replace("[contact]\nblisk = \"", "[[contact]]\nfirst = \"blisk.")
+                .replace("\nring = \"", "\nsecond = \"ring.");
+        }
+    }
+    hold(&[ring, wedge()]);
+}
+
+fn hold(sources: &[Small]) {
+    let folder = tempfile::tempdir().unwrap();
+    for (place, source) in sources.iter().enumerate() {
+        let sound = folder.path().join(format!("sound-{place}"));
+        fs::create_dir(&sound).unwrap();
+        source.write(&sound);
+        import(&sound.join("import.toml")).unwrap();
+    }
     // Which source and which of its files follow from the case, for `spoil` and the check alike.
     let choice = |case: u64| {
         let source = &sources[case as usize % sources.len()];

@@ -13,6 +13,7 @@ use blisk::response::harmonic_balance::{Damping, Status};
 use blisk::study::{Study, load_sector_model};
 
 use super::cartesian::CartesianMatrix;
+use super::small::Small;
 use super::writers;
 use crate::extremes::wheels::{under, uneven};
 use crate::wheels::{Wheel, full, pattern, relative};
@@ -145,6 +146,25 @@ fn write_files(folder: &Path) {
     let mesh = writers::calculix_deck(&nodes.into(), &sets);
     fs::write(folder.join("mesh"), mesh).unwrap();
     fs::write(folder.join("import.toml"), IMPORT).unwrap();
+}
+
+/// The same files in memory.
+pub fn wedge() -> Small {
+    let folder = tempfile::tempdir().unwrap();
+    write_files(folder.path());
+    let names = [
+        "import.toml",
+        "mesh",
+        "K.mtx",
+        "M.mtx",
+        "blade.mtx",
+        "dofs.csv",
+        "blade.csv",
+    ];
+    let read = |name| (name, fs::read_to_string(folder.path().join(name)).unwrap());
+    Small {
+        files: names.map(read).to_vec(),
+    }
 }
 
 fn row(sector: &SectorModel, load_n: f64) -> ResponseRow {

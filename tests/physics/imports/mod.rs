@@ -4,7 +4,7 @@ mod built_in;
 mod calculix;
 mod cartesian;
 mod formats;
-mod lumped;
+pub mod lumped;
 mod other_writers;
 mod projection;
 mod refused;
