@@ -15,6 +15,8 @@ const HARMONICS: [u32; 4] = [0, 1, 2, 3];
 const SAMPLES: usize = 512;
 /// Fixed-interface modes of a sector in the truth; those of a nodal diameter in the program are 120.
 const MODES: usize = 480;
+/// Those of the long tests: with 480 the truth itself is up to 8e-4 off where a few pairs just open.
+const MANY_MODES: usize = 700;
 const PATTERNS: u32 = 3;
 /// Those of the long tests.
 const MANY_PATTERNS: u32 = 10;
@@ -131,7 +133,7 @@ fn study(kind: &Kind, patterns: u32) -> Study {
 }
 
 /// Rows of some patterns under three loads: none further from the truth than the bar, some that open and some that slip.
-fn hold(kind: &Kind, patterns: u32) {
+fn hold(kind: &Kind, patterns: u32, modes: usize) {
     faer::set_global_parallelism(faer::Par::Seq);
     let study = study(kind, patterns);
     let model = load_sector_model(&study).expect("a model");
@@ -139,7 +141,7 @@ fn hold(kind: &Kind, patterns: u32) {
         .build(&study, &model, None)
         .expect("an engine");
     let source = pattern_source(&study, &model).expect("patterns");
-    let sector = Sector::new(&within_one_sector(model), MODES);
+    let sector = Sector::new(&within_one_sector(model), modes);
     let period = Period::new(&HARMONICS, SAMPLES);
     let scenarios = study.scenarios();
     let tuned: Vec<_> = scenarios.iter().map(|own| engine.tuned(own)).collect();
@@ -205,55 +207,55 @@ fn hold(kind: &Kind, patterns: u32) {
 
 #[test]
 fn mistuned_wheels_with_a_ring_are_the_full_contact_model() {
-    hold(&KINDS[0], PATTERNS);
+    hold(&KINDS[0], PATTERNS, MODES);
 }
 
 #[test]
 fn mistuned_wheels_with_wedges_are_the_full_contact_model() {
-    hold(&KINDS[1], PATTERNS);
+    hold(&KINDS[1], PATTERNS, MODES);
 }
 
 #[test]
 fn mistuned_wheels_with_shrouds_are_the_full_contact_model() {
-    hold(&KINDS[2], PATTERNS);
+    hold(&KINDS[2], PATTERNS, MODES);
 }
 
 #[test]
 fn mistuned_wheels_on_the_ground_are_the_full_contact_model() {
-    hold(&KINDS[3], PATTERNS);
+    hold(&KINDS[3], PATTERNS, MODES);
 }
 
 #[test]
 #[ignore = "minutes: 30 rows"]
 fn thirty_rows_with_a_ring_are_the_full_contact_model() {
-    hold(&KINDS[0], MANY_PATTERNS);
+    hold(&KINDS[0], MANY_PATTERNS, MANY_MODES);
 }
 
 #[test]
 #[ignore = "minutes: 30 rows"]
 fn thirty_rows_with_wedges_are_the_full_contact_model() {
-    hold(&KINDS[1], MANY_PATTERNS);
+    hold(&KINDS[1], MANY_PATTERNS, MANY_MODES);
 }
 
 #[test]
 #[ignore = "minutes: 30 rows"]
 fn thirty_rows_with_shrouds_are_the_full_contact_model() {
-    hold(&KINDS[2], MANY_PATTERNS);
+    hold(&KINDS[2], MANY_PATTERNS, MANY_MODES);
 }
 
 #[test]
 #[ignore = "minutes: 30 rows"]
 fn thirty_rows_on_the_ground_are_the_full_contact_model() {
-    hold(&KINDS[3], MANY_PATTERNS);
+    hold(&KINDS[3], MANY_PATTERNS, MANY_MODES);
 }
 
 #[test]
 fn mistuned_wheels_with_cylinders_are_the_full_contact_model() {
-    hold(&KINDS[4], PATTERNS);
+    hold(&KINDS[4], PATTERNS, MODES);
 }
 
 #[test]
 #[ignore = "minutes: 30 rows"]
 fn thirty_rows_with_cylinders_are_the_full_contact_model() {
-    hold(&KINDS[4], MANY_PATTERNS);
+    hold(&KINDS[4], MANY_PATTERNS, MANY_MODES);
 }
