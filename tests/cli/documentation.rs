@@ -229,7 +229,7 @@ fn the_tutorial_runs_from_its_first_study_to_its_last_command() {
         .expect("docs/tutorial.md");
     let place = Place::new();
     let lines = shell_lines(&tutorial);
-    assert_eq!(lines[0], "cargo install --path .");
+    assert_eq!(lines[0], "cargo install --path . --locked");
     for line in &lines[1..] {
         let words: Vec<&str> = line.split_whitespace().collect();
         assert_eq!(words[0], "blisk", "{line}");
