@@ -35,8 +35,6 @@ pub(super) fn command(arguments: &InitArguments) -> Result<ExitStatus, Failure> 
 /// A study file that was written.
 #[derive(Debug)]
 pub struct WrittenStudy {
-    /// Its text.
-    pub text: String,
     /// The file.
     pub path: PathBuf,
     /// How many files that it reads were written beside it.
@@ -96,6 +94,5 @@ pub fn write_example(name: &str, out: &Path) -> Result<WrittenStudy, Failure> {
     Ok(WrittenStudy {
         files_beside: written.len() - 1,
         path: out.to_owned(),
-        text,
     })
 }
