@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use blisk::cli::ExitStatus;
+use blisk::cli::{ExitStatus, Failure};
 use blisk::model::sector::ModelError;
 use blisk::study::{Finding, PipelineError, Problem, StudyError};
 use pyo3::prelude::*;
@@ -37,6 +37,11 @@ pub fn of_study(py: Python<'_>, error: &StudyError) -> PyErr {
         _ => None,
     };
     raised(py, status, &error.to_string(), findings)
+}
+
+/// The exception that the failure of a command is.
+pub fn of_failure(py: Python<'_>, failure: &Failure) -> PyErr {
+    raised(py, failure.status, &failure.message, None)
 }
 
 /// What is wrong elsewhere than under a key of the study file.

@@ -4,6 +4,7 @@
 
 mod command;
 mod errors;
+mod files;
 mod questions;
 mod results;
 mod run;
@@ -23,6 +24,11 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<study::CheckedStudy>()?;
     module.add_class::<table::Table>()?;
     module.add_function(wrap_pyfunction!(command::main, module)?)?;
+    module.add_function(wrap_pyfunction!(files::examples, module)?)?;
+    module.add_function(wrap_pyfunction!(files::init, module)?)?;
+    module.add_function(wrap_pyfunction!(files::slurm, module)?)?;
+    module.add_function(wrap_pyfunction!(files::explain, module)?)?;
+    module.add_function(wrap_pyfunction!(files::schema, module)?)?;
     module.add_function(wrap_pyfunction!(study::key_names, module)?)?;
     module.add_function(wrap_pyfunction!(study::tables_of, module)?)?;
     module.add_function(wrap_pyfunction!(run::run, module)?)?;
@@ -31,6 +37,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(run::response, module)?)?;
     module.add_function(wrap_pyfunction!(results::compare, module)?)?;
     module.add_function(wrap_pyfunction!(results::summary, module)?)?;
+    module.add_function(wrap_pyfunction!(results::status, module)?)?;
+    module.add_function(wrap_pyfunction!(results::tails, module)?)?;
     module.add_function(wrap_pyfunction!(results::manifest, module)?)?;
     module.add_function(wrap_pyfunction!(results::report, module)?)?;
     module.add_function(wrap_pyfunction!(results::table, module)?)?;
@@ -39,6 +47,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(questions::merge, module)?)?;
     module.add_function(wrap_pyfunction!(questions::replay, module)?)?;
     module.add_function(wrap_pyfunction!(questions::verify, module)?)?;
+    module.add_function(wrap_pyfunction!(questions::repair, module)?)?;
     module.add_function(wrap_pyfunction!(questions::tradeoff, module)?)?;
     module.add_function(wrap_pyfunction!(questions::estimate, module)?)?;
     module.add_function(wrap_pyfunction!(questions::figure_names, module)?)?;

@@ -7,7 +7,7 @@ use blisk::campaign::{
     CampbellRequest, EstimateRequest, ReplayRequest, ReportRequest, StoredStudy, TimeDomainRequest,
     TradeoffRequest, VerifyRequest,
 };
-use blisk::cli::{IntegrityAnswer, ReplayAnswer, threads as threads_of};
+use blisk::cli::{IntegrityAnswer, RepairAnswer, ReplayAnswer, threads as threads_of};
 use blisk::model::sector::bundle;
 use blisk::population::monte_carlo::LoadCaseName;
 use blisk::population::statistics::EstimateTarget;
@@ -154,6 +154,28 @@ pub fn verify(
             "question = {other} is not accepted; accepted: full_model, dense_sweep, time_domain, integrity"
         ))),
     }
+}
+
+/// Sets damaged files of the folder aside and solves again what they held.
+#[pyfunction]
+pub fn repair(
+    py: Python<'_>,
+    results: PathBuf,
+    threads: Option<u16>,
+    study_file: Option<PathBuf>,
+    listener: Option<Py<PyAny>>,
+) -> PyResult<Answer> {
+    let answer = watch(py, listener.as_ref(), OnSignal::Wait, move |progress| {
+        let repaired = blisk::campaign::repair(
+            &results,
+            study_file.as_deref(),
+            threads_of(threads),
+            &ReducedEngineSource,
+            progress,
+        )?;
+        Ok(RepairAnswer { results, repaired })
+    })?;
+    answer_of(&answer)
 }
 
 /// Measures what accuracy costs on a sample of the study's rows, and writes the tables into `out`.

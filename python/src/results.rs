@@ -3,9 +3,13 @@
 use std::fmt::Display;
 use std::path::PathBuf;
 
-use blisk::campaign::{CompareRequest, ReportRequest, checked_table, summarise, summarise_partly};
+use blisk::campaign::{
+    CompareRequest, ReportRequest, checked_table, fit_result_tails, status_of_folder, summarise,
+    summarise_partly,
+};
+use blisk::cli::StatusAnswer;
 use blisk::population::table::{Manifest, write_atomically};
-use blisk::report::html_report;
+use blisk::report::{StatisticsReport, html_report};
 use blisk::settings::ReducedEngineSource;
 use blisk::study::PipelineError;
 use pyo3::exceptions::PyRuntimeError;
@@ -32,6 +36,27 @@ pub fn summary(py: Python<'_>, results: PathBuf) -> PyResult<(Answer, Option<(u6
         .detach(summarised)
         .map_err(|error| of_pipeline(py, &error))?;
     Ok((answer_of(&summary)?, unfinished))
+}
+
+/// How far the folder is.
+#[pyfunction]
+pub fn status(py: Python<'_>, results: PathBuf) -> PyResult<Answer> {
+    let found = py.detach(|| status_of_folder(&results));
+    answer_of(&StatusAnswer(
+        found.map_err(|error| of_pipeline(py, &error))?,
+    ))
+}
+
+/// The summary of the finished folder with fits of its tails, which are written into it.
+#[pyfunction]
+pub fn tails(py: Python<'_>, results: PathBuf) -> PyResult<Answer> {
+    let report = watch(py, None, OnSignal::Leave, move |_| {
+        Ok(StatisticsReport {
+            summary: summarise(&results)?,
+            tails: Some(fit_result_tails(&results)?),
+        })
+    })?;
+    answer_of(&report)
 }
 
 /// `manifest.json` of the folder as JSON.

@@ -3,12 +3,14 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use blisk::cli::CheckAnswer;
 use blisk::study::{Study, StudyDigest, echo, keys, load_sector_model, pattern_source};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::json;
 
 use crate::errors::{of_pipeline, of_study};
+use crate::results::{Answer, answer_of};
 
 /// A study that the reader of study files has accepted.
 #[pyclass(frozen, module = "blisk._native")]
@@ -64,6 +66,12 @@ impl CheckedStudy {
         let found = py.detach(looked).map_err(|error| of_pipeline(py, &error))?;
         let remarks: Vec<String> = found.remarks.iter().map(ToString::to_string).collect();
         Ok(json!({ "text": found.to_string(), "remarks": remarks }).to_string())
+    }
+
+    /// What the command `check` finds, as JSON and as text.
+    fn check(&self, py: Python<'_>) -> PyResult<Answer> {
+        let found = py.detach(|| CheckAnswer::of(&self.0));
+        answer_of(&found.map_err(|error| of_pipeline(py, &error))?)
     }
 }
 

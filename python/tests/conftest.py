@@ -1,6 +1,8 @@
 """What the tests share: a small study, its results, and the command."""
 
+import ast
 import copy
+import json
 import os
 import subprocess
 import sys
@@ -12,26 +14,18 @@ import blisk
 
 ROOT = Path(__file__).resolve().parents[2]
 
+
+def study_of(script):
+    """The keywords of the first study that a script makes, without carrying it out."""
+    calls = [node for node in ast.walk(ast.parse(script.read_text())) if isinstance(node, ast.Call)]
+    made = next(call for call in calls if ast.unparse(call.func) == "blisk.Study")
+    return {own.arg: ast.literal_eval(own.value) for own in made.keywords}
+
+
+# The study of the example with less to solve.
 SMALL = {
+    **study_of(ROOT / "python" / "examples" / "quickstart.py"),
     "study": {"name": "small", "seed": 7, "patterns": 80},
-    "model": {
-        "source": "lumped",
-        "lumped": {
-            "sectors": 6,
-            "blade_mass_kg": 0.25,
-            "disk_mass_kg": 1.0,
-            "ring_mass_kg": 0.03,
-            "blade_stiffness_n_per_m": 2.5e6,
-            "disk_ground_stiffness_n_per_m": 7.0e6,
-            "disk_coupling_stiffness_n_per_m": 2.5e5,
-            "ring_coupling_stiffness_n_per_m": 8.0e5,
-            "ring_disk_stiffness_n_per_m": 1.0e4,
-        },
-    },
-    "contact": {"law": "macro_slip_1d", "friction_coefficient": 0.3, "tangential_stiffness_n_per_m": 8.0e5},
-    "damping": {"structural_loss_factor": 0.002},
-    "excitation": {"engine_orders": [2], "amplitude_n": 10.0},
-    "mistuning": {"distribution": {"kind": "normal"}},
     "sweep": {"normal_load_n": ["slide", 50, 150, "stuck"], "standard_deviation": [0.03]},
     "solver": {"harmonics": [1, 3]},
 }
@@ -51,9 +45,26 @@ def called(*arguments, command=None, cwd=None):
     return subprocess.run(line, cwd=cwd, capture_output=True, text=True, check=False)
 
 
+def is_that_of(answer, *line, code=0):
+    """The answer has the numbers and the words of the command."""
+    ended = called(*line, "--json")
+    assert ended.returncode == code, ended.stderr
+    assert answer == json.loads(ended.stdout)
+    assert str(answer).rstrip() + "\n" == called(*line).stdout
+
+
 @pytest.fixture
 def small():
     return copy.deepcopy(SMALL)
+
+
+@pytest.fixture
+def study(small, tmp_path, monkeypatch):
+    """The small study, and the same one in a file in the working directory."""
+    monkeypatch.chdir(tmp_path)
+    study = blisk.Study(**small)
+    (tmp_path / "study.toml").write_text(study.to_toml())
+    return study
 
 
 @pytest.fixture(scope="session")

@@ -3,32 +3,16 @@
 import json
 import math
 import pickle
+import shutil
 
 import matplotlib
 import numpy
 import pytest
-from conftest import SMALL, called
+from conftest import SMALL, called, is_that_of
 
 import blisk
 
 matplotlib.use("Agg")
-
-
-@pytest.fixture
-def study(small, tmp_path, monkeypatch):
-    """The small study, and the same one in a file in the working directory."""
-    monkeypatch.chdir(tmp_path)
-    study = blisk.Study(**small)
-    (tmp_path / "study.toml").write_text(study.to_toml())
-    return study
-
-
-def is_that_of(answer, *line, code=0):
-    """The answer has the numbers and the words of the command."""
-    ended = called(*line, "--json")
-    assert ended.returncode == code, ended.stderr
-    assert answer == json.loads(ended.stdout)
-    assert str(answer).rstrip() + "\n" == called(*line).stdout
 
 
 def exact_hz(diameter, contact_stiffness, own=SMALL["model"]["lumped"]):
@@ -129,6 +113,62 @@ def test_files_are_looked_at(study):
         blisk.verify(results, "luck")
     with pytest.raises(ValueError, match="time_domain"):
         blisk.verify(results, row=(0, 0))
+
+
+def damaged(folder, *names):
+    """The folder with files that have lost their last byte."""
+    for name in names:
+        path = folder / name
+        path.write_bytes(path.read_bytes()[:-1])
+    return folder
+
+
+@pytest.mark.parametrize("names", [[], ["responses.parquet"], ["scenarios.parquet", "manifest.json"]])
+def test_a_repair_is_that_of_the_command(study, tmp_path, names):
+    results = blisk.run(study.replace({"study.patterns": 6}), out="first", threads=1)
+    whole = {path.name: path.read_bytes() for path in results.folder.glob("*.parquet")}
+    # The command and the function name the folder, which therefore has to be the same one.
+    given = {}
+    (tmp_path / "study.toml").write_text(study.replace({"study.patterns": 6}).to_toml())
+    for way in ("own", "words", "json"):
+        shutil.rmtree("out", ignore_errors=True)
+        folder = damaged(shutil.copytree("first", tmp_path / "out"), *names)
+        if way == "own":
+            given[way] = blisk.verify("out", "integrity", repair=True, study_file="study.toml", threads=1)
+            assert {path.name: path.read_bytes() for path in folder.glob("*.parquet")} == whole
+            assert blisk.verify("out", "integrity")["whole"]
+        else:
+            flags = ["--json"] if way == "json" else []
+            ended = called("verify", "out", "--repair", "--study", "study.toml", "--threads", 1, *flags)
+            assert ended.returncode == 0, ended.stderr
+            given[way] = ended.stdout
+    assert given["own"] == json.loads(given["json"])
+    assert str(given["own"]) + "\n" == given["words"]
+    assert len(given["own"]["set_aside"]) == len(names)
+    with pytest.raises(ValueError, match="repair is that of question = 'integrity'"):
+        blisk.verify(results, repair=True)
+
+
+def test_how_far_a_folder_is_is_that_of_the_command(study, finished):
+    is_that_of(blisk.status(finished), "status", finished.folder)
+    assert blisk.status(finished.folder)["planned"] == 320
+    ended = called("run", "study.toml", "--out", "out", "--shard", "1/2")
+    assert ended.returncode == 0, ended.stderr
+    answer = blisk.status("out")
+    is_that_of(answer, "status", "out")
+    assert answer["missing_shards"] == [2] == [int(called("status", "out", "--missing").stdout)]
+    with pytest.raises(blisk.BliskError) as refused:
+        blisk.status("nothing")
+    assert refused.value.exit_code == called("status", "nothing").returncode
+
+
+def test_fitted_tails_are_those_of_the_command(study):
+    results = blisk.run(study, out="out", threads=2)
+    answer = blisk.tails(results)
+    written = (results.folder / "tail_fits.parquet").read_bytes()
+    is_that_of(answer, "stats", "out", "--tails")
+    assert (results.folder / "tail_fits.parquet").read_bytes() == written
+    assert len(answer["tails"]) == 4 * 2 and len(results.table("tail_fits")) > 0
 
 
 def test_an_estimate_is_that_of_the_command(study):

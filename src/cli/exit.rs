@@ -112,9 +112,11 @@ impl From<&TableError> for ExitStatus {
 
 /// A command that failed: what to say and how to exit.
 #[derive(Debug)]
-pub(super) struct Failure {
-    pub(super) status: ExitStatus,
-    pub(super) message: String,
+pub struct Failure {
+    /// How the command ends.
+    pub status: ExitStatus,
+    /// What it says.
+    pub message: String,
 }
 
 impl Failure {

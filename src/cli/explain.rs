@@ -4,13 +4,15 @@ use std::fmt;
 
 use clap::Args;
 use clap_complete::Shell;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::input::nearest_key_names;
 use crate::model::sector::import::{import_keys, import_schema};
-use crate::study::{KeySpec, keys_about, keys_below, nearest_keys, study_schema, terms_about};
+use crate::study::{
+    KeySpec, Term, keys_about, keys_below, nearest_keys, study_schema, terms_about,
+};
 
 /// Arguments of `blisk explain`.
 #[derive(Debug, Args)]
@@ -93,39 +95,65 @@ fn plain(words: &str) -> String {
 }
 
 pub(super) fn explain(arguments: &ExplainArguments) -> Result<ExitStatus, Failure> {
-    let name = arguments.words.join(" ");
-    let mut keys = keys_below(&name);
-    if keys.is_empty() {
-        keys = import_keys_below(&name);
-    }
-    let mut terms = Vec::new();
-    if keys.is_empty() {
-        keys = keys_about(&name);
-        terms = terms_about(&name);
-    }
-    if keys.is_empty() && terms.is_empty() {
-        let near = if name.starts_with("import.") {
-            nearest_key_names(&import_keys_below("import"), &name)
-        } else {
-            nearest_keys(&name)
-        };
-        return Err(Failure::usage(format!(
-            "there is no key {name}; did you mean {}?",
-            near.join(" or ")
-        )));
-    }
-    let found: Vec<Explanation> = keys.iter().map(Explanation::from).collect();
-    if arguments.json {
-        output::json_only(&found)?;
-        return Ok(ExitStatus::Done);
-    }
-    let apart = !terms.is_empty() || keys.len() > 1;
-    let terms = terms
-        .iter()
-        .map(|term| format!("{}\n  meaning   {}\n", term.word, term.meaning));
-    let text: Vec<String> = terms.chain(found.iter().map(ToString::to_string)).collect();
-    output::text(&text.join(if apart { "\n" } else { "" }))?;
+    let found = Explanations::about(&arguments.words.join(" "))?;
+    output::result(arguments.json, &found)?;
     Ok(ExitStatus::Done)
+}
+
+/// Keys and terms that were asked for: as JSON the keys, as text both.
+#[derive(Debug)]
+pub struct Explanations {
+    keys: Vec<Explanation>,
+    terms: Vec<Term>,
+}
+
+impl Explanations {
+    /// The keys that `name` is or that stand below it, else the keys and terms that have its words; all keys for "".
+    ///
+    /// # Errors
+    /// There is none of them; the message has the nearest names.
+    pub fn about(name: &str) -> Result<Self, Failure> {
+        let mut keys = keys_below(name);
+        if keys.is_empty() {
+            keys = import_keys_below(name);
+        }
+        let mut terms = Vec::new();
+        if keys.is_empty() {
+            keys = keys_about(name);
+            terms = terms_about(name);
+        }
+        if keys.is_empty() && terms.is_empty() {
+            let near = if name.starts_with("import.") {
+                nearest_key_names(&import_keys_below("import"), name)
+            } else {
+                nearest_keys(name)
+            };
+            return Err(Failure::usage(format!(
+                "there is no key {name}; did you mean {}?",
+                near.join(" or ")
+            )));
+        }
+        let keys = keys.iter().map(Explanation::from).collect();
+        Ok(Self { keys, terms })
+    }
+}
+
+impl Serialize for Explanations {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.keys.serialize(serializer)
+    }
+}
+
+impl fmt::Display for Explanations {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let apart = !self.terms.is_empty() || self.keys.len() > 1;
+        let terms = { self.terms.iter() }
+            .map(|term| format!("{}\n  meaning   {}\n", term.word, term.meaning));
+        let text: Vec<String> = terms
+            .chain(self.keys.iter().map(ToString::to_string))
+            .collect();
+        f.write_str(&text.join(if apart { "\n" } else { "" }))
+    }
 }
 
 /// Keys of import files, each after the word `import`: all of them for that word, else those that `name` is, or

@@ -1,5 +1,6 @@
 //! `blisk init`: a commented study file.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -27,9 +28,46 @@ pub struct InitArguments {
 }
 
 pub(super) fn command(arguments: &InitArguments) -> Result<ExitStatus, Failure> {
-    let out = &arguments.out;
-    let example = EXAMPLES.iter().find(|(name, _)| *name == arguments.example);
-    let (text, data) = example_beside_its_data(example.map_or("", |(_, text)| text));
+    output::text(&write_example(&arguments.example, &arguments.out)?)?;
+    Ok(ExitStatus::Done)
+}
+
+/// A study file that was written.
+#[derive(Debug)]
+pub struct WrittenStudy {
+    /// The file.
+    pub path: PathBuf,
+    /// How many files that it reads were written beside it.
+    pub files_beside: usize,
+}
+
+impl fmt::Display for WrittenStudy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let beside = match self.files_beside {
+            0 => String::new(),
+            1 => ", and beside it a file that it reads".to_owned(),
+            files => format!(", and beside it {files} files that it reads"),
+        };
+        let path = self.path.display();
+        write!(
+            f,
+            "wrote {path}{beside}; next: blisk check {path}, blisk run {path}"
+        )
+    }
+}
+
+/// Writes the study `name` of those that come with the program to the file `out`, and what it reads beside that.
+///
+/// # Errors
+/// There is no such study, a file exists already, or one cannot be written.
+pub fn write_example(name: &str, out: &Path) -> Result<WrittenStudy, Failure> {
+    let Some((_, example)) = EXAMPLES.iter().find(|(own, _)| *own == name) else {
+        let names = EXAMPLES.map(|(own, _)| own).join(", ");
+        return Err(Failure::usage(format!(
+            "example = {name} is not accepted; accepted: {names}"
+        )));
+    };
+    let (text, data) = example_beside_its_data(example);
     let folder = out.parent().unwrap_or_else(|| Path::new(""));
     let mut written: Vec<(PathBuf, &str)> = Vec::new();
     for (path, text) in data {
@@ -40,7 +78,7 @@ pub(super) fn command(arguments: &InitArguments) -> Result<ExitStatus, Failure> 
         }
         written.push((path, text));
     }
-    written.push((out.clone(), &text));
+    written.push((out.to_owned(), &text));
     if let Some((there, _)) = written.iter().find(|(path, _)| path.exists()) {
         return Err(Failure {
             status: ExitStatus::InputOutput,
@@ -53,14 +91,8 @@ pub(super) fn command(arguments: &InitArguments) -> Result<ExitStatus, Failure> 
     for (path, text) in &written {
         write_atomically(path, text.as_bytes())?;
     }
-    let read = match written.len() - 1 {
-        0 => String::new(),
-        1 => ", and beside it a file that it reads".to_owned(),
-        files => format!(", and beside it {files} files that it reads"),
-    };
-    output::text(&format!(
-        "wrote {}{read}; next: blisk check {0}, blisk run {0}",
-        out.display()
-    ))?;
-    Ok(ExitStatus::Done)
+    Ok(WrittenStudy {
+        files_beside: written.len() - 1,
+        path: out.to_owned(),
+    })
 }

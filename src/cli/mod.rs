@@ -30,11 +30,16 @@ mod tradeoff;
 mod verify;
 
 pub use arguments::{Arguments, Command};
-pub use exit::ExitStatus;
+pub use check::CheckAnswer;
+pub use exit::{ExitStatus, Failure};
+pub use explain::Explanations;
 pub use import::{ImportAnswer, import_bundle};
+pub use init::{WrittenStudy, write_example};
 pub use replay::ReplayAnswer;
-pub use run_command::main;
+pub use run_command::{main, main_of};
 pub use scheduler::threads;
-pub use verify::IntegrityAnswer;
+pub use slurm::{SlurmArguments, WrittenScript, time_limit, write_slurm_script};
+pub use status::StatusAnswer;
+pub use verify::{IntegrityAnswer, RepairAnswer};
 
 mod run_command;

@@ -1,6 +1,7 @@
 //! From the command line to an exit code.
 
 use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 
 use clap::{CommandFactory, Parser};
 
@@ -11,8 +12,14 @@ use super::{
     stats, status, tradeoff, verify,
 };
 
-/// Carries out the command line `arguments` (the first is the program's name).
+/// Carries out the command line `arguments` (the first is the program's name) of this executable.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
+    let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("blisk"));
+    main_of(&program, arguments)
+}
+
+/// Carries out the command line `arguments` of the command `program`, which need not be this executable.
+pub fn main_of(program: &Path, arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => return output::of_clap(&error).unwrap_or_else(|failure| failed(&failure)),
@@ -23,7 +30,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             message: format!("cannot watch for signals: {error}"),
         });
     }
-    carry_out(arguments.command).unwrap_or_else(|failure| failed(&failure))
+    carry_out(program, arguments.command).unwrap_or_else(|failure| failed(&failure))
 }
 
 fn failed(failure: &Failure) -> ExitStatus {
@@ -31,7 +38,7 @@ fn failed(failure: &Failure) -> ExitStatus {
     interrupt::ended(failure.status)
 }
 
-fn carry_out(command: Command) -> Result<ExitStatus, Failure> {
+fn carry_out(program: &Path, command: Command) -> Result<ExitStatus, Failure> {
     match command {
         Command::Init(arguments) => init::command(&arguments),
         Command::Check { study, json } => check::command(&study, json),
@@ -45,7 +52,7 @@ fn carry_out(command: Command) -> Result<ExitStatus, Failure> {
         Command::Plan(arguments) => plan::command(&arguments),
         Command::Run(arguments) => run::command(arguments),
         Command::Merge(arguments) => merge::command(&arguments),
-        Command::Slurm(arguments) => slurm::command(&arguments),
+        Command::Slurm(arguments) => slurm::command(&arguments, program),
         Command::Status(arguments) => status::command(&arguments),
         Command::Response {
             study,

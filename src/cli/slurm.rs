@@ -1,5 +1,6 @@
 //! `blisk slurm`: a script that submits a study to Slurm as an array of shards and a merge after it.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -32,7 +33,40 @@ pub struct SlurmArguments {
     pub script: Option<PathBuf>,
 }
 
-pub(super) fn command(arguments: &SlurmArguments) -> Result<ExitStatus, Failure> {
+pub(super) fn command(arguments: &SlurmArguments, program: &Path) -> Result<ExitStatus, Failure> {
+    output::text(&write_slurm_script(arguments, program)?)?;
+    Ok(ExitStatus::Done)
+}
+
+/// A script that was written.
+#[derive(Debug)]
+pub struct WrittenScript {
+    /// The script.
+    pub path: PathBuf,
+    /// Number of shards that it submits.
+    pub tasks: u32,
+}
+
+impl fmt::Display for WrittenScript {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { path, tasks } = self;
+        let path = path.display();
+        write!(
+            f,
+            "wrote {path}; `bash {path}` submits {tasks} shards and their merge"
+        )
+    }
+}
+
+/// Writes the script that submits a study; `program` is the command `blisk` that its tasks carry out.
+///
+/// # Errors
+/// The study is invalid or cannot be cut into so many shards, a path has control characters, or the script exists
+/// already or cannot be written.
+pub fn write_slurm_script(
+    arguments: &SlurmArguments,
+    program: &Path,
+) -> Result<WrittenScript, Failure> {
     for (name, path) in [
         ("STUDY", Some(&arguments.study)),
         ("--out", arguments.out.as_ref()),
@@ -60,23 +94,20 @@ pub(super) fn command(arguments: &SlurmArguments) -> Result<ExitStatus, Failure>
     }
     let out = arguments.out.clone();
     let results = out.unwrap_or_else(|| Path::new("results").join(&study.name));
-    let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("blisk"));
     let text = script_of(&Submission {
         name: &study.name,
         tasks: arguments.tasks,
         threads: arguments.threads,
         time: arguments.time.as_deref(),
-        program: quoted(&program),
+        program: quoted(program),
         study: quoted(&arguments.study),
         results: quoted(&results),
     });
     write_atomically(&script, text.as_bytes())?;
-    output::text(&format!(
-        "wrote {0}; `bash {0}` submits {1} shards and their merge",
-        script.display(),
-        arguments.tasks
-    ))?;
-    Ok(ExitStatus::Done)
+    Ok(WrittenScript {
+        path: script,
+        tasks: arguments.tasks,
+    })
 }
 
 /// A path in the script is one word of one line.
@@ -95,7 +126,10 @@ fn refuse_control_characters(name: &str, path: Option<&PathBuf>) -> Result<(), F
 }
 
 /// A time limit in one of the forms of `sbatch --time`.
-fn time_limit(text: &str) -> Result<String, String> {
+///
+/// # Errors
+/// It has none of them; the message says which ones there are.
+pub fn time_limit(text: &str) -> Result<String, String> {
     let number = |part: &str| {
         (1..=9).contains(&part.len()) && part.bytes().all(|byte| byte.is_ascii_digit())
     };

@@ -1,9 +1,10 @@
 //! `blisk status`: how far a results folder is.
 
-use std::fmt::Write;
+use std::fmt::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
+use serde::Serialize;
 
 use super::exit::Failure;
 use super::{ExitStatus, output};
@@ -27,12 +28,21 @@ pub(super) fn command(arguments: &StatusArguments) -> Result<ExitStatus, Failure
     if arguments.missing {
         let numbers: Vec<String> = status.missing_shards.iter().map(u32::to_string).collect();
         output::text(&numbers.join(","))?;
-    } else if arguments.json {
-        output::json_only(&status)?;
     } else {
-        output::text(&lines(&status).join("\n"))?;
+        output::result(arguments.json, &StatusAnswer(status))?;
     }
     Ok(ExitStatus::Done)
+}
+
+/// How far a results folder is, as the command tells it.
+#[derive(Debug, Serialize)]
+#[serde(transparent)]
+pub struct StatusAnswer(pub FolderStatus);
+
+impl fmt::Display for StatusAnswer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&lines(&self.0).join("\n"))
+    }
 }
 
 fn lines(status: &FolderStatus) -> Vec<String> {

@@ -211,23 +211,45 @@ fn repaired(arguments: &VerifyArguments) -> Result<ExitStatus, Failure> {
         }
         other => other?,
     };
-    let words = in_words(&repaired, &results);
-    if arguments.json {
-        output::json_only(&json!({
-            "set_aside": repaired.set_aside.iter().map(|(from, to)| json!({ "file": from, "now": to })).collect::<Vec<_>>(),
-            "missing": repaired.missing,
-            "rows_solved": repaired.outcome.as_ref().map(|outcome| outcome.rows_solved),
-            "rows_reused": repaired.outcome.as_ref().map(|outcome| outcome.rows_reused),
-            "different": repaired.different,
-        }))?;
-    } else {
-        output::text(&words.join("\n"))?;
-    }
-    Ok(if repaired.different.is_empty() {
+    let answer = RepairAnswer { results, repaired };
+    output::result(arguments.json, &answer)?;
+    Ok(if answer.repaired.different.is_empty() {
         ExitStatus::Done
     } else {
         ExitStatus::VerificationFailed
     })
+}
+
+/// What a repair came to, as the command tells it.
+#[derive(Debug)]
+pub struct RepairAnswer {
+    /// The results folder.
+    pub results: PathBuf,
+    /// What was done.
+    pub repaired: Repair,
+}
+
+impl Serialize for RepairAnswer {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let repaired = &self.repaired;
+        let set_aside = { repaired.set_aside.iter() }
+            .map(|(from, to)| json!({ "file": from, "now": to }))
+            .collect::<Vec<_>>();
+        json!({
+            "set_aside": set_aside,
+            "missing": repaired.missing,
+            "rows_solved": repaired.outcome.as_ref().map(|outcome| outcome.rows_solved),
+            "rows_reused": repaired.outcome.as_ref().map(|outcome| outcome.rows_reused),
+            "different": repaired.different,
+        })
+        .serialize(serializer)
+    }
+}
+
+impl Display for RepairAnswer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&in_words(&self.repaired, &self.results).join("\n"))
+    }
 }
 
 /// What a repair came to, a line each.

@@ -12,6 +12,7 @@ Numbers are those of the command ``blisk``, bit for bit. Units stand in the name
 from ._answer import Answer
 from ._answers import (
     campbell,
+    check,
     compare,
     estimate,
     merge,
@@ -21,11 +22,14 @@ from ._answers import (
     plan,
     replay,
     response,
+    status,
+    tails,
     tradeoff,
     verify,
 )
 from ._errors import BliskError, Finding, InputError
 from ._figure import Figure, figures
+from ._files import Keys, explain, init, schema, slurm
 from ._native import BUILD as __build__
 from ._native import VERSION as __version__
 from ._native import Table
@@ -43,6 +47,7 @@ __all__ = [
     "Figure",
     "Finding",
     "InputError",
+    "Keys",
     "Peak",
     "Progress",
     "Results",
@@ -53,9 +58,12 @@ __all__ = [
     "__build__",
     "__version__",
     "campbell",
+    "check",
     "compare",
     "estimate",
+    "explain",
     "figures",
+    "init",
     "merge",
     "model",
     "modes",
@@ -64,6 +72,10 @@ __all__ = [
     "replay",
     "response",
     "run",
+    "schema",
+    "slurm",
+    "status",
+    "tails",
     "tradeoff",
     "verify",
 ]

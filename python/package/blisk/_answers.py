@@ -17,6 +17,37 @@ from ._run import checked_threads
 from ._study import Study
 
 
+Folder = Union[Results, str, os.PathLike[str]]
+"""Results, or the path of their folder, which need not be whole."""
+
+
+def check(study: Study) -> Answer:
+    """Looks at model and patterns of a study, and solves nothing.
+
+    ``study``: the study with every default. ``study_digest``, ``inputs``: digests, hexadecimal. ``scenarios``, ``rows``:
+    their numbers. ``echo``: what will be solved, with ``remarks`` on what is unusual. ``rotation``: normal loads of each
+    speed, where a study has them.
+
+    Raises ``InputError`` with ``findings`` if the model or the patterns are not accepted. A study file that is not
+    accepted raises it when it is read, by ``Study.from_toml``.
+    """
+    return answer_of(study._checked.check())
+
+
+def status(results: Folder) -> Answer:
+    """How far a results folder is, which is not touched: state, rows by status, rows per second, seconds left, shards."""
+    return answer_of(_native.status(_folder_of(results)))
+
+
+def tails(results: Results) -> Answer:
+    """The summary with Weibull and generalised extreme value laws fitted to the tails, in ``tails``.
+
+    Percentiles are of peak amplitude (m) and amplification factor (1). The fits are also written into the folder:
+    ``results.table("tail_fits")``, a row per scenario, quantity, law and percentile.
+    """
+    return answer_of(_native.tails(results.folder))
+
+
 def compare(*results: Results, percentile: float = 95.0, baseline: Optional[int] = None) -> Answer:
     """Percentiles between the loads of one study, or between studies, paired on the patterns that they share.
 
@@ -259,9 +290,10 @@ def replay(
 
 
 def verify(
-    results: Results,
+    results: Folder,
     question: str = "full_model",
     *,
+    repair: bool = False,
     sample: int = 10,
     seed: Optional[int] = None,
     row: Optional[tuple[int, int]] = None,
@@ -274,17 +306,30 @@ def verify(
     ``question``: ``full_model``, the same on the full-contact model? ``dense_sweep``: a higher peak elsewhere?
     ``time_domain``: the same by integration in time? of one row, ``row`` being scenario and pattern. ``integrity``: are
     all files as they were written (``whole``)? The first two write tables, which ``results.table`` reads.
+    ``repair``: of ``integrity``; damaged files are set aside (``set_aside``), what they held is solved again, and
+    ``different`` names tables that are not the same bytes as before. The study is that of the manifest, or that of
+    ``study_file`` where the manifest is damaged. ``results`` may be the path of a folder that does not open.
     ``sample``: number of rows. ``seed``: of the sample; that of the study unless given.
     """
     if sample < 1:
         raise ValueError(f"sample = {sample} is not accepted; accepted: at least 1")
     if row is not None and question != "time_domain":
         raise ValueError("row is that of question = 'time_domain'")
+    if repair and question != "integrity":
+        raise ValueError("repair is that of question = 'integrity'")
+    folder = _folder_of(results)
     path = None if study_file is None else Path(study_file)
     with listening(progress) as listener:
-        own = (question, sample, seed, row, checked_threads(threads), path, listener)
-        answer = _native.verify(results.folder, *own)
+        if repair:
+            answer = _native.repair(folder, checked_threads(threads), path, listener)
+        else:
+            own = (question, sample, seed, row, checked_threads(threads), path, listener)
+            answer = _native.verify(folder, *own)
     return answer_of(answer)
+
+
+def _folder_of(results: Folder) -> Path:
+    return results.folder if isinstance(results, Results) else Path(results)
 
 
 def _percent(percent: float) -> float:

@@ -13,4 +13,4 @@ def main() -> None:
     # The command watches for signals itself; Python's handler would raise KeyboardInterrupt after it.
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
-    sys.exit(_native.main(["blisk", *sys.argv[1:]]))
+    sys.exit(_native.main(sys.argv[0], ["blisk", *sys.argv[1:]]))

@@ -15,9 +15,12 @@ __all__ = [
     "campbell",
     "compare",
     "estimate",
+    "examples",
+    "explain",
     "figure",
     "figure_names",
     "import_sector",
+    "init",
     "key_names",
     "main",
     "manifest",
@@ -25,13 +28,18 @@ __all__ = [
     "model",
     "optimum",
     "plan",
+    "repair",
     "replay",
     "report",
     "response",
     "run",
+    "schema",
+    "slurm",
+    "status",
     "summary",
     "table",
     "tables_of",
+    "tails",
     "tradeoff",
     "verify",
 ]
@@ -57,6 +65,7 @@ class CheckedStudy:
     def digest(self) -> str: ...
     def resolved(self) -> str: ...
     def echo(self) -> str: ...
+    def check(self) -> tuple[str, str]: ...
 
 @final
 class Table:
@@ -89,7 +98,20 @@ class Table:
     def __arrow_c_stream__(self, requested_schema: Optional[object] = None) -> object:
         """The rows by the Arrow PyCapsule interface."""
 
-def main(arguments: Sequence[str]) -> int: ...
+def main(program: _Path, arguments: Sequence[str]) -> int: ...
+def examples() -> list[tuple[str, str]]: ...
+def init(example: str, out: _Path) -> None: ...
+def slurm(
+    study: _Path,
+    tasks: int,
+    out: Optional[_Path],
+    threads: int,
+    time: Optional[str],
+    script: Optional[_Path],
+    program: _Path,
+) -> _Path: ...
+def explain(name: str) -> tuple[str, str]: ...
+def schema(of_import: bool) -> str: ...
 def key_names() -> list[str]: ...
 def tables_of(text: str) -> str: ...
 def run(
@@ -124,6 +146,8 @@ def response(
 ) -> Table: ...
 def compare(folders: Sequence[_Path], percent: float, baseline: Optional[int]) -> tuple[str, str]: ...
 def summary(results: _Path) -> tuple[tuple[str, str], Optional[tuple[int, int]]]: ...
+def status(results: _Path) -> tuple[str, str]: ...
+def tails(results: _Path) -> tuple[str, str]: ...
 def manifest(results: _Path) -> str: ...
 def report(results: _Path, path: _Path, curves: bool, study_file: Optional[_Path]) -> None: ...
 def table(results: _Path, name: str) -> Table: ...
@@ -143,6 +167,12 @@ def verify(
     sample: int,
     seed: Optional[int],
     row: Optional[tuple[int, int]],
+    threads: Optional[int],
+    study_file: Optional[_Path],
+    listener: Optional[_Listener],
+) -> tuple[str, str]: ...
+def repair(
+    results: _Path,
     threads: Optional[int],
     study_file: Optional[_Path],
     listener: Optional[_Listener],
