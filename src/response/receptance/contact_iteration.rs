@@ -30,28 +30,56 @@ const DAMPING: f64 = 0.5;
 struct Plan {
     renewals: &'static [usize],
     iterations: usize,
+    shapes: PreconditionedShapes,
+}
+
+/// Blade shapes that a preconditioner takes in.
+#[derive(Clone, Copy)]
+enum PreconditionedShapes {
+    /// Those of every harmonic that are not nearly static.
+    Resonant,
+    /// The first shape, of harmonic 1.
+    FirstOfFundamental,
 }
 
 /// From motions that are known beside the frequency or with other harmonics.
 const WARM: Plan = Plan {
     renewals: &[0],
     iterations: 100,
+    shapes: PreconditionedShapes::FirstOfFundamental,
 };
 /// From the linear response, whose tangent says little.
 const COLD: Plan = Plan {
     renewals: &[0, 3],
     iterations: 80,
+    shapes: PreconditionedShapes::FirstOfFundamental,
 };
 /// Where both fail.
 const SLOW: Plan = Plan {
     renewals: &[0, 10, 25],
     iterations: 160,
+    shapes: PreconditionedShapes::FirstOfFundamental,
 };
+
+/// Where all of these fail: harmonics above 1 near resonances that deviations split.
+const RESONANT: [Plan; 2] = [
+    Plan {
+        renewals: &[0, 3],
+        iterations: 80,
+        shapes: PreconditionedShapes::Resonant,
+    },
+    Plan {
+        renewals: &[0, 10, 25],
+        iterations: 160,
+        shapes: PreconditionedShapes::Resonant,
+    },
+];
 
 /// For the errors of a solution, from that solution.
 const BESIDE: Plan = Plan {
     renewals: &[0],
     iterations: 120,
+    shapes: PreconditionedShapes::FirstOfFundamental,
 };
 
 /// Newton steps of the last attempt at most.
@@ -158,6 +186,7 @@ impl ContactEquation<'_> {
         let plans = [(&COLD, &cold), (&SLOW, &cold)];
         let again = is_warm.then_some((&SLOW, &start));
         let plans = warm.into_iter().chain(plans).chain(again);
+        let plans = plans.chain(RESONANT.iter().map(|plan| (plan, &cold)));
         for (rung, (plan, begin)) in plans.enumerate() {
             if rung > 0 {
                 self.buffers.motions.clone_from(begin);
@@ -229,7 +258,7 @@ impl ContactEquation<'_> {
                 break;
             }
             if renew {
-                preconditioners = self.preconditioners();
+                preconditioners = self.preconditioners(plan.shapes);
                 outcome.tangents += 1;
                 self.buffers.acceleration.begin(DAMPING * tolerance);
             }
@@ -266,14 +295,20 @@ impl ContactEquation<'_> {
         outcome
     }
 
-    fn preconditioners(&self) -> Vec<Preconditioner> {
+    fn preconditioners(&self, shapes: PreconditionedShapes) -> Vec<Preconditioner> {
         let pairs = self.contact.pair_rows();
         let harmonics = self.harmonics.iter().enumerate();
         let contact: &WheelContact = self.tangents.as_deref().unwrap_or(self.contact);
         harmonics
             .map(|(place, harmonic)| {
                 let tangent = contact.mean_tangent(place);
-                Preconditioner::new(harmonic, self.transform, &tangent, pairs)
+                let shapes = match shapes {
+                    PreconditionedShapes::Resonant => harmonic.resonant_shapes(),
+                    PreconditionedShapes::FirstOfFundamental => {
+                        harmonic.first_shapes(usize::from(place == self.fundamental))
+                    }
+                };
+                Preconditioner::new(harmonic, self.transform, &tangent, pairs, &shapes)
             })
             .collect()
     }
@@ -369,7 +404,8 @@ impl ContactEquation<'_> {
                 return outcome;
             }
             outcome.tangents += 1;
-            let mut preconditioners = self.preconditioners();
+            let mut preconditioners =
+                self.preconditioners(PreconditionedShapes::FirstOfFundamental);
             let mut precondition = |equation: &mut Self, flat: &mut Vec<f64>| {
                 unflatten(flat, &mut equation.buffers.residual);
                 let residual = equation.buffers.residual.iter_mut();

@@ -67,6 +67,23 @@ impl WheelHarmonic {
                 .prepare(transform, &self.receptance, &self.deviations)
     }
 
+    /// The first shapes, so many; none where no blade deviates.
+    pub(super) fn first_shapes(&self, count: usize) -> Vec<usize> {
+        if self.is_mistuned {
+            (0..count.min(self.shapes)).collect()
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// Shapes that are not nearly static, as many as a preconditioner takes in; none where no blade deviates.
+    pub(super) fn resonant_shapes(&self) -> Vec<usize> {
+        let resonant = self.elimination.resonant().iter();
+        let most = (UNKNOWNS / self.sectors).max(1);
+        let shapes = resonant.take(most).copied();
+        shapes.filter(|_| self.is_mistuned).collect()
+    }
+
     /// Strain coordinates to blade forces `D (I + R_zz D)^-1 z`, in place.
     fn blade_forces(&mut self, transform: &SectorTransform) {
         if self.is_mistuned {
@@ -171,7 +188,7 @@ impl WheelHarmonic {
 const UNKNOWNS: usize = 192;
 
 /// Approximate inverse of the derivative `I + A G` of the equation of a harmonic: with the mean tangent G of the contact and
-/// those shapes of the blades that are not nearly static.
+/// some shapes of the blades.
 #[derive(Default)]
 pub(super) struct Preconditioner {
     /// `(I + R_cc G)^-1`.
@@ -192,24 +209,16 @@ struct MistunedShapes {
 }
 
 impl Preconditioner {
-    /// For a harmonic under the mean tangent of the contact.
+    /// For a harmonic under the mean tangent of the contact, with these shapes of the blades, ascending.
     pub(super) fn new(
         harmonic: &WheelHarmonic,
         transform: &SectorTransform,
         tangent: &MeanTangent,
         pairs: &[[Option<usize>; 3]],
+        shapes: &[usize],
     ) -> Self {
         let (sectors, contact) = (harmonic.sectors, harmonic.contact);
         let receptance = &harmonic.receptance;
-        let shapes: Vec<usize> = if harmonic.is_mistuned {
-            let resonant = harmonic.elimination.resonant().iter();
-            resonant
-                .take((UNKNOWNS / sectors).max(1))
-                .copied()
-                .collect()
-        } else {
-            Vec::new()
-        };
         // R G of the motions of the contact, and of the shapes.
         let rows = contact + shapes.last().map_or(0, |last| last + 1);
         let mut product = WaveMatrix::zeros(rows, contact, sectors);
@@ -218,7 +227,7 @@ impl Preconditioner {
         inverse.add_identity();
         inverse.invert();
         let mistuned = (!shapes.is_empty())
-            .then(|| MistunedShapes::new(harmonic, transform, (&product, &inverse), &shapes))
+            .then(|| MistunedShapes::new(harmonic, transform, (&product, &inverse), shapes))
             .flatten();
         Self {
             inverse,
