@@ -186,7 +186,9 @@ impl ContactEquation<'_> {
         let plans = [(&COLD, &cold), (&SLOW, &cold)];
         let again = is_warm.then_some((&SLOW, &start));
         let plans = warm.into_iter().chain(plans).chain(again);
-        let plans = plans.chain(RESONANT.iter().map(|plan| (plan, &cold)));
+        let begins = is_warm.then_some(&start).into_iter().chain([&cold]);
+        let resonant = begins.flat_map(|begin| RESONANT.iter().map(move |plan| (plan, begin)));
+        let plans = plans.chain(resonant);
         for (rung, (plan, begin)) in plans.enumerate() {
             if rung > 0 {
                 self.buffers.motions.clone_from(begin);
