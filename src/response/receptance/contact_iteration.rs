@@ -180,7 +180,6 @@ impl ContactEquation<'_> {
             step: f64::INFINITY,
             shares: ContactShares::default(),
         };
-        // Without a start every attempt begins at the linear response.
         let is_warm = !starts.is_empty();
         let warm = is_warm.then_some((&WARM, &start));
         let plans = [(&COLD, &cold), (&SLOW, &cold)];
