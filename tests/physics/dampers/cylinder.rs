@@ -12,7 +12,8 @@ use blisk::population::monte_carlo::ResponseRow;
 use blisk::response::forced_response::ContactCondition;
 
 use super::rigid::{
-    self, NORMAL_STIFFNESS, SECTORS, SLIPPING_N, angle_of, cartesian, cross, entry, reference, rows,
+    self, NORMAL_STIFFNESS, SECTORS, SLIPPING_N, angle_of, assert_near, cartesian, cross, entry,
+    reference, rows,
 };
 use crate::extremes::wheels::uneven;
 use crate::wheels::{full, relative};
@@ -87,12 +88,7 @@ fn the_inertia_of_a_rigid_cylinder_is_that_of_a_cylinder() {
             }
         }
         let expected = cartesian([axis, 0.0, 0.0], 0.5 * TAU / SECTORS as f64);
-        for i in 0..3 {
-            assert!(
-                (centre_m[i] - expected[i]).abs() < 1e-11,
-                "{centre_m:?} {expected:?}"
-            );
-        }
+        assert_near(centre_m, expected, 1e-11);
     }
 }
 

@@ -82,30 +82,15 @@ fn no_load_and_much_load_are_the_linear_limits_of_every_kind() {
                 "{}: the contact matters",
                 kind.name
             );
+            let near = |what: &str, found: f64, limit: f64, bar: f64| {
+                let error = relative(found, limit);
+                println!("{} {law:?}: {what} {error:.1e}", kind.name);
+                assert!(error < bar, "{} {law:?}: {found} {limit}", kind.name);
+            };
             if !law.has_variable_load() {
-                let light = of(full(1e-6));
-                println!(
-                    "{} {law:?}: no load {:.1e}",
-                    kind.name,
-                    relative(light, slide)
-                );
-                assert!(
-                    relative(light, slide) < 1e-5,
-                    "{} {law:?}: {light} {slide}",
-                    kind.name
-                );
+                near("no load", of(full(1e-6)), slide, 1e-5);
             }
-            let heavy = of(full(1e9));
-            println!(
-                "{} {law:?}: much load {:.1e}",
-                kind.name,
-                relative(heavy, stuck)
-            );
-            assert!(
-                relative(heavy, stuck) < 1e-6,
-                "{} {law:?}: {heavy} {stuck}",
-                kind.name
-            );
+            near("much load", of(full(1e9)), stuck, 1e-6);
         }
     }
 }

@@ -60,6 +60,11 @@ pub fn cartesian([r, theta, z]: [f64; 3], angle: f64) -> [f64; 3] {
     [r * cos - theta * sin, r * sin + theta * cos, z]
 }
 
+pub fn assert_near(found_m: [f64; 3], expected_m: [f64; 3], tolerance_m: f64) {
+    let is_near = (0..3).all(|axis| (found_m[axis] - expected_m[axis]).abs() < tolerance_m);
+    assert!(is_near, "{found_m:?} {expected_m:?}");
+}
+
 pub fn angle_of([x, y, _]: [f64; 3]) -> f64 {
     y.atan2(x)
 }
@@ -111,12 +116,7 @@ fn the_inertia_of_a_rigid_wedge_is_that_of_a_trapezoidal_prism() {
         let inner = options.rim_radius_m + options.platform_height_m;
         let radius = inner + height / 3.0 * (a + 2.0 * b) / (a + b);
         let expected = cartesian([radius, 0.0, 0.0], 0.5 * TAU / SECTORS as f64);
-        for axis in 0..3 {
-            assert!(
-                (centre_m[axis] - expected[axis]).abs() < 1e-12,
-                "{centre_m:?}"
-            );
-        }
+        assert_near(centre_m, expected, 1e-12);
     }
 }
 
