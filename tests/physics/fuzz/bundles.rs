@@ -11,7 +11,7 @@ use blisk::model::sector::{
 };
 
 use super::mutator::Mutator;
-use super::{assert_clear, run};
+use super::{assert_clear, folder, run};
 use crate::contact::random::Random;
 use crate::extremes::wheels::spatial_sector;
 use crate::sector_sources::lumped::lumped24;
@@ -135,7 +135,7 @@ fn a_spoiled_bundle_with_a_rigid_body_is_read_or_refused() {
 }
 
 fn hold(models: &[SectorModel], files: &[&str]) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let written = |model: &SectorModel| -> Vec<Vec<u8>> {
         bundle::write(model, folder.path()).unwrap();
         let read = |file: &&str| fs::read(folder.path().join(file)).unwrap();
@@ -201,7 +201,7 @@ fn reduced_or_refused(model: &SectorModel) {
 
 #[test]
 fn random_models_read_back_equal() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     for case in 0..100 {
         let mut random = Random(case);
         let mut draw = |low: f64, high: f64| random.magnitude(low, high);

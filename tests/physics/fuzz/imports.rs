@@ -6,7 +6,7 @@ use blisk::model::sector::ModelError;
 use blisk::model::sector::import::import;
 
 use super::mutator::Mutator;
-use super::{assert_clear, run};
+use super::{assert_clear, folder, run};
 use crate::imports::lumped::wedge;
 use crate::imports::small::Small;
 
@@ -36,7 +36,7 @@ fn spoiled_files_with_lists_of_contacts_are_read_or_refused() {
 }
 
 fn hold(sources: &[Small]) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     for (place, source) in sources.iter().enumerate() {
         let sound = folder.path().join(format!("sound-{place}"));
         fs::create_dir(&sound).unwrap();
@@ -111,7 +111,7 @@ fn truncated_matrices_are_refused() {
         for name in files {
             let (_, text) = source.files.iter().find(|file| file.0 == name).unwrap();
             for at in (0..text.trim_end().len()).step_by(23) {
-                let folder = tempfile::tempdir().unwrap();
+                let folder = folder();
                 source.write(folder.path());
                 fs::write(folder.path().join(name), &text[..at]).unwrap();
                 let imported = import(&folder.path().join("import.toml"));

@@ -7,7 +7,7 @@ use blisk::linalg::SymmetricSparse;
 use blisk::model::sector::{LineProblem, ModelError, matrix_market};
 
 use super::mutator::Mutator;
-use super::{assert_clear, run};
+use super::{assert_clear, folder, run};
 use crate::contact::random::Random;
 
 const SYMMETRIC: &str = "%%MatrixMarket matrix coordinate real symmetric\n% a comment\n4 4 6\n\
@@ -36,7 +36,7 @@ fn bits(matrix: &SymmetricSparse) -> (usize, Vec<(usize, usize, u64)>) {
 
 #[test]
 fn a_spoiled_matrix_is_read_or_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let spoil = |case| {
         let mut mutator = Mutator::new(case);
         let file = *mutator.one_of(&[SYMMETRIC, GENERAL]);
@@ -66,7 +66,7 @@ fn a_spoiled_matrix_is_read_or_refused() {
 
 #[test]
 fn random_matrices_read_back_to_the_last_bit() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let extremes = [
         0.0,
         -0.0,
@@ -114,7 +114,7 @@ fn random_matrices_read_back_to_the_last_bit() {
 /// of entries that do not follow is one.
 #[test]
 fn a_huge_declared_size_is_refused_before_memory_is_reserved() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     for size in [
         "10000001",
         "1000000000000",

@@ -44,6 +44,11 @@ fn run(spoil: impl Fn(u64) -> Vec<u8> + Sync, check: impl Fn(u64, &[u8]) -> bool
     accepted
 }
 
+/// A folder of its own, whose name, part of messages, does not end like one of the sources.
+fn folder() -> tempfile::TempDir {
+    tempfile::Builder::new().suffix("-case").tempdir().unwrap()
+}
+
 /// A message for the user: not empty, no debris of the program.
 fn assert_clear(message: &str) {
     assert!(!message.trim().is_empty());

@@ -6,7 +6,7 @@ use std::fs;
 use blisk::response::mistuning::{Deviations, read_pattern_csv};
 
 use super::mutator::Mutator;
-use super::{assert_clear, run};
+use super::{assert_clear, folder, run};
 use crate::contact::random::Random;
 
 const PER_BLADE: &str =
@@ -15,7 +15,7 @@ const PER_MODE: &str = "# a comment\npattern,blade,mode,deviation\n0,0,0,0.01\n0
 
 #[test]
 fn a_spoiled_file_of_patterns_is_read_or_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let spoil = |case| {
         let mut mutator = Mutator::new(case);
         let file = *mutator.one_of(&[PER_BLADE, PER_MODE]);
@@ -58,7 +58,7 @@ fn a_spoiled_file_of_patterns_is_read_or_refused() {
 
 #[test]
 fn random_patterns_read_back_to_the_last_bit() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let path = folder.path().join("patterns.csv");
     for case in 0..200 {
         let mut random = Random(case);
