@@ -9,10 +9,9 @@ use serde::{Serialize, Serializer};
 use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::input::nearest_key_names;
+use crate::input::{Term, terms_about};
 use crate::model::sector::import::{import_keys, import_schema};
-use crate::study::{
-    KeySpec, Term, keys_about, keys_below, nearest_keys, study_schema, terms_about,
-};
+use crate::study::{KeySpec, keys_about, keys_below, nearest_keys, study_schema};
 
 /// Arguments of `blisk explain`.
 #[derive(Debug, Args)]

@@ -5,6 +5,7 @@ mod finding;
 mod key;
 mod schema;
 mod source_map;
+mod terms;
 mod value;
 
 pub(crate) use check::check;
@@ -14,4 +15,6 @@ pub(crate) use key::{Entry, REQUIRED, entry};
 pub use key::{KeySpec, nearest_key_names};
 pub(crate) use schema::schema_of;
 pub(crate) use source_map::{SourceMap, nearest};
+pub(crate) use terms::mentions;
+pub use terms::{Term, term_of, terms_about};
 pub use value::{Range, Value};

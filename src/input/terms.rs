@@ -36,11 +36,11 @@ const TERMS: &[Term] = &[
     ),
     term(
         "free (contact, load)",
-        "linear limit: no contact springs at all, as if there were no ring",
+        "linear limit: no contact springs at all, as if there were no damper",
     ),
     term(
         "normal load N",
-        "static normal force between ring and blisk on one sector; the wheel has it once per sector",
+        "static force that presses the two sides of the contact together on one sector; the wheel has it once per sector",
     ),
     term(
         "amplification factor",
@@ -71,8 +71,14 @@ pub fn terms_about(words: &str) -> Vec<Term> {
         .collect()
 }
 
+/// The term of this word.
+#[must_use]
+pub fn term_of(word: &str) -> Option<Term> {
+    TERMS.iter().find(|term| term.word == word).copied()
+}
+
 /// Whether the texts together have every one of `words`, in any case of letters.
-pub(super) fn mentions(texts: &[&str], words: &str) -> bool {
+pub(crate) fn mentions(texts: &[&str], words: &str) -> bool {
     let text = texts.join(" ").to_lowercase();
     let spaced = text.replace('_', " ");
     words

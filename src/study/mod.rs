@@ -25,10 +25,7 @@ pub use echo::echo;
 pub use error::StudyError;
 pub use examples::{EXAMPLES, example_beside_its_data};
 pub(crate) use excitation::{Excitation, excitations, solver_under};
-pub use keys::{
-    KeySpec, Range, Term, Value, keys, keys_about, keys_below, nearest_keys, study_schema,
-    terms_about,
-};
+pub use keys::{KeySpec, Range, Value, keys, keys_about, keys_below, nearest_keys, study_schema};
 pub use load_cases::{ForceSource, LoadCase};
 pub use mistuning::{Mistuning, MistuningSource};
 pub use nodal_diameter_damping::NodalDiameterTable;

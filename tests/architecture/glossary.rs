@@ -64,7 +64,7 @@ fn the_glossary_has_the_terms_that_explain_knows() {
     let terms = glossary();
     // `stuck (contact, load)` says where the word stands.
     let missing = |word: &&str| !terms.iter().any(|term| word.starts_with(term.as_str()));
-    let known = blisk::study::terms_about("");
+    let known = blisk::input::terms_about("");
     let words = known.iter().map(|term| term.word);
     let missing: Vec<String> = words.filter(missing).map(str::to_owned).collect();
     complain(

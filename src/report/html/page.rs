@@ -6,6 +6,7 @@ use super::first_screen::{contents, first_screen};
 use super::model::{figure_html, model};
 use super::table::Table;
 use super::tables;
+use crate::input::term_of;
 use crate::report::plot::{escaped, page_style};
 use crate::report::words::tied;
 use crate::report::{FIGURES, FigureName, GroupReport, StudyReport, Wheels, figure, setting};
@@ -91,20 +92,17 @@ fn warnings(report: &StudyReport) -> String {
     )
 }
 
-/// Words of the page and what they mean.
-const WORDS: [(&str, &str); 10] = [
-    (
-        "normal load per sector",
-        "the force with which the damper presses on one sector; the wheel has N times that",
-    ),
-    (
-        "stuck, slide, free",
-        "linear limits: welded contact, frictionless contact, no contact",
-    ),
-    (
-        "pattern, wheel",
-        "one random draw of the deviations of all blades",
-    ),
+/// Words of the page that `blisk explain` knows.
+const TERMS: [&str; 6] = [
+    "normal load N",
+    "stuck (contact, load)",
+    "slide (contact, load)",
+    "free (contact, load)",
+    "pattern",
+    "amplification factor",
+];
+/// Words of the page alone.
+const WORDS: [(&str, &str); 6] = [
     (
         "tuned",
         "the wheel whose blades are all alike, under the same load and excitation",
@@ -112,10 +110,6 @@ const WORDS: [(&str, &str); 10] = [
     (
         "peak amplitude",
         "the largest amplitude of any blade at any frequency near the resonance, at the first observed node",
-    ),
-    (
-        "amplification factor",
-        "peak amplitude of a mistuned wheel over that of the tuned wheel under the same load",
     ),
     (
         "P50, P95, P99",
@@ -137,6 +131,9 @@ const WORDS: [(&str, &str); 10] = [
 
 fn words() -> String {
     let mut table = Table::of_facts();
+    for term in TERMS.into_iter().filter_map(term_of) {
+        table.fact(term.word, term.meaning);
+    }
     for (word, meaning) in WORDS {
         table.fact(word, meaning);
     }

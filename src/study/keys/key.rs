@@ -3,7 +3,7 @@
 use super::contact_keys::CONTACT_KEYS;
 use super::model_keys::MODEL_KEYS;
 use super::study_keys::{LEADING_KEYS, REDUCTION_KEYS, STUDY_KEYS};
-use super::terms::mentions;
+use crate::input::mentions;
 use crate::input::{KeySpec, nearest_key_names};
 
 /// Parameters that `[contact.variation]` can let vary.

@@ -5,10 +5,8 @@ mod key;
 mod model_keys;
 mod schema;
 pub(super) mod study_keys;
-mod terms;
 
 pub use crate::input::{KeySpec, Range, Value};
 pub use key::{keys, keys_about, keys_below, nearest_keys};
 pub use schema::study_schema;
 pub(super) use study_keys::{EXCITATION_N, NORMAL_LOAD_N};
-pub use terms::{Term, terms_about};
