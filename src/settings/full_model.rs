@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::fixed_interface::reduction_of;
 use super::harmonic_choice::choose_harmonics;
+use super::reduced_study::is_on_receptances;
 use super::row_settings::{reference_settings, row_settings};
 use crate::model::ReducedModel;
 use crate::model::reduction::BasisChoice;
@@ -11,7 +12,8 @@ use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{LoadCaseName, RowSettings, RowSolver, Scenario};
 use crate::population::table::CurvePoint;
 use crate::response::forced_response::{FrequencyBand, Harmonics};
-use crate::response::harmonic_balance::{HarmonicTransform, Status, TransformError};
+use crate::response::friction::ContactLaw;
+use crate::response::harmonic_balance::{EnlargedSet, HarmonicTransform, Status, TransformError};
 use crate::response::mistuning::Pattern;
 use crate::study::{PipelineError, Study, excitations};
 use crate::verification::reference::{
@@ -28,7 +30,7 @@ pub struct FullModel {
     /// Settings of the rows, but for the amplitude of the force.
     row: RowSettings,
     samples_per_period: usize,
-    /// Whether the study leaves the harmonics to the program, and none were asked for instead.
+    /// Whether the harmonics are those that the tuned wheel chooses: no set was asked for, and rows have not all harmonics.
     automatic: bool,
 }
 
@@ -87,8 +89,15 @@ impl FullModel {
         let reduction = reduction_of(study, sector)?;
         let cantilever = study.mistuning.cantilever_mode_count;
         let mut settings = row_settings(study);
+        let mut automatic = study.solver.harmonics == Harmonics::Auto;
         if let Some(harmonics) = &options.harmonics {
             settings.harmonics.clone_from(harmonics);
+            automatic = false;
+        } else if automatic && is_on_receptances(study, sector) {
+            let law = study.contact.as_ref().map(|contact| contact.law);
+            settings.harmonics =
+                EnlargedSet::everything(law.is_some_and(ContactLaw::has_variable_load));
+            automatic = false;
         }
         let scout = BasisChoice::StickSlide {
             stick: SCOUT_MODES,
@@ -112,7 +121,7 @@ impl FullModel {
         let full = Self {
             cases: cases.collect::<Result<_, PipelineError>>()?,
             samples_per_period: options.samples_per_period,
-            automatic: options.harmonics.is_none() && study.solver.harmonics == Harmonics::Auto,
+            automatic,
             row: settings,
         };
         full.settings(&full.row.harmonics)?;
@@ -126,7 +135,8 @@ impl FullModel {
     }
 
     /// Harmonic set under the excitation and contact condition of a scenario: the one asked for, else that of the
-    /// study, which is the one that a run of the study chooses there where it is automatic.
+    /// study. An automatic set is the one that a run of the study begins with: all harmonics on tuned receptances, else the choice of the
+    /// tuned wheel.
     ///
     /// # Errors
     /// The samples per period of the study cannot tell the harmonics apart.

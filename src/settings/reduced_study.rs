@@ -179,12 +179,14 @@ pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> String {
 }
 
 /// Whether rows are solved on the receptances of the tuned wheel: where the study names them, and by default wherever they are ready for
-/// what it asks, on sectors that are not solved in their whole space.
+/// what it asks. Small sectors under stated harmonics are solved in their whole space, which is exact. Those under automatic harmonics
+/// are not, unless `[accuracy]` judges them on mistuned wheels: a set that suffices for the tuned wheel can be far from enough for others.
 pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
+    let every_harmonic = study.solver.harmonics == Harmonics::Auto && study.accuracy.is_none();
     let ready = || {
         let contact = study.contact.as_ref();
         !sector.contact_pairs.is_empty()
-            && sector.dofs.len() > WHOLE_SPACE_DOFS
+            && (sector.dofs.len() > WHOLE_SPACE_DOFS || every_harmonic)
             && contact.is_none_or(|own| own.in_place_of.is_none())
             && against_receptances(contact.map(|own| own.ring), &study.solver).is_empty()
     };

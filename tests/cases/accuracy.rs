@@ -1,5 +1,6 @@
 //! The errors that a choice of settings claims, on wheels that it did not see.
 
+use blisk::model::reduction::Basis;
 use blisk::population::statistics::ErrorBound;
 use blisk::response::forced_response::{ContactCondition, Harmonics, SearchHarmonics};
 use blisk::settings::{AccuracyChoice, AccuracyEvidence, ChosenSetting};
@@ -45,6 +46,8 @@ fn best(study: &Study, choice: &AccuracyChoice) -> Study {
     }
     let evidence = choice.evidence.as_ref().unwrap();
     assert_eq!(evidence.reference, "joint");
+    // Without a basis named, automatic harmonics would be those of tuned receptances.
+    best.reduction.basis = Basis::StickSlide;
     best.solver.harmonics = Harmonics::Auto;
     best.solver.harmonic_tolerance = evidence.reference_tolerance.unwrap();
     best.solver.residual_tolerance = 1e-10;

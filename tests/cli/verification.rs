@@ -499,7 +499,8 @@ fn a_row_that_cannot_be_integrated_in_time_is_refused() {
     assert!(ended.stderr.contains("contact.ring"), "{}", ended.stderr);
 }
 
-/// Where nothing is reduced both fidelities choose the same set, and solve the same equation.
+/// Where nothing is reduced both fidelities take the same set, and solve the same equation. An automatic set up to harmonic 15 has 192
+/// samples.
 #[test]
 fn automatic_harmonics_are_those_of_the_study_on_the_full_model_too() {
     let place = Place::with(&GOOD.replace("harmonics = [1, 3]", "harmonics = \"auto\""));
@@ -529,10 +530,10 @@ fn automatic_harmonics_are_those_of_the_study_on_the_full_model_too() {
         pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
     };
     let reduced = curve(&[]);
-    let full = curve(&["--fidelity", "full", "--samples", "128"]);
+    let full = curve(&["--fidelity", "full", "--samples", "192"]);
     assert_eq!(full.len(), 42);
     assert!(apart(&reduced, &full) < 1e-6);
-    let fundamental = curve(&["--fidelity", "full", "--samples", "128", "--harmonics", "1"]);
+    let fundamental = curve(&["--fidelity", "full", "--samples", "192", "--harmonics", "1"]);
     assert!(
         apart(&full, &fundamental) > 1e-4,
         "the set has more than the fundamental"

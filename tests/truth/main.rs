@@ -14,6 +14,7 @@ mod dampers;
 mod engine;
 mod hints;
 mod iteration;
+mod lumped;
 mod peak;
 mod rows;
 mod sector;

@@ -91,14 +91,14 @@ impl Sector {
             let dof = model.dof_of(node, component)?;
             kept.iter().position(|&own| own == dof)
         };
-        // The ground does not move.
+        // The ground does not move, nor does a node along a direction in which it has no dof.
         let along = |node: Option<usize>, direction: [f64; 3], sign: f64| {
             let Some(node) = node else { return Vec::new() };
             [Component::Radial, Component::Tangential, Component::Axial]
                 .into_iter()
                 .zip(direction)
                 .filter(|(_, part)| *part != 0.0)
-                .map(|(component, part)| (place(node, component).expect("a dof"), sign * part))
+                .filter_map(|(component, part)| Some((place(node, component)?, sign * part)))
                 .collect::<Vec<_>>()
         };
         let pairs = model.contact_pairs.iter().map(|pair| {

@@ -56,7 +56,9 @@ impl AccuracyChoice {
             return Ok(stored);
         }
         let patterns = pattern_source(study, sector)?;
-        let choice = if is_on_receptances(study, sector) {
+        let mut judged = study.clone();
+        judged.accuracy = Some(accuracy);
+        let choice = if is_on_receptances(&judged, sector) {
             let ids = sample_of_patterns(study, &patterns, sampled_patterns(study));
             on_receptances(
                 study,

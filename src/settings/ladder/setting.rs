@@ -179,7 +179,8 @@ impl LadderSetting {
                 reduction.basis = Basis::StickAttachment;
                 reduction.stick_modes = Some(stick);
             }
-            BasisChoice::CraigBampton => reduction.basis = Basis::Auto,
+            // Sectors in their whole space, as they were measured; `Auto` could take tuned receptances.
+            BasisChoice::CraigBampton => reduction.basis = Basis::StickSlide,
         }
         let solver = &mut own.solver;
         match &self.harmonics {

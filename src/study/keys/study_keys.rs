@@ -53,7 +53,7 @@ pub(super) const REDUCTION_KEYS: &[Entry] = &[
             "tuned_receptances",
         ]),
         "`\"auto\"`",
-        "family of the basis ([formulation.md](formulation.md)). `auto` is `tuned_receptances`, which has none, where the contact has pairs, the sector more than 12 dofs, and the ring is locked; else a basis is chosen by `error`. `stick_attachment` is `auto` by an earlier name, with a warning where that leaves its modes out",
+        "family of the basis ([formulation.md](formulation.md)). `auto` is `tuned_receptances`, which has none, where the contact has pairs, the ring is locked, and either the sector has more than 12 dofs or harmonics are automatic without `[accuracy]`; else a basis is chosen by `error`. `stick_attachment` is `auto` by an earlier name, with a warning where that leaves its modes out",
     ),
     entry(
         "reduction.error",
