@@ -143,6 +143,8 @@ struct Climb {
     known: Vec<Vec<Known>>,
     /// Distance of points beside the top, Hz.
     beside_hz: f64,
+    /// Whether a point of the last set was not as high as the sets before it and the points beside it foretold.
+    surprised: bool,
 }
 
 /// The highest top so far: its frequency, Hz, and its height, m, with few harmonics and with each of the sets.
@@ -224,6 +226,7 @@ impl CorrectedSearch<'_> {
         let mut climb = Climb {
             known: Vec::new(),
             beside_hz: self.distance_beside(top),
+            surprised: false,
         };
         let mut own = Highest {
             frequency_hz: top.frequency_hz,
@@ -232,6 +235,7 @@ impl CorrectedSearch<'_> {
         let reach_hz = NEIGHBOURS * top.half_bandwidth_hz;
         for set in 0..self.sets.len() {
             climb.known.push(Vec::new());
+            climb.surprised = false;
             self.solve(&mut climb, own.frequency_hz, self.care.at_top)?;
             if set == 0 {
                 let is_top =
@@ -343,6 +347,11 @@ impl CorrectedSearch<'_> {
         precision: f64,
     ) -> Result<(), Status> {
         let sets = climb.known.len();
+        let foretold = if climb.own().is_empty() {
+            None
+        } else {
+            self.corrected(climb, frequency_hz)
+        };
         let start = self.start(sets, frequency_hz).ok_or(Status::NotBracketed)?;
         let own = &mut self.sets[sets - 1];
         let tolerance = (precision * self.tolerance).max(own.least_tolerance());
@@ -370,6 +379,11 @@ impl CorrectedSearch<'_> {
             force,
             growth,
         };
+        if let Some(amplitudes_m) = foretold {
+            let foretold_m = amplitudes_m.into_iter().fold(0.0, f64::max);
+            let off = (foretold_m / known.height_m - 1.0).abs();
+            climb.surprised |= off > self.care.at_side * self.tolerance;
+        }
         let same = |own: &Point| own.frequency_hz.total_cmp(&frequency_hz).is_eq();
         self.few.points.retain(|own| !same(own));
         self.few.points.push(Point {
@@ -395,7 +409,8 @@ impl Climb {
         best.unwrap_or(&self.own()[0])
     }
 
-    /// A frequency beside the top, Hz, on a side on which no point serves; beyond the first set one side is enough.
+    /// A frequency beside the top, Hz, on a side on which no point serves. Beyond the first set one side is enough where every point was
+    /// foretold: what the set adds varies so little over frequency that it cannot move the top.
     fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
         let sides = [-self.beside_hz, self.beside_hz];
         let is_unseen = |side: &f64| {
@@ -403,7 +418,8 @@ impl Climb {
             let serves = |own: &Known| (SERVES.0..=SERVES.1).contains(&way(own));
             !self.own().iter().any(serves)
         };
-        if self.known.len() > 1 && !sides.iter().all(is_unseen) {
+        let is_foretold = self.known.len() > 1 && !self.surprised;
+        if is_foretold && !sides.iter().all(is_unseen) {
             return None;
         }
         let unseen = sides.into_iter().find(is_unseen);
