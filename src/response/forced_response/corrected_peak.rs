@@ -63,6 +63,8 @@ const BESIDE_LINEAR: f64 = 0.5;
 const SERVES: (f64, f64) = (0.5, 1.5);
 /// Least distance of points that a force is interpolated between, over that of points beside a top.
 const APART: f64 = 0.4;
+/// Difference of a height from the one foretold, over the tolerance of the peak, beyond which both sides of a top are looked at.
+const SURPRISE: f64 = 5.0;
 /// Points that a force is interpolated between at most.
 const NODES: usize = 3;
 
@@ -236,7 +238,7 @@ impl CorrectedSearch<'_> {
         for set in 0..self.sets.len() {
             climb.known.push(Vec::new());
             climb.surprised = false;
-            self.solve(&mut climb, own.frequency_hz, self.care.at_top)?;
+            self.solve(&mut climb, own.frequency_hz, self.care.at_top, None)?;
             if set == 0 {
                 let is_top =
                     |point: &Point| point.frequency_hz.total_cmp(&top.frequency_hz).is_eq();
@@ -293,9 +295,12 @@ impl CorrectedSearch<'_> {
             if is_lower {
                 return Ok((best.height_m, best.frequency_hz));
             } else if summit.largest > above {
-                self.solve(climb, summit.frequency_hz, self.care.at_top)?;
+                let foretold_m = Some(summit.largest);
+                self.solve(climb, summit.frequency_hz, self.care.at_top, foretold_m)?;
             } else if let Some(side_hz) = climb.unseen_beside(best.frequency_hz) {
-                self.solve(climb, side_hz, self.care.at_side)?;
+                let foretold = self.corrected(climb, side_hz);
+                let foretold_m = foretold.map(|own| own.into_iter().fold(0.0, f64::max));
+                self.solve(climb, side_hz, self.care.at_side, foretold_m)?;
             } else {
                 return Ok((best.height_m, best.frequency_hz));
             }
@@ -339,19 +344,16 @@ impl CorrectedSearch<'_> {
         Some(start)
     }
 
-    /// Solves the last set of the climb at a frequency, Hz, to a share of the tolerance of the peak.
+    /// Solves the last set of the climb at a frequency, Hz, to a share of the tolerance of the peak, and compares its height with the one
+    /// foretold, m.
     fn solve(
         &mut self,
         climb: &mut Climb,
         frequency_hz: f64,
         precision: f64,
+        foretold_m: Option<f64>,
     ) -> Result<(), Status> {
         let sets = climb.known.len();
-        let foretold = if climb.own().is_empty() {
-            None
-        } else {
-            self.corrected(climb, frequency_hz)
-        };
         let start = self.start(sets, frequency_hz).ok_or(Status::NotBracketed)?;
         let own = &mut self.sets[sets - 1];
         let tolerance = (precision * self.tolerance).max(own.least_tolerance());
@@ -379,11 +381,10 @@ impl CorrectedSearch<'_> {
             force,
             growth,
         };
-        if let Some(amplitudes_m) = foretold {
-            let foretold_m = amplitudes_m.into_iter().fold(0.0, f64::max);
+        climb.surprised |= foretold_m.is_some_and(|foretold_m| {
             let off = (foretold_m / known.height_m - 1.0).abs();
-            climb.surprised |= off > self.care.at_side * self.tolerance;
-        }
+            off > SURPRISE * self.tolerance
+        });
         let same = |own: &Point| own.frequency_hz.total_cmp(&frequency_hz).is_eq();
         self.few.points.retain(|own| !same(own));
         self.few.points.push(Point {
