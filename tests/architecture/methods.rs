@@ -13,7 +13,7 @@ const MOST_FILES: usize = 2;
 const OPEN: &[(&str, &str, usize)] = &[
     ("population/monte_carlo/row_solver.rs", "RowSolver", 11),
     ("response/forced_response/peak_search.rs", "Search", 3),
-    ("response/forced_response/point_solver.rs", "PointSolver", 5),
+    ("response/forced_response/point_solver.rs", "PointSolver", 4),
     (
         "response/harmonic_balance/solver/newton_workspace.rs",
         "NewtonWorkspace",

@@ -14,6 +14,7 @@
 //! Between few and all may stand a set that is cheap and close: then the same is done with that set first, and what all harmonics
 //! leave beyond it is one more force, that takes two or three solutions with all of them to know.
 
+use super::climb::{Climb, Known};
 use super::peak::{Peak, SearchPlan};
 use super::peak_search::{Envelope, SearchSettings, VERTEX_SHARE, find_peak};
 use super::point::{Point, Work};
@@ -59,14 +60,10 @@ const POINTS: usize = 20;
 const BESIDE: f64 = 0.14;
 /// The same in half-bandwidths of a linear resonance, which is as narrow as a hump can be.
 const BESIDE_LINEAR: f64 = 0.5;
-/// Least and largest distance, over that wanted, at which a point serves as one beside a top.
-const SERVES: (f64, f64) = (0.5, 1.5);
-/// Least distance of points that a force is interpolated between, over that of points beside a top.
-const APART: f64 = 0.4;
 /// Difference of a height from the one foretold, over the tolerance of the peak, beyond which both sides of a top are looked at.
 const SURPRISE: f64 = 5.0;
-/// Points that a force is interpolated between at most.
-const NODES: usize = 3;
+/// Share that harmonics may change one top more than another at most.
+const MOST_MADE_UP: f64 = 0.5;
 
 /// The peak of `row` by `plan` with the settings of few harmonics, and of sets each within the next, the last with all of them.
 ///
@@ -82,7 +79,7 @@ pub(super) fn corrected_peak(
     peak_tolerance: f64,
 ) -> Result<(Peak, f64), Work> {
     let mut few = ReceptancePoints::new(row, of_few);
-    let tops = tops_of_few(plan, &mut few, peak_tolerance)?;
+    let tops = tops_of_few(plan, &mut few, peak_tolerance, MADE_UP)?;
     // What samples change jumps over frequency, and is no part of what harmonics leave.
     let as_fine = sets.first().map(|own| own.search_at_own_samples());
     let Some(Ok(Some(as_fine))) = as_fine else {
@@ -102,7 +99,7 @@ pub(super) fn corrected_peak(
         tolerance: peak_tolerance,
         care,
     };
-    let found = search.highest(&tops);
+    let found = search.highest(plan, &tops);
     let found = found.and_then(|highest| Ok((search.finished(highest.frequency_hz)?, highest)));
     let work = search.work();
     let (point, highest) = found.map_err(|_| work)?;
@@ -129,26 +126,6 @@ struct CorrectedSearch<'a> {
     care: Care,
 }
 
-/// A frequency that is solved with the harmonics of a set.
-struct Known {
-    frequency_hz: f64,
-    height_m: f64,
-    /// What the set leaves on few harmonics beyond what the sets before it do.
-    force: ContactForces,
-    /// Amplitude of every blade with the set over that of few harmonics in the same solution, over the same by the sets before it.
-    growth: Vec<f64>,
-}
-
-/// A top that is searched.
-struct Climb {
-    /// Of every set so far.
-    known: Vec<Vec<Known>>,
-    /// Distance of points beside the top, Hz.
-    beside_hz: f64,
-    /// Whether a point of the last set was not as high as the sets before it and the points beside it foretold.
-    surprised: bool,
-}
-
 /// The highest top so far: its frequency, Hz, and its height, m, with few harmonics and with each of the sets.
 struct Highest {
     frequency_hz: f64,
@@ -164,6 +141,13 @@ impl Highest {
     fn last_change(&self) -> f64 {
         let before = self.heights_m.iter().rev().nth(1);
         before.map_or(0.0, |before| self.height_m() / before - 1.0)
+    }
+
+    /// Share that all harmonics may change the height of another top more than that of this one, both with so many sets: what they take
+    /// off this one they need not take off another.
+    fn made_up(&self, sets: usize) -> f64 {
+        let taken = self.heights_m[sets] / self.height_m() - 1.0;
+        taken.clamp(MADE_UP, MOST_MADE_UP)
     }
 
     /// Height, m, that all harmonics give a top that has this one with so many sets, if they do what they do here.
@@ -199,9 +183,30 @@ impl CorrectedSearch<'_> {
         all.finished(frequency_hz)
     }
 
-    /// The highest of several tops.
-    fn highest(&mut self, tops: &[Top]) -> Result<Highest, Status> {
-        let mut best: Option<Highest> = None;
+    /// The highest of the tops of few harmonics, and of the lower ones that they find where all harmonics take much off the highest.
+    fn highest(&mut self, plan: &SearchPlan, tops: &[Top]) -> Result<Highest, Status> {
+        let highest = self.highest_beside(None, tops)?;
+        let reach = highest.made_up(0);
+        if reach <= MADE_UP {
+            return Ok(highest);
+        }
+        let lower = 1.0 - 1.0 / (1.0 + reach);
+        let found = tops_of_few(plan, &mut self.uncorrected, self.tolerance, lower);
+        let mut further = found.map_err(|_| Status::SweepIncomplete)?;
+        let apart = self.envelope.linear_half_bandwidth_hz;
+        further.retain(|own| {
+            let is_new = |top: &Top| (top.frequency_hz - own.frequency_hz).abs() > apart;
+            tops.iter().all(is_new)
+        });
+        self.highest_beside(Some(highest), &further)
+    }
+
+    /// The highest of several tops and of `best`.
+    fn highest_beside(
+        &mut self,
+        mut best: Option<Highest>,
+        tops: &[Top],
+    ) -> Result<Highest, Status> {
         for top in tops {
             if let Some(own) = self.heights(top, best.as_ref())?
                 && best
@@ -218,7 +223,7 @@ impl CorrectedSearch<'_> {
     fn heights(&mut self, top: &Top, best: Option<&Highest>) -> Result<Option<Highest>, Status> {
         let is_lower = |height_m: f64, sets: usize| {
             best.is_some_and(|best| {
-                best.grown_m(height_m, sets) * (1.0 + MADE_UP) < best.height_m()
+                best.grown_m(height_m, sets) * (1.0 + best.made_up(sets)) < best.height_m()
             })
         };
         if is_lower(top.amplitude_m, 0) {
@@ -394,87 +399,5 @@ impl CorrectedSearch<'_> {
         own.points.push(point);
         climb.known[sets - 1].push(known);
         Ok(())
-    }
-}
-
-impl Climb {
-    /// Of the last set so far.
-    fn own(&self) -> &[Known] {
-        self.known.last().map_or(&[], Vec::as_slice)
-    }
-
-    /// The highest so far.
-    fn best(&self) -> &Known {
-        let highest = |a: &&Known, b: &&Known| a.height_m.total_cmp(&b.height_m);
-        let best = self.own().iter().max_by(highest);
-        best.unwrap_or(&self.own()[0])
-    }
-
-    /// A frequency beside the top, Hz, on a side on which no point serves. Beyond the first set one side is enough where every point was
-    /// foretold: what the set adds varies so little over frequency that it cannot move the top.
-    fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
-        let sides = [-self.beside_hz, self.beside_hz];
-        let is_unseen = |side: &f64| {
-            let way = |own: &Known| (own.frequency_hz - top_hz) / side;
-            let serves = |own: &Known| (SERVES.0..=SERVES.1).contains(&way(own));
-            !self.own().iter().any(serves)
-        };
-        let is_foretold = self.known.len() > 1 && !self.surprised;
-        if is_foretold && !sides.iter().all(is_unseen) {
-            return None;
-        }
-        let unseen = sides.into_iter().find(is_unseen);
-        unseen.map(|side| top_hz + side)
-    }
-
-    /// What the first `sets` sets leave on few harmonics at a frequency, Hz, and the growth of every blade's amplitude by them.
-    fn left(&self, sets: usize, frequency_hz: f64) -> Option<(ContactForces, Vec<f64>)> {
-        let mut forces = Vec::new();
-        let mut growth: Vec<f64> = Vec::new();
-        for known in &self.known[..sets] {
-            let nodes = self.nodes(known, frequency_hz);
-            let of_set: Vec<f64> = (0..known.first()?.growth.len())
-                .map(|blade| {
-                    nodes
-                        .iter()
-                        .map(|(share, own)| share * own.growth[blade])
-                        .sum()
-                })
-                .collect();
-            if growth.is_empty() {
-                growth = of_set;
-            } else {
-                growth
-                    .iter_mut()
-                    .zip(of_set)
-                    .for_each(|(all, own)| *all *= own);
-            }
-            forces.extend(nodes.into_iter().map(|(share, own)| (share, &own.force)));
-        }
-        Some((ContactForces::combined(&forces)?, growth))
-    }
-
-    /// The nearest known points to a frequency, Hz, each with its share in the polynomial through them there.
-    fn nodes<'a>(&self, known: &'a [Known], frequency_hz: f64) -> Vec<(f64, &'a Known)> {
-        let mut near: Vec<&Known> = known.iter().collect();
-        let distance = |own: &Known| (own.frequency_hz - frequency_hz).abs();
-        near.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let mut nodes: Vec<&Known> = Vec::new();
-        for own in near {
-            let apart = |node: &&Known| {
-                (node.frequency_hz - own.frequency_hz).abs() >= APART * self.beside_hz
-            };
-            if nodes.len() < NODES && nodes.iter().all(apart) {
-                nodes.push(own);
-            }
-        }
-        let share = |at: usize| -> f64 {
-            let others = nodes.iter().enumerate().filter(|(other, _)| *other != at);
-            let factors = others.map(|(_, other)| {
-                (frequency_hz - other.frequency_hz) / (nodes[at].frequency_hz - other.frequency_hz)
-            });
-            factors.product()
-        };
-        (0..nodes.len()).map(|at| (share(at), nodes[at])).collect()
     }
 }

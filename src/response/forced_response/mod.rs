@@ -3,12 +3,12 @@
 mod a_posteriori;
 mod attempt;
 mod branch;
+mod climb;
 mod corrected_peak;
 mod dense_sweep;
 mod error_settings;
 mod excited;
 mod folded_peak;
-mod homotopy;
 mod initial_guess;
 mod linear_peaks;
 mod observed_amplitude;

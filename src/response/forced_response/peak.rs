@@ -8,7 +8,7 @@ use super::peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::point_solver::PointSolver;
-use super::point_source::PointSource;
+use super::point_source::{PointSource, Watched};
 use super::samples::Sample;
 use super::screened::Screened;
 use crate::response::friction::Ring;
@@ -308,8 +308,7 @@ pub(super) fn peak_by(
         rivals_from: 1.0,
     };
     solver.set_precision(SEARCH_PRECISION * tolerance);
-    let (band_hz, starts_hz) = (plan.band_hz, &plan.starts_hz);
-    let result = by_values(&mut solver, band_hz, starts_hz, plan.envelope, search);
+    let result = by_values(&mut solver, (plan.band_hz, &plan.starts_hz), plan, search);
     let (status, point) = settled(&result, &mut solver);
     let mean_friction_n = point
         .as_ref()
@@ -339,8 +338,7 @@ fn searched<'a>(
     let solver = PointSolver::new(excited, condition, settings).with_precision(precision);
     let mut solver = solver.with_slopes();
     if !solver.is_sloped() {
-        let (band_hz, starts_hz) = (plan.band_hz, &plan.starts_hz);
-        let result = by_values(&mut solver, band_hz, starts_hz, plan.envelope, search);
+        let result = by_values(&mut solver, (plan.band_hz, &plan.starts_hz), plan, search);
         return (result, solver, Work::default());
     }
     let finer = search.tolerance < LEAST_FOR_SLOPES;
@@ -364,7 +362,7 @@ fn searched<'a>(
         return (result, solver, screening);
     }
     let (band_hz, starts_hz) = beginning_with(solver.points(), plan);
-    let result = by_values(&mut solver, band_hz, &starts_hz, plan.envelope, search);
+    let result = by_values(&mut solver, (band_hz, &starts_hz), plan, search);
     (result, solver, screening)
 }
 
@@ -389,14 +387,15 @@ fn beginning_with(points: &[Point], plan: &SearchPlan) -> ((f64, f64), Vec<f64>)
 
 fn by_values(
     solver: &mut impl PointSource,
-    band_hz: (f64, f64),
-    starts_hz: &[f64],
-    envelope: Envelope,
+    (band_hz, starts_hz): ((f64, f64), &[f64]),
+    plan: &SearchPlan,
     search: SearchSettings,
 ) -> SearchResult {
-    find_peak(band_hz, starts_hz, envelope, search, |frequency_hz| {
-        solver.amplitudes_at(frequency_hz)
-    })
+    let watched = Watched {
+        solver,
+        stuck: &plan.stuck,
+    };
+    find_peak(band_hz, starts_hz, plan.envelope, search, watched)
 }
 
 /// Status of the failed frequency nearest to the best point, among those with no lower amplitude

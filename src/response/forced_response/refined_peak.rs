@@ -14,7 +14,7 @@ use super::peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::point_solver::PointSolver;
-use super::point_source::PointSource;
+use super::point_source::{PointSource, Watched};
 use super::samples::{Reading, Sample, Samples};
 use super::summit;
 use crate::response::friction::Ring;
@@ -89,7 +89,7 @@ pub fn refined(
         return Err(Work::default());
     }
     let mut coarse = PointSolver::new(search.excited, condition, search.settings);
-    let tops = tops_of_few(&plan, &mut coarse, peak_tolerance)?;
+    let tops = tops_of_few(&plan, &mut coarse, peak_tolerance, MADE_UP)?;
     let mut solver = PointSolver::new(excited, condition, settings).refining(&coarse);
     solver.precision = Some(REFINED_PRECISION * peak_tolerance);
     let refined = highest(solver, &tops, plan.envelope, peak_tolerance)
@@ -97,11 +97,13 @@ pub fn refined(
     inside_of_band(&plan, with_work(refined, coarse.work()))
 }
 
-/// The tops that `few` harmonics find by `plan`, the highest first; the work done where they find no peak, or a contact opens.
+/// The tops that `few` harmonics find by `plan`, the highest first, among them all that are lower than the highest by no more than
+/// `made_up`; the work done where they find no peak, or a contact opens.
 pub(super) fn tops_of_few(
     plan: &SearchPlan,
     few: &mut impl PointSource,
     peak_tolerance: f64,
+    made_up: f64,
 ) -> Result<Vec<Top>, Work> {
     let coarse_tolerance = peak_tolerance.max(COARSE_TOLERANCE);
     few.set_precision(SEARCH_PRECISION * coarse_tolerance);
@@ -113,9 +115,12 @@ pub(super) fn tops_of_few(
             tolerance: coarse_tolerance,
             evaluations: EVALUATIONS,
             extensions: plan.extensions,
-            rivals_from: 1.0 - MADE_UP,
+            rivals_from: 1.0 - made_up,
         },
-        |hz| few.amplitudes_at(hz),
+        Watched {
+            solver: few,
+            stuck: &plan.stuck,
+        },
     );
     let mut points = few.points().iter();
     let opens = points.any(|point| point.shares.separated > 0.0);

@@ -7,6 +7,7 @@ use super::excited::Excited;
 use super::linear_peaks::LinearPeak;
 use super::point::{Point, Work};
 use super::point_solver::PointSolver;
+use super::point_source::{point_at, sticks, unseen};
 use super::samples::{Curve, Reading, Sample};
 use super::starts::NEAR;
 
@@ -14,13 +15,6 @@ use super::starts::NEAR;
 /// by 6 %, and lowered that of another by a fifth, which is why the highest place of few harmonics is solved with all at
 /// once.
 const GAINED: f64 = 0.3;
-
-/// Share of pairs that slip beside a resonance that may be one with stuck contact.
-const STICKS: f64 = 0.5;
-/// Height of a resonance among others, over that of its mode alone.
-const JOINED: f64 = 2.0;
-/// Distance of a sample that has seen a resonance, in half-bandwidths.
-const SEEN: f64 = 0.5;
 
 /// Solver of a search; `'search` is the lifetime of what only the search needs.
 pub(super) struct Screened<'a, 'search> {
@@ -71,7 +65,7 @@ impl<'a, 'search> Screened<'a, 'search> {
     }
 
     fn point(&mut self, frequency_hz: f64) -> Option<Reading> {
-        if let Some(point) = at(self.solver.points(), frequency_hz) {
+        if let Some(point) = point_at(self.solver.points(), frequency_hz) {
             return Some(point.reading());
         }
         if let Some(low) = self.screened(frequency_hz) {
@@ -85,7 +79,7 @@ impl<'a, 'search> Screened<'a, 'search> {
     /// The reading with few harmonics where it is too low for more to matter.
     fn screened(&mut self, frequency_hz: f64) -> Option<Reading> {
         let (excited, few) = self.few.as_mut()?;
-        let known = at(few.points(), frequency_hz).cloned();
+        let known = point_at(few.points(), frequency_hz).cloned();
         let point = if let Some(point) = known {
             point
         } else {
@@ -107,9 +101,9 @@ impl<'a, 'search> Screened<'a, 'search> {
     /// Whether few pairs slip at a point that is solved.
     fn sticks(&self, frequency_hz: f64) -> bool {
         let few = self.few.as_ref();
-        let point =
-            at(self.solver.points(), frequency_hz).or_else(|| at(few?.1.points(), frequency_hz));
-        point.is_some_and(|point| point.shares.slipping < STICKS)
+        let point = point_at(self.solver.points(), frequency_hz)
+            .or_else(|| point_at(few?.1.points(), frequency_hz));
+        point.is_some_and(sticks)
     }
 
     /// The solver of all harmonics, and the work of the others.
@@ -124,29 +118,7 @@ impl Curve for &mut Screened<'_, '_> {
         self.point(frequency_hz)
     }
 
-    /// A resonance of the stuck limit that may be higher than the best, where contact beside it sticks and no sample is near
-    /// enough to have seen it: a mode that hardly slips keeps its height and is as narrow as without friction.
     fn unseen(&self, samples: &[Sample], best: usize) -> Option<f64> {
-        let unseen = self.stuck.iter().find(|peak| {
-            let below = |sample: &Sample| sample.frequency_hz < peak.frequency_hz;
-            let right = samples.partition_point(below);
-            let (Some(left), Some(right)) = (right.checked_sub(1), samples.get(right)) else {
-                return false;
-            };
-            let beside = [&samples[left], right];
-            let seen = |sample: &&Sample| {
-                let distance = (sample.frequency_hz - peak.frequency_hz).abs();
-                distance <= SEEN * peak.half_bandwidth_hz
-            };
-            JOINED * peak.amplitude_m > samples[best].largest
-                && !beside.iter().any(seen)
-                && beside.iter().any(|sample| self.sticks(sample.frequency_hz))
-        });
-        unseen.map(|peak| peak.frequency_hz)
+        unseen(self.stuck, samples, best, |hz| self.sticks(hz))
     }
-}
-
-fn at(points: &[Point], frequency_hz: f64) -> Option<&Point> {
-    let same = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
-    points.iter().find(same)
 }
