@@ -88,6 +88,7 @@ impl TableReader {
         }
         Ok(Slice {
             path: &self.path,
+            first,
             frame,
         })
     }
@@ -122,10 +123,21 @@ fn parquet(path: &Path) -> Result<ParquetReader<File>, TableError> {
 /// Rows in memory, column by column.
 pub(super) struct Slice<'a> {
     path: &'a Path,
+    /// Place of its first row in the file.
+    first: usize,
     frame: DataFrame,
 }
 
 impl Slice<'_> {
+    /// Row `row` of these has no value in `column` that it may have.
+    pub(super) fn no_valid_value(&self, row: usize, column: &str) -> TableError {
+        let place = self.first + row;
+        TableError::damaged(
+            self.path,
+            format!("row {place}: no valid value in column {column}"),
+        )
+    }
+
     fn column(&self, name: &str) -> Result<&Column, TableError> {
         self.frame
             .column(name)
