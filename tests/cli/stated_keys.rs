@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use blisk::study::{EXAMPLES, Study, Value, keys};
+use blisk::study::{EXAMPLES, KeySpec, Study, Value, keys};
 use serde_json::Value as Json;
 
 use crate::blisk::GOOD;
@@ -91,27 +91,51 @@ fn replaced(lines: &[(&str, &str)]) -> String {
 
 /// Every key of the built-in disk, each with another value than its default.
 fn parametric_keys() -> String {
-    let mut lines = String::new();
-    for key in keys() {
-        let Some(name) = key.key.strip_prefix("model.parametric.") else {
-            continue;
-        };
-        let default = key.default.trim_matches('`');
-        let value = match key.value {
-            Value::Name(names) => {
-                let other = names.iter().find(|name| format!("\"{name}\"") != default);
-                format!("{:?}", other.expect("another name"))
-            }
-            Value::Whole(..) => (default.parse::<u64>().expect("a whole number") + 1).to_string(),
-            // Near the default, so that it is in its range; the one share may only become less.
-            _ => {
-                let default: f64 = default.parse().expect("a number");
-                format!("{:?}", default * 0.99 + f64::from(default == 0.0))
-            }
-        };
-        lines += &format!("{name} = {value}\n");
+    let keys = keys().into_iter();
+    keys.filter_map(|key| {
+        let name = key.key.strip_prefix("model.parametric.")?;
+        Some(format!("{name} = {}\n", another_value(&key)?))
+    })
+    .collect()
+}
+
+/// A value of a key that is not its default; none for those that are no number, name or flag.
+fn another_value(key: &KeySpec) -> Option<String> {
+    let default = key.default.trim_matches('`');
+    match key.value {
+        Value::Name(names) => {
+            let mut names = names.iter().map(|name| format!("\"{name}\""));
+            names.find(|name| name != default)
+        }
+        Value::Flag => Some((default != "true").to_string()),
+        Value::Whole(low, high) => {
+            let other = default.parse().map_or(low, |default: i64| default + 1);
+            Some(other.min(high).to_string())
+        }
+        Value::Number(_) => {
+            // Near the default, so that it is in its range.
+            let default: f64 = default.parse().unwrap_or(1.0);
+            Some(format!("{:?}", default * 0.99 + f64::from(default == 0.0)))
+        }
+        _ => None,
     }
-    lines
+}
+
+/// `study` with the key besides.
+fn with(study: &str, key: &str, value: &str) -> Option<String> {
+    let mut document: toml::Table = study.parse().expect("TOML");
+    let value: toml::Table = format!("value = {value}").parse().expect("TOML");
+    let mut steps: Vec<&str> = key.split('.').collect();
+    let name = steps.pop()?;
+    let mut table = &mut document;
+    for step in steps {
+        let inner = table
+            .entry(step)
+            .or_insert_with(|| toml::Value::Table(toml::Table::new()));
+        table = inner.as_table_mut()?;
+    }
+    table.insert(name.to_owned(), value["value"].clone());
+    toml::to_string(&document).ok()
 }
 
 const LUMPED: &str = "ring_disk_stiffness_n_per_m = 1.0e4
@@ -241,28 +265,36 @@ fn same(stated: &Json, resolved: &Json) -> bool {
 fn every_key_that_a_study_states_stands_in_the_resolved_study_with_its_value() {
     let examples = EXAMPLES.iter().map(|(_, text)| (*text).to_owned());
     let (mut seen, mut wrong) = (BTreeSet::new(), Vec::new());
-    for text in stated().into_iter().chain(examples) {
-        let study = Study::parse(Path::new("study.toml"), &text);
+    let mut state = |text: &str, seen: &mut BTreeSet<String>| {
+        let study = Study::parse(Path::new("study.toml"), text);
         let study = study.unwrap_or_else(|error| panic!("{error}\n{text}"));
         let document: toml::Table = text.parse().expect("TOML");
         let document = serde_json::to_value(document).expect("JSON");
-        compare("", &document, &study.resolved(), &mut seen, &mut wrong);
+        compare("", &document, &study.resolved(), seen, &mut wrong);
+    };
+    for text in stated().into_iter().chain(examples) {
+        state(&text, &mut seen);
     }
-    assert_eq!(wrong, Vec::<String>::new());
-    let missing: Vec<String> = keys()
-        .into_iter()
-        .filter(|key| {
-            !matches!(
-                key.value,
-                Value::Table | Value::Tables | Value::TableOrTables
-            )
-        })
-        .map(|key| key.key)
-        .filter(|key| !seen.contains(key))
-        .collect();
+    // A key of its own, which needs no other, is stated here.
+    let mut missing = Vec::new();
+    for key in keys() {
+        let is_table = matches!(
+            key.value,
+            Value::Table | Value::Tables | Value::TableOrTables
+        );
+        if is_table || seen.contains(&key.key) {
+            continue;
+        }
+        let value = another_value(&key);
+        match value.and_then(|value| with(GOOD, &key.key, &value)) {
+            Some(text) => state(&text, &mut seen),
+            None => missing.push(key.key),
+        }
+    }
     assert_eq!(
         missing,
         Vec::<String>::new(),
         "keys that no study of this test states"
     );
+    assert_eq!(wrong, Vec::<String>::new());
 }
