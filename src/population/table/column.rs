@@ -4,8 +4,6 @@ use polars::prelude::{
     ArrowField, ArrowSchema, CompatLevel, DataFrame, DataType, NamedFrom, Schema, Series,
 };
 
-use super::TableError;
-use super::reader::Slice;
 use crate::population::monte_carlo::Scenario;
 
 /// Type of a column; the set that pandas, R, `DuckDB` and MATLAB all read.
@@ -57,7 +55,7 @@ impl ColumnSpec {
 /// A column of a table of `Row`s; `Back` is what its rows are read back into, nothing for a table that is only written.
 pub(super) struct Column<Row, Back = ()> {
     pub(super) spec: ColumnSpec,
-    cells: Cells<Row, Back>,
+    pub(super) cells: Cells<Row, Back>,
 }
 
 /// The cells of a column by their type, which is one of [`ColumnKind`].
@@ -93,27 +91,6 @@ impl<Row, Back> Column<Row, Back> {
     /// The column `spec`, which other tables have too.
     pub(super) const fn shared(spec: ColumnSpec, cells: Cells<Row, Back>) -> Self {
         Self::new(spec.name, spec.unit, spec.description, cells)
-    }
-
-    /// Sets this column of `slice` in the rows that are read back from it, one a row of the slice.
-    pub(super) fn read(&self, slice: &Slice<'_>, rows: &mut [Back]) -> Result<(), TableError> {
-        let name = self.spec.name;
-        let refused = match &self.cells {
-            Cells::Int32(access) => {
-                let whole = |value: i32| u32::try_from(value).ok();
-                let cells = slice.int32(name)?.into_iter();
-                access.set(cells.map(|cell| cell.and_then(whole)), rows)
-            }
-            Cells::Int64(access) => {
-                let whole = |value: i64| u64::try_from(value).ok();
-                let cells = slice.int64(name)?.into_iter();
-                access.set(cells.map(|cell| cell.and_then(whole)), rows)
-            }
-            Cells::Float64(access) => access.set(slice.float64(name)?, rows),
-            Cells::Boolean(access) => access.set(slice.boolean(name)?, rows),
-            Cells::String(access) => access.set(slice.string(name)?, rows),
-        };
-        refused.map_or(Ok(()), |row| Err(slice.no_valid_value(row, name)))
     }
 }
 
@@ -169,7 +146,11 @@ impl<Row, Back, T> Access<Row, Back, T> {
     }
 
     /// The first row that cannot have its cell, if there is one.
-    fn set(&self, cells: impl IntoIterator<Item = Option<T>>, rows: &mut [Back]) -> Option<usize> {
+    pub(super) fn set(
+        &self,
+        cells: impl IntoIterator<Item = Option<T>>,
+        rows: &mut [Back],
+    ) -> Option<usize> {
         let read = self.read?;
         let mut pairs = rows.iter_mut().zip(cells);
         pairs.position(|(row, cell)| read(row, cell).is_none())

@@ -182,7 +182,7 @@ impl ResponseReader {
         };
         let mut rows = vec![blank; count];
         for column in READ_BACK {
-            column.read(&slice, &mut rows)?;
+            slice.read_back(column, &mut rows)?;
         }
         Ok(rows)
     }
