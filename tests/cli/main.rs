@@ -20,6 +20,7 @@ mod report;
 mod report_page;
 mod rotation;
 mod runs;
+mod stated_keys;
 mod statistics;
 mod stored_numbers;
 mod study_keys;

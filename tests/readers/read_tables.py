@@ -2,13 +2,14 @@
 
     python read_tables.py RESULTS
 
-All four must see the same rows, columns, types, nulls and values; ids and counts must be Int32, work
-counts Int64, flags Boolean, names String and all other numbers Float64; and each file must carry the
+All four must see the same rows, columns, types, nulls and values; every column must have the type that
+docs/results.md says, and all other numbers Float64; and each file must carry the
 unit and the description of each of its columns, in the file's metadata and in that of the Arrow field, and
 the digest of the study.
 """
 
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -17,12 +18,7 @@ import pandas
 import polars
 import pyarrow.parquet
 
-INT32 = {"scenario", "engine_order", "pattern", "peak_blade", "planned", "ok", "failed", "blade", "mode", "beyond_tolerance", "rank_lower", "rank_upper"}
-INT32 |= {"unstable_rows", "resamples", "failed_resamples", "failures_left_out"}
-INT64 = {"rows", "nonlinear_solves", "newton_iterations", "factorisations", "retries"}
-BOOLEAN = {"peak_bracketed", "error_within_tolerance", "estimable"}
-BOOLEAN |= {"stable", "tuned_stable", "outside_interval", "extrapolates", "few_values", "rejected"}
-STRING = {"contact", "load_case", "status", "tuned_status", "harmonics", "shortcut", "basis", "quantity", "law", "fit_status", "input"}
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "results.md"
 
 # Name of each type in pyarrow, Polars, DuckDB and (without nulls) pandas.
 TYPES = {
@@ -39,11 +35,16 @@ EXPECTED_FILES = {
 }
 
 
-def kind_of(column):
-    for kind, names in (("Int32", INT32), ("Int64", INT64), ("Boolean", BOOLEAN), ("String", STRING)):
-        if column in names:
-            return kind
-    return "Float64"
+def documented_kinds():
+    """Type of every column that the page of results gives one."""
+    kinds = {}
+    for row in PAGE.read_text().splitlines():
+        cells = [cell.strip() for cell in row.split("|")]
+        if len(cells) > 3 and cells[2] in TYPES:
+            for column in re.findall(r"`(\w+)`", cells[1]):
+                check(kinds.setdefault(column, cells[2]) == cells[2], "two types of", column, "on", PAGE.name)
+    check(len(kinds) > 50, "types of", len(kinds), "columns on", PAGE.name)
+    return kinds
 
 
 def check(condition, *words):
@@ -73,7 +74,7 @@ def check_metadata(path, columns, digest):
             check(metadata.get(f"description.{column}"), path.name, reader, "no description of", column)
 
 
-def check_table(path, digest):
+def check_table(path, digest, kinds):
     arrow = pyarrow.parquet.read_table(path)
     frame = pandas.read_parquet(path)
     rows = polars.read_parquet(path)
@@ -89,7 +90,8 @@ def check_table(path, digest):
 
     duckdb_types = dict(zip(query.columns, (str(kind) for kind in query.types)))
     for column in columns:
-        kind = kind_of(column)
+        # Those of statistics have names by pattern on the page, and are numbers.
+        kind = kinds.get(column, "Float64")
         arrow_types, polars_type, duckdb_type, pandas_type = TYPES[kind]
         where = (path.name, column, "expected", kind, "but")
         check(str(arrow.schema.field(column).type) in arrow_types, *where, arrow.schema.field(column).type)
@@ -112,10 +114,11 @@ def check_table(path, digest):
 def main():
     results = Path(sys.argv[1])
     digest = json.loads((results / "manifest.json").read_text())["study_digest"]
+    kinds = documented_kinds()
     files = sorted(results.glob("*.parquet"))
     check(EXPECTED_FILES <= {path.name for path in files}, "tables", [path.name for path in files])
     for path in files:
-        check_table(path, digest)
+        check_table(path, digest, kinds)
     versions = (pandas, pyarrow, polars, duckdb)
     print("read by", ", ".join(f"{module.__name__} {module.__version__}" for module in versions))
 

@@ -94,32 +94,18 @@ impl Engine for MockEngine {
             .map(|(scenario, tuned)| {
                 let good = pattern.id % 97 != 96;
                 let amplitude = tuned.amplitude_m.map(|tuned| tuned * (1.0 + sum.abs()));
+                let status = if good { Status::Ok } else { Status::Stagnated };
                 ResponseRow {
-                    scenario: scenario.index,
-                    pattern: pattern.id,
-                    status: if good { Status::Ok } else { Status::Stagnated },
-                    contact_factors: None,
                     peak_amplitude_m: amplitude.filter(|_| good),
                     peak_frequency_hz: good.then_some(500.0),
                     peak_blade: good.then_some(pattern.id % 24),
                     amplification_factor: good.then_some(1.0 + sum.abs()),
                     peak_bracketed: good.then_some(true),
                     harmonics: "1".to_owned(),
-                    nonlinear_solves: 0,
                     newton_iterations: 7,
                     factorisations: 2,
-                    retries: 0,
-                    residual: None,
-                    slipping_fraction: None,
-                    separated_fraction: None,
-                    mean_friction_circumferential_n: None,
-                    mean_friction_axial_n: None,
-                    shortcut: "none".to_owned(),
-                    sampling_error: None,
-                    harmonic_error: None,
-                    stated_error: None,
-                    error_within_tolerance: None,
                     basis: "whole space".to_owned(),
+                    ..ResponseRow::without_result(scenario.index, pattern.id, status)
                 }
             })
             .collect()

@@ -37,11 +37,8 @@ fn record(
     for i in 0..400 {
         let good = i >= failed;
         let amplitude = scale * (1.0 + f64::from(i) / 1000.0);
+        let status = if good { Status::Ok } else { Status::Stagnated };
         rows.add(&ResponseRow {
-            contact_factors: None,
-            scenario: index,
-            pattern: i,
-            status: if good { Status::Ok } else { Status::Stagnated },
             peak_amplitude_m: good.then_some(amplitude),
             peak_frequency_hz: good.then_some(500.0),
             peak_blade: good.then_some(3),
@@ -51,18 +48,15 @@ fn record(
             nonlinear_solves: 13,
             newton_iterations: 40,
             factorisations: 4,
-            retries: 0,
             residual: good.then_some(1e-9),
             slipping_fraction: good.then_some(0.5),
             separated_fraction: good.then_some(separated),
-            mean_friction_circumferential_n: None,
-            mean_friction_axial_n: None,
-            shortcut: "none".to_owned(),
             sampling_error: good.then_some(1e-4),
             harmonic_error: good.then_some(-2e-2),
             stated_error: good.then_some(0.021 + 1e-5 * f64::from(i)),
             error_within_tolerance: good.then_some(true),
             basis: "whole space".to_owned(),
+            ..ResponseRow::without_result(index, i, status)
         });
     }
     ScenarioRecord {

@@ -58,30 +58,7 @@ impl RowWork<'_> {
                 .iter()
                 .map(|(scenario, _)| ResponseRow {
                     contact_factors: pattern.contact.means(),
-                    scenario: scenario.index,
-                    pattern: pattern.id,
-                    status: Status::Panicked,
-                    peak_amplitude_m: None,
-                    peak_frequency_hz: None,
-                    peak_blade: None,
-                    amplification_factor: None,
-                    peak_bracketed: None,
-                    harmonics: String::new(),
-                    nonlinear_solves: 0,
-                    newton_iterations: 0,
-                    factorisations: 0,
-                    retries: 0,
-                    residual: None,
-                    slipping_fraction: None,
-                    separated_fraction: None,
-                    mean_friction_circumferential_n: None,
-                    mean_friction_axial_n: None,
-                    shortcut: "none".to_owned(),
-                    sampling_error: None,
-                    harmonic_error: None,
-                    stated_error: None,
-                    error_within_tolerance: None,
-                    basis: String::new(),
+                    ..ResponseRow::without_result(scenario.index, pattern.id, Status::Panicked)
                 })
                 .collect()
         })

@@ -59,6 +59,40 @@ pub struct ResponseRow {
     pub basis: String,
 }
 
+impl ResponseRow {
+    /// A row without any result, of no work.
+    #[must_use]
+    pub fn without_result(scenario: usize, pattern: u32, status: Status) -> Self {
+        Self {
+            scenario,
+            pattern,
+            status,
+            contact_factors: None,
+            peak_amplitude_m: None,
+            peak_frequency_hz: None,
+            peak_blade: None,
+            amplification_factor: None,
+            peak_bracketed: None,
+            harmonics: String::new(),
+            nonlinear_solves: 0,
+            newton_iterations: 0,
+            factorisations: 0,
+            retries: 0,
+            residual: None,
+            slipping_fraction: None,
+            separated_fraction: None,
+            mean_friction_circumferential_n: None,
+            mean_friction_axial_n: None,
+            shortcut: "none".to_owned(),
+            sampling_error: None,
+            harmonic_error: None,
+            stated_error: None,
+            error_within_tolerance: None,
+            basis: String::new(),
+        }
+    }
+}
+
 /// Peak of the tuned wheel of a scenario, the denominator of its amplification factors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TunedReference {

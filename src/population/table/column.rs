@@ -1,8 +1,10 @@
-//! Columns of a table: name, type, unit and meaning, and their values in memory.
+//! Columns of a table, each declared once: name, type, unit, meaning, value in a row, way back into a row.
 
 use polars::prelude::{
-    ArrowField, ArrowSchema, Column, CompatLevel, DataFrame, DataType, NamedFrom, Schema, Series,
+    ArrowField, ArrowSchema, CompatLevel, DataFrame, DataType, NamedFrom, Schema, Series,
 };
+
+use crate::population::monte_carlo::Scenario;
 
 /// Type of a column; the set that pandas, R, `DuckDB` and MATLAB all read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,6 +52,132 @@ impl ColumnSpec {
     }
 }
 
+/// A column of a table of `Row`s; `Back` is what its rows are read back into, nothing for a table that is only written.
+pub(super) struct Column<Row, Back = ()> {
+    pub(super) spec: ColumnSpec,
+    pub(super) cells: Cells<Row, Back>,
+}
+
+/// The cells of a column by their type, which is one of [`ColumnKind`].
+pub(super) enum Cells<Row, Back> {
+    Int32(Access<Row, Back, u32>),
+    Int64(Access<Row, Back, u64>),
+    Float64(Access<Row, Back, f64>),
+    Boolean(Access<Row, Back, bool>),
+    String(Access<Row, Back, String>),
+}
+
+/// The way of a cell into the table and back.
+pub(super) struct Access<Row, Back, T> {
+    /// Value of a row; none is null.
+    pub(super) value: fn(&Row) -> Option<T>,
+    /// Sets the value in a row that is read back; none where the row can have no such value.
+    pub(super) read: Option<fn(&mut Back, Option<T>) -> Option<()>>,
+}
+
+impl<Row, Back> Column<Row, Back> {
+    /// A column called `name` that is only written.
+    pub(super) const fn new(
+        name: &'static str,
+        unit: &'static str,
+        description: &'static str,
+        cells: Cells<Row, Back>,
+    ) -> Self {
+        let kind = cells.kind();
+        let spec = ColumnSpec::new(name, kind, unit, description);
+        Self { spec, cells }
+    }
+
+    /// The column `spec`, which other tables have too.
+    pub(super) const fn shared(spec: ColumnSpec, cells: Cells<Row, Back>) -> Self {
+        Self::new(spec.name, spec.unit, spec.description, cells)
+    }
+}
+
+impl<Row, Back> Cells<Row, Back> {
+    const fn kind(&self) -> ColumnKind {
+        match self {
+            Self::Int32(_) => ColumnKind::Int32,
+            Self::Int64(_) => ColumnKind::Int64,
+            Self::Float64(_) => ColumnKind::Float64,
+            Self::Boolean(_) => ColumnKind::Boolean,
+            Self::String(_) => ColumnKind::String,
+        }
+    }
+
+    pub(super) const fn int32(value: fn(&Row) -> Option<u32>) -> Self {
+        Self::Int32(Access { value, read: None })
+    }
+
+    pub(super) const fn int64(value: fn(&Row) -> Option<u64>) -> Self {
+        Self::Int64(Access { value, read: None })
+    }
+
+    pub(super) const fn float64(value: fn(&Row) -> Option<f64>) -> Self {
+        Self::Float64(Access { value, read: None })
+    }
+
+    pub(super) const fn boolean(value: fn(&Row) -> Option<bool>) -> Self {
+        Self::Boolean(Access { value, read: None })
+    }
+
+    pub(super) const fn string(value: fn(&Row) -> Option<String>) -> Self {
+        Self::String(Access { value, read: None })
+    }
+
+    fn values(&self, rows: &[Row]) -> Values {
+        match self {
+            Self::Int32(access) => {
+                Values::Int32(access.of(rows).map(|cell| cell.map(|n| n as i32)).collect())
+            }
+            Self::Int64(access) => {
+                Values::Int64(access.of(rows).map(|cell| cell.map(|n| n as i64)).collect())
+            }
+            Self::Float64(access) => Values::Float64(access.of(rows).collect()),
+            Self::Boolean(access) => Values::Boolean(access.of(rows).collect()),
+            Self::String(access) => Values::String(access.of(rows).collect()),
+        }
+    }
+}
+
+impl<Row, Back, T> Access<Row, Back, T> {
+    fn of(&self, rows: &[Row]) -> impl Iterator<Item = Option<T>> {
+        rows.iter().map(self.value)
+    }
+
+    /// The first row that cannot have its cell, if there is one.
+    pub(super) fn set(
+        &self,
+        cells: impl IntoIterator<Item = Option<T>>,
+        rows: &mut [Back],
+    ) -> Option<usize> {
+        let read = self.read?;
+        let mut pairs = rows.iter_mut().zip(cells);
+        pairs.position(|(row, cell)| read(row, cell).is_none())
+    }
+}
+
+/// Name, type, unit and meaning of each of `columns`, whose number is `N`.
+pub(super) const fn specs<Row, Back, const N: usize>(
+    columns: &[Column<Row, Back>],
+) -> [ColumnSpec; N] {
+    let mut specs = [ColumnSpec::new("", ColumnKind::Int32, "", ""); N];
+    let mut place = 0;
+    while place < N {
+        specs[place] = columns[place].spec;
+        place += 1;
+    }
+    specs
+}
+
+/// Values of `columns` in `rows`.
+pub(super) fn values_of<Row, Back>(columns: &[Column<Row, Back>], rows: &[Row]) -> Vec<Values> {
+    columns
+        .iter()
+        .map(|column| column.cells.values(rows))
+        .collect()
+}
+
 /// Values of a column, in row order; `None` is null.
 #[derive(Debug, Clone)]
 pub(super) enum Values {
@@ -71,7 +199,7 @@ impl Values {
         }
     }
 
-    fn into_column(self, name: &str) -> Column {
+    fn into_column(self, name: &str) -> polars::prelude::Column {
         let series = match self {
             Self::Int32(values) => Series::new(name.into(), values),
             Self::Int64(values) => Series::new(name.into(), values),
@@ -115,7 +243,7 @@ pub(super) fn described_schema(columns: &[ColumnSpec]) -> ArrowSchema {
 /// The frame of `values`, one per column; the reason if they do not fit together.
 pub(super) fn frame(columns: &[ColumnSpec], values: Vec<Values>) -> Result<DataFrame, String> {
     let height = values.first().map_or(0, Values::len);
-    let columns: Vec<Column> = columns
+    let columns: Vec<_> = columns
         .iter()
         .zip(values)
         .map(|(column, values)| values.into_column(column.name))
@@ -125,7 +253,7 @@ pub(super) fn frame(columns: &[ColumnSpec], values: Vec<Values>) -> Result<DataF
 
 /// Columns that name a row in every table that has it.
 pub(super) mod key {
-    use super::{ColumnKind, ColumnSpec};
+    use super::{Cells, Column, ColumnKind, ColumnSpec, InScenario};
     use ColumnKind::{Float64, Int32, String as Text};
 
     pub(in super::super) const SCENARIO: ColumnSpec = ColumnSpec::new(
@@ -163,4 +291,35 @@ pub(super) mod key {
     );
     pub(in super::super) const PATTERN: ColumnSpec =
         ColumnSpec::new("pattern", Int32, "", "Pattern id");
+
+    pub(in super::super) const fn scenario<Row: InScenario, Back>() -> Column<Row, Back> {
+        let cells = Cells::int32(|row: &Row| Some(row.scenario().index as u32));
+        Column::shared(SCENARIO, cells)
+    }
+
+    pub(in super::super) const fn contact<Row: InScenario, Back>() -> Column<Row, Back> {
+        let cells = Cells::string(|row: &Row| Some(row.scenario().contact.name().to_owned()));
+        Column::shared(CONTACT, cells)
+    }
+
+    pub(in super::super) const fn engine_order<Row: InScenario, Back>() -> Column<Row, Back> {
+        let cells = Cells::int32(|row: &Row| Some(row.scenario().engine_order));
+        Column::shared(ENGINE_ORDER, cells)
+    }
+
+    pub(in super::super) const fn normal_load_n<Row: InScenario, Back>() -> Column<Row, Back> {
+        let cells = Cells::float64(|row: &Row| row.scenario().contact.normal_load_n());
+        Column::shared(NORMAL_LOAD, cells)
+    }
+
+    pub(in super::super) const fn standard_deviation<Row: InScenario, Back>() -> Column<Row, Back> {
+        let cells = Cells::float64(|row: &Row| row.scenario().standard_deviation);
+        Column::shared(STANDARD_DEVIATION, cells)
+    }
+}
+
+/// A row of a table by scenarios; it has the columns of [`key`].
+pub(super) trait InScenario {
+    /// The scenario that it belongs to.
+    fn scenario(&self) -> &Scenario;
 }

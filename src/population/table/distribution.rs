@@ -2,43 +2,64 @@
 
 use std::path::Path;
 
-use super::column::{ColumnKind, ColumnSpec, Values, key};
-use super::percentiles::{QUANTITY, scenario_keys};
+use super::column::{Cells, Column, ColumnSpec, InScenario, key, specs, values_of};
+use super::percentiles::QUANTITY;
 use super::writer::TableWriter;
 use super::{ScenarioRecord, TableError, TableHeader};
 use crate::population::monte_carlo::Scenario;
 use crate::population::statistics::BandPoint;
 
-use ColumnKind::Float64;
+/// A point of the distribution of a quantity of a scenario.
+struct DistributionRow<'a> {
+    scenario: &'a Scenario,
+    quantity: &'static str,
+    point: &'a BandPoint,
+}
+
+impl InScenario for DistributionRow<'_> {
+    fn scenario(&self) -> &Scenario {
+        self.scenario
+    }
+}
+
+impl<'a> DistributionRow<'a> {
+    const COLUMNS: &'a [Column<Self>] = &[
+        key::scenario(),
+        key::contact(),
+        key::engine_order(),
+        key::normal_load_n(),
+        key::standard_deviation(),
+        Column::shared(QUANTITY, Cells::string(|r| Some(r.quantity.to_owned()))),
+        Column::new(
+            "value",
+            "",
+            "A value of the sample",
+            Cells::float64(|r| Some(r.point.value)),
+        ),
+        Column::new(
+            "cumulative",
+            "1",
+            "Share of the patterns with a result that are at most this value",
+            Cells::float64(|r| Some(r.point.cumulative)),
+        ),
+        Column::new(
+            "cumulative_lower",
+            "1",
+            "Lower edge of the 95 % band of Dvoretzky, Kiefer and Wolfowitz, failures at plus infinity",
+            Cells::float64(|r| Some(r.point.lower)),
+        ),
+        Column::new(
+            "cumulative_upper",
+            "1",
+            "Upper edge of the same band, failures at minus infinity",
+            Cells::float64(|r| Some(r.point.upper)),
+        ),
+    ];
+}
 
 /// Columns of `distribution.parquet`.
-pub const DISTRIBUTION_COLUMNS: &[ColumnSpec] = &[
-    key::SCENARIO,
-    key::CONTACT,
-    key::ENGINE_ORDER,
-    key::NORMAL_LOAD,
-    key::STANDARD_DEVIATION,
-    QUANTITY,
-    ColumnSpec::new("value", Float64, "", "A value of the sample"),
-    ColumnSpec::new(
-        "cumulative",
-        Float64,
-        "1",
-        "Share of the patterns with a result that are at most this value",
-    ),
-    ColumnSpec::new(
-        "cumulative_lower",
-        Float64,
-        "1",
-        "Lower edge of the 95 % band of Dvoretzky, Kiefer and Wolfowitz, failures at plus infinity",
-    ),
-    ColumnSpec::new(
-        "cumulative_upper",
-        Float64,
-        "1",
-        "Upper edge of the same band, failures at minus infinity",
-    ),
-];
+pub const DISTRIBUTION_COLUMNS: &[ColumnSpec] =
+    &specs::<_, _, { DistributionRow::COLUMNS.len() }>(DistributionRow::COLUMNS);
 
 /// Writes `distribution.parquet`, ordered by scenario, quantity, value.
 ///
@@ -52,7 +73,7 @@ pub fn write_distribution(
     let mut writer = TableWriter::create(path, DISTRIBUTION_COLUMNS, header)?;
     for record in records {
         let statistics = &record.statistics;
-        let mut rows: Vec<(&Scenario, &'static str, &BandPoint)> = Vec::new();
+        let mut rows = Vec::new();
         let quantities = [
             (
                 "amplification_factor",
@@ -61,23 +82,16 @@ pub fn write_distribution(
             ("peak_amplitude_m", &statistics.peak_amplitude_m_band),
         ];
         for (quantity, band) in quantities {
-            rows.extend(band.points.iter().map(|p| (&record.scenario, quantity, p)));
+            rows.extend(band.points.iter().map(|point| DistributionRow {
+                scenario: &record.scenario,
+                quantity,
+                point,
+            }));
         }
         if rows.is_empty() {
             continue;
         }
-        let floats = |value: fn(&BandPoint) -> f64| {
-            Values::Float64(rows.iter().map(|row| Some(value(row.2))).collect())
-        };
-        let mut values = scenario_keys(rows.iter().map(|row| row.0));
-        values.push(Values::String(
-            rows.iter().map(|row| Some(row.1.to_owned())).collect(),
-        ));
-        values.push(floats(|point| point.value));
-        values.push(floats(|point| point.cumulative));
-        values.push(floats(|point| point.lower));
-        values.push(floats(|point| point.upper));
-        writer.write(values)?;
+        writer.write(values_of(DistributionRow::COLUMNS, &rows))?;
     }
     writer.finish()
 }

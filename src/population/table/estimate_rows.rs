@@ -5,8 +5,7 @@ use std::path::Path;
 
 use super::atomic::move_file;
 use super::checked_json::{ESTIMATE, SAMPLE};
-use super::column::{ColumnKind, ColumnSpec, Values, key};
-use super::percentiles::scenario_keys;
+use super::column::{Cells, Column, ColumnSpec, InScenario, key, specs, values_of};
 use super::places::{NEXT, digest_stored};
 use super::publication::discard;
 use super::writer::TableWriter;
@@ -14,54 +13,59 @@ use super::{TableError, TableHeader, digest_file};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::population::statistics::Quantity;
 
-use ColumnKind::{Boolean, Float64, Int32, String as Text};
-
-/// Columns of `sample.parquet`.
-pub const ESTIMATE_ROW_COLUMNS: &[ColumnSpec] = &[
-    key::SCENARIO,
-    key::CONTACT,
-    key::ENGINE_ORDER,
-    key::NORMAL_LOAD,
-    key::STANDARD_DEVIATION,
-    key::PATTERN,
-    ColumnSpec::new(
+const COLUMNS: &[Column<EstimateRow>] = &[
+    key::scenario(),
+    key::contact(),
+    key::engine_order(),
+    key::normal_load_n(),
+    key::standard_deviation(),
+    Column::shared(key::PATTERN, Cells::int32(|r| Some(r.pattern))),
+    Column::new(
         "surrogate_amplitude_m",
-        Float64,
         "m",
         "Peak amplitude of the surrogate; null where it has none",
+        Cells::float64(|r| r.surrogate_amplitude_m),
     ),
-    ColumnSpec::new(
+    Column::new(
         "stratum",
-        Int32,
         "",
         "Stratum, from the highest surrogate down",
+        Cells::int32(|r| Some(r.stratum as u32)),
     ),
-    ColumnSpec::new(
+    Column::new(
         "inclusion_probability",
-        Float64,
         "1",
         "Share of the patterns of its stratum that are solved",
+        Cells::float64(|r| Some(r.inclusion_probability)),
     ),
-    ColumnSpec::new("pilot", Boolean, "", "Whether it is a row of the pilot"),
-    ColumnSpec::new(
+    Column::new(
+        "pilot",
+        "",
+        "Whether it is a row of the pilot",
+        Cells::boolean(|r| Some(r.pilot)),
+    ),
+    Column::new(
         "status",
-        Text,
         "",
         "How the solution ended; null = not solved",
+        Cells::string(|r| Some(r.row.as_ref()?.status.name().to_owned())),
     ),
-    ColumnSpec::new(
+    Column::new(
         "peak_amplitude_m",
-        Float64,
         "m",
         "Peak amplitude of the row",
+        Cells::float64(|r| Quantity::PeakAmplitudeM.of(r.row.as_ref()?)),
     ),
-    ColumnSpec::new(
+    Column::new(
         "amplification_factor",
-        Float64,
         "1",
         "Amplification factor of the row",
+        Cells::float64(|r| Quantity::AmplificationFactor.of(r.row.as_ref()?)),
     ),
 ];
+
+/// Columns of `sample.parquet`.
+pub const ESTIMATE_ROW_COLUMNS: &[ColumnSpec] = &specs::<_, _, { COLUMNS.len() }>(COLUMNS);
 
 /// A pattern of an estimate.
 #[derive(Debug, Clone)]
@@ -80,6 +84,12 @@ pub struct EstimateRow {
     pub pilot: bool,
     /// Its row; none if it was not solved.
     pub row: Option<ResponseRow>,
+}
+
+impl InScenario for EstimateRow {
+    fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
 }
 
 /// Puts `sample.parquet` into the folder `results`, in the order of `rows`; its digest. An estimate that is about
@@ -116,32 +126,7 @@ pub fn write_estimate_rows(
     rows: &[EstimateRow],
     header: &TableHeader,
 ) -> Result<(), TableError> {
-    let floats = |value: &dyn Fn(&EstimateRow) -> Option<f64>| {
-        Values::Float64(rows.iter().map(value).collect())
-    };
-    let integers = |value: &dyn Fn(&EstimateRow) -> i32| {
-        Values::Int32(rows.iter().map(|row| Some(value(row))).collect())
-    };
-    let mut values = scenario_keys(rows.iter().map(|row| &row.scenario));
-    values.push(integers(&|row| row.pattern as i32));
-    values.push(floats(&|row| row.surrogate_amplitude_m));
-    values.push(integers(&|row| row.stratum as i32));
-    values.push(floats(&|row| Some(row.inclusion_probability)));
-    values.push(Values::Boolean(
-        rows.iter().map(|row| Some(row.pilot)).collect(),
-    ));
-    values.push(Values::String(
-        rows.iter()
-            .map(|row| Some(row.row.as_ref()?.status.name().to_owned()))
-            .collect(),
-    ));
-    values.push(floats(&|row| {
-        Quantity::PeakAmplitudeM.of(row.row.as_ref()?)
-    }));
-    values.push(floats(&|row| {
-        Quantity::AmplificationFactor.of(row.row.as_ref()?)
-    }));
     let mut writer = TableWriter::create(path, ESTIMATE_ROW_COLUMNS, header)?;
-    writer.write(values)?;
+    writer.write(values_of(COLUMNS, rows))?;
     writer.finish()
 }

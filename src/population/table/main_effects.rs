@@ -2,40 +2,73 @@
 
 use std::path::Path;
 
-use super::column::{ColumnKind, ColumnSpec, Values, key};
-use super::percentiles::{QUANTITY, scenario_keys};
+use super::column::{Cells, Column, ColumnSpec, InScenario, key, specs, values_of};
+use super::percentiles::QUANTITY;
 use super::writer::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::population::statistics::{VarianceShare, main_effects};
 use crate::response::mistuning::ContactQuantity;
 
-use ColumnKind::{Float64, Int64, String as Text};
+/// The effect of an input on a quantity of a scenario.
+struct EffectRow<'a> {
+    scenario: &'a Scenario,
+    quantity: &'static str,
+    input: &'a str,
+    share: Option<VarianceShare>,
+    rows: usize,
+}
+
+impl InScenario for EffectRow<'_> {
+    fn scenario(&self) -> &Scenario {
+        self.scenario
+    }
+}
+
+impl<'a> EffectRow<'a> {
+    const COLUMNS: &'a [Column<Self>] = &[
+        key::scenario(),
+        key::contact(),
+        key::engine_order(),
+        key::normal_load_n(),
+        key::standard_deviation(),
+        Column::shared(QUANTITY, Cells::string(|r| Some(r.quantity.to_owned()))),
+        Column::new(
+            "input",
+            "",
+            "A contact parameter that varies, or rest: the blades, and inputs acting together",
+            Cells::string(|r| Some(r.input.to_owned())),
+        ),
+        Column::new(
+            "variance_share",
+            "1",
+            "Share of the variance that the input explains by itself; null for fewer than 100 rows",
+            Cells::float64(|r| Some(r.share.as_ref()?.share)),
+        ),
+        Column::new(
+            "lower",
+            "1",
+            "Lower 95 % bound by jackknife",
+            Cells::float64(|r| Some(r.share.as_ref()?.lower)),
+        ),
+        Column::new(
+            "upper",
+            "1",
+            "Upper 95 % bound by jackknife",
+            Cells::float64(|r| Some(r.share.as_ref()?.upper)),
+        ),
+        Column::new(
+            "rows",
+            "1",
+            "Rows with a result",
+            Cells::int64(|r| Some(r.rows as u64)),
+        ),
+    ];
+}
 
 /// Columns of `main_effects.parquet`.
-pub const MAIN_EFFECT_COLUMNS: &[ColumnSpec] = &[
-    key::SCENARIO,
-    key::CONTACT,
-    key::ENGINE_ORDER,
-    key::NORMAL_LOAD,
-    key::STANDARD_DEVIATION,
-    QUANTITY,
-    ColumnSpec::new(
-        "input",
-        Text,
-        "",
-        "A contact parameter that varies, or rest: the blades, and inputs acting together",
-    ),
-    ColumnSpec::new(
-        "variance_share",
-        Float64,
-        "1",
-        "Share of the variance that the input explains by itself; null for fewer than 100 rows",
-    ),
-    ColumnSpec::new("lower", Float64, "1", "Lower 95 % bound by jackknife"),
-    ColumnSpec::new("upper", Float64, "1", "Upper 95 % bound by jackknife"),
-    ColumnSpec::new("rows", Int64, "1", "Rows with a result"),
-];
+pub const MAIN_EFFECT_COLUMNS: &[ColumnSpec] =
+    &specs::<_, _, { EffectRow::COLUMNS.len() }>(EffectRow::COLUMNS);
 
 const QUANTITIES: [&str; 2] = ["amplification_factor", "peak_amplitude_m"];
 
@@ -103,37 +136,22 @@ pub fn write_main_effects(
     inputs: &[ContactQuantity],
     header: &TableHeader,
 ) -> Result<(), TableError> {
-    let mut lines: Vec<(&Scenario, &str, &str, Option<VarianceShare>, usize)> = Vec::new();
+    let mut lines = Vec::new();
     let names = || inputs.iter().map(|input| input.name()).chain(["rest"]);
     for (scenario, rows) in scenarios.iter().zip(rows) {
         for (place, quantity) in QUANTITIES.into_iter().enumerate() {
             let (shares, count) = rows.effects(inputs, place);
             let named = names().zip(shares);
-            lines.extend(named.map(|(name, share)| (scenario, quantity, name, share, count)));
+            lines.extend(named.map(|(input, share)| EffectRow {
+                scenario,
+                quantity,
+                input,
+                share,
+                rows: count,
+            }));
         }
     }
-    let floats = |value: fn(&VarianceShare) -> f64| {
-        Values::Float64(
-            lines
-                .iter()
-                .map(|line| line.3.as_ref().map(value))
-                .collect(),
-        )
-    };
-    let mut values = scenario_keys(lines.iter().map(|line| line.0));
-    values.push(Values::String(
-        lines.iter().map(|line| Some(line.1.to_owned())).collect(),
-    ));
-    values.push(Values::String(
-        lines.iter().map(|line| Some(line.2.to_owned())).collect(),
-    ));
-    values.push(floats(|share| share.share));
-    values.push(floats(|share| share.lower));
-    values.push(floats(|share| share.upper));
-    values.push(Values::Int64(
-        lines.iter().map(|line| Some(line.4 as i64)).collect(),
-    ));
     let mut writer = TableWriter::create(path, MAIN_EFFECT_COLUMNS, header)?;
-    writer.write(values)?;
+    writer.write(values_of(EffectRow::COLUMNS, &lines))?;
     writer.finish()
 }

@@ -2,13 +2,11 @@
 
 use std::path::Path;
 
-use super::column::{ColumnKind, ColumnSpec, Values, key};
+use super::column::{Cells, Column, ColumnSpec, InScenario, key, specs, values_of};
 use super::writer::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::response::forced_response::DensePeak;
-
-use ColumnKind::{Boolean, Float64, Int64, String as Text};
 
 /// One delivered row with what a dense sweep saw.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,59 +28,77 @@ impl PeakAuditRecord {
     }
 }
 
-/// Columns of `peak_audit.parquet`.
-pub const PEAK_AUDIT_COLUMNS: &[ColumnSpec] = &[
-    key::SCENARIO,
-    key::CONTACT,
-    key::ENGINE_ORDER,
-    key::NORMAL_LOAD,
-    key::STANDARD_DEVIATION,
-    key::PATTERN,
-    ColumnSpec::new("status", Text, "", "How the delivered solution ended"),
-    ColumnSpec::new(
+impl InScenario for PeakAuditRecord {
+    fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+}
+
+const COLUMNS: &[Column<PeakAuditRecord>] = &[
+    key::scenario(),
+    key::contact(),
+    key::engine_order(),
+    key::normal_load_n(),
+    key::standard_deviation(),
+    Column::shared(key::PATTERN, Cells::int32(|r| Some(r.delivered.pattern))),
+    Column::new(
+        "status",
+        "",
+        "How the delivered solution ended",
+        Cells::string(|r| Some(r.delivered.status.name().to_owned())),
+    ),
+    Column::new(
         "peak_amplitude_m",
-        Float64,
         "m",
         "Largest amplitude over blades and frequency, as delivered",
+        Cells::float64(|r| r.delivered.peak_amplitude_m),
     ),
-    ColumnSpec::new(
+    Column::new(
         "peak_frequency_hz",
-        Float64,
         "Hz",
         "Excitation frequency of the peak, as delivered",
+        Cells::float64(|r| r.delivered.peak_frequency_hz),
     ),
-    ColumnSpec::new(
+    Column::new(
         "swept_amplitude_m",
-        Float64,
         "m",
         "Largest amplitude over blades and frequency of the sweep",
+        Cells::float64(|r| Some(r.swept?.amplitude_m)),
     ),
-    ColumnSpec::new("swept_frequency_hz", Float64, "Hz", "Its frequency"),
-    ColumnSpec::new(
+    Column::new(
+        "swept_frequency_hz",
+        "Hz",
+        "Its frequency",
+        Cells::float64(|r| Some(r.swept?.frequency_hz)),
+    ),
+    Column::new(
         "under_read",
-        Float64,
         "1",
         "1 - peak_amplitude_m / swept_amplitude_m",
+        Cells::float64(PeakAuditRecord::under_read),
     ),
-    ColumnSpec::new(
+    Column::new(
         "swept_points",
-        Int64,
         "1",
         "Frequencies of the sweep, failed ones included",
+        Cells::int64(|r| Some(r.swept?.points as u64)),
     ),
-    ColumnSpec::new(
+    Column::new(
         "swept_failed",
-        Int64,
         "1",
         "Frequencies of the sweep without a solution",
+        Cells::int64(|r| Some(r.swept?.failed as u64)),
     ),
-    ColumnSpec::new(
+    Column::new(
         "swept_inside",
-        Boolean,
         "",
         "The highest value of the sweep lies inside of its band",
+        Cells::boolean(|r| Some(r.swept?.inside)),
     ),
 ];
+
+/// Columns of `peak_audit.parquet`.
+pub const PEAK_AUDIT_COLUMNS: &[ColumnSpec] = &specs::<_, _, { COLUMNS.len() }>(COLUMNS);
 
 /// Writes `peak_audit.parquet`; `seed` is that of the sample, kept in the file's metadata.
 ///
@@ -94,47 +110,11 @@ pub fn write_peak_audit(
     header: &TableHeader,
     seed: u64,
 ) -> Result<(), TableError> {
-    type Record = PeakAuditRecord;
-    let ids = |value: &dyn Fn(&Record) -> u32| {
-        Values::Int32(records.iter().map(|r| Some(value(r) as i32)).collect())
-    };
-    let floats = |value: &dyn Fn(&Record) -> Option<f64>| {
-        Values::Float64(records.iter().map(value).collect())
-    };
-    let names = |value: &dyn Fn(&Record) -> &str| {
-        Values::String(records.iter().map(|r| Some(value(r).to_owned())).collect())
-    };
-    let counts = |value: &dyn Fn(&DensePeak) -> usize| {
-        let counts = records.iter().map(|r| r.swept.as_ref().map(value));
-        Values::Int64(counts.map(|count| count.map(|n| n as i64)).collect())
-    };
-    let values = vec![
-        ids(&|r| r.scenario.index as u32),
-        names(&|r| r.scenario.contact.name()),
-        ids(&|r| r.scenario.engine_order),
-        floats(&|r| r.scenario.contact.normal_load_n()),
-        floats(&|r| r.scenario.standard_deviation),
-        ids(&|r| r.delivered.pattern),
-        names(&|r| r.delivered.status.name()),
-        floats(&|r| r.delivered.peak_amplitude_m),
-        floats(&|r| r.delivered.peak_frequency_hz),
-        floats(&|r| r.swept.map(|swept| swept.amplitude_m)),
-        floats(&|r| r.swept.map(|swept| swept.frequency_hz)),
-        floats(&Record::under_read),
-        counts(&|swept| swept.points),
-        counts(&|swept| swept.failed),
-        Values::Boolean(
-            records
-                .iter()
-                .map(|r| r.swept.map(|swept| swept.inside))
-                .collect(),
-        ),
-    ];
     let sample = [
         ("blisk.sample_seed", seed.to_string()),
         ("blisk.sample_rows", records.len().to_string()),
     ];
     let mut writer = TableWriter::create_with(path, PEAK_AUDIT_COLUMNS, header, &sample)?;
-    writer.write(values)?;
+    writer.write(values_of(COLUMNS, records))?;
     writer.finish()
 }

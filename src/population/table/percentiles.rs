@@ -2,75 +2,101 @@
 
 use std::path::Path;
 
-use super::column::{ColumnKind, ColumnSpec, Values, key};
+use super::column::{Cells, Column, ColumnKind, ColumnSpec, InScenario, key, specs, values_of};
 use super::writer::TableWriter;
 use super::{ScenarioRecord, TableError, TableHeader};
 use crate::population::monte_carlo::Scenario;
 use crate::population::statistics::Percentile;
 
-use ColumnKind::{Boolean, Float64, Int32, String as Text};
-
 /// The column that names the quantity of a row.
 pub(super) const QUANTITY: ColumnSpec = ColumnSpec::new(
     "quantity",
-    Text,
+    ColumnKind::String,
     "",
     "amplification_factor (ratio) or peak_amplitude_m (m)",
 );
 
+/// A percentile of a quantity of a scenario.
+struct PercentileRow<'a> {
+    scenario: &'a Scenario,
+    quantity: &'static str,
+    found: &'a Percentile,
+}
+
+impl InScenario for PercentileRow<'_> {
+    fn scenario(&self) -> &Scenario {
+        self.scenario
+    }
+}
+
+impl<'a> PercentileRow<'a> {
+    const COLUMNS: &'a [Column<Self>] = &[
+        key::scenario(),
+        key::contact(),
+        key::engine_order(),
+        key::normal_load_n(),
+        key::standard_deviation(),
+        Column::shared(QUANTITY, Cells::string(|r| Some(r.quantity.to_owned()))),
+        Column::new(
+            "percent",
+            "%",
+            "The percentile",
+            Cells::float64(|r| Some(r.found.percent)),
+        ),
+        Column::new(
+            "value",
+            "",
+            "Order statistic of the patterns with a result; null = not estimable",
+            Cells::float64(|r| r.found.value),
+        ),
+        Column::new(
+            "lower",
+            "",
+            "Lower 95 % bound, distribution-free, failures at minus infinity",
+            Cells::float64(|r| r.found.lower),
+        ),
+        Column::new(
+            "upper",
+            "",
+            "Upper 95 % bound, distribution-free, failures at plus infinity",
+            Cells::float64(|r| r.found.upper),
+        ),
+        Column::new(
+            "rank_lower",
+            "",
+            "Rank of the lower bound among the planned patterns, from 1",
+            Cells::int32(|r| r.found.rank_lower.map(|rank| rank as u32)),
+        ),
+        Column::new(
+            "rank_upper",
+            "",
+            "Rank of the upper bound among the planned patterns, from 1",
+            Cells::int32(|r| r.found.rank_upper.map(|rank| rank as u32)),
+        ),
+        Column::new(
+            "achieved_coverage",
+            "1",
+            "Probability that the interval of these ranks holds the percentile",
+            Cells::float64(|r| r.found.achieved_coverage),
+        ),
+        Column::new(
+            "estimable",
+            "",
+            "Whether there is a value",
+            Cells::boolean(|r| Some(r.found.value.is_some())),
+        ),
+        Column::new(
+            "status",
+            "",
+            "estimated, too_few_patterns or too_many_failures",
+            Cells::string(|r| Some(r.found.status.name().to_owned())),
+        ),
+    ];
+}
+
 /// Columns of `percentiles.parquet`.
-pub const PERCENTILE_COLUMNS: &[ColumnSpec] = &[
-    key::SCENARIO,
-    key::CONTACT,
-    key::ENGINE_ORDER,
-    key::NORMAL_LOAD,
-    key::STANDARD_DEVIATION,
-    QUANTITY,
-    ColumnSpec::new("percent", Float64, "%", "The percentile"),
-    ColumnSpec::new(
-        "value",
-        Float64,
-        "",
-        "Order statistic of the patterns with a result; null = not estimable",
-    ),
-    ColumnSpec::new(
-        "lower",
-        Float64,
-        "",
-        "Lower 95 % bound, distribution-free, failures at minus infinity",
-    ),
-    ColumnSpec::new(
-        "upper",
-        Float64,
-        "",
-        "Upper 95 % bound, distribution-free, failures at plus infinity",
-    ),
-    ColumnSpec::new(
-        "rank_lower",
-        Int32,
-        "",
-        "Rank of the lower bound among the planned patterns, from 1",
-    ),
-    ColumnSpec::new(
-        "rank_upper",
-        Int32,
-        "",
-        "Rank of the upper bound among the planned patterns, from 1",
-    ),
-    ColumnSpec::new(
-        "achieved_coverage",
-        Float64,
-        "1",
-        "Probability that the interval of these ranks holds the percentile",
-    ),
-    ColumnSpec::new("estimable", Boolean, "", "Whether there is a value"),
-    ColumnSpec::new(
-        "status",
-        Text,
-        "",
-        "estimated, too_few_patterns or too_many_failures",
-    ),
-];
+pub const PERCENTILE_COLUMNS: &[ColumnSpec] =
+    &specs::<_, _, { PercentileRow::COLUMNS.len() }>(PercentileRow::COLUMNS);
 
 /// Writes `percentiles.parquet`, ordered by scenario, quantity, percentile.
 ///
@@ -81,7 +107,7 @@ pub fn write_percentiles(
     records: &[ScenarioRecord],
     header: &TableHeader,
 ) -> Result<(), TableError> {
-    let mut rows: Vec<(&Scenario, &'static str, &Percentile)> = Vec::new();
+    let mut rows = Vec::new();
     for record in records {
         let quantities = [
             (
@@ -92,63 +118,14 @@ pub fn write_percentiles(
         ];
         for (quantity, sample) in quantities {
             let percentiles = sample.percentiles.iter();
-            rows.extend(percentiles.map(|percentile| (&record.scenario, quantity, percentile)));
+            rows.extend(percentiles.map(|found| PercentileRow {
+                scenario: &record.scenario,
+                quantity,
+                found,
+            }));
         }
     }
-    let floats = |value: &dyn Fn(&Percentile) -> Option<f64>| {
-        Values::Float64(rows.iter().map(|(_, _, found)| value(found)).collect())
-    };
-    let ranks = |value: &dyn Fn(&Percentile) -> Option<u64>| {
-        let rank = |found: &Percentile| value(found).map(|rank| rank as i32);
-        Values::Int32(rows.iter().map(|(_, _, found)| rank(found)).collect())
-    };
-    let mut values = scenario_keys(rows.iter().map(|(scenario, _, _)| *scenario));
-    values.push(Values::String(
-        rows.iter().map(|row| Some(row.1.to_owned())).collect(),
-    ));
-    values.push(floats(&|found| Some(found.percent)));
-    values.push(floats(&|found| found.value));
-    values.push(floats(&|found| found.lower));
-    values.push(floats(&|found| found.upper));
-    values.push(ranks(&|found| found.rank_lower));
-    values.push(ranks(&|found| found.rank_upper));
-    values.push(floats(&|found| found.achieved_coverage));
-    values.push(Values::Boolean(
-        rows.iter().map(|row| Some(row.2.value.is_some())).collect(),
-    ));
-    values.push(Values::String(
-        rows.iter()
-            .map(|row| Some(row.2.status.name().to_owned()))
-            .collect(),
-    ));
     let mut writer = TableWriter::create(path, PERCENTILE_COLUMNS, header)?;
-    writer.write(values)?;
+    writer.write(values_of(PercentileRow::COLUMNS, &rows))?;
     writer.finish()
-}
-
-/// Values of the five key columns of a scenario, one per item.
-pub(super) fn scenario_keys<'a>(scenarios: impl Iterator<Item = &'a Scenario>) -> Vec<Values> {
-    let scenarios: Vec<&Scenario> = scenarios.collect();
-    vec![
-        Values::Int32(scenarios.iter().map(|s| Some(s.index as i32)).collect()),
-        Values::String(
-            scenarios
-                .iter()
-                .map(|s| Some(s.contact.name().to_owned()))
-                .collect(),
-        ),
-        Values::Int32(
-            scenarios
-                .iter()
-                .map(|s| Some(s.engine_order as i32))
-                .collect(),
-        ),
-        Values::Float64(
-            scenarios
-                .iter()
-                .map(|s| s.contact.normal_load_n())
-                .collect(),
-        ),
-        Values::Float64(scenarios.iter().map(|s| s.standard_deviation).collect()),
-    ]
 }

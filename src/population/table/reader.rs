@@ -5,10 +5,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use polars::prelude::{
-    Column, DataFrame, DataType, ParallelStrategy, ParquetReader, PolarsError, SerReader,
+    DataFrame, DataType, ParallelStrategy, ParquetReader, PolarsError, SerReader,
 };
 
-use super::column::polars_type;
+use super::column::{Cells, Column, polars_type};
 use super::writer::{ROW_DIGESTS_KEY, STUDY_DIGEST_KEY};
 use super::{ColumnSpec, TableError};
 
@@ -88,6 +88,7 @@ impl TableReader {
         }
         Ok(Slice {
             path: &self.path,
+            first,
             frame,
         })
     }
@@ -122,11 +123,47 @@ fn parquet(path: &Path) -> Result<ParquetReader<File>, TableError> {
 /// Rows in memory, column by column.
 pub(super) struct Slice<'a> {
     path: &'a Path,
+    /// Place of its first row in the file.
+    first: usize,
     frame: DataFrame,
 }
 
 impl Slice<'_> {
-    fn column(&self, name: &str) -> Result<&Column, TableError> {
+    /// Sets `column` in the rows that are read back, one for each of these.
+    pub(super) fn read_back<Row, Back>(
+        &self,
+        column: &Column<Row, Back>,
+        rows: &mut [Back],
+    ) -> Result<(), TableError> {
+        let name = column.spec.name;
+        let refused = match &column.cells {
+            Cells::Int32(access) => {
+                let whole = |value: i32| u32::try_from(value).ok();
+                let cells = self.int32(name)?.into_iter();
+                access.set(cells.map(|cell| cell.and_then(whole)), rows)
+            }
+            Cells::Int64(access) => {
+                let whole = |value: i64| u64::try_from(value).ok();
+                let cells = self.int64(name)?.into_iter();
+                access.set(cells.map(|cell| cell.and_then(whole)), rows)
+            }
+            Cells::Float64(access) => access.set(self.float64(name)?, rows),
+            Cells::Boolean(access) => access.set(self.boolean(name)?, rows),
+            Cells::String(access) => access.set(self.string(name)?, rows),
+        };
+        refused.map_or(Ok(()), |row| Err(self.no_valid_value(row, name)))
+    }
+
+    /// Row `row` of these has no value in `column` that it may have.
+    fn no_valid_value(&self, row: usize, column: &str) -> TableError {
+        let place = self.first + row;
+        TableError::damaged(
+            self.path,
+            format!("row {place}: no valid value in column {column}"),
+        )
+    }
+
+    fn column(&self, name: &str) -> Result<&polars::prelude::Column, TableError> {
         self.frame
             .column(name)
             .map_err(|error| TableError::damaged(self.path, error.to_string()))

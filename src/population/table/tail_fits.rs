@@ -4,14 +4,12 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::column::{ColumnKind, ColumnSpec, Values, key};
-use super::percentiles::{QUANTITY, scenario_keys};
+use super::column::{Cells, Column, ColumnSpec, InScenario, key, specs, values_of};
+use super::percentiles::QUANTITY;
 use super::writer::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::Scenario;
-use crate::population::statistics::{Estimate, Quantity, TailFit, TailParameters, TailPercentile};
-
-use ColumnKind::{Boolean, Float64, Int32, String as Text};
+use crate::population::statistics::{Estimate, Quantity, TailFit, TailPercentile};
 
 /// The two laws fitted to one quantity of one scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,88 +43,207 @@ impl Serialize for TailFitRecord {
     }
 }
 
-const fn number(name: &'static str, description: &'static str) -> ColumnSpec {
-    ColumnSpec::new(name, Float64, "", description)
+/// A column in the unit of the quantity.
+const fn number<Row>(
+    name: &'static str,
+    description: &'static str,
+    value: fn(&Row) -> Option<f64>,
+) -> Column<Row> {
+    Column::new(name, "", description, Cells::float64(value))
+}
+
+/// A percentile of a fit.
+struct TailFitRow<'a> {
+    record: &'a TailFitRecord,
+    fit: &'a TailFit,
+    at: &'a TailPercentile,
+}
+
+impl InScenario for TailFitRow<'_> {
+    fn scenario(&self) -> &Scenario {
+        &self.record.scenario
+    }
+}
+
+impl<'a> TailFitRow<'a> {
+    fn location(&self) -> Option<Estimate> {
+        self.fit.parameters.as_ref()?.location
+    }
+
+    fn scale(&self) -> Option<Estimate> {
+        Some(self.fit.parameters.as_ref()?.scale)
+    }
+
+    fn shape(&self) -> Option<Estimate> {
+        Some(self.fit.parameters.as_ref()?.shape)
+    }
+
+    fn upper_end(&self) -> Option<Estimate> {
+        self.fit.parameters.as_ref()?.upper_end
+    }
+
+    const COLUMNS: &'a [Column<Self>] = &[
+        key::scenario(),
+        key::contact(),
+        key::engine_order(),
+        key::normal_load_n(),
+        key::standard_deviation(),
+        Column::shared(
+            QUANTITY,
+            Cells::string(|r| Some(r.record.quantity.name().to_owned())),
+        ),
+        Column::new(
+            "law",
+            "",
+            "weibull_bounded_above or generalised_extreme_value",
+            Cells::string(|r| Some(r.fit.law.name().to_owned())),
+        ),
+        Column::new(
+            "fit_status",
+            "",
+            "How the fit ended",
+            Cells::string(|r| Some(r.fit.status.name().to_owned())),
+        ),
+        Column::new(
+            "percent",
+            "%",
+            "The percentile",
+            Cells::float64(|r| Some(r.at.percent)),
+        ),
+        number(
+            "value",
+            "Order statistic of the sample; null = not estimable",
+            |r| r.at.empirical.value,
+        ),
+        number(
+            "lower",
+            "Lower 95 % bound of the sample, distribution-free",
+            |r| r.at.empirical.lower,
+        ),
+        number(
+            "upper",
+            "Upper 95 % bound of the sample, distribution-free",
+            |r| r.at.empirical.upper,
+        ),
+        number("model_value", "Percentile of the fitted law", |r| {
+            Some(r.at.model?.value)
+        }),
+        number(
+            "model_lower",
+            "Lower 95 % bound, parametric bootstrap",
+            |r| r.at.model?.lower,
+        ),
+        number(
+            "model_upper",
+            "Upper 95 % bound, parametric bootstrap",
+            |r| r.at.model?.upper,
+        ),
+        Column::new(
+            "outside_interval",
+            "",
+            "The fitted percentile lies outside of the bounds of the sample",
+            Cells::boolean(|r| Some(r.at.outside_interval)),
+        ),
+        Column::new(
+            "extrapolates",
+            "",
+            "The percentile lies beyond 1 - 1/n of the sample",
+            Cells::boolean(|r| Some(r.at.extrapolates)),
+        ),
+        number("location", "Location mu of the generalised law", |r| {
+            Some(r.location()?.value)
+        }),
+        number("location_lower", "Lower 95 % bound of the location", |r| {
+            r.location()?.lower
+        }),
+        number("location_upper", "Upper 95 % bound of the location", |r| {
+            r.location()?.upper
+        }),
+        number(
+            "scale",
+            "Scale sigma of the generalised law, delta of the Weibull law",
+            |r| Some(r.scale()?.value),
+        ),
+        number("scale_lower", "Lower 95 % bound of the scale", |r| {
+            r.scale()?.lower
+        }),
+        number("scale_upper", "Upper 95 % bound of the scale", |r| {
+            r.scale()?.upper
+        }),
+        number(
+            "shape",
+            "Shape xi of the generalised law, beta of the Weibull law",
+            |r| Some(r.shape()?.value),
+        ),
+        number("shape_lower", "Lower 95 % bound of the shape", |r| {
+            r.shape()?.lower
+        }),
+        number("shape_upper", "Upper 95 % bound of the shape", |r| {
+            r.shape()?.upper
+        }),
+        number(
+            "upper_end",
+            "Upper end lambda of the law; null = unbounded",
+            |r| Some(r.upper_end()?.value),
+        ),
+        number(
+            "upper_end_lower",
+            "Lower 95 % bound of the upper end",
+            |r| r.upper_end()?.lower,
+        ),
+        number(
+            "upper_end_upper",
+            "Upper 95 % bound of the upper end",
+            |r| r.upper_end()?.upper,
+        ),
+        Column::new(
+            "anderson_darling",
+            "1",
+            "Anderson-Darling distance",
+            Cells::float64(|r| r.fit.anderson_darling),
+        ),
+        Column::new(
+            "p_value",
+            "1",
+            "Probability of a larger distance if the law were right, parametric bootstrap",
+            Cells::float64(|r| r.fit.p_value),
+        ),
+        Column::new(
+            "resamples",
+            "1",
+            "Resamples behind it",
+            Cells::int32(|r| Some(r.fit.resamples)),
+        ),
+        Column::new(
+            "failed_resamples",
+            "1",
+            "Resamples without a fit",
+            Cells::int32(|r| Some(r.fit.failed_resamples)),
+        ),
+        Column::new(
+            "few_values",
+            "",
+            "Fewer than 50 values",
+            Cells::boolean(|r| Some(r.fit.few_values)),
+        ),
+        Column::new(
+            "rejected",
+            "",
+            "p_value below 0.05",
+            Cells::boolean(|r| Some(r.fit.rejected)),
+        ),
+        Column::new(
+            "failures_left_out",
+            "1",
+            "Failed rows that the fit knows nothing of",
+            Cells::int32(|r| Some(r.fit.failures_left_out as u32)),
+        ),
+    ];
 }
 
 /// Columns of `tail_fits.parquet`.
-pub const TAIL_FIT_COLUMNS: &[ColumnSpec] = &[
-    key::SCENARIO,
-    key::CONTACT,
-    key::ENGINE_ORDER,
-    key::NORMAL_LOAD,
-    key::STANDARD_DEVIATION,
-    QUANTITY,
-    ColumnSpec::new(
-        "law",
-        Text,
-        "",
-        "weibull_bounded_above or generalised_extreme_value",
-    ),
-    ColumnSpec::new("fit_status", Text, "", "How the fit ended"),
-    ColumnSpec::new("percent", Float64, "%", "The percentile"),
-    number(
-        "value",
-        "Order statistic of the sample; null = not estimable",
-    ),
-    number("lower", "Lower 95 % bound of the sample, distribution-free"),
-    number("upper", "Upper 95 % bound of the sample, distribution-free"),
-    number("model_value", "Percentile of the fitted law"),
-    number("model_lower", "Lower 95 % bound, parametric bootstrap"),
-    number("model_upper", "Upper 95 % bound, parametric bootstrap"),
-    ColumnSpec::new(
-        "outside_interval",
-        Boolean,
-        "",
-        "The fitted percentile lies outside of the bounds of the sample",
-    ),
-    ColumnSpec::new(
-        "extrapolates",
-        Boolean,
-        "",
-        "The percentile lies beyond 1 - 1/n of the sample",
-    ),
-    number("location", "Location mu of the generalised law"),
-    number("location_lower", "Lower 95 % bound of the location"),
-    number("location_upper", "Upper 95 % bound of the location"),
-    number(
-        "scale",
-        "Scale sigma of the generalised law, delta of the Weibull law",
-    ),
-    number("scale_lower", "Lower 95 % bound of the scale"),
-    number("scale_upper", "Upper 95 % bound of the scale"),
-    number(
-        "shape",
-        "Shape xi of the generalised law, beta of the Weibull law",
-    ),
-    number("shape_lower", "Lower 95 % bound of the shape"),
-    number("shape_upper", "Upper 95 % bound of the shape"),
-    number("upper_end", "Upper end lambda of the law; null = unbounded"),
-    number("upper_end_lower", "Lower 95 % bound of the upper end"),
-    number("upper_end_upper", "Upper 95 % bound of the upper end"),
-    ColumnSpec::new(
-        "anderson_darling",
-        Float64,
-        "1",
-        "Anderson-Darling distance",
-    ),
-    ColumnSpec::new(
-        "p_value",
-        Float64,
-        "1",
-        "Probability of a larger distance if the law were right, parametric bootstrap",
-    ),
-    ColumnSpec::new("resamples", Int32, "1", "Resamples behind it"),
-    ColumnSpec::new("failed_resamples", Int32, "1", "Resamples without a fit"),
-    ColumnSpec::new("few_values", Boolean, "", "Fewer than 50 values"),
-    ColumnSpec::new("rejected", Boolean, "", "p_value below 0.05"),
-    ColumnSpec::new(
-        "failures_left_out",
-        Int32,
-        "1",
-        "Failed rows that the fit knows nothing of",
-    ),
-];
+pub const TAIL_FIT_COLUMNS: &[ColumnSpec] =
+    &specs::<_, _, { TailFitRow::COLUMNS.len() }>(TailFitRow::COLUMNS);
 
 /// Writes `tail_fits.parquet`, ordered by scenario, quantity, law, percentile.
 ///
@@ -137,59 +254,14 @@ pub fn write_tail_fits(
     records: &[TailFitRecord],
     header: &TableHeader,
 ) -> Result<(), TableError> {
-    let mut rows: Vec<(&TailFitRecord, &TailFit, &TailPercentile)> = Vec::new();
+    let mut rows = Vec::new();
     for record in records {
         for fit in &record.fits {
-            rows.extend(fit.percentiles.iter().map(|p| (record, fit, p)));
+            let percentiles = fit.percentiles.iter();
+            rows.extend(percentiles.map(|at| TailFitRow { record, fit, at }));
         }
     }
-    let floats = |value: &dyn Fn(&TailFit, &TailPercentile) -> Option<f64>| {
-        Values::Float64(rows.iter().map(|(_, fit, p)| value(fit, p)).collect())
-    };
-    let flags = |value: &dyn Fn(&TailFit, &TailPercentile) -> bool| {
-        Values::Boolean(rows.iter().map(|(_, fit, p)| Some(value(fit, p))).collect())
-    };
-    let counts = |value: &dyn Fn(&TailFit) -> u64| {
-        let counts = rows.iter().map(|(_, fit, _)| Some(value(fit) as i32));
-        Values::Int32(counts.collect())
-    };
-    let names = |value: &dyn Fn(&TailFitRecord, &TailFit) -> &'static str| {
-        let names = rows.iter().map(|(record, fit, _)| value(record, fit));
-        Values::String(names.map(|name| Some(name.to_owned())).collect())
-    };
-    let mut values = scenario_keys(rows.iter().map(|(record, ..)| &record.scenario));
-    values.push(names(&|record, _| record.quantity.name()));
-    values.push(names(&|_, fit| fit.law.name()));
-    values.push(names(&|_, fit| fit.status.name()));
-    values.push(floats(&|_, p| Some(p.percent)));
-    values.push(floats(&|_, p| p.empirical.value));
-    values.push(floats(&|_, p| p.empirical.lower));
-    values.push(floats(&|_, p| p.empirical.upper));
-    values.push(floats(&|_, p| Some(p.model?.value)));
-    values.push(floats(&|_, p| p.model?.lower));
-    values.push(floats(&|_, p| p.model?.upper));
-    values.push(flags(&|_, p| p.outside_interval));
-    values.push(flags(&|_, p| p.extrapolates));
-    let parameters: [fn(&TailParameters) -> Option<Estimate>; 4] = [
-        |parameters| parameters.location,
-        |parameters| Some(parameters.scale),
-        |parameters| Some(parameters.shape),
-        |parameters| parameters.upper_end,
-    ];
-    for parameter in parameters {
-        let of = |fit: &TailFit| parameter(fit.parameters.as_ref()?);
-        values.push(floats(&|fit, _| Some(of(fit)?.value)));
-        values.push(floats(&|fit, _| of(fit)?.lower));
-        values.push(floats(&|fit, _| of(fit)?.upper));
-    }
-    values.push(floats(&|fit, _| fit.anderson_darling));
-    values.push(floats(&|fit, _| fit.p_value));
-    values.push(counts(&|fit| u64::from(fit.resamples)));
-    values.push(counts(&|fit| u64::from(fit.failed_resamples)));
-    values.push(flags(&|fit, _| fit.few_values));
-    values.push(flags(&|fit, _| fit.rejected));
-    values.push(counts(&|fit| fit.failures_left_out));
     let mut writer = TableWriter::create(path, TAIL_FIT_COLUMNS, header)?;
-    writer.write(values)?;
+    writer.write(values_of(TailFitRow::COLUMNS, &rows))?;
     writer.finish()
 }

@@ -2,14 +2,12 @@
 
 use std::path::Path;
 
-use super::column::{ColumnKind, ColumnSpec, Values, key};
+use super::column::{Cells, Column, ColumnSpec, InScenario, key, specs, values_of};
 use super::writer::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;
 use crate::verification::reference::ReferencePeak;
-
-use ColumnKind::{Boolean, Float64, Int32, Int64, String as Text};
 
 /// One delivered row with what became of it when solved again.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,136 +75,149 @@ fn relative(own: Option<f64>, reference: Option<f64>) -> Option<f64> {
     Some(own? / reference? - 1.0)
 }
 
-/// Columns of `verification.parquet`.
-pub const VERIFICATION_COLUMNS: &[ColumnSpec] = &[
-    key::SCENARIO,
-    key::CONTACT,
-    key::ENGINE_ORDER,
-    key::NORMAL_LOAD,
-    key::STANDARD_DEVIATION,
-    key::PATTERN,
-    ColumnSpec::new(
+impl InScenario for VerificationRecord {
+    fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+}
+
+const COLUMNS: &[Column<VerificationRecord>] = &[
+    key::scenario(),
+    key::contact(),
+    key::engine_order(),
+    key::normal_load_n(),
+    key::standard_deviation(),
+    Column::shared(key::PATTERN, Cells::int32(|r| Some(r.delivered.pattern))),
+    Column::new(
         "harmonics",
-        Text,
         "",
         "Temporal harmonics of both solutions, for instance 1-3",
+        Cells::string(|r| Some(r.delivered.harmonics.clone())),
     ),
-    ColumnSpec::new("status", Text, "", "How the delivered solution ended"),
-    ColumnSpec::new(
+    Column::new(
+        "status",
+        "",
+        "How the delivered solution ended",
+        Cells::string(|r| Some(r.delivered.status.name().to_owned())),
+    ),
+    Column::new(
         "replay_identical",
-        Boolean,
         "",
         "The same path solved again gives the same bits, tuned reference included",
+        Cells::boolean(|r| Some(r.replay_identical)),
     ),
-    ColumnSpec::new(
+    Column::new(
         "peak_amplitude_m",
-        Float64,
         "m",
         "Largest amplitude over blades and frequency, as delivered",
+        Cells::float64(|r| r.delivered.peak_amplitude_m),
     ),
-    ColumnSpec::new(
+    Column::new(
         "peak_frequency_hz",
-        Float64,
         "Hz",
         "Excitation frequency of the peak, as delivered",
+        Cells::float64(|r| r.delivered.peak_frequency_hz),
     ),
-    ColumnSpec::new(
+    Column::new(
         "peak_blade",
-        Int32,
         "",
         "Blade of the peak, from 0, as delivered",
+        Cells::int32(|r| r.delivered.peak_blade),
     ),
-    ColumnSpec::new(
+    Column::new(
         "amplification_factor",
-        Float64,
         "1",
         "Peak amplitude over the tuned peak, as delivered",
+        Cells::float64(|r| r.delivered.amplification_factor),
     ),
-    ColumnSpec::new(
+    Column::new(
         "separated_fraction",
-        Float64,
         "1",
         "Share of contact pairs without normal load at any instant, at the peak, as delivered",
+        Cells::float64(|r| r.delivered.separated_fraction),
     ),
-    ColumnSpec::new(
+    Column::new(
         "reference_status",
-        Text,
         "",
         "How the solution on the full-contact model ended; every value but ok has nulls",
+        Cells::string(|r| Some(r.reference.status.name().to_owned())),
     ),
-    ColumnSpec::new(
+    Column::new(
         "reference_tuned_status",
-        Text,
         "",
         "How the tuned solution on the full-contact model ended",
+        Cells::string(|r| Some(r.tuned_reference.status.name().to_owned())),
     ),
-    ColumnSpec::new(
+    Column::new(
         "reference_amplitude_m",
-        Float64,
         "m",
         "Peak amplitude on the full-contact model",
+        Cells::float64(|r| r.reference.amplitude_m),
     ),
-    ColumnSpec::new(
+    Column::new(
         "reference_frequency_hz",
-        Float64,
         "Hz",
         "Peak frequency on the full-contact model",
+        Cells::float64(|r| r.reference.frequency_hz),
     ),
-    ColumnSpec::new(
+    Column::new(
         "reference_blade",
-        Int32,
         "",
         "Blade of the peak on the full-contact model, from 0",
+        Cells::int32(|r| r.reference.blade),
     ),
-    ColumnSpec::new(
+    Column::new(
         "reference_amplification_factor",
-        Float64,
         "1",
         "Amplification factor on the full-contact model, tuned reference included",
+        Cells::float64(VerificationRecord::reference_amplification_factor),
     ),
-    ColumnSpec::new(
+    Column::new(
         "reference_separated_fraction",
-        Float64,
         "1",
         "Share of contact pairs without normal load at any instant, on the full-contact model",
+        Cells::float64(|r| Some(r.reference.shares?.separated)),
     ),
-    ColumnSpec::new(
+    Column::new(
         "amplitude_error",
-        Float64,
         "1",
         "peak_amplitude_m / reference_amplitude_m - 1",
+        Cells::float64(VerificationRecord::amplitude_error),
     ),
-    ColumnSpec::new(
+    Column::new(
         "frequency_error",
-        Float64,
         "1",
         "peak_frequency_hz / reference_frequency_hz - 1",
+        Cells::float64(VerificationRecord::frequency_error),
     ),
-    ColumnSpec::new(
+    Column::new(
         "amplification_factor_error",
-        Float64,
         "1",
         "amplification_factor / reference_amplification_factor - 1",
+        Cells::float64(VerificationRecord::amplification_factor_error),
     ),
-    ColumnSpec::new(
+    Column::new(
         "reference_residual",
-        Float64,
         "1",
         "Residual force relative to the excitation at the peak, full-contact model",
+        Cells::float64(|r| r.reference.residual),
     ),
-    ColumnSpec::new(
+    Column::new(
         "reference_solves",
-        Int64,
         "1",
         "Frequencies solved on the full-contact model",
+        Cells::int64(|r| Some(r.reference.work.solves)),
     ),
-    ColumnSpec::new(
+    Column::new(
         "reference_newton_iterations",
-        Int64,
         "1",
         "Newton iterations on the full-contact model, all attempts",
+        Cells::int64(|r| Some(r.reference.work.newton_iterations)),
     ),
 ];
+
+/// Columns of `verification.parquet`.
+pub const VERIFICATION_COLUMNS: &[ColumnSpec] = &specs::<_, _, { COLUMNS.len() }>(COLUMNS);
 
 /// Writes `verification.parquet`; `seed` is that of the sample, kept in the file's metadata.
 ///
@@ -218,58 +229,11 @@ pub fn write_verification(
     header: &TableHeader,
     seed: u64,
 ) -> Result<(), TableError> {
-    type Record = VerificationRecord;
-    let ids = |value: &dyn Fn(&Record) -> Option<u32>| {
-        Values::Int32(
-            records
-                .iter()
-                .map(|r| value(r).map(|id| id as i32))
-                .collect(),
-        )
-    };
-    let floats = |value: &dyn Fn(&Record) -> Option<f64>| {
-        Values::Float64(records.iter().map(value).collect())
-    };
-    let names = |value: &dyn Fn(&Record) -> &str| {
-        Values::String(records.iter().map(|r| Some(value(r).to_owned())).collect())
-    };
-    let counts = |value: &dyn Fn(&Record) -> u64| {
-        Values::Int64(records.iter().map(|r| Some(value(r) as i64)).collect())
-    };
-    let values = vec![
-        ids(&|r| Some(r.scenario.index as u32)),
-        names(&|r| r.scenario.contact.name()),
-        ids(&|r| Some(r.scenario.engine_order)),
-        floats(&|r| r.scenario.contact.normal_load_n()),
-        floats(&|r| r.scenario.standard_deviation),
-        ids(&|r| Some(r.delivered.pattern)),
-        names(&|r| &r.delivered.harmonics),
-        names(&|r| r.delivered.status.name()),
-        Values::Boolean(records.iter().map(|r| Some(r.replay_identical)).collect()),
-        floats(&|r| r.delivered.peak_amplitude_m),
-        floats(&|r| r.delivered.peak_frequency_hz),
-        ids(&|r| r.delivered.peak_blade),
-        floats(&|r| r.delivered.amplification_factor),
-        floats(&|r| r.delivered.separated_fraction),
-        names(&|r| r.reference.status.name()),
-        names(&|r| r.tuned_reference.status.name()),
-        floats(&|r| r.reference.amplitude_m),
-        floats(&|r| r.reference.frequency_hz),
-        ids(&|r| r.reference.blade),
-        floats(&Record::reference_amplification_factor),
-        floats(&|r| r.reference.shares.map(|shares| shares.separated)),
-        floats(&Record::amplitude_error),
-        floats(&Record::frequency_error),
-        floats(&Record::amplification_factor_error),
-        floats(&|r| r.reference.residual),
-        counts(&|r| r.reference.work.solves),
-        counts(&|r| r.reference.work.newton_iterations),
-    ];
     let sample = [
         ("blisk.sample_seed", seed.to_string()),
         ("blisk.sample_rows", records.len().to_string()),
     ];
     let mut writer = TableWriter::create_with(path, VERIFICATION_COLUMNS, header, &sample)?;
-    writer.write(values)?;
+    writer.write(values_of(COLUMNS, records))?;
     writer.finish()
 }
