@@ -57,8 +57,8 @@ pub use stated_errors::{ErrorRows, ErrorSpread, PercentileError, StatedErrors};
 pub use statistics_csv::statistics_csv;
 pub use study_echo::{EchoedExcitation, EchoedLoad, EchoedModel, Remark, StudyEcho, Travel};
 pub use study_report::{
-    CommonErrors, DistributionReport, GroupReport, LoadChoice, Provenance, ScenarioErrors,
-    StudyReport, Wheels, setting,
+    CommonErrors, DistributionReport, GroupReport, LoadChoice, MOST_WHEELS_NAMED, MeasuredPeak,
+    Provenance, ScenarioErrors, StudyReport, Wheels, setting,
 };
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use tail_report::StatisticsReport;

@@ -20,7 +20,8 @@ use crate::response::receptance::HIGHEST_HARMONIC;
 use crate::study::raw::{RawContact, RawHead, RawModel, RawModelKind, RawStudy, SCHEMA};
 use crate::study::rotation::pressed_by;
 use crate::study::{
-    AccuracyOptions, ModelSource, OutputOptions, RotationOptions, Study, StudyError,
+    AccuracyOptions, MistuningSource, ModelSource, OutputOptions, RotationOptions, Study,
+    StudyError,
 };
 
 impl Study {
@@ -154,9 +155,10 @@ fn resolve(
     let (Some(model), Some(damping), Some(mistuning)) = (model, damping, mistuning) else {
         return Ok(None);
     };
+    let is_of_file = matches!(mistuning.mistuning.source, MistuningSource::File { .. });
     let stop = raw
         .stop
-        .and_then(|raw| stop(check, &raw, mistuning.patterns));
+        .and_then(|raw| stop(check, &raw, mistuning.patterns, is_of_file));
     let accuracy = raw
         .accuracy
         .and_then(|own| accuracy(check, &own, raw.reduction.basis));
