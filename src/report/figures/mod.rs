@@ -51,6 +51,9 @@ pub fn missing<'a>(
     match (&group.wheels, &report.model) {
         (Wheels::NotSolved { reason }, _) if name.is_of_wheels() => Some(reason),
         (_, ShownModel::NotShown { reason }) if name.is_of_model() => Some(reason),
+        _ if name == FigureName::Accuracy => Some(
+            "the folder has no tradeoff.parquet, which `blisk tradeoff` writes, and the study has no [accuracy]",
+        ),
         _ => None,
     }
 }
