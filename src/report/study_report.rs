@@ -77,9 +77,6 @@ pub struct GroupReport {
     pub measured: Vec<MeasuredPeak>,
 }
 
-/// Largest number of wheels of a file that a report names one by one.
-pub const MOST_WHEELS_NAMED: u64 = 12;
-
 /// The peak of one wheel of `mistuning.file` under one scenario.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MeasuredPeak {

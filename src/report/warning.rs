@@ -4,7 +4,10 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::{MOST_WHEELS_NAMED, NumericalFinding};
+use super::NumericalFinding;
+
+/// Largest number of wheels of a file that a report names one by one.
+pub const MOST_WHEELS_NAMED: u64 = 12;
 
 /// A warning about the results of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]

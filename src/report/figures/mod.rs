@@ -1,5 +1,6 @@
 //! The figures of a report, each drawn from its numbers.
 
+mod bodies;
 mod campbell;
 mod distribution;
 mod figure;
@@ -10,6 +11,7 @@ mod sector;
 mod uncertainty;
 mod wheel;
 
+pub(super) use bodies::{body_word, friction_words};
 pub use figure::{FIGURES, Figure, FigureName};
 
 use super::{GroupReport, ShownModel, StudyReport, Wheels};

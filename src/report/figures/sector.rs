@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use super::bodies::body_word;
 use super::{Figure, FigureName};
 use crate::model::sector::Body;
-use crate::report::model_section::body_word;
 use crate::report::plot::{Anchor, LegendEntry, Mark, Svg, TOP, WIDTH, legend};
 use crate::report::{ContactPlace, ModelSection, SectorPicture, StudyReport};
 

@@ -4,8 +4,7 @@ use std::fmt::Write;
 
 use super::table::Table;
 use crate::model::sector::Body;
-use crate::report::figures::{Figure, figure};
-use crate::report::model_section::body_word;
+use crate::report::figures::{Figure, body_word, figure};
 use crate::report::plot::escaped;
 use crate::report::words::{excitation, force, four_digits, tied};
 use crate::report::{BodyMass, FIGURES, ModelSection, ShownModel, StudyReport};

@@ -7,7 +7,7 @@ use super::model::{figure_html, model};
 use super::table::Table;
 use super::tables;
 use crate::input::term_of;
-use crate::report::model_section::friction_words;
+use crate::report::figures::friction_words;
 use crate::report::plot::{escaped, page_style};
 use crate::report::words::tied;
 use crate::report::{FIGURES, FigureName, GroupReport, StudyReport, Wheels, figure, setting};
