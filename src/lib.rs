@@ -1,4 +1,4 @@
-//! Monte Carlo forced response of randomly mistuned bladed disks with friction ring dampers.
+//! Monte Carlo forced response of randomly mistuned bladed disks with friction dampers.
 //!
 //! The way of the data, and the order in which modules may name each other (each only those before
 //! it; a test holds it):

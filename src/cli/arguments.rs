@@ -26,7 +26,7 @@ use super::status::StatusArguments;
 use super::tradeoff::TradeoffArguments;
 use crate::identity;
 
-/// Forced response of randomly mistuned bladed disks with a friction ring damper.
+/// Forced response of randomly mistuned bladed disks with friction dampers.
 #[derive(Debug, Parser)]
 #[command(name = "blisk", version = identity::VERSION, long_version = identity::IN_WORDS)]
 #[command(about, disable_help_subcommand = true, max_term_width = 100)]

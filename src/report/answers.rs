@@ -4,8 +4,8 @@ use super::words::{
     LengthUnit, four_digits, load_per_sector, load_with_unit, percent_words, share_words,
 };
 use super::{
-    BestLoads, CommonErrors, GroupReport, LoadChoice, NumericalError, PercentileError,
-    ScenarioErrors, ScenarioSummary, StatedErrors, StudyReport,
+    BestLoads, CommonErrors, GroupReport, LoadChoice, MeasuredPeak, NumericalError,
+    PercentileError, ScenarioErrors, ScenarioSummary, StatedErrors, StudyReport,
 };
 use crate::population::monte_carlo::{
     HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, TUNED_RECEPTANCES,
@@ -23,7 +23,7 @@ pub struct Answer {
     pub reasons: Vec<String>,
 }
 
-/// The answers for one group: for P99 and P95 which load to choose, those that are known before those that are
+/// The answers for one group: the peak of each measured wheel, where they are few; for P99 and P95 which load to choose, those that are known before those that are
 /// not, and how much is numerical error.
 #[must_use]
 pub fn answers(report: &StudyReport, group: &GroupReport) -> Vec<Answer> {
@@ -36,7 +36,8 @@ pub fn answers(report: &StudyReport, group: &GroupReport) -> Vec<Answer> {
     let (known, unknown): (Vec<&LoadChoice>, Vec<&LoadChoice>) =
         asked().partition(|choice| choice.lowest.is_some());
     let loads = known.into_iter().chain(unknown);
-    let mut answers: Vec<Answer> = loads.map(|choice| writer.load(choice)).collect();
+    let mut answers: Vec<Answer> = writer.measured_wheels().into_iter().collect();
+    answers.extend(loads.map(|choice| writer.load(choice)));
     answers.extend(asked().find_map(|choice| writer.error(choice)));
     answers
 }
@@ -171,7 +172,15 @@ impl Writer<'_> {
 
     fn why_none(&self, choice: &LoadChoice) -> Vec<String> {
         let patterns = self.report.summary.patterns;
-        let mut reasons = vec![if patterns < choice.needed_patterns {
+        let few = patterns < choice.needed_patterns;
+        let of_file = self.group.standard_deviation.is_none();
+        let mut reasons = vec![if few && of_file {
+            format!(
+                "A 95 % interval needs {} wheels, mistuning.file holds {patterns}: read the peak of each wheel, or put \
+                 more wheels into the file.",
+                choice.needed_patterns
+            )
+        } else if few {
             format!(
                 "A 95 % interval needs {} patterns, the study has {patterns}: raise study.patterns and run again, only \
                  the new ones are solved.",
@@ -193,6 +202,43 @@ impl Writer<'_> {
             ));
         }
         reasons
+    }
+
+    /// The peak of each wheel of a file, a sentence for each load; none where they are many or drawn.
+    fn measured_wheels(&self) -> Option<Answer> {
+        let of_load = |peaks: &[MeasuredPeak]| {
+            let named: Vec<String> = peaks
+                .iter()
+                .map(|own| {
+                    let peak = own.peak_amplitude_m;
+                    let peak = peak.map_or("failed".to_owned(), |peak| self.units.length(peak));
+                    format!("wheel {} {peak}", own.pattern)
+                })
+                .collect();
+            format!(
+                "Peaks at {}: {}.",
+                self.load_of(peaks[0].scenario),
+                named.join(", ")
+            )
+        };
+        let loads = self
+            .group
+            .measured
+            .chunk_by(|a, b| a.scenario == b.scenario);
+        let peaks = { self.group.measured.iter() }.filter_map(|own| own.peak_amplitude_m);
+        let lowest = peaks.clone().reduce(f64::min);
+        let verdict = lowest.zip(peaks.reduce(f64::max)).map_or_else(
+            || "Not known: no row of these wheels has a result.".to_owned(),
+            |(lowest, highest)| {
+                let highest = self.units.length(highest);
+                format!("From {} to {highest}.", self.units.number(lowest))
+            },
+        );
+        (!self.group.measured.is_empty()).then(|| Answer {
+            question: "How large is the peak amplitude of each wheel of mistuning.file?".to_owned(),
+            verdict,
+            reasons: loads.map(of_load).collect(),
+        })
     }
 
     /// Which other loads could be the best, and how low the percentile of the best can be.

@@ -72,6 +72,20 @@ pub struct GroupReport {
     pub distributions: Vec<DistributionReport>,
     /// Wheels solved again there.
     pub wheels: Wheels,
+    /// Peak of each wheel of `mistuning.file` under each scenario, where it holds few.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub measured: Vec<MeasuredPeak>,
+}
+
+/// The peak of one wheel of `mistuning.file` under one scenario.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MeasuredPeak {
+    /// The scenario.
+    pub scenario: usize,
+    /// Id of the wheel in the file.
+    pub pattern: u32,
+    /// Its peak amplitude, m; null: the row failed.
+    pub peak_amplitude_m: Option<f64>,
 }
 
 /// Which load to choose for one percentile of the peak amplitude.

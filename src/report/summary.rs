@@ -385,7 +385,7 @@ fn warnings(
             scenarios: tuned_failures,
         });
     }
-    warnings.extend(unestimated(records));
+    warnings.extend(unestimated(context.patterns, records));
     warnings
 }
 
@@ -440,8 +440,11 @@ fn separation(harmonics: &Harmonics, records: &[ScenarioRecord]) -> Option<Warni
 }
 
 /// One warning per percentile and reason.
-fn unestimated(records: &[ScenarioRecord]) -> Vec<Warning> {
+fn unestimated(patterns: u64, records: &[ScenarioRecord]) -> Vec<Warning> {
     let mut warnings = Vec::new();
+    // Only wheels of a file have no standard deviation.
+    let of_file = |record: &ScenarioRecord| record.scenario.standard_deviation.is_none();
+    let wheels_in_file = records.iter().any(of_file).then_some(patterns);
     for percent in PERCENTILES {
         let of = |record: &ScenarioRecord| -> Vec<Percentile> {
             [
@@ -460,7 +463,11 @@ fn unestimated(records: &[ScenarioRecord]) -> Vec<Warning> {
                 _ => None,
             });
         if let Some(needed) = needed {
-            warnings.push(Warning::TooFewPatterns { percent, needed });
+            warnings.push(Warning::TooFewPatterns {
+                percent,
+                needed,
+                wheels_in_file,
+            });
         }
         let scenarios: Vec<usize> = records
             .iter()

@@ -6,6 +6,9 @@ use serde::Serialize;
 
 use super::NumericalFinding;
 
+/// Largest number of wheels of a file that a report names one by one.
+pub const MOST_WHEELS_NAMED: u64 = 12;
+
 /// A warning about the results of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "warning", rename_all = "snake_case")]
@@ -81,6 +84,9 @@ pub enum Warning {
         percent: u32,
         /// Smallest number of patterns that gives a two-sided interval.
         needed: u64,
+        /// Wheels in `mistuning.file`; absent: patterns are drawn.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        wheels_in_file: Option<u64>,
     },
     /// A percentile has no value because too many rows failed.
     TooManyFailures {
@@ -144,7 +150,9 @@ impl Warning {
             Self::TunedFailures { scenarios } => {
                 format!("no tuned peak in scenarios {}", list(scenarios))
             }
-            Self::TooFewPatterns { percent, needed } => {
+            Self::TooFewPatterns {
+                percent, needed, ..
+            } => {
                 format!("P{percent} has no value: it needs {needed} patterns")
             }
             Self::TooManyFailures { percent, scenarios } => format!(
@@ -240,10 +248,24 @@ impl fmt::Display for Warning {
                  widen solver.frequency_band_hz or raise solver.samples_per_period",
                 list(scenarios)
             ),
-            Self::TooFewPatterns { percent, needed } => write!(
+            Self::TooFewPatterns {
+                percent,
+                needed,
+                wheels_in_file: None,
+            } => write!(
                 f,
                 "P{percent} is not estimable: a 95 % interval needs at least {needed} patterns; raise \
                  study.patterns and run again, only the new ones are solved"
+            ),
+            Self::TooFewPatterns {
+                percent,
+                needed,
+                wheels_in_file: Some(wheels),
+            } => write!(
+                f,
+                "P{percent} is not estimable: a 95 % interval needs at least {needed} wheels, mistuning.file holds \
+                 {wheels}; {}, or put more wheels into the file",
+                read_each_wheel(*wheels)
             ),
             Self::TooManyFailures { percent, scenarios } => write!(
                 f,
@@ -252,6 +274,15 @@ impl fmt::Display for Warning {
                 list(scenarios)
             ),
         }
+    }
+}
+
+/// Where the peak of each wheel of a file is read.
+fn read_each_wheel(wheels: u64) -> &'static str {
+    if wheels <= MOST_WHEELS_NAMED {
+        "read the peak of each wheel, which blisk report DIR prints"
+    } else {
+        "read the peak of each wheel in responses.parquet"
     }
 }
 

@@ -566,6 +566,29 @@ pub const CASES: &[Case] = &[
         &["study.toml:11:", "model.lumped", "not used"],
     ),
     (
+        "source = \"lumped\"",
+        "source = \"parametric\"\n[model.parametric]\ndamper = \"underplatform\"\ndamper_shape = \"sphere\"",
+        &[
+            "study.toml:12: model.parametric.damper_shape = \"sphere\" is not accepted; accepted: \"wedge\", \"cylinder\"",
+        ],
+    ),
+    (
+        "source = \"lumped\"",
+        "source = \"parametric\"\n[model.parametric]\ndamper_shape = \"cylinder\"",
+        &[
+            "study.toml:11: model.parametric.damper_shape",
+            "not used with damper = \"ring\"; accepted: damper = \"underplatform\", or no damper_shape",
+        ],
+    ),
+    (
+        "source = \"lumped\"",
+        "source = \"parametric\"\n[model.parametric]\ndamper = \"shroud\"\ndamper_body = \"rigid\"",
+        &[
+            "study.toml:12: model.parametric.damper_body",
+            "not used with damper = \"shroud\"; accepted: damper = \"underplatform\", or no damper_body",
+        ],
+    ),
+    (
         "kind = \"normal\"",
         "kind = \"normal\", standard_deviation = 0.1",
         &["gives it already"],

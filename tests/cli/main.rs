@@ -15,6 +15,7 @@ mod interrupted_commands;
 mod interruption;
 mod load_cases;
 mod manual;
+mod measured_wheels;
 mod output;
 mod report;
 mod report_page;

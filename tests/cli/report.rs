@@ -498,3 +498,27 @@ fn an_amplitude_at_the_end_of_the_range_of_numbers_is_drawn_or_refused_at_once()
         );
     }
 }
+
+#[test]
+fn a_figure_whose_table_is_missing_says_which_command_makes_it() {
+    let place = finished(GOOD);
+    let plot = place.run(&["plot", "results/small", "accuracy"]);
+    assert_eq!(plot.code, 2);
+    for words in [
+        "nothing to draw in accuracy: the folder has no tradeoff.parquet",
+        "`blisk tradeoff`",
+    ] {
+        assert!(plot.stderr.contains(words), "{}", plot.stderr);
+    }
+    // Frequencies need no table of the folder.
+    let plot = place.run(&["plot", "results/small", "campbell"]);
+    assert_eq!(plot.code, 0, "{}", plot.stderr);
+    assert!(read(&place, "campbell.svg").starts_with("<svg"));
+    let both = place.run(&["stats", "results/small", "--csv", "--json"]);
+    assert_eq!(both.code, 2);
+    assert!(
+        both.stderr.contains("'--csv' cannot be used with '--json'"),
+        "{}",
+        both.stderr
+    );
+}

@@ -509,3 +509,96 @@ fn statistics_are_one_table_for_a_spreadsheet() {
     assert_eq!(ended.code, 5);
     assert_eq!(table(&ended.stdout).len(), 4);
 }
+
+/// A built-in wheel of as few elements as can be, under a linear limit.
+fn built_in(damper: &str) -> String {
+    format!(
+        r#"schema = 1
+
+[study]
+name = "small"
+seed = 7
+patterns = 1
+
+[model]
+source = "parametric"
+
+[model.parametric]
+sectors = 4
+{damper}
+disk_radial_elements = 1
+disk_axial_elements = 1
+rim_axial_elements = 1
+flange_axial_elements = 1
+passage_elements = 1
+blade_thickness_elements = 1
+blade_radial_elements = 1
+
+[reduction]
+craig_bampton_modes = 6
+
+[contact]
+law = "macro_slip_2d"
+friction_coefficient = 0.3
+tangential_stiffness_n_per_m = 8.0e6
+
+[damping]
+structural_loss_factor = 0.002
+
+[excitation]
+engine_orders = [1]
+amplitude_n = 1.0
+
+[mistuning]
+distribution = {{ kind = "normal" }}
+
+[sweep]
+normal_load_n = ["stuck"]
+standard_deviation = [0.03]
+
+[solver]
+harmonics = [1]
+"#
+    )
+}
+
+#[test]
+fn the_page_says_which_damper_there_is() {
+    for (damper, words, body) in [
+        ("damper = \"ring\"", "a friction ring damper", Some("ring")),
+        (
+            "damper = \"underplatform\"",
+            "wedges as underplatform dampers",
+            Some("wedge"),
+        ),
+        (
+            "damper = \"underplatform\"\ndamper_shape = \"cylinder\"",
+            "cylinders as underplatform dampers",
+            Some("cylinder"),
+        ),
+        (
+            "damper = \"shroud\"",
+            "shrouds that rub on one another",
+            None,
+        ),
+        (
+            "damper = \"blade_to_ground\"",
+            "platforms that rub on the ground",
+            None,
+        ),
+    ] {
+        let (_, page, _) = reported(&built_in(damper), 0);
+        let header = between(&page, "<header>", "</header>");
+        assert!(
+            header.contains(&format!("bladed disks with {words}: 1 patterns")),
+            "{damper}: {header}"
+        );
+        for word in ["ring", "wedge", "cylinder"] {
+            let is_named = page.contains(&format!("mass of the {word}"));
+            assert_eq!(is_named, body == Some(word), "{damper}: {word}");
+        }
+    }
+    // A wheel of masses names its bodies by itself.
+    let (_, page, _) = reported(GOOD, 0);
+    assert!(page.contains("bladed disks with a friction ring damper: 10 patterns"));
+}

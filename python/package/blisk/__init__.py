@@ -1,4 +1,4 @@
-"""Monte Carlo forced response of randomly mistuned bladed disks with friction ring dampers.
+"""Monte Carlo forced response of randomly mistuned bladed disks with friction dampers.
 
 A study says what is solved, ``run`` solves it, and its results are tables with percentiles:
 

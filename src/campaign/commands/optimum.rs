@@ -98,8 +98,13 @@ fn refuse(request: &OptimumRequest<'_>) -> Result<(), PipelineError> {
     } else if study.rotation.is_some() {
         "a search is over newtons; accepted: a study without contact.normal_load".to_owned()
     } else if u64::from(study.patterns) < needed {
+        let accepted = if study.standard_deviations == [None] {
+            format!("a mistuning.file of {needed} wheels or more")
+        } else {
+            format!("study.patterns from {needed} on")
+        };
         format!(
-            "P{} of {} patterns has no interval; accepted: study.patterns from {needed} on",
+            "P{} of {} patterns has no interval; accepted: {accepted}",
             request.percent, study.patterns
         )
     } else {

@@ -18,7 +18,8 @@ use crate::population::statistics::{
 use crate::population::table::{AccuracyLadder, Manifest, ResponseReader, TableError};
 use crate::report::{
     AccuracyTrials, CommonErrors, ComparedScenario, DistributionReport, ErrorRows, GroupReport,
-    LoadChoice, Provenance, ScenarioErrors, ShownModel, StudyReport, Wheels,
+    LoadChoice, MOST_WHEELS_NAMED, MeasuredPeak, Provenance, ScenarioErrors, ShownModel,
+    StudyReport, Wheels,
 };
 use crate::settings::EngineSource;
 use crate::study::PipelineError;
@@ -190,7 +191,27 @@ fn group_report(columns: &ResultColumns, rows: &[ErrorRows], group: Range<usize>
         wheels: Wheels::NotSolved {
             reason: "not asked for".to_owned(),
         },
+        measured: measured_peaks(&columns.patterns, scenarios),
     }
+}
+
+/// The peaks of the wheels of a file, scenario by scenario; none of drawn ones, nor of many.
+fn measured_peaks(patterns: &[u32], scenarios: &[ScenarioColumns]) -> Vec<MeasuredPeak> {
+    // Only wheels of a file have no standard deviation.
+    let of_file = |load: &&ScenarioColumns| load.scenario.standard_deviation.is_none();
+    if patterns.len() as u64 > MOST_WHEELS_NAMED {
+        return Vec::new();
+    }
+    { scenarios.iter().filter(of_file) }
+        .flat_map(|load| {
+            let peaks = patterns.iter().zip(load.values(Quantity::PeakAmplitudeM));
+            peaks.map(|(&pattern, &peak_amplitude_m)| MeasuredPeak {
+                scenario: load.scenario.index,
+                pattern,
+                peak_amplitude_m,
+            })
+        })
+        .collect()
 }
 
 /// What every row of a scenario states of errors that are not measured on the row itself, besides the basis.

@@ -32,13 +32,17 @@ pub enum ContactProblem {
     OneSector,
     /// The sides have different components.
     #[error(
-        "{first} and {second} have different components; accepted: the same components on both"
+        "{first} and {second} have different components, {first_has} and {second_has}; accepted: the same components on both"
     )]
     Components {
         /// First side.
         first: ContactSide,
         /// Second side.
         second: ContactSide,
+        /// Components of the first side, as a bundle names them.
+        first_has: String,
+        /// Components of the second side.
+        second_has: String,
     },
     /// The sides stand at different angles.
     #[error(

@@ -6,7 +6,7 @@ use super::contact_problem::ContactProblem;
 use super::error::ModelError;
 use super::error_place::Place;
 use super::layout::{Layout, advanced, finite};
-use super::sector_model::{Body, ContactPair, ContactSide, SectorModel};
+use super::sector_model::{Body, Component, ContactPair, ContactSide, SectorModel};
 
 /// Tolerance on the angle of contact nodes, rad.
 const ANGLE_TOLERANCE_RAD: f64 = 1e-6;
@@ -98,7 +98,12 @@ fn check_sides(
         return Ok(());
     };
     if components != other_components {
-        return refused(ContactProblem::Components { first, second });
+        return refused(ContactProblem::Components {
+            first,
+            second,
+            first_has: named(components),
+            second_has: named(other_components),
+        });
     }
     // Masses that move along one line have no frame that could turn from sector to sector.
     if components.len() == 1 && is_across {
@@ -114,6 +119,12 @@ fn check_sides(
         });
     }
     Ok(())
+}
+
+/// Components as a bundle names them.
+fn named(components: &[Component]) -> String {
+    let names: Vec<String> = components.iter().map(Component::to_string).collect();
+    format!("({})", names.join(", "))
 }
 
 /// Whether a contact pair is with the next sector.

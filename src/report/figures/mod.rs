@@ -1,5 +1,6 @@
 //! The figures of a report, each drawn from its numbers.
 
+mod bodies;
 mod campbell;
 mod distribution;
 mod figure;
@@ -10,6 +11,7 @@ mod sector;
 mod uncertainty;
 mod wheel;
 
+pub(super) use bodies::{body_word, friction_words};
 pub use figure::{FIGURES, Figure, FigureName};
 
 use super::{GroupReport, ShownModel, StudyReport, Wheels};
@@ -51,6 +53,9 @@ pub fn missing<'a>(
     match (&group.wheels, &report.model) {
         (Wheels::NotSolved { reason }, _) if name.is_of_wheels() => Some(reason),
         (_, ShownModel::NotShown { reason }) if name.is_of_model() => Some(reason),
+        _ if name == FigureName::Accuracy => Some(
+            "the folder has no tradeoff.parquet, which `blisk tradeoff` writes, and the study has no [accuracy]",
+        ),
         _ => None,
     }
 }

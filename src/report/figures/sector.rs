@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::bodies::body_word;
 use super::{Figure, FigureName};
 use crate::model::sector::Body;
 use crate::report::plot::{Anchor, LegendEntry, Mark, Svg, TOP, WIDTH, legend};
@@ -70,7 +71,7 @@ pub(super) fn of_model(report: &StudyReport) -> Option<Figure> {
         left += scale * (own[1] - own[0]) + MARGIN;
     }
     scale_bar(&mut svg, scale);
-    legend(&mut svg, &entries(section));
+    legend(&mut svg, &entries(report, section));
     let echo = &section.echo.model;
     Some(Figure {
         name: FigureName::Sector,
@@ -169,16 +170,12 @@ fn class_of(body: Body) -> &'static str {
     }
 }
 
-fn entries(section: &ModelSection) -> Vec<LegendEntry<'static>> {
+fn entries(report: &StudyReport, section: &ModelSection) -> Vec<LegendEntry<'static>> {
     let sector = &section.sector;
     let mut entries = Vec::new();
-    for (body, words) in [
-        (Body::Blisk, "blisk"),
-        (Body::Ring, "ring"),
-        (Body::Damper, "damper"),
-    ] {
+    for body in [Body::Blisk, Body::Ring, Body::Damper] {
         if sector.nodes.iter().any(|node| node.body == body) {
-            entries.push(LegendEntry::Area(class_of(body), words));
+            entries.push(LegendEntry::Area(class_of(body), body_word(report, body)));
         }
     }
     if !sector.contacts.is_empty() {

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::table::Table;
 use crate::model::sector::Body;
-use crate::report::figures::{Figure, figure};
+use crate::report::figures::{Figure, body_word, figure};
 use crate::report::plot::escaped;
 use crate::report::words::{excitation, force, four_digits, tied};
 use crate::report::{BodyMass, FIGURES, ModelSection, ShownModel, StudyReport};
@@ -35,7 +35,7 @@ pub(super) fn model(report: &StudyReport) -> String {
                 }
             }
             html.push_str("</div>\n");
-            html.push_str(&facts(section));
+            html.push_str(&facts(report, section));
         }
     }
     html.push_str("</section>\n");
@@ -52,7 +52,7 @@ pub(super) fn figure_html(drawn: &Figure, id: &str) -> String {
     )
 }
 
-fn facts(section: &ModelSection) -> String {
+fn facts(report: &StudyReport, section: &ModelSection) -> String {
     let echo = &section.echo;
     let sectors = echo.model.sectors;
     let mut table = Table::of_facts();
@@ -66,7 +66,7 @@ fn facts(section: &ModelSection) -> String {
         ),
     );
     for mass in &section.masses {
-        table.fact(mass_name(mass), &mass_words(mass, sectors));
+        table.fact(&mass_name(report, mass), &mass_words(mass, sectors));
     }
     table.fact(
         "contact pairs",
@@ -116,11 +116,10 @@ fn facts(section: &ModelSection) -> String {
     table.html()
 }
 
-fn mass_name(mass: &BodyMass) -> &'static str {
+fn mass_name(report: &StudyReport, mass: &BodyMass) -> String {
     match mass.body {
-        Body::Blisk => "mass of disk and blade",
-        Body::Ring => "mass of the ring",
-        Body::Damper => "mass of the damper",
+        Body::Blisk => "mass of disk and blade".to_owned(),
+        body => format!("mass of the {}", body_word(report, body)),
     }
 }
 

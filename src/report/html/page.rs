@@ -7,6 +7,7 @@ use super::model::{figure_html, model};
 use super::table::Table;
 use super::tables;
 use crate::input::term_of;
+use crate::report::figures::friction_words;
 use crate::report::plot::{escaped, page_style};
 use crate::report::words::tied;
 use crate::report::{FIGURES, FigureName, GroupReport, StudyReport, Wheels, figure, setting};
@@ -69,9 +70,10 @@ fn header(report: &StudyReport) -> String {
         )
     });
     format!(
-        "<header>\n<h1>{}</h1>\n<p class=\"quiet\">Forced response of randomly mistuned bladed disks with a friction ring \
-         damper: {} patterns, {} scenarios, {} rows with a result, {} failed.{stop}</p>\n</header>\n",
+        "<header>\n<h1>{}</h1>\n<p class=\"quiet\">Forced response of randomly mistuned bladed disks with {}: \
+         {} patterns, {} scenarios, {} rows with a result, {} failed.{stop}</p>\n</header>\n",
         escaped(&summary.name),
+        friction_words(report),
         summary.patterns,
         summary.scenarios.len(),
         summary.rows.ok(),

@@ -14,13 +14,15 @@ use super::validate_solver::solver;
 use super::validate_stop::stop;
 use crate::input::{Finding, Problem, SourceMap};
 use crate::model::reduction::{Basis, ReductionOptions};
+use crate::model::sector::{Damper, DamperBody, DamperShape, ParametricOptions};
 use crate::response::forced_response::{Harmonics, SolverOptions};
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
 use crate::response::receptance::HIGHEST_HARMONIC;
 use crate::study::raw::{RawContact, RawHead, RawModel, RawModelKind, RawStudy, SCHEMA};
 use crate::study::rotation::pressed_by;
 use crate::study::{
-    AccuracyOptions, ModelSource, OutputOptions, RotationOptions, Study, StudyError,
+    AccuracyOptions, MistuningSource, ModelSource, OutputOptions, RotationOptions, Study,
+    StudyError,
 };
 
 impl Study {
@@ -154,9 +156,10 @@ fn resolve(
     let (Some(model), Some(damping), Some(mistuning)) = (model, damping, mistuning) else {
         return Ok(None);
     };
+    let is_of_file = matches!(mistuning.mistuning.source, MistuningSource::File { .. });
     let stop = raw
         .stop
-        .and_then(|raw| stop(check, &raw, mistuning.patterns));
+        .and_then(|raw| stop(check, &raw, mistuning.patterns, is_of_file));
     let accuracy = raw
         .accuracy
         .and_then(|own| accuracy(check, &own, raw.reduction.basis));
@@ -224,6 +227,31 @@ fn identity(check: &mut Check, head: &RawHead) -> (String, u64) {
     (name, head.seed.unwrap_or_default())
 }
 
+/// Refuses shape and body of an underplatform damper beside another damper.
+fn check_damper(check: &mut Check, options: &ParametricOptions) {
+    let damper = match options.damper {
+        Damper::Underplatform => return,
+        Damper::Ring => "ring",
+        Damper::Shroud => "shroud",
+        Damper::BladeToGround => "blade_to_ground",
+    };
+    let keys = [
+        (
+            "damper_shape",
+            options.damper_shape != DamperShape::default(),
+        ),
+        ("damper_body", options.damper_body != DamperBody::default()),
+    ];
+    for (key, is_chosen) in keys {
+        if is_chosen {
+            check.conflict(
+                &format!("model.parametric.{key}"),
+                &format!("it is not used with damper = \"{damper}\"; accepted: damper = \"underplatform\", or no {key}"),
+            );
+        }
+    }
+}
+
 fn model(check: &mut Check, study_file: &Path, raw: RawModel) -> Option<ModelSource> {
     let Some(kind) = raw.source else {
         check.missing("model.source", "\"parametric\", \"lumped\" or \"bundle\"");
@@ -249,7 +277,9 @@ fn model(check: &mut Check, study_file: &Path, raw: RawModel) -> Option<ModelSou
     }
     match kind {
         RawModelKind::Parametric => {
-            Some(ModelSource::Parametric(raw.parametric.unwrap_or_default()))
+            let options = raw.parametric.unwrap_or_default();
+            check_damper(check, &options);
+            Some(ModelSource::Parametric(options))
         }
         RawModelKind::Lumped => {
             if raw.lumped.is_none() {

@@ -4,8 +4,13 @@ use super::check::Check;
 use crate::population::statistics::{CONFIDENCE, Quantity, StopOptions, smallest_sample};
 use crate::study::raw::RawStop;
 
-/// The stopping rule of a study of at most `patterns`; none where a number is missing.
-pub(super) fn stop(check: &mut Check, raw: &RawStop, patterns: u32) -> Option<StopOptions> {
+/// The stopping rule of a study of at most `patterns`, drawn or of a file; none where a number is missing.
+pub(super) fn stop(
+    check: &mut Check,
+    raw: &RawStop,
+    patterns: u32,
+    is_of_file: bool,
+) -> Option<StopOptions> {
     let percentile = check.given(
         "stop.percentile",
         raw.percentile,
@@ -20,11 +25,14 @@ pub(super) fn stop(check: &mut Check, raw: &RawStop, patterns: u32) -> Option<St
     )?;
     let needed = smallest_sample(percentile / 100.0, CONFIDENCE);
     if u64::from(patterns) < needed {
+        let accepted = if is_of_file {
+            format!("a mistuning.file of {needed} wheels or more, or no [stop]")
+        } else {
+            format!("study.patterns from {needed} on")
+        };
         check.conflict(
             "stop.percentile",
-            &format!(
-                "P{percentile} of {patterns} patterns has no interval; accepted: study.patterns from {needed} on"
-            ),
+            &format!("P{percentile} of {patterns} patterns has no interval; accepted: {accepted}"),
         );
     }
     Some(StopOptions {

@@ -249,7 +249,7 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "mistuning.file",
         Text("`.parquet`, or anything else as CSV"),
         "none",
-        "instead of a distribution: columns `pattern`, `blade`, `deviation` and optionally `mode`",
+        "measured wheels instead of a distribution: columns `pattern`, `blade`, `deviation` and optionally `mode`",
     ),
     entry("sweep", Table, "", "the scenarios"),
     entry(

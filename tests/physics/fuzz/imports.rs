@@ -32,7 +32,13 @@ fn spoiled_files_with_lists_of_contacts_are_read_or_refused() {
                 .replace("\nring = \"", "\nsecond = \"ring.");
         }
     }
-    hold(&[ring, wedge()]);
+    let mut weighted = wedge();
+    let (_, text) = { weighted.files.iter_mut() }
+        .find(|(name, _)| *name == "import.toml")
+        .unwrap();
+    assert_eq!(text.matches("[[contact]]\n").count(), 2, "{text}");
+    *text = text.replace("[[contact]]\n", "[[contact]]\nweight = 2.5\n");
+    hold(&[ring, wedge(), weighted]);
 }
 
 fn hold(sources: &[Small]) {

@@ -168,9 +168,13 @@ pub fn wedge() -> Small {
 }
 
 fn row(sector: &SectorModel, load_n: f64) -> ResponseRow {
+    row_under(ContactLaw::MacroSlip1d, sector, load_n)
+}
+
+fn row_under(law: ContactLaw, sector: &SectorModel, load_n: f64) -> ResponseRow {
     let contact = PairParameters {
         normal_load_n: 0.0,
-        normal_stiffness_n_per_m: 0.0,
+        normal_stiffness_n_per_m: if law.has_variable_load() { 8e5 } else { 0.0 },
         tangential_stiffness_n_per_m: 4e5,
         friction_coefficient: 0.3,
     };
@@ -178,7 +182,6 @@ fn row(sector: &SectorModel, load_n: f64) -> ResponseRow {
         mass_per_s: 0.0,
         stiffness_s: 6e-6,
     };
-    let law = ContactLaw::MacroSlip1d;
     let mut wheel = Wheel::of(sector, law, contact, damping, BasisChoice::CraigBampton);
     wheel.amplitude_n = 10.0;
     let settings = SolverOptions {
@@ -194,6 +197,45 @@ fn row(sector: &SectorModel, load_n: f64) -> ResponseRow {
     let row = rows.remove(0);
     assert_eq!(row.status, Status::Ok);
     row
+}
+
+/// Nodes that are held along the normal have no motion that could change the load: laws with a variable one come to
+/// that with a constant one.
+#[test]
+fn nodes_with_tangential_components_alone_have_a_constant_normal_load() {
+    let folder = tempfile::tempdir().unwrap();
+    write_files(folder.path());
+    let imported = import(&folder.path().join("import.toml")).unwrap();
+    let contact = imported.report.contact.as_ref().unwrap();
+    assert_eq!(contact.constant_load_pairs, Some(2));
+    let text = imported.report.to_string();
+    assert!(
+        text.contains("2 pairs have no displacement along their normal"),
+        "{text}"
+    );
+    for load_n in [5.0, 30.0, 100.0] {
+        let expected = row(&imported.model, load_n);
+        assert!(expected.slipping_fraction.unwrap() > 0.0);
+        for law in [ContactLaw::Simplified3d, ContactLaw::Coulomb3d] {
+            let found = row_under(law, &imported.model, load_n);
+            let error = relative(
+                found.peak_amplitude_m.unwrap(),
+                expected.peak_amplitude_m.unwrap(),
+            );
+            // The peak search is to 1e-6; coulomb_3d is marched over 768 samples.
+            assert!(error < 2e-4, "{law:?} at {load_n} N: {error:e}");
+            assert!(found.separated_fraction.is_none_or(|share| share == 0.0));
+        }
+    }
+    // Along the normal they move: no such remark.
+    let path = folder.path().join("import.toml");
+    let axial = IMPORT
+        .replace("[0, 1, 0]", "[0, 1, 1]")
+        .replace("[0, -1, 0]", "[0, -1, 1]");
+    fs::write(&path, axial).unwrap();
+    let imported = import(&path).unwrap();
+    let contact = imported.report.contact.as_ref().unwrap();
+    assert_eq!(contact.constant_load_pairs, None);
 }
 
 #[test]

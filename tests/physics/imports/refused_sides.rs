@@ -32,6 +32,26 @@ fn sides_are_refused_with_key_and_value() {
     let cases: &[Case] = &[
         (
             "second = \"damper.FLANK\"",
+            "second = \"damper.FLANK\"\nweight = 3",
+            &[
+                "contact[0].weight: the share of a contact is relative to those of the others, and contact[1] has none; accepted: weight in every contact or in none",
+            ],
+        ),
+        (
+            "second = \"damper.FAR\"",
+            "second = \"damper.FAR\"\nweight = 3",
+            &[
+                "contact[1].weight: the share of a contact is relative",
+                "contact[0] has none",
+            ],
+        ),
+        (
+            "second = \"damper.FAR\"",
+            "second = \"damper.FAR\"\nweight = 0.0",
+            &["contact[1].weight = 0", "accepted: ", "above 0"],
+        ),
+        (
+            "second = \"damper.FLANK\"",
             "second = \"blisk.high_side\"",
             &[
                 "import.toml:19: contact[0].second: it is the first side, too; accepted: another surface",

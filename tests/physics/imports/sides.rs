@@ -305,6 +305,36 @@ fn equal_weights_and_given_normals_count_nodes() {
     }
 }
 
+/// Within a contact areas decide, between contacts the weights that are given.
+#[test]
+fn contacts_share_the_sector_by_their_weights() {
+    let bricks = Bricks::wedge();
+    let by_area = bricks.imported(WEDGE).model;
+    let given = [3.0, 1.0, 0.5];
+    let mut parts = WEDGE.split("[[contact]]");
+    let mut text = parts.next().unwrap().to_owned();
+    for (weight, part) in given.into_iter().zip(parts) {
+        write!(text, "[[contact]]\nweight = {weight:?}{part}").unwrap();
+    }
+    let model = bricks.imported(&text).model;
+    for (at, weight) in given.into_iter().enumerate() {
+        let own = &model.contact_pairs[4 * at..4 * at + 4];
+        let areas = &by_area.contact_pairs[4 * at..4 * at + 4];
+        let whole: f64 = areas.iter().map(|pair| pair.weight).sum();
+        for (pair, area) in own.iter().zip(areas) {
+            assert_eq!((pair.first, pair.second), (area.first, area.second));
+            let expected = weight / 4.5 * area.weight / whole;
+            assert!((pair.weight - expected).abs() < 1e-14, "{pair:?}");
+        }
+    }
+    // With weights of their own, one contact may count nodes where another counts areas.
+    let mixed = text.replacen("weight = 1.0", "weight = 1.0\nweights = \"equal\"", 1);
+    let model = bricks.imported(&mixed).model;
+    for pair in &model.contact_pairs[4..8] {
+        assert!((pair.weight - 1.0 / 4.5 / 4.0).abs() < 1e-15, "{pair:?}");
+    }
+}
+
 /// A damper under the disk, half under one sector and half under the next: on the boundary between them both halves
 /// have a share in one pair.
 #[test]

@@ -211,8 +211,7 @@ fn every_key_of_a_contact_is_one_of_a_list_of_contacts() {
         let tail: Vec<&str> = tail.lines().filter(kept).collect();
         let tail = tail.join("\n");
         let with_sides = tail.replacen("[[contact]]", &format!("[[contact]]\n{sides}"), 1);
-        let damper =
-            "[[contact]]\nfirst = \"damper.A\"\nsecond = \"ground\"\nweights = \"equal\"\n";
+        let damper = "[[contact]]\nfirst = \"damper.A\"\nsecond = \"ground\"\nweights = \"equal\"\nweight = 1.0\n";
         findings(&format!("{head}{damper}{with_sides}"))
     };
     let both = "first = \"blisk.x\"\nsecond = \"ring.x\"";

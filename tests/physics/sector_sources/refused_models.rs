@@ -326,7 +326,7 @@ const CONTACT_CASES: [Case; 14] = [
             }
         },
         kind: |e| is_contact(e, |p| matches!(p, ContactProblem::Components { .. })),
-        message: "contact pair 0: node 269 and node 339 have different components",
+        message: "contact pair 0: node 269 and node 339 have different components, (r, t, z) and (r, t); accepted: the same",
     },
 ];
 

@@ -44,6 +44,8 @@ struct Pair {
     first: ContactSide,
     second: ContactSide,
     nodal: NodalArea,
+    /// Its part of the weights that the contacts have of their own; 0 without such.
+    share: f64,
 }
 
 /// The pairs of all contacts, each contact by the nodes of its first side, and how well the surfaces meet.
@@ -55,7 +57,10 @@ pub(super) fn pairs(
     let mut pairs = Vec::new();
     let mut report = ContactReport::default();
     for contact in &file.contacts {
-        let (own, surfaces) = pairs_of(file, contact, runs, sector)?;
+        let (mut own, surfaces) = pairs_of(file, contact, runs, sector)?;
+        if let Some(weight) = contact.weight {
+            share_out(weight, contact.is_equal(), &mut own);
+        }
         for pair in own {
             add(&mut pairs, pair);
         }
@@ -68,19 +73,23 @@ pub(super) fn pairs(
         report.surfaces.push(surfaces);
     }
     report.pairs = pairs.len();
+    let constant = pairs
+        .iter()
+        .filter(|pair| has_constant_load(sector.frames, pair));
+    report.constant_load_pairs = Some(constant.count()).filter(|&count| count > 0);
     report.projected_ring_nodes = sector.projected.map(|projected| projected.nodes);
     let is_equal = file.contacts.iter().all(Contact::is_equal);
-    let whole: f64 = pairs.iter().map(|pair| pair.nodal.area_m2).sum();
-    let count = pairs.len() as f64;
+    let given: Option<f64> = file.contacts.iter().map(|contact| contact.weight).sum();
+    match given {
+        // A pair of two contacts has both shares.
+        Some(sum) => pairs.iter_mut().for_each(|pair| pair.share /= sum),
+        None => share_out(1.0, is_equal, &mut pairs),
+    }
     let pairs = pairs.into_iter().map(|pair| ContactPair {
         first: pair.first,
         second: pair.second,
         normal: unit(pair.nodal.normal_m2),
-        weight: if is_equal {
-            1.0 / count
-        } else {
-            pair.nodal.area_m2 / whole
-        },
+        weight: pair.share,
         load_weight: None,
     });
     Ok((
@@ -89,11 +98,41 @@ pub(super) fn pairs(
     ))
 }
 
+/// Gives pairs their shares of `weight`: by area, or alike.
+fn share_out(weight: f64, is_equal: bool, pairs: &mut [Pair]) {
+    let whole: f64 = pairs.iter().map(|pair| pair.nodal.area_m2).sum();
+    let count = pairs.len() as f64;
+    for pair in pairs {
+        pair.share = if is_equal {
+            weight / count
+        } else {
+            weight * (pair.nodal.area_m2 / whole)
+        };
+    }
+}
+
+/// Whether a pair has no displacement along its normal, so that its normal load stays what it is at rest.
+fn has_constant_load(frames: &Frames, pair: &Pair) -> bool {
+    let normal = unit(pair.nodal.normal_m2);
+    let moves = |node: usize| {
+        (0..3).any(|component| {
+            normal[component].abs() > LEAST_NORMAL && frames.dof(node, component).is_some()
+        })
+    };
+    ![pair.first, pair.second]
+        .iter()
+        .filter_map(|side| side.node())
+        .any(moves)
+}
+
 /// Adds a pair, to the same one if that is there: at the edge of two surfaces, or on both cyclic faces.
 fn add(pairs: &mut Vec<Pair>, pair: Pair) {
     let same = |own: &&mut Pair| (own.first, own.second) == (pair.first, pair.second);
     match pairs.iter_mut().find(same) {
-        Some(own) => own.nodal.add(pair.nodal),
+        Some(own) => {
+            own.nodal.add(pair.nodal);
+            own.share += pair.share;
+        }
         None => pairs.push(pair),
     }
 }
@@ -120,6 +159,7 @@ fn pairs_of(
                     first: ContactSide::Node(node),
                     second: ContactSide::Ground,
                     nodal,
+                    share: 0.0,
                 };
                 add(&mut pairs, pair);
             }
@@ -302,6 +342,7 @@ impl<'a> Facing<'a> {
                 first: side(node, met.ahead < 0),
                 second: side(met.node, met.ahead > 0),
                 nodal,
+                share: 0.0,
             };
             add(&mut pairs, pair);
         }

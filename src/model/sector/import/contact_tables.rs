@@ -20,6 +20,8 @@ pub(super) struct Contact {
     pub tolerance_m: Option<f64>,
     pub pairing: Pairing,
     pub weights: Weights,
+    /// Share of all its pairs together, relative to the other contacts; none: pairs share among those of all contacts.
+    pub weight: Option<f64>,
     pub normal: Option<[f64; 3]>,
 }
 
@@ -152,6 +154,7 @@ fn contact(
         tolerance_m: table.tolerance_m,
         pairing: table.pairing,
         weights: table.weights,
+        weight: table.weight,
         normal: table.normal,
     })
 }
@@ -224,9 +227,19 @@ fn check_pairing(contact: &Contact, earlier: &[Contact], problems: &mut Problems
         );
         conflict(problems, contact.first_key.clone(), &reason);
     }
-    if let Some(other) = earlier.first()
-        && other.is_equal() != contact.is_equal()
-    {
+    let Some(other) = earlier.first() else { return };
+    if other.weight.is_some() != contact.weight.is_some() {
+        let (key, without) = if contact.weight.is_some() {
+            (format!("{key}.weight"), &other.key)
+        } else {
+            (format!("{}.weight", other.key), key)
+        };
+        let reason = format!(
+            "the share of a contact is relative to those of the others, and {without} has none; accepted: weight in every \
+             contact or in none"
+        );
+        conflict(problems, key, &reason);
+    } else if contact.weight.is_none() && other.is_equal() != contact.is_equal() {
         let (name, reason) = if contact.normal.is_some() {
             ("normal", "nodes with this key have no area, those of")
         } else {
@@ -236,7 +249,7 @@ fn check_pairing(contact: &Contact, earlier: &[Contact], problems: &mut Problems
             )
         };
         let reason = format!(
-            "{reason} {}; accepted: weights = \"equal\" (or normal) in every contact or in none",
+            "{reason} {}; accepted: weights = \"equal\" (or normal) in every contact or in none, or a weight in each",
             other.key
         );
         conflict(problems, format!("{key}.{name}"), &reason);

@@ -292,6 +292,12 @@ const TAIL: &[Entry] = &[
         "how much a pair counts among those of all contacts: the area that its node stands for, or the same for all",
     ),
     entry(
+        "contact.weight",
+        Number(Range::above(0.0).up_to(1e30)),
+        "by `weights` among the pairs of all contacts",
+        "share of this contact in stiffness and normal load of the sector, relative to the other contacts; in every contact or in none",
+    ),
+    entry(
         "contact.normal",
         Vector(3),
         "from the faces",

@@ -103,6 +103,10 @@ pub struct ContactReport {
     pub area_m2: f64,
     /// Nodes of the ring that were projected on the blisk's faces, where the meshes do not match.
     pub projected_ring_nodes: Option<usize>,
+    /// Pairs without a displacement along their normal, whose load is constant under every contact law.
+    /// Absent: every pair has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub constant_load_pairs: Option<usize>,
     /// Nodes of the second sides (the ring's surface) that no node of the first meets.
     pub ring_nodes_without_pair: usize,
     /// Each two surfaces.
@@ -210,6 +214,12 @@ impl fmt::Display for ImportReport {
             }
             for own in &contact.surfaces {
                 own.write(f, contact.surfaces.len() > 1)?;
+            }
+            if let Some(pairs) = contact.constant_load_pairs {
+                writeln!(
+                    f,
+                    "  {pairs} pairs have no displacement along their normal: their normal load is constant under every contact law"
+                )?;
             }
         }
         for (body, hz) in [

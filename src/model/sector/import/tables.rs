@@ -204,6 +204,8 @@ pub(super) struct ContactTable {
     pub pairing: Pairing,
     #[serde(default)]
     pub weights: Weights,
+    /// Share of all its pairs together, relative to the other contacts.
+    pub weight: Option<f64>,
     /// Outward normal of the first side's surface (r, theta, z), where the mesh has no elements.
     pub normal: Option<[f64; 3]>,
 }

@@ -1,0 +1,134 @@
+//! Measured wheels of `mistuning.file`: what is said where they are too few for a percentile.
+
+use serde_json::Value;
+
+use crate::blisk::{GOOD, Place};
+
+/// `wheels` wheels of a file, whose ids are multiples of ten.
+fn of_file(wheels: u32) -> Place {
+    let study = GOOD
+        .replace("patterns = 10\n", "")
+        .replace(
+            "distribution = { kind = \"normal\" }",
+            "file = \"wheels.csv\"",
+        )
+        .replace("standard_deviation = [0.03]\n", "");
+    let place = Place::with(&study);
+    let line = |entry: u32| {
+        let (wheel, blade) = (entry / 6, entry % 6);
+        let deviation = f64::from((wheel * 37 + blade * 101) % 41) / 800.0 - 0.025;
+        format!("{},{blade},{deviation}\n", 10 * wheel)
+    };
+    let lines: Vec<String> = (0..6 * wheels).map(line).collect();
+    let table = format!("pattern,blade,deviation\n{}", lines.concat());
+    place.write("wheels.csv", &table);
+    place
+}
+
+fn output(place: &Place, arguments: &[&str]) -> String {
+    let ended = place.run(arguments);
+    assert_eq!(ended.code, 0, "{arguments:?}: {}", ended.stderr);
+    ended.stdout
+}
+
+#[test]
+fn few_measured_wheels_are_read_one_by_one_instead_of_drawing_more() {
+    let place = of_file(3);
+    let run = output(&place, &["run", "study.toml"]);
+    assert!(
+        run.contains("at least 72 wheels, mistuning.file holds 3; read the peak of each wheel"),
+        "{run}"
+    );
+    let report = output(&place, &["report", "results/small", "--no-curves"]);
+    for text in [&run, &report] {
+        assert!(!text.contains("study.patterns"), "{text}");
+    }
+    assert!(report.contains("A 95 % interval needs 368 wheels, mistuning.file holds 3"));
+    // What it prints is what replay finds.
+    let (_, of_wheels) = report
+        .split_once("How large is the peak amplitude of each wheel of mistuning.file?")
+        .expect("the question");
+    let line = of_wheels
+        .lines()
+        .find(|line| line.contains("Peaks at 50 N: "))
+        .expect("the load");
+    for wheel in ["0", "10", "20"] {
+        let arguments = [
+            "replay",
+            "results/small",
+            "--scenario",
+            "1",
+            "--pattern",
+            wheel,
+            "--json",
+        ];
+        let row: Value = serde_json::from_str(&output(&place, &arguments)).expect("JSON");
+        let peak_m = find(&row, "peak_amplitude_m").expect("a peak");
+        let (_, shown) = line
+            .split_once(&format!("wheel {wheel} "))
+            .expect("the wheel");
+        let shown: f64 = { shown.split_whitespace().next() }
+            .and_then(|number| number.parse().ok())
+            .expect("a number");
+        let error = shown * 1e-6 / peak_m - 1.0;
+        assert!(error.abs() < 1e-3, "wheel {wheel}: {shown} and {peak_m}");
+    }
+}
+
+/// The first number under `name` in a tree.
+fn find(value: &Value, name: &str) -> Option<f64> {
+    match value {
+        Value::Object(fields) => {
+            let own = fields.get(name).and_then(Value::as_f64);
+            own.or_else(|| fields.values().find_map(|field| find(field, name)))
+        }
+        Value::Array(entries) => entries.iter().find_map(|entry| find(entry, name)),
+        _ => None,
+    }
+}
+
+#[test]
+fn many_measured_wheels_are_left_to_the_table() {
+    let place = of_file(13);
+    let run = output(&place, &["run", "study.toml"]);
+    assert!(
+        run.contains("mistuning.file holds 13; read the peak of each wheel in responses.parquet")
+    );
+    let report = output(&place, &["report", "results/small", "--no-curves"]);
+    assert!(!report.contains("Peaks at "), "{report}");
+    assert!(report.contains("mistuning.file holds 13"), "{report}");
+}
+
+#[test]
+fn drawn_wheels_are_told_to_be_more() {
+    let place = Place::with(GOOD);
+    let run = output(&place, &["run", "study.toml"]);
+    assert!(run.contains("at least 72 patterns; raise study.patterns"));
+    let report = output(&place, &["report", "results/small", "--no-curves"]);
+    assert!(report.contains("raise study.patterns") && !report.contains("Peaks at "));
+}
+
+#[test]
+fn a_target_for_a_percentile_of_few_measured_wheels_asks_for_wheels() {
+    let place = of_file(3);
+    let study = std::fs::read_to_string(place.path("study.toml")).expect("a study");
+    place.write(
+        "study.toml",
+        &format!("{study}\n[stop]\npercentile = 95\nrelative_width = 0.1\n"),
+    );
+    let check = place.run(&["check", "study.toml"]);
+    assert_eq!(check.code, 3);
+    assert!(
+        check.stderr.contains(
+            "P95 of 3 patterns has no interval; accepted: a mistuning.file of 72 wheels or more"
+        ),
+        "{}",
+        check.stderr
+    );
+}
+
+#[test]
+fn the_key_of_measured_wheels_is_found_by_that_word() {
+    let place = Place::with(GOOD);
+    assert!(output(&place, &["explain", "measured"]).contains("mistuning.file"));
+}
