@@ -494,7 +494,7 @@ fn an_accepted_error_chooses_settings_that_hold_under_every_load_case() {
     // What is claimed holds on all rows of each case, against settings that leave nothing out.
     let tight = accurate("a", &format!("{ON_BLADE}{ON_DISK}"), 0.02).replace(
         "[accuracy]\namplitude_error = 0.02\n",
-        "[solver]\nharmonic_tolerance = 1e-3\nsamples_per_period = 512\n\
+        "[reduction]\nbasis = \"stick_slide\"\n[solver]\nharmonic_tolerance = 1e-3\nsamples_per_period = 512\n\
          residual_tolerance = 1e-10\npeak_tolerance = 1e-4\n",
     );
     run("tight", &tight, &[]);

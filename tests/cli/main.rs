@@ -16,6 +16,7 @@ mod interruption;
 mod load_cases;
 mod manual;
 mod measured_wheels;
+mod missed_peaks;
 mod output;
 mod report;
 mod report_page;

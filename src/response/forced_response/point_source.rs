@@ -100,8 +100,8 @@ pub(super) fn point_at(points: &[Point], frequency_hz: f64) -> Option<&Point> {
     points.iter().find(same)
 }
 
-/// The frequency, Hz, of a resonance that may be higher than the best, where the contact of a sample beside it sticks and no sample is
-/// near enough to have seen it. It may be outside of the samples: the band of a search is that of the high resonances.
+/// The frequency, Hz, of a resonance that may be higher than the best, that no sample is near enough to have seen, and that lies outside of
+/// the samples or where the contact of one beside it sticks: the band of a search is that of the high resonances alone.
 pub(super) fn unseen(
     stuck: &[LinearPeak],
     samples: &[Sample],
@@ -119,9 +119,10 @@ pub(super) fn unseen(
             let distance = (sample.frequency_hz - peak.frequency_hz).abs();
             distance <= SEEN * peak.half_bandwidth_hz
         };
-        JOINED * peak.amplitude_m > samples[best].largest
-            && !beside().any(seen)
-            && beside().any(|sample| sticks(sample.frequency_hz))
+        // Outside of the samples the nearest one is too far away to tell.
+        let may_stick =
+            || beside().count() < 2 || beside().any(|sample| sticks(sample.frequency_hz));
+        JOINED * peak.amplitude_m > samples[best].largest && !beside().any(seen) && may_stick()
     };
     stuck.iter().find(is_unseen).map(|peak| peak.frequency_hz)
 }

@@ -127,7 +127,7 @@ pub(super) fn tops_of_few(
     if found.end != SearchEnd::Found || !found.bracketed || opens {
         return Err(few.work());
     }
-    Ok(tops(&found, plan.envelope))
+    Ok(tops(&found, plan.envelope, plan.extensions > 0))
 }
 
 /// The peak, unless a band that is asked for ends there: it has no peak beyond its ends.
@@ -148,9 +148,21 @@ fn with_work(peak: Peak, work: Work) -> Peak {
     }
 }
 
-/// The local maxima of a search, the highest first.
-fn tops(found: &SearchResult, envelope: Envelope) -> Vec<Top> {
+/// The local maxima of a search, the highest first; with the samples at its ends, where it may go beyond them: a resonance outside of the
+/// band has a sample on one side alone.
+fn tops(found: &SearchResult, envelope: Envelope, with_ends: bool) -> Vec<Top> {
     let samples = Samples(found.samples.clone());
+    let at_end = |at: usize| -> Option<Top> {
+        let sample = &samples.0[at];
+        let beside = samples.0.get(if at == 0 { 1 } else { at - 1 })?;
+        (with_ends && sample.largest > beside.largest).then_some(Top {
+            frequency_hz: sample.frequency_hz,
+            amplitude_m: sample.largest,
+            half_bandwidth_hz: envelope.linear_half_bandwidth_hz,
+        })
+    };
+    let ends = [0, samples.0.len().saturating_sub(1)];
+    let ends = ends.into_iter().filter(|_| samples.0.len() > 1);
     let mut tops: Vec<Top> = (0..samples.0.len())
         .filter(|&at| samples.bracketed(at))
         .filter_map(|at| {
@@ -170,6 +182,7 @@ fn tops(found: &SearchResult, envelope: Envelope) -> Vec<Top> {
                 }),
             })
         })
+        .chain(ends.filter_map(at_end))
         .collect();
     tops.sort_by(|a, b| b.amplitude_m.total_cmp(&a.amplitude_m));
     tops
