@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::blisk::{Place, RESULTS};
+use super::blisk::Place;
 
 /// 36 sectors whose disk joins the blades strongly: resonances from 345 to 370 Hz, some of which the tuned wheel does not answer in, so
 /// that friction, which takes nine tenths off the highest, leaves them as they are.
@@ -47,7 +47,7 @@ fn missed(settings: &str, rows: &str) -> (f64, usize) {
     assert_eq!(run.code, 0, "{}", run.stderr);
     let sweep = [
         "verify",
-        RESULTS,
+        "results/lumped36",
         "--dense-sweep",
         "--sample",
         rows,

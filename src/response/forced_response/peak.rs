@@ -141,7 +141,7 @@ pub struct SearchPlan {
     pub starts_hz: Vec<f64>,
     /// The same where points have slopes, which say more of what lies between, ascending, Hz.
     pub sparse_starts_hz: Vec<f64>,
-    /// Resonances of the stuck limit, or of the limit itself.
+    /// Resonances of the stuck limit, or of the limit itself, in the band and within its width of it.
     pub stuck: Vec<LinearPeak>,
     /// Least width of a peak.
     pub envelope: Envelope,
@@ -192,7 +192,7 @@ pub(super) fn search_plan_of(
             .fold(f64::INFINITY, f64::min),
     };
     Ok(SearchPlan {
-        stuck: limits.first().cloned().unwrap_or_default(),
+        stuck: near_band(limits.first().map_or(&[], Vec::as_slice), band_hz),
         band_hz,
         starts_hz: starting_points(&limits, &candidates, STARTS_BETWEEN),
         sparse_starts_hz: thinned(
@@ -442,6 +442,14 @@ fn within(limits: &[Vec<LinearPeak>], window: Window) -> Vec<Vec<LinearPeak>> {
             }
         })
         .collect()
+}
+
+/// The resonances in a band and within its width of it: another family further away is a peak of its own.
+fn near_band(resonances: &[LinearPeak], (low, high): (f64, f64)) -> Vec<LinearPeak> {
+    let width = high - low;
+    let is_near =
+        |peak: &&LinearPeak| peak.frequency_hz > low - width && peak.frequency_hz < high + width;
+    resonances.iter().filter(is_near).copied().collect()
 }
 
 /// From the lowest to the highest candidate, widened by 1 % and 10 half-bandwidths.
