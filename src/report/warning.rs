@@ -198,21 +198,7 @@ impl fmt::Display for Warning {
                 looked_at,
                 rows,
                 tuned,
-            } => {
-                let mut motions = Vec::new();
-                if *rows > 0 {
-                    motions.push(format!("of {rows} of the {looked_at} rows looked at"));
-                }
-                if !tuned.is_empty() {
-                    motions.push(format!("of the tuned wheel of scenarios {}", list(tuned)));
-                }
-                write!(
-                    f,
-                    "the motions {} are unstable: the wheel does not stay on them, and its amplitude in time differs, by a few per cent \
-                     where that was marched; see the columns stable and tuned_stable",
-                    motions.join(" and ")
-                )
-            }
+            } => f.write_str(&unstable_motions(*looked_at, *rows, tuned)),
             Self::BasisError {
                 basis,
                 error,
@@ -275,6 +261,22 @@ impl fmt::Display for Warning {
             ),
         }
     }
+}
+
+/// Which motions are unstable, and what follows from it.
+fn unstable_motions(looked_at: u64, rows: u64, tuned: &[usize]) -> String {
+    let mut motions = Vec::new();
+    if rows > 0 {
+        motions.push(format!("of {rows} of the {looked_at} rows looked at"));
+    }
+    if !tuned.is_empty() {
+        motions.push(format!("of the tuned wheel of scenarios {}", list(tuned)));
+    }
+    format!(
+        "the motions {} are unstable: the wheel does not stay on them, and its amplitude in time differs, by a few per cent \
+         where that was marched; see the columns stable and tuned_stable",
+        motions.join(" and ")
+    )
 }
 
 /// Where the peak of each wheel of a file is read.

@@ -1,5 +1,10 @@
 //! Peaks of mistuned wheels with many resonances in their band, against dense sweeps.
 
+#![expect(
+    clippy::print_stdout,
+    reason = "what is measured is shown by `--nocapture`"
+)]
+
 use serde_json::Value;
 
 use super::blisk::Place;

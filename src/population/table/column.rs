@@ -67,12 +67,15 @@ pub(super) enum Cells<Row, Back> {
     String(Access<Row, Back, String>),
 }
 
+/// Sets the value of a cell in a row that is read back; none where the row can have no such value.
+pub(super) type ReadBack<Back, T> = fn(&mut Back, Option<T>) -> Option<()>;
+
 /// The way of a cell into the table and back.
 pub(super) struct Access<Row, Back, T> {
     /// Value of a row; none is null.
     pub(super) value: fn(&Row) -> Option<T>,
-    /// Sets the value in a row that is read back; none where the row can have no such value.
-    pub(super) read: Option<fn(&mut Back, Option<T>) -> Option<()>>,
+    /// The way back; none where the column is only written.
+    pub(super) read: Option<ReadBack<Back, T>>,
 }
 
 impl<Row, Back> Column<Row, Back> {
