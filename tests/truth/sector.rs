@@ -89,7 +89,7 @@ impl Sector {
         let reduced = |of: &Mat<f64>| basis.transpose() * (of * &basis);
         let place = |node: usize, component: Component| {
             let dof = model.dof_of(node, component)?;
-            kept.iter().position(|&own| own == dof)
+            Some(kept.iter().position(|&own| own == dof).expect("kept"))
         };
         // The ground does not move, nor does a node along a direction in which it has no dof.
         let along = |node: Option<usize>, direction: [f64; 3], sign: f64| {
