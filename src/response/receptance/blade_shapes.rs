@@ -134,7 +134,7 @@ pub(super) fn blade_shapes(
 ) -> Option<Matrix<f64>> {
     let count = strain.first()?.rows();
     let contact_rows = diameters.first()?.spring_count();
-    let mut covariance = Matrix::<f64>::zeros(count, count);
+    let mut motions_of_forces = Snapshots::new(count);
     // Strain by unit strain forces, with the number of waves that it stands for.
     let mut strain_receptances: Vec<(f64, Matrix<Complex64>)> = Vec::new();
     for (h, (diameter, own)) in diameters.iter().zip(strain).enumerate() {
@@ -148,12 +148,12 @@ pub(super) fn blade_shapes(
             };
             for (row, force) in wanted.contact_forces.iter().enumerate() {
                 let motion = &receptance.column(row)[contact_rows..contact_rows + count];
-                add_outer(&mut covariance, waves * force.powi(2), motion);
+                motions_of_forces.add(waves * force.powi(2), motion);
             }
             let excitations = wanted.excitations.iter();
             for force in excitations.filter(|force| force.diameter.index == h) {
                 let motion = diameter.response(s, own, &force.modal, force.diameter.conjugate)?;
-                add_outer(&mut covariance, 1.0, &motion);
+                motions_of_forces.add(1.0, &motion);
             }
             let block = Matrix::from_fn(count, count, |i, j| {
                 receptance[(contact_rows + i, contact_rows + j)]
@@ -171,29 +171,52 @@ pub(super) fn blade_shapes(
         (energies, shapes)
     };
     let frequencies = wanted.frequencies.len() as f64;
+    let covariance = motions_of_forces.covariance();
     let mut decomposed = hermitian_eigen(&covariance).ok()?;
     for _ in 0..ROUNDS {
         let (energies, shapes) = kept(SHAPES_OF_ROUNDS.max(wanted.count), decomposed);
-        let mut sum = covariance.clone();
+        let mut motions_of_shapes = Snapshots::new(count);
         let complex = shapes.to_complex();
         for (waves, receptance) in &strain_receptances {
             let motions = receptance.times(&complex);
             for (shape, energy) in energies.iter().enumerate() {
                 let force = wanted.deviation.powi(2) * energy.max(0.0) / frequencies;
-                add_outer(&mut sum, waves * force, motions.column(shape));
+                motions_of_shapes.add(waves * force, motions.column(shape));
             }
         }
-        decomposed = hermitian_eigen(&sum).ok()?;
+        let mut both = motions_of_shapes.covariance();
+        let entries = both.as_mut_slice().iter_mut();
+        entries.zip(covariance.as_slice()).for_each(|(sum, own)| *sum += own);
+        decomposed = hermitian_eigen(&both).ok()?;
     }
     Some(kept(wanted.count, decomposed).1)
 }
 
-/// Adds `weight (Re x Re x^T + Im x Im x^T)`.
-fn add_outer(sum: &mut Matrix<f64>, weight: f64, x: &[Complex64]) {
-    for (j, b) in x.iter().enumerate() {
-        let column = sum.column_mut(j).iter_mut();
-        for (entry, a) in column.zip(x) {
-            *entry += weight * (a.re * b.re + a.im * b.im);
+/// Strain motions, each with a weight, side by side.
+struct Snapshots {
+    rows: usize,
+    /// Real and imaginary parts times the root of the weight, column after column.
+    scaled: Vec<f64>,
+}
+
+impl Snapshots {
+    fn new(rows: usize) -> Self {
+        Self {
+            rows,
+            scaled: Vec::new(),
         }
+    }
+
+    fn add(&mut self, weight: f64, motion: &[Complex64]) {
+        let root = weight.sqrt();
+        self.scaled.extend(motion.iter().map(|z| root * z.re));
+        self.scaled.extend(motion.iter().map(|z| root * z.im));
+    }
+
+    /// Sum of `weight (Re x Re x^T + Im x Im x^T)` over the motions x.
+    fn covariance(self) -> Matrix<f64> {
+        let mut all = Matrix::zeros(self.rows, self.scaled.len() / self.rows.max(1));
+        all.as_mut_slice().copy_from_slice(&self.scaled);
+        all.times(&all.adjoint())
     }
 }
