@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 use super::basis_choice::{
     BasisEvidence, Judged, choose_basis_under, judged_conditions, judged_variations,
 };
-use super::fixed_interface::{FixedInterface, reduce_sector, sensitivity_vectors};
+use super::fixed_interface::{
+    FixedInterface, expected_deviation, reduce_sector, sensitivity_vectors,
+};
 use super::harmonic_choice::{choose_harmonics, with_separation};
 use super::receptance_choice::choice_of;
 use super::row_settings::{contact_stiffness, row_settings};
@@ -139,7 +141,7 @@ pub(super) fn stored_for(
     model: &SectorModel,
     cache: Option<&Path>,
 ) -> Result<Stored, PipelineError> {
-    let digest = stored_digest(study, model);
+    let digest = stored_digest(study, model)?;
     let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
     if let Some(stored) = cached.filter(|stored| stored.fits(study, model)) {
         return Ok(stored);
@@ -157,11 +159,14 @@ pub(super) fn stored_for(
 }
 
 /// Digest of everything that the stored models and sets of a study depend on: also of what their errors are judged by.
-pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> String {
+///
+/// # Errors
+/// The file of patterns does not fit to the wheel.
+pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> Result<String, PipelineError> {
     let settings = row_settings(study);
     let stiffness = contact_stiffness(study.contact.as_ref());
     let sensitivity = sensitivity_vectors(study);
-    let key = format!(
+    let mut key = format!(
         "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?} {:?} {:?}",
         study.reduction,
         study.mistuning.cantilever_mode_count,
@@ -171,11 +176,16 @@ pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> String {
         study.nodal_diameter_damping,
         study.amplitudes_n
     );
-    let key = match study.load_cases.as_slice() {
-        [] => key,
-        load_cases => format!("{key} {load_cases:?}"),
-    };
-    reduction_digest(model, &key)
+    if !study.load_cases.is_empty() {
+        key = format!("{key} {:?}", study.load_cases);
+    }
+    if is_on_receptances(study, model) {
+        let projection = study.mistuning.projection;
+        let deviation = expected_deviation(study);
+        let patterns = judging_patterns(study, model)?;
+        key = format!("{key} {projection:?} {deviation} {patterns:?}");
+    }
+    Ok(reduction_digest(model, &key))
 }
 
 /// Whether rows are solved on the receptances of the tuned wheel: where the study names them, and by default wherever they are ready for
@@ -399,21 +409,27 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Pip
     })
 }
 
-/// Digest of the reduced models and the errors that their rows state.
-pub(super) fn models_digest(stored: &Stored) -> String {
+/// Digest of all that the rows of `study` are made from besides their harmonics: the reduced models, what the receptances are
+/// made for, and the errors that the rows state.
+pub(super) fn models_digest(study: &Study, stored: &Stored) -> String {
     let mut hasher = blake3::Hasher::new();
-    let mut add = |model: &ReducedModel, error: f64| {
-        // A model that could not be written down could not be cached either.
-        let bytes = postcard::to_stdvec(model).unwrap_or_default();
-        hasher.update(&bytes);
+    let mut add_model = |model: &ReducedModel, error: f64| {
+        hasher.update(&written(model));
         hasher.update(&error.to_bits().to_le_bytes());
     };
-    add(&stored.model, basis_error(&stored.evidence));
+    add_model(&stored.model, basis_error(&stored.evidence));
     if let Some(beyond) = &stored.beyond {
-        add(&beyond.model, beyond.basis_error);
+        add_model(&beyond.model, beyond.basis_error);
     }
     if let Some(engine) = &stored.engine {
-        hasher.update(&postcard::to_stdvec(engine).unwrap_or_default());
+        hasher.update(&written(engine));
+        let options = engine_options(study, &excitations(study), &engine.model);
+        hasher.update(format!("{options:?} {:?}", stored.fixed_interface.error).as_bytes());
     }
     hasher.finalize().to_hex().to_string()
+}
+
+/// The bytes of a model.
+fn written(model: &impl Serialize) -> Vec<u8> {
+    postcard::to_stdvec(model).expect("numbers in memory can be written to memory")
 }

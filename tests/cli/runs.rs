@@ -124,6 +124,66 @@ fn an_added_load_is_solved_alone_and_a_removed_one_exits_with_9() {
     assert!(fewer.stderr.contains(words), "{}", fewer.stderr);
 }
 
+/// Twelve sectors under automatic harmonics: their sets and errors are judged on wheels of the study's largest standard deviation.
+const JUDGED: &str = r#"schema = 1
+[study]
+name = "judged"
+seed = 36
+patterns = 2
+[model]
+source = "lumped"
+[model.lumped]
+sectors = 12
+blade_mass_kg = 0.2
+blade_stiffness_n_per_m = 1.2e6
+disk_mass_kg = 1.0
+disk_ground_stiffness_n_per_m = 1e7
+disk_coupling_stiffness_n_per_m = 5e6
+ring_mass_kg = 0.1
+ring_coupling_stiffness_n_per_m = 1e7
+ring_disk_stiffness_n_per_m = 1e4
+[contact]
+law = "macro_slip_1d"
+friction_coefficient = 0.2
+tangential_stiffness_n_per_m = 5e6
+[damping]
+structural_loss_factor = 0.002
+[excitation]
+engine_orders = [3]
+amplitude_n = 1.0
+[mistuning]
+distribution = { kind = "normal" }
+[sweep]
+normal_load_n = [30]
+standard_deviation = [0.01]
+"#;
+
+#[test]
+fn a_study_that_grows_gives_the_rows_of_a_fresh_one_where_its_settings_are_judged_anew() {
+    for (before, after) in [
+        (
+            "standard_deviation = [0.01]",
+            "standard_deviation = [0.01, 0.04]",
+        ),
+        ("engine_orders = [3]", "engine_orders = [3, 4]"),
+        ("normal_load_n = [30]", "normal_load_n = [10, 30]"),
+    ] {
+        let grown = JUDGED.replace(before, after);
+        let (place, fresh) = (Place::with(JUDGED), Place::with(&grown));
+        assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+        place.write("study.toml", &grown);
+        for own in [&place, &fresh] {
+            let run = own.run(&["run", "study.toml"]);
+            assert_eq!(run.code, 0, "{}", run.stderr);
+        }
+        for file in ["responses.parquet", "scenarios.parquet", "summary.txt"] {
+            let read = |own: &Place| std::fs::read(own.path("results/judged").join(file));
+            let bytes = [&place, &fresh].map(|own| read(own).expect(file));
+            assert!(bytes[0] == bytes[1], "{after}: {file}");
+        }
+    }
+}
+
 #[test]
 fn response_writes_every_blade_at_every_frequency_both_ends_included() {
     let place = Place::with(GOOD);

@@ -186,7 +186,9 @@ pub(super) fn blade_shapes(
         }
         let mut both = motions_of_shapes.covariance();
         let entries = both.as_mut_slice().iter_mut();
-        entries.zip(covariance.as_slice()).for_each(|(sum, own)| *sum += own);
+        entries
+            .zip(covariance.as_slice())
+            .for_each(|(sum, own)| *sum += own);
         decomposed = hermitian_eigen(&both).ok()?;
     }
     Some(kept(wanted.count, decomposed).1)

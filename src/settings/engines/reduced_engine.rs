@@ -55,12 +55,12 @@ impl EngineSource for ReducedEngineSource {
         if let Some(accuracy) = study.accuracy {
             return accurate_engine(study, accuracy, self, model, cache);
         }
-        let digest = stored_digest(study, model);
+        let digest = stored_digest(study, model)?;
         let stored = stored_for(study, model, cache)?;
         Ok(Box::new(ReducedEngine {
             evidence: stored.evidence.clone(),
             fixed_interface: stored.fixed_interface.clone(),
-            models: models_digest(&stored),
+            models: models_digest(study, &stored),
             load_cases: study
                 .excited_orders()
                 .into_iter()
