@@ -261,6 +261,21 @@ impl<T: Scalar> Matrix<T> {
         product
     }
 
+    /// Product `self * other^H`.
+    #[must_use]
+    pub fn times_adjoint(&self, other: &Self) -> Self {
+        let mut product = Self::zeros(self.rows, other.rows);
+        matmul(
+            product.view_mut(),
+            Accum::Replace,
+            self.view(),
+            other.view().adjoint(),
+            T::from_real(1.0),
+            Par::Seq,
+        );
+        product
+    }
+
     /// Product `self^H * other`.
     #[must_use]
     pub fn adjoint_times(&self, other: &Self) -> Self {

@@ -1,5 +1,10 @@
 //! Sparse Hermitian matrices: factor once, solve many, and the lowest modes by shift-invert.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined is compiled for vectors"
+)]
+
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Side, prelude::Solve};
@@ -7,6 +12,7 @@ use faer::{Side, prelude::Solve};
 use super::Complex64;
 use super::dense::{NotPositiveDefinite, hermitian_eigen, sequential};
 use super::matrix::Matrix;
+use super::vectors::{Loops, vectorized};
 
 /// Complex Hermitian sparse matrix, both triangles stored.
 #[derive(Debug, Clone)]
@@ -103,7 +109,6 @@ impl HermitianSparse {
     /// `y = self x`, so many columns at once, side by side, so that every entry of the matrix is read once for all of them.
     fn product_by<const LANES: usize>(&self, x: &Matrix<Complex64>, y: &mut Matrix<Complex64>) {
         let n = self.dimension();
-        let pattern = self.matrix.as_ref();
         let mut source = vec![Lanes::<LANES>::default(); n];
         let mut target = vec![Lanes::<LANES>::default(); n];
         for first in (0..x.columns()).step_by(LANES) {
@@ -114,12 +119,11 @@ impl HermitianSparse {
                 }
             }
             target.fill(Lanes::default());
-            for (j, source) in source.iter().enumerate() {
-                let rows = pattern.symbolic().row_idx_of_col_raw(j);
-                for (&row, &value) in rows.iter().zip(pattern.val_of_col(j)) {
-                    target[row].add_product(value, source);
-                }
-            }
+            vectorized(LanesProduct {
+                matrix: &self.matrix,
+                source: &source,
+                target: &mut target,
+            });
             for lane in 0..lanes {
                 let column = y.column_mut(first + lane);
                 for (value, target) in column.iter_mut().zip(&target) {
@@ -159,7 +163,30 @@ impl<const LANES: usize> Default for Lanes<LANES> {
     }
 }
 
+/// `target += matrix source`.
+struct LanesProduct<'a, const LANES: usize> {
+    matrix: &'a SparseColMat<usize, Complex64>,
+    source: &'a [Lanes<LANES>],
+    target: &'a mut [Lanes<LANES>],
+}
+
+impl<const LANES: usize> Loops for LanesProduct<'_, LANES> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let pattern = self.matrix.as_ref();
+        for (j, source) in self.source.iter().enumerate() {
+            let rows = pattern.symbolic().row_idx_of_col_raw(j);
+            for (&row, &value) in rows.iter().zip(pattern.val_of_col(j)) {
+                self.target[row].add_product(value, source);
+            }
+        }
+    }
+}
+
 impl<const LANES: usize> Lanes<LANES> {
+    #[inline(always)]
     fn add_product(&mut self, factor: Complex64, x: &Self) {
         // Only what couples a sector to its neighbour is complex.
         if factor.im == 0.0 {

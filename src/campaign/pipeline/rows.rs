@@ -35,9 +35,9 @@ impl RowWork<'_> {
                 .map(|&index| (&self.scenarios[index], &self.tuned[index]))
                 .filter(|(scenario, _)| scenario.standard_deviation == standard_deviation)
                 .collect();
-            if let Some(pattern) = self.patterns.pattern(id, standard_deviation) {
-                rows.extend(self.rows_or_panicked(&pattern, &group));
-            }
+            let pattern = self.patterns.pattern(id, standard_deviation);
+            let pattern = pattern.expect("every id of a run is one of its patterns");
+            rows.extend(self.rows_or_panicked(&pattern, &group));
         }
         rows.sort_by_key(|row| row.scenario);
         for row in &rows {

@@ -35,7 +35,8 @@ pub struct ResponseRow {
     pub factorisations: u64,
     /// Nonlinear solves that needed more than the first attempt of the retry ladder.
     pub retries: u64,
-    /// Residual relative to the excitation at the peak.
+    /// Residual at the peak: on tuned receptances of the contact motions relative to them, on a basis of the forces relative to the
+    /// excitation.
     pub residual: Option<f64>,
     /// Share of pairs slipping in any direction at any sample, at the peak.
     pub slipping_fraction: Option<f64>,

@@ -183,7 +183,7 @@ pub(super) const COLUMNS: &[Column<WrittenRow, ResponseRow>] = &[
         Float64,
         residual,
         "1",
-        "Residual force relative to the excitation at the peak"
+        "Residual at the peak, relative: on tuned receptances to the contact motions, on a basis to the excitation"
     ),
     field!(
         Float64,

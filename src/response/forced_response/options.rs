@@ -73,7 +73,7 @@ pub struct SolverOptions {
     /// What becomes of a row beyond it. Default flag.
     pub rows_beyond_tolerance: RowsBeyondTolerance,
     /// Time samples per period of the alternating frequency/time method; an automatic set takes at least
-    /// 16 per period of its highest harmonic. Default 128.
+    /// 12 per period of its highest harmonic. Default 128.
     pub samples_per_period: usize,
     /// Bound on the residual force relative to the excitation. Default 1e-8.
     pub residual_tolerance: f64,

@@ -219,6 +219,6 @@ impl Snapshots {
     fn covariance(self) -> Matrix<f64> {
         let mut all = Matrix::zeros(self.rows, self.scaled.len() / self.rows.max(1));
         all.as_mut_slice().copy_from_slice(&self.scaled);
-        all.times(&all.adjoint())
+        all.times_adjoint(&all)
     }
 }

@@ -26,6 +26,9 @@ const DEPTH: usize = 80;
 /// Damping of their shares, over the tolerance that is asked for.
 const DAMPING: f64 = 0.5;
 
+/// Growth of the residual over the first one, or over the motions, at which an attempt has diverged.
+const DIVERGED: f64 = 1e3;
+
 /// When tangents are renewed, and how many steps are taken at most.
 struct Plan {
     renewals: &'static [usize],
@@ -254,8 +257,12 @@ impl ContactEquation<'_> {
             if iteration == 0 {
                 first = outcome.residual;
             }
-            if !outcome.residual.is_finite() || outcome.residual > 1e3 * first.max(1.0) {
+            if !outcome.residual.is_finite() {
                 outcome.status = Status::NonFinite;
+                break;
+            }
+            if outcome.residual > DIVERGED * first.max(1.0) {
+                outcome.status = Status::Diverged;
                 break;
             }
             if renew {

@@ -205,16 +205,6 @@ impl ReceptanceEngine {
         self.pencils.iter().all(|pencil| pencil.exact)
     }
 
-    /// Largest relative error of the interpolated receptances so far.
-    #[must_use]
-    pub fn table_error(&self) -> f64 {
-        let tables = self.pencils.iter().flat_map(|pencil| &pencil.tables);
-        let tables = tables.filter_map(|own| own.get()?.as_ref());
-        tables
-            .map(|own| own.receptances.error())
-            .fold(0.0, f64::max)
-    }
-
     /// Strain coordinates of the blades in a harmonic under a limit.
     #[must_use]
     pub fn shape_count(&self, limit: Limit, harmonic: u32) -> usize {
@@ -453,7 +443,7 @@ fn tuned_span(
     span
 }
 
-/// Largest motion of every contact row under the excitations over the band, times the stiffest spring of the rows.
+/// Largest motion of every contact row under the excitations over the band, times its spring.
 fn contact_forces(diameters: &[TunedDiameter], band: (f64, f64), forces: &[WaveForce]) -> Vec<f64> {
     let Some(count) = diameters.first().map(TunedDiameter::spring_count) else {
         return Vec::new();

@@ -203,7 +203,7 @@ impl TunedDiameter {
                 *entry *= inverse;
             }
         }
-        let mut receptance = weighted.times(&motions.adjoint());
+        let mut receptance = weighted.times_adjoint(motions);
         let count = self.springs.len();
         if count == 0 {
             return Some(receptance);

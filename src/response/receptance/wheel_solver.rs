@@ -35,7 +35,7 @@ pub struct WheelSolver<'a> {
 pub struct WheelSolution {
     /// Motions at the contact of every harmonic, in the waves.
     pub motions: Vec<f64>,
-    /// Norm of the residual over that of the linear motion; 0 for a linear limit.
+    /// Norm of the residual over that of the motions; 0 for a linear limit.
     pub residual: f64,
     /// Shares of slipping and separated pairs.
     pub shares: ContactShares,
