@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::fixed_interface::reduction_of;
-use super::harmonic_choice::choose_harmonics;
+use super::harmonics_on_basis::choose_harmonics;
 use super::reduced_study::is_on_receptances;
 use super::row_settings::{reference_settings, row_settings};
 use crate::model::ReducedModel;

@@ -11,8 +11,8 @@ use super::basis_choice::{
 use super::fixed_interface::{
     FixedInterface, expected_deviation, reduce_sector, sensitivity_vectors,
 };
-use super::harmonic_choice::{choose_harmonics, with_separation};
-use super::receptance_choice::choice_of;
+use super::harmonics_on_basis::{choose_harmonics, with_separation};
+use super::harmonics_on_receptances::choice_of;
 use super::row_settings::{contact_stiffness, row_settings};
 use super::tuned_receptances::{COMPANION_MODES, Refined, engine_of, engine_options, refined};
 use crate::model::reduction::{Basis, BasisChoice, Reduction, WHOLE_SPACE_DOFS};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::basis_choice::{BasisError, BasisEvidence};
 use super::fixed_interface::{FixedInterface, ModesTried, expected_deviation, reduction_with};
-use super::receptance_choice::{JudgedTop, Judges};
+use super::harmonics_on_receptances::{JudgedTop, Judges};
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::{ModelError, SectorModel, StiffnessKind};

@@ -17,6 +17,24 @@ Every folder and file under `src/`, with the first sentence of the file. The pag
 
 The same test without the variable fails when the page is not what the sources make.
 
+What a newcomer has to do to add a law, a column, a key or a command stands in [CONTRIBUTING.md](../CONTRIBUTING.md).
+
+## Two ways to a row
+
+Rows are solved on the receptances of the tuned wheel by default. A basis of system modes is the other way: the study asks for it, or what it
+asks for is not ready on receptances. Both share the search, the contact laws and the statistics.
+
+| question | on tuned receptances | on a basis |
+| --- | --- | --- |
+| where is mistuning applied? | [elimination.rs](../src/response/receptance/elimination.rs) | [wheel_basis.rs](../src/response/mistuning/wheel_basis.rs) |
+| what is the equation? | [contact_iteration.rs](../src/response/receptance/contact_iteration.rs) | [system.rs](../src/response/harmonic_balance/equation/system.rs) |
+| what is the preconditioner, or the Jacobian? | [preconditioner.rs](../src/response/receptance/preconditioner.rs) | [jacobian.rs](../src/response/harmonic_balance/equation/jacobian.rs) |
+| what decides that a solve has converged? | [contact_iteration.rs](../src/response/receptance/contact_iteration.rs) | [newton_verdict.rs](../src/response/harmonic_balance/solver/newton_verdict.rs) |
+| what is tried where it does not? | [contact_iteration.rs](../src/response/receptance/contact_iteration.rs), then [solved_again.rs](../src/population/monte_carlo/solved_again.rs) | [attempts_on_basis.rs](../src/response/forced_response/attempts_on_basis.rs) |
+| which harmonics? | [harmonics_on_receptances.rs](../src/settings/harmonics_on_receptances.rs) | [harmonics_on_basis.rs](../src/settings/harmonics_on_basis.rs) |
+| how is the peak found? | [corrected_peak.rs](../src/response/forced_response/corrected_peak.rs) | [peak.rs](../src/response/forced_response/peak.rs) |
+| which errors are measured? | [receptance_errors.rs](../src/response/forced_response/receptance_errors.rs) | [a_posteriori.rs](../src/response/forced_response/a_posteriori.rs) |
+
 ## Order
 
 A folder at the top level imports only from those below it in this picture. A folder inside of one imports, within it, only from

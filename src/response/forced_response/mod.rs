@@ -1,7 +1,7 @@
 //! Linear limits, sweep, peak search, and the errors of a peak.
 
 mod a_posteriori;
-mod attempt;
+mod attempts_on_basis;
 mod branch;
 mod climb;
 mod corrected_peak;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::attempt::Attempt;
+use super::attempts_on_basis::Attempt;
 use super::excited::Excited;
 use super::observed_amplitude::ObservedBlock;
 use super::options::ContactCondition;

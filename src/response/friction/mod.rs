@@ -4,7 +4,7 @@
 mod contact_march;
 mod contact_pair;
 mod coulomb_3d;
-mod coupled_slider;
+mod coulomb_slider;
 mod friction_circle;
 mod macro_slip;
 mod options;
@@ -14,6 +14,6 @@ mod simplified_3d;
 
 pub use contact_march::{PairMemory, march};
 pub use contact_pair::{ContactHistory, PairDisplacement, PairParameters, PairState};
-pub use coupled_slider::{CoupledSlider, Slip};
+pub use coulomb_slider::{CoupledSlider, Slip};
 pub use options::{ContactLaw, ContactOptions, Ring};
 pub use periodic_slider::PeriodicSlider;

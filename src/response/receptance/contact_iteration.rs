@@ -19,7 +19,8 @@ use super::acceleration::Acceleration;
 use super::contact_forces::ContactForces;
 use super::contact_places::Places;
 use super::fields::{Field, SectorTransform, flatten, norm_squared, padded, unflatten};
-use super::wheel_harmonic::{Preconditioner, WheelHarmonic};
+use super::preconditioner::Preconditioner;
+use super::wheel_harmonic::WheelHarmonic;
 
 /// Earlier steps that are combined.
 const DEPTH: usize = 80;
@@ -174,15 +175,7 @@ impl ContactEquation<'_> {
             self.begin(starts);
         }
         let start = self.buffers.motions.clone();
-        let mut total = Outcome {
-            status: Status::IterationLimit,
-            iterations: 0,
-            tangents: 0,
-            retries: 0,
-            residual: f64::INFINITY,
-            step: f64::INFINITY,
-            shares: ContactShares::default(),
-        };
+        let mut total = Outcome::none();
         let is_warm = !starts.is_empty();
         let warm = is_warm.then_some((&WARM, &start));
         let plans = [(&COLD, &cold), (&SLOW, &cold)];
@@ -235,15 +228,7 @@ impl ContactEquation<'_> {
 
     fn accelerate(&mut self, plan: &Plan, tolerance: f64) -> Outcome {
         let mut preconditioners: Vec<Preconditioner> = Vec::new();
-        let mut outcome = Outcome {
-            status: Status::IterationLimit,
-            iterations: 0,
-            tangents: 0,
-            retries: 0,
-            residual: f64::INFINITY,
-            step: f64::INFINITY,
-            shares: ContactShares::default(),
-        };
+        let mut outcome = Outcome::none();
         self.buffers.acceleration.begin(DAMPING * tolerance);
         let mut first = f64::INFINITY;
         for iteration in 0..plan.iterations {
@@ -392,15 +377,7 @@ impl ContactEquation<'_> {
 
     /// Newton's method with steps by GMRES under the preconditioner, damped while the residual would grow.
     fn newton(&mut self, tolerance: f64) -> Outcome {
-        let mut outcome = Outcome {
-            status: Status::IterationLimit,
-            iterations: 0,
-            tangents: 0,
-            retries: 0,
-            residual: f64::INFINITY,
-            step: f64::INFINITY,
-            shares: ContactShares::default(),
-        };
+        let mut outcome = Outcome::none();
         for _ in 0..NEWTON_STEPS {
             (outcome.residual, outcome.shares) = self.residual(true);
             if outcome.residual <= tolerance && outcome.shares.unclosed == 0.0 {
@@ -482,6 +459,19 @@ impl ContactEquation<'_> {
 }
 
 impl Outcome {
+    /// Of an attempt that has taken no step.
+    fn none() -> Self {
+        Self {
+            status: Status::IterationLimit,
+            iterations: 0,
+            tangents: 0,
+            retries: 0,
+            residual: f64::INFINITY,
+            step: f64::INFINITY,
+            shares: ContactShares::default(),
+        }
+    }
+
     /// The work of both, and how the second ended.
     fn followed_by(self, next: Self, rung: usize) -> Self {
         Self {

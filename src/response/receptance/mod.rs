@@ -2,7 +2,7 @@
 //!
 //! The tuned wheel with stuck contact is one small matrix a wave and frequency (`tables.rs`). Blade deviations are eliminated
 //! exactly in few strain coordinates (`elimination.rs`, `blade_shapes.rs`), and the motions at the contact are the only
-//! unknowns of the nonlinear equation (`contact_iteration.rs`).
+//! unknowns of the nonlinear equation (`contact_iteration.rs`, `preconditioner.rs`, `acceleration.rs`).
 
 mod acceleration;
 mod blade_shapes;
@@ -13,6 +13,7 @@ mod elimination;
 mod engine;
 mod fields;
 mod free_waves;
+mod preconditioner;
 mod resonances;
 mod tables;
 mod tuned_wheel;

@@ -26,7 +26,7 @@ use crate::response::mistuning::{Pattern, PatternSource};
 use crate::settings::Progress;
 use crate::settings::basis_choice::judged_conditions;
 use crate::settings::fixed_interface::{FixedInterface, reduce_sector, sensitivity_vectors};
-use crate::settings::harmonic_choice::{choose_harmonics, with_separation};
+use crate::settings::harmonics_on_basis::{choose_harmonics, with_separation};
 use crate::settings::row_settings::{contact_stiffness, row_settings};
 use crate::study::{Excitation, PipelineError, Study, excitations, solver_under};
 
