@@ -26,8 +26,6 @@ pub(super) struct Climb {
     pub(super) known: Vec<Vec<Known>>,
     /// Distance of points beside the top, Hz.
     pub(super) beside_hz: f64,
-    /// Whether a point of the last set was not as high as the sets before it and the points beside it foretold.
-    pub(super) surprised: bool,
 }
 
 impl Climb {
@@ -40,23 +38,20 @@ impl Climb {
     pub(super) fn best(&self) -> &Known {
         let highest = |a: &&Known, b: &&Known| a.height_m.total_cmp(&b.height_m);
         let best = self.own().iter().max_by(highest);
-        best.unwrap_or(&self.own()[0])
+        best.expect("a climb begins with a point")
     }
 
-    /// A frequency beside the top, Hz, on a side on which no point serves. Beyond the first set one side is enough where every point was
-    /// foretold: what the set adds varies so little over frequency that it cannot move the top.
+    /// A frequency beside the top, Hz, on a side on which no point serves. Both sides are looked at with every set: a harmonic of the
+    /// last one may meet a resonance of its own on the side that the sets before it have not shown.
     pub(super) fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
-        let sides = [-self.beside_hz, self.beside_hz];
         let is_unseen = |side: &f64| {
             let way = |own: &Known| (own.frequency_hz - top_hz) / side;
             let serves = |own: &Known| (SERVES.0..=SERVES.1).contains(&way(own));
             !self.own().iter().any(serves)
         };
-        let is_foretold = self.known.len() > 1 && !self.surprised;
-        if is_foretold && !sides.iter().all(is_unseen) {
-            return None;
-        }
-        let unseen = sides.into_iter().find(is_unseen);
+        let unseen = [-self.beside_hz, self.beside_hz]
+            .into_iter()
+            .find(is_unseen);
         unseen.map(|side| top_hz + side)
     }
 

@@ -60,8 +60,6 @@ const POINTS: usize = 20;
 const BESIDE: f64 = 0.14;
 /// The same in half-bandwidths of a linear resonance, which is as narrow as a hump can be.
 const BESIDE_LINEAR: f64 = 0.5;
-/// Difference of a height from the one foretold, over the tolerance of the peak, beyond which both sides of a top are looked at.
-const SURPRISE: f64 = 5.0;
 /// Share that harmonics may change one top more than another at most.
 const MOST_MADE_UP: f64 = 0.5;
 
@@ -233,7 +231,6 @@ impl CorrectedSearch<'_> {
         let mut climb = Climb {
             known: Vec::new(),
             beside_hz: self.distance_beside(top),
-            surprised: false,
         };
         let mut own = Highest {
             frequency_hz: top.frequency_hz,
@@ -242,8 +239,7 @@ impl CorrectedSearch<'_> {
         let reach_hz = NEIGHBOURS * top.half_bandwidth_hz;
         for set in 0..self.sets.len() {
             climb.known.push(Vec::new());
-            climb.surprised = false;
-            self.solve(&mut climb, own.frequency_hz, self.care.at_top, None)?;
+            self.solve(&mut climb, own.frequency_hz, self.care.at_top)?;
             if set == 0 {
                 let is_top =
                     |point: &Point| point.frequency_hz.total_cmp(&top.frequency_hz).is_eq();
@@ -300,12 +296,9 @@ impl CorrectedSearch<'_> {
             if is_lower {
                 return Ok((best.height_m, best.frequency_hz));
             } else if summit.largest > above {
-                let foretold_m = Some(summit.largest);
-                self.solve(climb, summit.frequency_hz, self.care.at_top, foretold_m)?;
+                self.solve(climb, summit.frequency_hz, self.care.at_top)?;
             } else if let Some(side_hz) = climb.unseen_beside(best.frequency_hz) {
-                let foretold = self.corrected(climb, side_hz);
-                let foretold_m = foretold.map(|own| own.into_iter().fold(0.0, f64::max));
-                self.solve(climb, side_hz, self.care.at_side, foretold_m)?;
+                self.solve(climb, side_hz, self.care.at_side)?;
             } else {
                 return Ok((best.height_m, best.frequency_hz));
             }
@@ -349,14 +342,12 @@ impl CorrectedSearch<'_> {
         Some(start)
     }
 
-    /// Solves the last set of the climb at a frequency, Hz, to a share of the tolerance of the peak, and compares its height with the one
-    /// foretold, m.
+    /// Solves the last set of the climb at a frequency, Hz, to a share of the tolerance of the peak.
     fn solve(
         &mut self,
         climb: &mut Climb,
         frequency_hz: f64,
         precision: f64,
-        foretold_m: Option<f64>,
     ) -> Result<(), Status> {
         let sets = climb.known.len();
         let start = self.start(sets, frequency_hz).ok_or(Status::NotBracketed)?;
@@ -386,10 +377,6 @@ impl CorrectedSearch<'_> {
             force,
             growth,
         };
-        climb.surprised |= foretold_m.is_some_and(|foretold_m| {
-            let off = (foretold_m / known.height_m - 1.0).abs();
-            off > SURPRISE * self.tolerance
-        });
         let same = |own: &Point| own.frequency_hz.total_cmp(&frequency_hz).is_eq();
         self.few.points.retain(|own| !same(own));
         self.few.points.push(Point {
