@@ -143,12 +143,12 @@ impl CraigBampton {
         Ok(model)
     }
 
-    /// The same model with T enlarged by the sensitivity to blade stiffness of `count` stick modes,
+    /// This model with T enlarged by the sensitivity to blade stiffness of `count` stick modes,
     /// `(K + C^T k_c C)^-1 K_blade phi_j`: the static response to the force by which a stiffer
     /// blade loads mode j. The modes are those with the largest share of strain energy in the blade.
     ///
     /// # Errors
-    /// If the stuck stiffness is not positive definite.
+    /// If the mass or the stuck stiffness is not positive definite.
     pub fn with_blade_sensitivity(
         &self,
         sector: &CyclicSector<'_>,
@@ -196,7 +196,8 @@ impl CraigBampton {
         Ok(model)
     }
 
-    /// The same with the first `modes` fixed-interface modes alone, and what the others move of the residual vectors in these.
+    /// This model with its first `modes` fixed-interface modes alone; what the modes left out contribute to the residual vectors
+    /// stays in these.
     #[must_use]
     pub fn with_fewer_modes(&self, modes: usize) -> Self {
         let [constraint, fixed] = self.columns;
