@@ -36,7 +36,7 @@ const BESIDE_SHARE: f64 = 0.1;
 const BESIDE_TOLERANCES: (f64, f64) = (1e-6, 3e-4);
 
 impl RowSolver {
-    /// The same solver whose rows are solved on `engine`, under the force vector of `model`.
+    /// This solver with rows that are solved on `engine`, under the force vector of `model`.
     ///
     /// # Errors
     /// If the harmonics of a search cannot be told apart.

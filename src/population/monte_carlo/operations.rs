@@ -21,8 +21,9 @@ const CHECK_ITERATIONS: f64 = 14.0;
 const CHECK_BLOCKS: f64 = 14.0;
 /// Real coefficients of the check.
 const CHECK_COEFFICIENTS: f64 = 31.0;
-/// The same under a constant normal load: odd ones.
+/// Real coefficients of the check under a constant normal load, which excites odd harmonics alone.
 const CHECK_COEFFICIENTS_ODD: usize = 16;
+/// Harmonics that the check has besides 1 under a constant normal load.
 const CHECK_BLOCKS_ODD: f64 = 7.0;
 /// Samples of the check over those of the solution.
 const CHECK_SAMPLES: f64 = 4.0;
@@ -230,7 +231,8 @@ impl SystemSize {
         factors + CHECK_ITERATIONS * evaluation
     }
 
-    /// The same where contact motions are solved for: both Jacobians are those of the contact rows, unless unknowns are many.
+    /// Operations of the check where contact motions are solved for: both Jacobians are those of the contact rows, unless
+    /// unknowns are many.
     fn check_by_contact(&self, samples: f64) -> f64 {
         let enlarged = Self {
             coefficients: CHECK_COEFFICIENTS_ODD,

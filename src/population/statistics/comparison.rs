@@ -240,7 +240,8 @@ impl Bounds {
         self.two_sided(share(not_above).min(share(not_below)))
     }
 
-    /// The same where no resample is on the other side.
+    /// Two-sided probability where no resample is on the other side of the contrast: the smallest that
+    /// so many resamples can give.
     fn p_value_floor(&self) -> f64 {
         self.two_sided(1.0 / (1.0 + self.lowest.len() as f64))
     }
