@@ -70,7 +70,8 @@ pub struct PlannedDisk {
     pub bytes_per_row: f64,
     /// Bytes of `responses.parquet` and `patterns.parquet`.
     pub results_bytes: u64,
-    /// The same with the parts, which are there until the tables are.
+    /// Bytes of `responses.parquet`, `patterns.parquet` and their parts, which are there until the
+    /// tables are.
     pub peak_bytes: u64,
 }
 
@@ -86,7 +87,8 @@ pub struct PlannedPercentile {
     /// Expected width of the 95 % interval over the value, widest scenario; null where the pilot has
     /// too few patterns to say.
     pub peak_amplitude_m_relative_width: Option<f64>,
-    /// The same of the amplification factor.
+    /// Expected width of the 95 % interval of the amplification factor over the value, widest scenario;
+    /// null where the pilot has too few patterns to say.
     pub amplification_factor_relative_width: Option<f64>,
 }
 

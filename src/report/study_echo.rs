@@ -34,7 +34,7 @@ pub struct StudyEcho {
     pub scenarios: u64,
     /// Number of rows.
     pub rows: u64,
-    /// Those of them under friction; the others are linear and take next to no time.
+    /// Number of rows under friction; all other rows are linear and take next to no time.
     pub friction_rows: u64,
     /// What is unusual.
     pub remarks: Vec<Remark>,
