@@ -23,7 +23,7 @@ pub enum SearchHarmonics {
     Auto,
     /// The whole set, without a search before.
     All,
-    /// Those of this set, ascending and with 1, that are in the set of the row.
+    /// The harmonics of this set, ascending and with 1, that are in the set of the row.
     Set(Vec<u32>),
 }
 

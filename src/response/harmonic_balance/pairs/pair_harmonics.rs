@@ -223,8 +223,8 @@ impl PairHarmonics {
         }
     }
 
-    /// The same from what is known of a pair under `simplified_3d`: its normal load where it separates, and the clips
-    /// (samples, signs) of its sliders that slip.
+    /// Blocks of the Jacobian of a pair under `simplified_3d` that are not zero, into cleared blocks, from what is
+    /// known of it: its normal load where it separates, and the clips (samples, signs) of its sliders that slip.
     pub(super) fn differentiate_clips(
         &mut self,
         parameters: &PairParameters,

@@ -55,12 +55,12 @@ pub struct EnlargedSet {
     alone: Arc<HarmonicTransform>,
     enlarged: Arc<HarmonicTransform>,
     linearised: Arc<HarmonicTransform>,
-    /// The enlarged set with as few samples as tell its harmonics apart.
+    /// The enlarged set with few samples: more than four per period of its highest harmonic.
     tangents: Arc<HarmonicTransform>,
 }
 
 impl EnlargedSet {
-    /// Those up to 15 that a law excites: odd ones alone where the normal load is constant.
+    /// Harmonics up to 15 that a law excites, ascending: odd ones alone where the normal load is constant.
     #[must_use]
     pub fn everything(variable_load: bool) -> Vec<u32> {
         excited_up_to(HIGHEST_HARMONIC, variable_load)
@@ -126,7 +126,7 @@ pub struct Enlarged {
     /// After one Newton correction at the finer sampling, in the set alone, or as many accelerated steps as bring it
     /// about where the Jacobian is not to be had.
     pub resampled: Vec<f64>,
-    /// The same at the sampling of the enlarged set: what `after` would be without harmonics outside.
+    /// The solution in the set alone at the sampling of the enlarged set: what `after` would be without harmonics outside.
     pub alone: Vec<f64>,
     /// With the harmonics outside: the iterate that the next step would change least.
     pub after: Vec<f64>,
@@ -435,7 +435,8 @@ impl Factors {
         regular.then(|| Self::ByHarmonic(Box::new(factors)))
     }
 
-    /// The others.
+    /// Factors of P at `x`: of the whole Jacobian for one sector or a small wheel, else of a block for each harmonic outside of
+    /// the set; none if one is singular.
     fn of(
         system: &HarmonicSystem,
         places: &[Option<usize>],
