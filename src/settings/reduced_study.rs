@@ -52,7 +52,7 @@ impl Stored {
         self.engine.is_some()
     }
 
-    /// The same with `harmonics` in every scenario and, on tuned receptances, twice as many blade shapes.
+    /// Copy of what the cache keeps, with `harmonics` in every scenario and, on tuned receptances, twice as many blade shapes.
     pub(super) fn enlarged(&self, harmonics: &[u32]) -> Self {
         let enlarged = |choice: &HarmonicChoice| HarmonicChoice {
             harmonics: harmonics.to_vec(),

@@ -104,7 +104,7 @@ impl Made {
         Ok(Self { own, receptances })
     }
 
-    /// The same with another number of blade shapes.
+    /// This engine with `shape_factor` times as many blade shapes as an engine has at least.
     fn with_shape_factor(
         &self,
         study: &Study,
@@ -330,7 +330,7 @@ impl Shaped {
         change_of(tops, &finer)
     }
 
-    /// The same where this change counts too.
+    /// These shapes with a stated error of at least `change`, the change of the tops by twice as many shapes.
     fn with_change(mut self, change: Option<f64>) -> Self {
         if let Some(taken) = self.tried.last_mut() {
             taken.error = taken.error.map(|own| own.max(change.unwrap_or(0.0)));

@@ -55,7 +55,7 @@ pub struct AccuracyEvidence {
     pub amplification_factor: Option<ErrorBound>,
     /// Estimated floating-point operations of a row at the settings chosen.
     pub operations_per_row: f64,
-    /// Those of the whole choice: reference, single knobs and combinations.
+    /// Estimated floating-point operations of the whole choice: reference, single knobs and combinations.
     pub operations_of_choice: f64,
     /// Combinations measured, in order.
     pub tried: Vec<TriedSetting>,
