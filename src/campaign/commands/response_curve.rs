@@ -42,7 +42,8 @@ pub fn response_curve(
     Ok(engine.curve(&wanted.scenario, pattern, request.frequencies_hz))
 }
 
-/// The curve followed by continuation upwards and downwards, and what the two make of each other.
+/// The response of one pattern followed by continuation over frequency, upwards and downwards, and
+/// what the two traces make of each other.
 ///
 /// # Errors
 /// The model is refused or cannot be reduced, model or study lack the contact that is asked for, or
