@@ -46,7 +46,8 @@ pub struct CraigBampton {
 /// What is known of the residual vectors of a model.
 #[derive(Debug, Clone)]
 struct Residual {
-    /// What each of them is of the responses to the inertia of the constraint modes, `n_constraint x n_residual`.
+    /// Each residual vector as a combination of the responses to the inertia of the constraint modes,
+    /// `n_constraint x n_residual`.
     combinations: Matrix<Complex64>,
     /// Eigenvalues of the fixed-interface modes less the shift, (rad/s)^2.
     eigenvalues: Vec<f64>,
