@@ -31,7 +31,7 @@ const LEFT_OF_CHANGE: f64 = 0.05;
 
 /// Steps by which a top is climbed beside another solution, in half-bandwidths of a linear resonance.
 const CLIMBED: f64 = 0.1;
-/// Tolerance of these solutions over that of the peak, and its bounds.
+/// Tolerance of solutions beside another one over that of the peak, and its bounds.
 const BESIDE_SHARE: f64 = 0.1;
 const BESIDE_TOLERANCES: (f64, f64) = (1e-6, 3e-4);
 

@@ -9,7 +9,8 @@ use crate::response::harmonic_balance::{LARGEST_WHOLE_JACOBIAN, condensing_pays}
 
 /// Operations per unknown cubed of the eigenvalues and vectors of a symmetric matrix.
 const EIGEN: f64 = 9.0;
-/// Time of one of these operations over that of one of a product or of LU factors (`cargo bench --bench response`).
+/// Time of one operation of eigenvalues and vectors over that of one of a product or of LU factors
+/// (`cargo bench --bench response`).
 const SLOWER_EIGEN: f64 = 5.0;
 /// Eigenproblems of a pattern: the structure and its two linear limits.
 const EIGENPROBLEMS: f64 = 3.0;
@@ -68,7 +69,7 @@ pub struct SystemSize {
     pub in_stages: bool,
     /// Contact law, where friction is solved for.
     pub law: Option<ContactLaw>,
-    /// Law of the check: the same, or the one in whose place it is taken.
+    /// Law of the check: `law`, or the one in whose place it is taken.
     pub check_law: Option<ContactLaw>,
 }
 

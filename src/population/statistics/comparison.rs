@@ -25,9 +25,9 @@ pub struct IntervalEstimate {
 /// A percentile of a candidate compared with that of a baseline.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PercentileComparison {
-    /// Of the baseline, as an order statistic.
+    /// Percentile of the baseline, as an order statistic.
     pub baseline: Percentile,
-    /// Of the candidate, as an order statistic.
+    /// Percentile of the candidate, as an order statistic.
     pub candidate: Percentile,
     /// How the percentiles of difference and ratio are taken.
     pub estimator: PercentileEstimator,

@@ -25,7 +25,7 @@ pub struct PercentileRanks {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PointStatus {
-    /// It has.
+    /// The percentile has a point value.
     Estimated,
     /// The sample is too small for a two-sided interval.
     TooFewPatterns {

@@ -43,9 +43,9 @@ pub struct TradeoffRecord {
     pub projection: &'static str,
     /// Errors of the peak amplitude.
     pub amplitude: Option<ErrorBound>,
-    /// What the worst of these over all rows is claimed to be at most.
+    /// What the worst error of the amplitude over all rows is claimed to be at most.
     pub amplitude_worst_upper: Option<f64>,
-    /// Errors of its frequency.
+    /// Errors of the frequency of the peak.
     pub frequency: Option<ErrorBound>,
     /// Errors of the amplification factor.
     pub amplification_factor: Option<ErrorBound>,
