@@ -57,9 +57,9 @@ pub struct PlannedTime {
     pub cpu_s: ExpectedSum,
     /// Time on the clock, set-up included, on a machine as busy as in the pilot, s.
     pub wall_s: f64,
-    /// Its lower bound, s.
+    /// Lower bound of the time on the clock, s.
     pub wall_lower_s: f64,
-    /// Its upper bound, s; null where one pattern cannot say.
+    /// Upper bound of the time on the clock, s; null where one pattern cannot say.
     pub wall_upper_s: Option<f64>,
 }
 
