@@ -31,8 +31,8 @@ pub struct PairHarmonics {
     history: ContactHistory,
     /// Growth of the tangential displacement per period, m.
     drift_m: [f64; 2],
-    /// Coefficients, the first ones, whose derivatives by each other are wanted; of the others only those by
-    /// their own harmonic.
+    /// Number of leading coefficients whose derivatives by each other are needed; the remaining ones need only
+    /// those by their own harmonic.
     coupled_first: usize,
     sums: ClipSums,
     coupled: CoupledDerivative,

@@ -9,7 +9,7 @@ use crate::response::harmonic_balance::pairs::ContactShares;
 /// Buffers of Newton's method for one system.
 pub struct NewtonWorkspace {
     pub(in crate::response::harmonic_balance) system: SystemWorkspace,
-    /// Of the last point at which it was factored.
+    /// Factors of the Jacobian, of the last point at which it was factored.
     pub(super) jacobian: KeptJacobian,
     pub(super) buffers: NewtonBuffers,
     /// The start of the solve that follows, where several were compared.
