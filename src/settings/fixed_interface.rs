@@ -212,7 +212,7 @@ impl ComparedCases {
         waves
     }
 
-    /// The peaks of one force vector after those of the other.
+    /// The tuned peaks under all force vectors, vector after vector.
     fn peaks(
         &self,
         model: &ReducedModel,

@@ -128,7 +128,7 @@ struct TunedWheel<'a> {
     contact: ContactCondition,
 }
 
-/// What the tuned peak of a set says of it.
+/// What the tuned peak with a harmonic set says of the set.
 struct Verdict {
     /// Whether the tuned peak was found.
     has_peak: bool,

@@ -92,7 +92,7 @@ impl Stored {
     }
 }
 
-/// The model and sets for rows that the others are not good enough for.
+/// The model and harmonic sets for rows that those of [`Stored`] are not good enough for.
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) struct StoredBeyond {
     model: ReducedModel,

@@ -132,9 +132,9 @@ pub(super) struct Refined<'a> {
     pub(super) reduction: Reduction<'a>,
     pub(super) engine: Made,
     pub(super) fixed_interface: FixedInterface,
-    /// Of the blade shapes.
+    /// Evidence of the blade shapes.
     pub(super) evidence: BasisEvidence,
-    /// Under each force vector.
+    /// Harmonic choices under each force vector.
     pub(super) harmonics: Vec<Vec<HarmonicChoice>>,
 }
 
@@ -239,7 +239,7 @@ fn judged_tops(
         .collect()
 }
 
-/// Largest relative change of these tops to those of the same wheels on another engine; none where no top is found on both.
+/// Largest relative change of `tops` to the tops of the same wheels on another engine; none where no top is found on both.
 fn change_of(tops: &[Vec<JudgedTop>], others: &[Judges<'_>]) -> Option<f64> {
     let cases = tops.iter().zip(others);
     let changes = cases.filter_map(|(tops, other)| other.change(tops));
