@@ -33,11 +33,12 @@ pub(super) struct VerifyArguments {
 /// What is asked of the rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Question {
-    /// The same on the full-contact model?
+    /// Is the peak the same on the full-contact model?
     FullModel,
     /// A higher peak elsewhere?
     DenseSweep,
-    /// The same in time? Of one row, by scenario and pattern, or the first of the sample.
+    /// Is the motion the same in time? Of one row, by scenario and pattern, or the first of the
+    /// sample.
     TimeDomain(Option<(usize, u32)>),
     /// None: are the files as they were written? Damaged ones are set aside and solved again.
     Files,

@@ -192,7 +192,7 @@ impl<T: Scalar> Matrix<T> {
         &mut self.data
     }
 
-    /// Same numbers in every place.
+    /// Sets every entry to `value`.
     pub fn fill(&mut self, value: T) {
         self.data.fill(value);
     }

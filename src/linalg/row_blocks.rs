@@ -11,7 +11,7 @@ use super::{Loops, Matrix, vectorized};
 pub(super) const LANES: usize = 8;
 /// One real number for each row of a block.
 pub(super) type Lanes = [f64; LANES];
-/// The same with complex numbers: real parts, then imaginary ones.
+/// One complex number for each row of a block: real parts, then imaginary ones.
 pub(super) type ComplexLanes = [Lanes; 2];
 
 /// A real matrix in blocks of rows, filled up with zeros to whole blocks of rows and of columns.
@@ -23,7 +23,7 @@ pub struct RowBlocks {
 }
 
 impl RowBlocks {
-    /// The same numbers in blocks.
+    /// The numbers of `matrix` in blocks of rows.
     #[must_use]
     pub fn of(matrix: &Matrix<f64>) -> Self {
         let columns = matrix.columns().next_multiple_of(LANES);

@@ -131,8 +131,8 @@ impl ReducedModel {
             .map_or(1.0, |&(_, factor)| factor)
     }
 
-    /// The same wheel under one of several load cases, the one in column `column` of its forces, with
-    /// factors of its own on the force vector under single engine orders.
+    /// Copy of this model under one of several load cases: the one in column `column` of its forces, with
+    /// `force_factors` on the force vector under single engine orders.
     #[must_use]
     pub fn under(&self, column: usize, force_factors: Vec<(u32, f64)>) -> Self {
         let mut model = self.clone();

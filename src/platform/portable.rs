@@ -1,4 +1,4 @@
-//! The same questions on any system that the crate `sysinfo` knows.
+//! What the crate `sysinfo` says of this machine and its processes, on any system that it knows.
 
 use sysinfo::{Pid, ProcessRefreshKind, ProcessesToUpdate, System};
 

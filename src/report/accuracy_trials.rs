@@ -29,7 +29,7 @@ pub struct AccuracyTrial {
     pub worst: Option<f64>,
     /// Floating-point operations of a row.
     pub operations: f64,
-    /// Whether the study was solved with it.
+    /// Whether the study was solved with this setting.
     pub taken: bool,
 }
 

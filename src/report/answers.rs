@@ -57,7 +57,7 @@ impl Writer<'_> {
         self.with_speed(index, load_with_unit)
     }
 
-    /// The same where a load is named for the first time.
+    /// The load of scenario `index` in words, per sector: where a load is named for the first time.
     fn load_per_sector_of(&self, index: usize) -> String {
         self.with_speed(index, load_per_sector)
     }

@@ -71,7 +71,8 @@ pub struct ScenarioComparison {
     pub pairing: &'static str,
     /// Patterns used, of the baseline and of the candidate.
     pub patterns: [u64; 2],
-    /// Patterns of either that the other has not.
+    /// Patterns of the baseline that the candidate lacks, and of the candidate that the baseline
+    /// lacks.
     pub patterns_left_out: [u64; 2],
     /// The percentile, its difference and its ratio.
     pub percentile: PercentileComparison,
@@ -89,7 +90,7 @@ pub struct LoadOfSet {
     /// The scenario.
     #[serde(flatten)]
     pub scenario: ComparedScenario,
-    /// Its percentile.
+    /// Percentile of the load.
     pub percentile: Percentile,
     /// Not significantly worse than any other: with 95 % confidence the best of all is among these.
     pub could_be_best: bool,

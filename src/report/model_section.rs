@@ -9,9 +9,9 @@ use crate::model::sector::Body;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "model", rename_all = "snake_case")]
 pub enum ShownModel {
-    /// It is shown.
+    /// The model is shown.
     Shown(Box<ModelSection>),
-    /// It is not, and why.
+    /// The model is not shown, and why.
     NotShown {
         /// Why.
         reason: String,
@@ -62,7 +62,7 @@ pub struct ContactFacts {
 pub struct BodyMass {
     /// The body.
     pub body: Body,
-    /// What can move of it in one sector, kg; the whole wheel has N times that.
+    /// Mass that can move of the body in one sector, kg; the whole wheel has N times that.
     pub sector_kg: f64,
 }
 

@@ -39,22 +39,22 @@ pub enum NumericalFinding {
         /// Upper bound of the error of 95 % of the rows at the settings taken; none without a bound.
         reached: Option<f64>,
     },
-    /// It is not small beside the statistical uncertainty.
+    /// The error is not small beside the statistical uncertainty.
     Large {
         /// Upper bound of the error of 95 % of the rows.
         error: f64,
         /// The percentile whose interval is meant.
         percent: f64,
-        /// Relative width of the narrowest of these intervals.
+        /// Relative width of the narrowest interval of the percentile over the scenarios.
         width: f64,
     },
-    /// It is so small beside the statistical uncertainty that it is paid for in vain.
+    /// The error is so small beside the statistical uncertainty that it is paid for in vain.
     Needless {
         /// Upper bound of the error of 95 % of the rows.
         error: f64,
         /// The percentile whose interval is meant.
         percent: f64,
-        /// Relative width of the narrowest of these intervals.
+        /// Relative width of the narrowest interval of the percentile over the scenarios.
         width: f64,
     },
 }
@@ -67,8 +67,8 @@ impl NumericalError {
         Some(format!("contact law {taken} in the place of {own}"))
     }
 
-    /// What there is to say of it beside the intervals of the wanted percentile of the amplitude, one of
-    /// each scenario.
+    /// What there is to say of the error beside the intervals of the percentile of the amplitude asked for,
+    /// one of each scenario.
     #[must_use]
     pub fn findings(&self, percentiles: &[Percentile]) -> Vec<NumericalFinding> {
         let mut found = Vec::new();

@@ -35,7 +35,8 @@ pub struct OptimumReport {
     /// All loads with their percentiles, and which could be best. Of several load cases and engine orders: the
     /// percentile of the largest value of each wheel over them; each load names those of the highest percentile.
     pub best: BestLoads,
-    /// The same loads under each load case and engine order alone; absent where there is one.
+    /// The loads of the search under each load case and engine order alone; empty, and absent in JSON, where
+    /// there is only one of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub excitations: Vec<OptimumExcitation>,
 }

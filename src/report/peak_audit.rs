@@ -27,7 +27,7 @@ pub struct PeakAuditReport {
     pub swept: usize,
     /// Drawn rows without a delivered value.
     pub failed_rows: usize,
-    /// Frequencies solved, and those of them without a solution.
+    /// Frequencies solved, those without a solution included.
     pub points: usize,
     /// Frequencies without a solution.
     pub failed_points: usize,

@@ -57,9 +57,9 @@ pub struct PlannedTime {
     pub cpu_s: ExpectedSum,
     /// Time on the clock, set-up included, on a machine as busy as in the pilot, s.
     pub wall_s: f64,
-    /// Its lower bound, s.
+    /// Lower bound of the time on the clock, s.
     pub wall_lower_s: f64,
-    /// Its upper bound, s; null where one pattern cannot say.
+    /// Upper bound of the time on the clock, s; null where one pattern cannot say.
     pub wall_upper_s: Option<f64>,
 }
 
@@ -70,7 +70,8 @@ pub struct PlannedDisk {
     pub bytes_per_row: f64,
     /// Bytes of `responses.parquet` and `patterns.parquet`.
     pub results_bytes: u64,
-    /// The same with the parts, which are there until the tables are.
+    /// Bytes of `responses.parquet`, `patterns.parquet` and their parts, which are there until the
+    /// tables are.
     pub peak_bytes: u64,
 }
 
@@ -86,7 +87,8 @@ pub struct PlannedPercentile {
     /// Expected width of the 95 % interval over the value, widest scenario; null where the pilot has
     /// too few patterns to say.
     pub peak_amplitude_m_relative_width: Option<f64>,
-    /// The same of the amplification factor.
+    /// Expected width of the 95 % interval of the amplification factor over the value, widest scenario;
+    /// null where the pilot has too few patterns to say.
     pub amplification_factor_relative_width: Option<f64>,
 }
 

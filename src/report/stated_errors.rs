@@ -37,12 +37,13 @@ impl ErrorSpread {
 pub struct PercentileError {
     /// The percentile of the delivered rows with its statistical interval.
     pub percentile: Percentile,
-    /// The same percentile if every row is as much too high as it states; none where rows state no
+    /// The percentile, m, if every row is as much too high as it states; none where rows state no
     /// bound that matters to it.
     pub lowest: Option<f64>,
-    /// The same if every row is as much too low as it states.
+    /// The percentile, m, if every row is as much too low as it states; none where rows state no
+    /// bound that matters to it.
     pub highest: Option<f64>,
-    /// The same with every row corrected by its sampling and harmonic error.
+    /// The percentile, m, with every row corrected by its sampling and harmonic error.
     pub corrected: Option<f64>,
 }
 
@@ -66,7 +67,7 @@ impl PercentileError {
 pub struct StatedErrors {
     /// Rows with a result.
     pub rows: u64,
-    /// Those of them that state no bound.
+    /// Rows with a result that state no bound.
     pub without_bound: u64,
     /// Change by finer sampling.
     pub sampling: Option<ErrorSpread>,

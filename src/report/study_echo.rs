@@ -34,7 +34,7 @@ pub struct StudyEcho {
     pub scenarios: u64,
     /// Number of rows.
     pub rows: u64,
-    /// Those of them under friction; the others are linear and take next to no time.
+    /// Number of rows under friction; all other rows are linear and take next to no time.
     pub friction_rows: u64,
     /// What is unusual.
     pub remarks: Vec<Remark>,
@@ -60,7 +60,7 @@ pub struct EchoedLoad {
     pub contact: &'static str,
     /// Normal load per sector, N.
     pub normal_load_n: Option<f64>,
-    /// That of the whole wheel, N.
+    /// Normal load of the whole wheel, N.
     pub wheel_load_n: Option<f64>,
 }
 
@@ -86,9 +86,9 @@ pub struct EchoedExcitation {
 pub enum Travel {
     /// With the engine order.
     Forwards,
-    /// Against it.
+    /// Against the engine order.
     Backwards,
-    /// Not at all: nodal diameter 0, or half the number of sectors.
+    /// The wave stands: nodal diameter 0, or half the number of sectors.
     Standing,
 }
 
@@ -121,7 +121,7 @@ pub enum Remark {
     LargeLoad {
         /// The load per sector, N.
         normal_load_n: f64,
-        /// That of the whole wheel, N.
+        /// The load of the whole wheel, N.
         wheel_load_n: f64,
         /// Friction limit of a sector, N.
         friction_limit_n: f64,

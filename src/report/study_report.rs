@@ -112,9 +112,9 @@ pub struct ScenarioErrors {
     pub scenario: usize,
     /// Errors that its rows state.
     pub rows: StatedErrors,
-    /// What every row of it states at least.
+    /// Errors that every row of the scenario states at least.
     pub common: CommonErrors,
-    /// What they come to in percentiles of the peak amplitude.
+    /// What the errors come to in percentiles of the peak amplitude.
     pub percentiles: Vec<PercentileError>,
 }
 
@@ -148,9 +148,9 @@ pub struct DistributionReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "wheels", rename_all = "snake_case")]
 pub enum Wheels {
-    /// They were.
+    /// The wheels were solved again.
     Solved(Box<WheelReport>),
-    /// They were not, and why.
+    /// The wheels were not solved again, and why.
     NotSolved {
         /// Why.
         reason: String,

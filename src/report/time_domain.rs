@@ -59,7 +59,8 @@ pub struct TimeDomainReport {
     pub status: Status,
     /// Largest amplitude of a blade by harmonic balance, m, with viscous damping.
     pub harmonic_balance_amplitude_m: Option<f64>,
-    /// The same by time integration, m, with the same damping, over the last period marched.
+    /// Largest amplitude of a blade by time integration, m, with viscous damping, over the last
+    /// period marched.
     pub time_domain_amplitude_m: Option<f64>,
     /// Amplitude of harmonic 1 of the largest blade by time integration, m, averaged with its phase
     /// over the last periods.

@@ -46,7 +46,7 @@ pub struct TradeoffReference {
     pub kind: &'static str,
     /// Rows of the sample.
     pub rows: u64,
-    /// Rows of these that the reference has no value for; they judge nothing.
+    /// Rows of the sample that the reference has no value for; they judge nothing.
     pub without_value: u64,
     /// Tolerance of its harmonics.
     pub harmonic_tolerance: f64,
@@ -54,7 +54,7 @@ pub struct TradeoffReference {
     pub product_error: Option<f64>,
     /// Fixed-interface modes, the same at every setting.
     pub craig_bampton_modes: usize,
-    /// What more of them change the tuned peak by.
+    /// Relative change of the tuned peak by more fixed-interface modes.
     pub craig_bampton_error: Option<f64>,
     /// The reference itself against the full-contact model, where asked for.
     pub full_contact: Vec<FullContactCheck>,
@@ -65,7 +65,7 @@ pub struct TradeoffReference {
 pub struct FullContactCheck {
     /// Scenario.
     pub scenario: usize,
-    /// Its load case; absent in a study without load cases.
+    /// Load case of the scenario; absent in a study without load cases.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load_case: Option<LoadCaseName>,
     /// Pattern.
@@ -76,9 +76,9 @@ pub struct FullContactCheck {
     pub status: &'static str,
     /// Relative error of the reference's amplitude.
     pub amplitude_error: Option<f64>,
-    /// Of its frequency.
+    /// Relative error of the frequency of the reference's peak.
     pub frequency_error: Option<f64>,
-    /// Of its amplification factor.
+    /// Relative error of the reference's amplification factor.
     pub amplification_factor_error: Option<f64>,
 }
 
@@ -89,7 +89,8 @@ pub struct TradeoffChoice {
     pub accepted_error: f64,
     /// The setting; none where no setting has it.
     pub setting: Option<u32>,
-    /// Its errors under each load case of the sample; absent in a study without load cases.
+    /// Errors of the setting under each load case of the sample; absent in a study without load
+    /// cases.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub load_cases: Vec<LoadCaseErrors>,
 }

@@ -22,7 +22,7 @@ pub struct ErrorDistribution {
 }
 
 impl ErrorDistribution {
-    /// Of the given signed errors.
+    /// The distribution of the magnitudes of the given signed errors.
     #[must_use]
     pub fn of(errors: impl IntoIterator<Item = f64>) -> Self {
         let mut sizes: Vec<f64> = errors.into_iter().map(f64::abs).collect();

@@ -38,7 +38,7 @@ pub enum Warning {
     Unstable {
         /// Rows that were looked at.
         looked_at: u64,
-        /// Those whose motion is unstable.
+        /// Rows, among those looked at, whose motion is unstable.
         rows: u64,
         /// Scenarios whose tuned wheel does not stay on its motion.
         tuned: Vec<usize>,

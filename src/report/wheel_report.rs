@@ -24,21 +24,21 @@ pub struct WheelCurves {
     pub pattern: u32,
     /// Peak amplitude as delivered, m.
     pub peak_amplitude_m: f64,
-    /// Its frequency, Hz.
+    /// Frequency of the delivered peak, Hz.
     pub peak_frequency_hz: f64,
-    /// Its blade.
+    /// Blade of the delivered peak.
     pub peak_blade: u32,
-    /// Its amplification factor.
+    /// Amplification factor of the delivered peak.
     pub amplification_factor: Option<f64>,
     /// Bound on its relative error.
     pub stated_error: Option<f64>,
     /// Harmonics that it was solved with.
     pub harmonics: String,
-    /// Under the contact of the scenario.
+    /// Curve under the contact of the scenario.
     pub full: ResponseCurve,
-    /// With stuck contact; none where the scenario has no friction.
+    /// Curve with stuck contact; none where the scenario has no friction.
     pub stuck: Option<ResponseCurve>,
-    /// With sliding contact; likewise.
+    /// Curve with sliding contact; none where the scenario has no friction.
     pub slide: Option<ResponseCurve>,
 }
 

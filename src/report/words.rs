@@ -55,7 +55,7 @@ impl LengthUnit {
         format!("{} {}", self.number(metres), self.name)
     }
 
-    /// The same with seven digits, where small differences matter.
+    /// A length in m, seven digits in the unit, where small differences matter.
     #[must_use]
     pub fn precise(self, metres: f64) -> String {
         format!("{} {}", digits(metres / self.metres, 7), self.name)
@@ -101,7 +101,8 @@ pub(super) fn excitation(load_case: Option<LoadCaseName>, engine_order: u32) -> 
     format!("{case}engine order {engine_order}")
 }
 
-/// The same with the standard deviation of the blades.
+/// Load case, where there is one, engine order and standard deviation of the blades, or that their patterns are from a
+/// file.
 pub(super) fn excitation_and_deviation(
     load_case: Option<LoadCaseName>,
     engine_order: u32,
@@ -122,7 +123,7 @@ pub(super) fn load_words(contact: &str, normal_load_n: Option<f64>) -> String {
     normal_load_n.map_or_else(|| contact.to_owned(), |load| load.to_string())
 }
 
-/// The same with its unit.
+/// A load with its unit: a number of newtons, or the name of a linear limit.
 pub(super) fn load_with_unit(contact: &str, normal_load_n: Option<f64>) -> String {
     let words = load_words(contact, normal_load_n);
     if normal_load_n.is_some() {
@@ -132,7 +133,7 @@ pub(super) fn load_with_unit(contact: &str, normal_load_n: Option<f64>) -> Strin
     }
 }
 
-/// The same, and what the number is: a load acts on every sector.
+/// A load with its unit, newtons per sector, since it acts on every sector; or the name of a linear limit.
 pub(super) fn load_per_sector(contact: &str, normal_load_n: Option<f64>) -> String {
     let words = load_with_unit(contact, normal_load_n);
     if normal_load_n.is_some() {

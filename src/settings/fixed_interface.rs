@@ -68,7 +68,7 @@ pub struct ModesTried {
 /// which half as many modes more change no tuned peak by more than `reduction.error`.
 ///
 /// # Errors
-/// If a mass or stiffness is not positive definite.
+/// If a mass or stiffness is not positive definite, or the samples per period cannot tell the harmonics apart.
 pub fn reduce_sector<'a>(
     study: &Study,
     sector: &'a SectorModel,
@@ -108,7 +108,7 @@ pub fn reduce_sector<'a>(
 /// The models of [`reduce_sector`] alone: where the study says how many modes, nothing is measured.
 ///
 /// # Errors
-/// As [`reduce_sector`].
+/// If a mass or stiffness is not positive definite, or the samples per period cannot tell the harmonics apart.
 pub fn reduction_of<'a>(
     study: &Study,
     sector: &'a SectorModel,
@@ -212,7 +212,7 @@ impl ComparedCases {
         waves
     }
 
-    /// The peaks of one force vector after those of the other.
+    /// The tuned peaks under all force vectors, vector after vector.
     fn peaks(
         &self,
         model: &ReducedModel,

@@ -65,7 +65,7 @@ pub fn choose_harmonics(
 /// of them, as in [`choose_harmonics`], where the tuned peak is not found with these alone.
 ///
 /// # Errors
-/// As [`choose_harmonics`].
+/// If the samples per period cannot tell the harmonics apart.
 pub fn with_separation(
     model: &Arc<ReducedModel>,
     settings: &RowSettings,
@@ -128,7 +128,7 @@ struct TunedWheel<'a> {
     contact: ContactCondition,
 }
 
-/// What the tuned peak of a set says of it.
+/// What the tuned peak with a harmonic set says of the set.
 struct Verdict {
     /// Whether the tuned peak was found.
     has_peak: bool,

@@ -52,7 +52,7 @@ impl Stored {
         self.engine.is_some()
     }
 
-    /// The same with `harmonics` in every scenario and, on tuned receptances, twice as many blade shapes.
+    /// Copy of what the cache keeps, with `harmonics` in every scenario and, on tuned receptances, twice as many blade shapes.
     pub(super) fn enlarged(&self, harmonics: &[u32]) -> Self {
         let enlarged = |choice: &HarmonicChoice| HarmonicChoice {
             harmonics: harmonics.to_vec(),
@@ -92,7 +92,7 @@ impl Stored {
     }
 }
 
-/// The model and sets for rows that the others are not good enough for.
+/// The model and harmonic sets for rows that those of [`Stored`] are not good enough for.
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) struct StoredBeyond {
     model: ReducedModel,

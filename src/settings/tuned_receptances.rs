@@ -104,7 +104,7 @@ impl Made {
         Ok(Self { own, receptances })
     }
 
-    /// The same with another number of blade shapes.
+    /// This engine with `shape_factor` times as many blade shapes as an engine has at least.
     fn with_shape_factor(
         &self,
         study: &Study,
@@ -132,9 +132,9 @@ pub(super) struct Refined<'a> {
     pub(super) reduction: Reduction<'a>,
     pub(super) engine: Made,
     pub(super) fixed_interface: FixedInterface,
-    /// Of the blade shapes.
+    /// Evidence of the blade shapes.
     pub(super) evidence: BasisEvidence,
-    /// Under each force vector.
+    /// Harmonic choices under each force vector.
     pub(super) harmonics: Vec<Vec<HarmonicChoice>>,
 }
 
@@ -239,7 +239,7 @@ fn judged_tops(
         .collect()
 }
 
-/// Largest relative change of these tops to those of the same wheels on another engine; none where no top is found on both.
+/// Largest relative change of `tops` to the tops of the same wheels on another engine; none where no top is found on both.
 fn change_of(tops: &[Vec<JudgedTop>], others: &[Judges<'_>]) -> Option<f64> {
     let cases = tops.iter().zip(others);
     let changes = cases.filter_map(|(tops, other)| other.change(tops));
@@ -330,7 +330,7 @@ impl Shaped {
         change_of(tops, &finer)
     }
 
-    /// The same where this change counts too.
+    /// These shapes with a stated error of at least `change`, the change of the tops by twice as many shapes.
     fn with_change(mut self, change: Option<f64>) -> Self {
         if let Some(taken) = self.tried.last_mut() {
             taken.error = taken.error.map(|own| own.max(change.unwrap_or(0.0)));

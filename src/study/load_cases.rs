@@ -9,7 +9,7 @@ use crate::population::monte_carlo::LoadCaseName;
 /// Where the force vector of a load case comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ForceSource {
-    /// That of the model.
+    /// The force vector of the model.
     Model,
     /// A file as the force of a bundle: columns `dof`, `re`, `im`, in N.
     File {

@@ -29,7 +29,7 @@ use crate::study::{AccuracyOptions, PipelineError, Study, load_sector_model};
 /// Loads solved at most.
 const MOST_LOADS: usize = 24;
 
-/// Rows on each thread, and seconds, after which the time of the others is estimated where nothing else says it.
+/// Rows solved on each thread, and seconds, after which the time of the remaining rows is estimated where nothing else says it.
 const TIMED_ROWS: u64 = 4;
 const TIMED_S: f64 = 1.0;
 

@@ -13,11 +13,13 @@ use crate::study::PipelineError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Pairing {
-    /// The same wheels in both: pairs.
+    /// Both populations have the same wheels: pairs.
     SamePatterns,
-    /// The same blades with other random contact: pairs, of different wheels.
+    /// Both populations have the same blades, each with other random contact: pairs, of different
+    /// wheels.
     SameBlades,
-    /// The same unit draws at two standard deviations: pairs, of different wheels.
+    /// Both populations have the same unit draws, at two standard deviations: pairs, of different
+    /// wheels.
     SameUnitDraws,
     /// No wheel in common: two independent populations.
     Independent,

@@ -160,7 +160,7 @@ fn neighbours(nodes: &[PictureNode], coupled: &[(usize, usize)]) -> Vec<(usize, 
     kept.copied().collect()
 }
 
-/// The same place in the next sector.
+/// The position `[x, y, z]`, m, turned about the z axis to the same place in the next sector.
 fn advanced([x, y, z]: [f64; 3], sectors: usize) -> [f64; 3] {
     let (sin, cos) = (std::f64::consts::TAU / sectors as f64).sin_cos();
     [cos * x - sin * y, sin * x + cos * y, z]

@@ -17,7 +17,7 @@ const EVEN_POINTS: u32 = 80;
 const CLOSE_POINTS: u32 = 16;
 /// Ratio of the distances of neighbouring points from a peak.
 const CLOSER: f64 = 0.7;
-/// Points of a linear curve between two of the others.
+/// Steps of a linear curve over one step of the curve with friction.
 const LINEAR_POINTS: u32 = 4;
 
 /// The tuned wheel, and those of the median and the largest peak amplitude.

@@ -29,7 +29,8 @@ pub struct CurveRequest<'a> {
 /// Amplitude of every blade at each frequency, ordered by frequency, then blade.
 ///
 /// # Errors
-/// The model is refused or cannot be reduced, or the study has no such pattern.
+/// The model is refused or cannot be reduced, model or study lack the contact that is asked for, or
+/// the study has no such pattern.
 pub fn response_curve(
     study: &Study,
     source: &dyn EngineSource,
@@ -41,10 +42,12 @@ pub fn response_curve(
     Ok(engine.curve(&wanted.scenario, pattern, request.frequencies_hz))
 }
 
-/// The curve followed by continuation upwards and downwards, and what the two make of each other.
+/// The response of one pattern followed by continuation over frequency, upwards and downwards, and
+/// what the two traces make of each other.
 ///
 /// # Errors
-/// As [`response_curve`].
+/// The model is refused or cannot be reduced, model or study lack the contact that is asked for, or
+/// the study has no such pattern.
 pub fn traced_response(
     study: &Study,
     source: &dyn EngineSource,
@@ -57,10 +60,12 @@ pub fn traced_response(
     Ok(TracedCurve::of(&traces, request.frequencies_hz))
 }
 
-/// The same as [`response_curve`] on the full-contact model.
+/// Amplitude of every blade, m, at each frequency on the full-contact model, ordered by frequency,
+/// then blade.
 ///
 /// # Errors
-/// As [`response_curve`].
+/// The model is refused or cannot be reduced, model or study lack the contact that is asked for,
+/// the study has no such pattern, or the samples per period cannot tell the harmonics apart.
 pub fn full_response_curve(
     study: &Study,
     settings: &FullSettings,

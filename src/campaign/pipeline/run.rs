@@ -70,7 +70,9 @@ pub fn run(
 /// the results folder: `shards/<number>-of-<count>`.
 ///
 /// # Errors
-/// As [`run`]; and the study has a stopping rule, which one shard cannot follow.
+/// A stage failed; what is stored stays stored, and the same call continues. Or the shard is refused:
+/// the study has a stopping rule, which one shard cannot follow, or its patterns have no such share,
+/// or something else stands where the folder of the shard is to be.
 pub fn run_shard(
     request: RunRequest<'_>,
     shard: Shard,

@@ -19,11 +19,11 @@ use crate::study::PipelineError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Work {
-    /// A process works in it.
+    /// A process works in the folder.
     Running,
     /// All rows are there.
     Finished,
-    /// No process works in it; `run` goes on.
+    /// No process works in the folder; `run` goes on.
     Interrupted,
 }
 
@@ -42,11 +42,11 @@ pub struct FolderStatus {
     pub rows: Accounting,
     /// Rows solved per second: since the present process began, or by the last run.
     pub rows_per_second: Option<f64>,
-    /// Time that the other rows take at this rate, s.
+    /// Time that the rows not solved yet take at `rows_per_second`, s.
     pub seconds_left: Option<f64>,
-    /// Who works in it, or worked in it last and was broken off.
+    /// Who works in the folder, or worked in it last and was broken off.
     pub holder: Option<LockHolder>,
-    /// Its shards, by number.
+    /// Status of the shards of the folder, by number.
     pub shards: Vec<FolderStatus>,
     /// Numbers of the shards that are not finished.
     pub missing_shards: Vec<u32>,

@@ -275,7 +275,8 @@ fn repair_of(results: &Path) -> String {
     )
 }
 
-/// Those of `tables`, with their digests, that are missing or not as they were written.
+/// Names of the tables in the folder `results` that are missing or not as they were written; `tables`
+/// has the digest of each by name.
 ///
 /// # Errors
 /// A table cannot be read.

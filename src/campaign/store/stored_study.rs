@@ -73,7 +73,8 @@ impl StoredStudy {
     /// The results of the study in the file `study_file`, in the folder `results`.
     ///
     /// # Errors
-    /// As [`Self::open`], and if the folder holds a different study.
+    /// The study file cannot be read, the folder holds no finished study or a different one, a table of it is damaged, an
+    /// input is missing or has changed since, or the study is one of another version of the program.
     pub fn of_study(study_file: &Path, results: &Path) -> Result<Self, PipelineError> {
         let study = Study::read(study_file)?;
         let folder = results.to_owned();
@@ -90,10 +91,12 @@ impl StoredStudy {
         Self::open(results, Some(study_file))
     }
 
-    /// The same folder as it stands now; for a process that has locked it since, as another one may have written there.
+    /// This stored study, read again from its folder as it stands now: for a process that has locked the folder since, as
+    /// another process may have written there.
     ///
     /// # Errors
-    /// As [`Self::open`].
+    /// The folder holds no finished study, a table of it is damaged, an input is missing or has changed since, or the study is
+    /// one of another version of the program.
     pub(in crate::campaign) fn again(&self) -> Result<Self, PipelineError> {
         Self::open(&self.folder, Some(&self.study.path))
     }
@@ -234,7 +237,7 @@ pub(in crate::campaign) fn study_of(
     Ok(Study::parse(beside, &text)?)
 }
 
-/// The same value in TOML, which has no null: an absent key says the same.
+/// A JSON value as TOML, which has no null: none for null, whose key or place in a list is left out.
 fn toml_of(value: &Value) -> Option<toml::Value> {
     Some(match value {
         Value::Null => return None,

@@ -177,7 +177,7 @@ mod tests {
     const SHIFT: f64 = 1.7;
     const FACTOR: f64 = 0.6;
 
-    /// The same matrix by [`LuWorkspace`].
+    /// Factors of the matrix `stiffness - SHIFT I + i FACTOR damping` by [`LuWorkspace`], to compare with.
     fn dense(stiffness: &Matrix<f64>, damping: &Matrix<f64>) -> LuWorkspace<Complex64> {
         let n = stiffness.rows();
         let mut dense = LuWorkspace::new(n);

@@ -45,7 +45,7 @@ pub enum Hoop {
 /// Why the contact load under rotation cannot be found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum CentrifugalError {
-    /// There is nothing to press on.
+    /// The model has no contact pairs, so that there is nothing to press on.
     #[error("the model has no contact pairs")]
     NoContact,
     /// No body that is pressed by its own mass moves along r, as in wheels of masses and springs.
@@ -66,7 +66,7 @@ pub struct CentrifugalContact {
     pub pair_loads_kg_m: Vec<f64>,
     /// Mass of the ring's sector, kg.
     pub ring_mass_kg: f64,
-    /// Its centrifugal load over the square of the angular velocity, `sum of m r`, kg m.
+    /// Centrifugal load of the ring's sector over the square of the angular velocity, `sum of m r`, kg m.
     pub ring_load_kg_m: f64,
 }
 

@@ -29,7 +29,7 @@ pub struct ContactRow {
     pub pair: usize,
     /// Direction.
     pub direction: Direction,
-    /// Its entries over the dofs of the sector and of the next one.
+    /// Entries of the row over the dofs of the sector and of the next one.
     pub entries: Vec<RowEntry>,
 }
 

@@ -12,7 +12,7 @@ use crate::model::sector::{ModelError, SectorModel, StiffnessKind};
 /// eigenvalues, which are given as negative frequencies, `-sqrt(-lambda) / 2 pi`.
 ///
 /// # Errors
-/// If the mass of a nodal diameter is not positive definite.
+/// If the mass of a nodal diameter is not positive definite, or the modes of its stiffness are not found.
 pub fn contact_free_frequencies_hz(
     model: &SectorModel,
     count: usize,
@@ -20,11 +20,12 @@ pub fn contact_free_frequencies_hz(
     natural_frequencies_hz(model, [0.0; 3], count)
 }
 
-/// The same with contact springs: `per_sector` in the normal, first and second tangential direction, N/m,
-/// shared out over the pairs by weight.
+/// The lowest `count` natural frequencies, Hz, of nodal diameters 0 to N/2 with contact springs:
+/// `per_sector` in the normal, first and second tangential direction, N/m, shared out over the pairs by
+/// weight. A negative eigenvalue is given as a negative frequency, `-sqrt(-lambda) / 2 pi`.
 ///
 /// # Errors
-/// As [`contact_free_frequencies_hz`].
+/// If the mass of a nodal diameter is not positive definite, or the modes of its stiffness are not found.
 pub fn natural_frequencies_hz(
     model: &SectorModel,
     per_sector: [f64; 3],

@@ -46,7 +46,8 @@ pub struct CraigBampton {
 /// What is known of the residual vectors of a model.
 #[derive(Debug, Clone)]
 struct Residual {
-    /// What each of them is of the responses to the inertia of the constraint modes, `n_constraint x n_residual`.
+    /// Each residual vector as a combination of the responses to the inertia of the constraint modes,
+    /// `n_constraint x n_residual`.
     combinations: Matrix<Complex64>,
     /// Eigenvalues of the fixed-interface modes less the shift, (rad/s)^2.
     eigenvalues: Vec<f64>,
@@ -143,12 +144,12 @@ impl CraigBampton {
         Ok(model)
     }
 
-    /// The same model with T enlarged by the sensitivity to blade stiffness of `count` stick modes,
+    /// This model with T enlarged by the sensitivity to blade stiffness of `count` stick modes,
     /// `(K + C^T k_c C)^-1 K_blade phi_j`: the static response to the force by which a stiffer
     /// blade loads mode j. The modes are those with the largest share of strain energy in the blade.
     ///
     /// # Errors
-    /// If the stuck stiffness is not positive definite.
+    /// If the mass or the stuck stiffness is not positive definite.
     pub fn with_blade_sensitivity(
         &self,
         sector: &CyclicSector<'_>,
@@ -196,7 +197,8 @@ impl CraigBampton {
         Ok(model)
     }
 
-    /// The same with the first `modes` fixed-interface modes alone, and what the others move of the residual vectors in these.
+    /// This model with its first `modes` fixed-interface modes alone; what the modes left out contribute to the residual vectors
+    /// stays in these.
     #[must_use]
     pub fn with_fewer_modes(&self, modes: usize) -> Self {
         let [constraint, fixed] = self.columns;

@@ -18,7 +18,7 @@ use crate::linalg::{Complex64, HermitianSparse, Matrix};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DampedModes {
-    /// Each by the share of its strain energy in the blade: `s_r` as above.
+    /// Each mode by the share `s_r` of its strain energy in the blade.
     #[default]
     Blade,
     /// All alike: `s_r = 1`.

@@ -60,7 +60,8 @@ impl<'a> Reduction<'a> {
         Self::on_demand(model, stiffness, craig_bampton_modes, sensitivity_vectors).completed()
     }
 
-    /// The same with no model made yet: each is made when it is first needed.
+    /// Craig-Bampton models with `craig_bampton_modes` fixed-interface modes and `sensitivity_vectors` to blade stiffness in
+    /// each, none of them made yet: each is made when it is first needed.
     #[must_use]
     pub fn on_demand(
         model: &'a SectorModel,
@@ -92,13 +93,13 @@ impl<'a> Reduction<'a> {
         }
     }
 
-    /// The same with modes damped by nodal diameter besides what damps the structure.
+    /// This reduction with modes damped by nodal diameter besides what damps the structure.
     #[must_use]
     pub fn with_damping(self, damping: NodalDiameterDamping) -> Self {
         Self { damping, ..self }
     }
 
-    /// The same with the force vector multiplied by a factor of its own under these engine orders.
+    /// This reduction with a factor on the force vector under each engine order of `force_factors`; 1 under all others.
     #[must_use]
     pub fn with_force_factors(self, force_factors: Vec<(u32, f64)>) -> Self {
         Self {
@@ -107,7 +108,7 @@ impl<'a> Reduction<'a> {
         }
     }
 
-    /// The same with a residual vector for each constraint mode.
+    /// This reduction with a residual vector for each constraint mode in the models that are made from now on.
     #[must_use]
     pub fn with_residual_vectors(self) -> Self {
         Self {
@@ -122,7 +123,7 @@ impl<'a> Reduction<'a> {
         self.sector.sectors()
     }
 
-    /// The same with the models of all nodal diameters made, in parallel.
+    /// This reduction with the models of all nodal diameters made, in parallel.
     ///
     /// # Errors
     /// If a mass or stiffness is not positive definite.
@@ -133,7 +134,8 @@ impl<'a> Reduction<'a> {
         Ok(self)
     }
 
-    /// The same with the first `modes` fixed-interface modes of every model made so far alone, for the basis of all of them.
+    /// Copy of this reduction in which every model made so far has its first `modes` fixed-interface modes alone: for
+    /// [`BasisChoice::CraigBampton`], the basis of all coordinates.
     #[must_use]
     pub fn with_fewer_modes(&self, modes: usize) -> Self {
         let fewer = |model: &OnceLock<CraigBampton>| {
@@ -200,7 +202,7 @@ impl<'a> Reduction<'a> {
     /// One nodal diameter in the given basis.
     ///
     /// # Errors
-    /// If a mass is not positive definite.
+    /// If a mass or stiffness is not positive definite.
     pub fn nodal_diameter(
         &self,
         h: usize,
@@ -213,7 +215,7 @@ impl<'a> Reduction<'a> {
     /// where the mistuning goes through them.
     ///
     /// # Errors
-    /// If a mass is not positive definite, or the blade has no cantilever modes.
+    /// If a mass or stiffness is not positive definite, or the blade has no cantilever modes.
     pub fn reduce(
         &self,
         choice: BasisChoice,
@@ -232,16 +234,17 @@ impl<'a> Reduction<'a> {
     /// and much cheaper.
     ///
     /// # Errors
-    /// If a mass is not positive definite.
+    /// If a mass or stiffness is not positive definite.
     pub fn tuned(&self, choice: BasisChoice) -> Result<ReducedModel, ModelError> {
         let all: Vec<usize> = (0..self.models.len()).collect();
         Ok(self.nodal_diameters(choice, &all)?.0)
     }
 
-    /// The same of a wheel that answers in the nodal diameters `wanted` alone; the others have no modes.
+    /// The reduced model, without the blade's stiffness, of a tuned wheel that answers in the nodal diameters `wanted`
+    /// alone; the other nodal diameters have no modes.
     ///
     /// # Errors
-    /// If a mass is not positive definite.
+    /// If a mass or stiffness is not positive definite.
     pub fn tuned_in(
         &self,
         choice: BasisChoice,

@@ -36,7 +36,7 @@ impl Cylinder {
     /// The two points of contact in the lattice of the section: on the own blade's side, and on the next one's.
     pub(super) const TOUCHING: [[usize; 2]; 2] = [[2, ACROSS], [ACROSS - 2, ACROSS]];
 
-    /// That of the options; none with another damper.
+    /// The cylinder of the options; none with another damper.
     pub(super) fn of(options: &ParametricOptions) -> Option<Self> {
         let is_cylinder = options.damper == Damper::Underplatform
             && options.damper_shape == DamperShape::Cylinder;
@@ -56,7 +56,7 @@ impl Cylinder {
         })
     }
 
-    /// That rim and blades leave room for it.
+    /// Checks that rim and blades leave room for the cylinder.
     pub(super) fn check(&self, options: &ParametricOptions) -> Result<(), ModelError> {
         let height_m = options.platform_height_m;
         let lowest_m = self.axis_m - self.radius_m;

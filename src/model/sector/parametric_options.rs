@@ -360,7 +360,7 @@ impl ParametricOptions {
         self.check_room_of_platform()
     }
 
-    /// That gap and flank leave a platform beside the blade: at its underside, where the flank reaches furthest.
+    /// Checks that gap and flank leave a platform beside the blade: at its underside, where the flank reaches furthest.
     fn check_room_of_platform(&self) -> Result<(), ModelError> {
         let flank_deg = match self.damper {
             Damper::Ring | Damper::Shroud => return Ok(()),

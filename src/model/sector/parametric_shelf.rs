@@ -24,7 +24,7 @@ pub(super) struct Shelf {
 }
 
 impl Shelf {
-    /// That of the options; none with a ring.
+    /// The shelf of the options; none with a ring.
     pub(super) fn of(options: &ParametricOptions) -> Option<Self> {
         let rim = options.rim_radius_m;
         let tip = rim + options.blade_height_m;

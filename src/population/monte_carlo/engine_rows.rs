@@ -31,12 +31,12 @@ const LEFT_OF_CHANGE: f64 = 0.05;
 
 /// Steps by which a top is climbed beside another solution, in half-bandwidths of a linear resonance.
 const CLIMBED: f64 = 0.1;
-/// Tolerance of these solutions over that of the peak, and its bounds.
+/// Tolerance of solutions beside another one over that of the peak, and its bounds.
 const BESIDE_SHARE: f64 = 0.1;
 const BESIDE_TOLERANCES: (f64, f64) = (1e-6, 3e-4);
 
 impl RowSolver {
-    /// The same solver whose rows are solved on `engine`, under the force vector of `model`.
+    /// This solver with rows that are solved on `engine`, under the force vector of `model`.
     ///
     /// # Errors
     /// If the harmonics of a search cannot be told apart.

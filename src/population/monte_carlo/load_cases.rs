@@ -3,8 +3,8 @@
 use super::{LoadCaseName, RowSolver, Scenario};
 
 impl RowSolver {
-    /// The same solver with those of the further load cases of its study: the same wheel under other
-    /// force vectors. Scenarios with one of these names are solved there, all others here.
+    /// This solver with the solvers of the further load cases of its study: the same wheel under
+    /// other force vectors. Scenarios with one of these names are solved there, all others here.
     #[must_use]
     pub fn with_load_cases(mut self, others: Vec<(LoadCaseName, Self)>) -> Self {
         self.load_cases = others;

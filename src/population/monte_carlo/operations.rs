@@ -9,7 +9,8 @@ use crate::response::harmonic_balance::{LARGEST_WHOLE_JACOBIAN, condensing_pays}
 
 /// Operations per unknown cubed of the eigenvalues and vectors of a symmetric matrix.
 const EIGEN: f64 = 9.0;
-/// Time of one of these operations over that of one of a product or of LU factors (`cargo bench --bench response`).
+/// Time of one operation of eigenvalues and vectors over that of one of a product or of LU factors
+/// (`cargo bench --bench response`).
 const SLOWER_EIGEN: f64 = 5.0;
 /// Eigenproblems of a pattern: the structure and its two linear limits.
 const EIGENPROBLEMS: f64 = 3.0;
@@ -21,8 +22,9 @@ const CHECK_ITERATIONS: f64 = 14.0;
 const CHECK_BLOCKS: f64 = 14.0;
 /// Real coefficients of the check.
 const CHECK_COEFFICIENTS: f64 = 31.0;
-/// The same under a constant normal load: odd ones.
+/// Real coefficients of the check under a constant normal load, which excites odd harmonics alone.
 const CHECK_COEFFICIENTS_ODD: usize = 16;
+/// Harmonics that the check has besides 1 under a constant normal load.
 const CHECK_BLOCKS_ODD: f64 = 7.0;
 /// Samples of the check over those of the solution.
 const CHECK_SAMPLES: f64 = 4.0;
@@ -67,7 +69,7 @@ pub struct SystemSize {
     pub in_stages: bool,
     /// Contact law, where friction is solved for.
     pub law: Option<ContactLaw>,
-    /// Law of the check: the same, or the one in whose place it is taken.
+    /// Law of the check: `law`, or the one in whose place it is taken.
     pub check_law: Option<ContactLaw>,
 }
 
@@ -230,7 +232,8 @@ impl SystemSize {
         factors + CHECK_ITERATIONS * evaluation
     }
 
-    /// The same where contact motions are solved for: both Jacobians are those of the contact rows, unless unknowns are many.
+    /// Operations of the check where contact motions are solved for: both Jacobians are those of the contact rows, unless
+    /// unknowns are many.
     fn check_by_contact(&self, samples: f64) -> f64 {
         let enlarged = Self {
             coefficients: CHECK_COEFFICIENTS_ODD,

@@ -17,9 +17,9 @@ pub struct ResponseRow {
     pub contact_factors: Option<PairFactors>,
     /// Largest amplitude over blades and frequency, m.
     pub peak_amplitude_m: Option<f64>,
-    /// Its frequency, Hz.
+    /// Frequency of the largest amplitude, Hz.
     pub peak_frequency_hz: Option<f64>,
-    /// Its blade.
+    /// Blade of the largest amplitude.
     pub peak_blade: Option<u32>,
     /// Peak amplitude over the tuned peak of the same scenario.
     pub amplification_factor: Option<f64>,

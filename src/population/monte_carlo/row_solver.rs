@@ -97,7 +97,8 @@ pub(super) struct MistunedPeak {
 #[derive(Debug)]
 pub(super) struct Beyond {
     pub(super) solver: Box<RowSolver>,
-    /// Whether rows beyond the harmonic tolerance go there, or only those that separate.
+    /// Whether rows with an error beyond its tolerance go there too, besides those that separate or, on tuned receptances,
+    /// have no peak.
     pub(super) inexact_rows: bool,
     /// Tuned peaks on that solver, for each of its chosen sets, found when first asked for.
     pub(super) tuned: Vec<OnceLock<TunedReference>>,
@@ -122,7 +123,7 @@ impl RowSolver {
         })
     }
 
-    /// The same solver with the given sets, and the measured error of its basis.
+    /// This solver with the harmonic sets chosen for its scenarios, and the measured error of its basis.
     ///
     /// # Errors
     /// If the samples per period cannot tell the harmonics apart.

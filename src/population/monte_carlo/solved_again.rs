@@ -8,9 +8,10 @@ use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
 
 impl RowSolver {
-    /// The same solver, whose rows are solved again by `solver` where contacts separate, on tuned receptances where they have no peak
-    /// in their place, and, with `inexact_rows`, where the harmonic error exceeds its tolerance, each with the tuned
-    /// reference of `solver`. Only scenarios for which `solver` has a chosen set are solved again.
+    /// This solver with `solver` for the rows that it is not good enough for, each with the tuned reference of `solver`. On a
+    /// basis these are the rows whose contacts separate, on tuned receptances the rows without a peak; with `inexact_rows`, also
+    /// those whose sampling or harmonic error exceeds its tolerance. Only scenarios for which `solver` has a chosen set are
+    /// solved again.
     #[must_use]
     pub fn with_beyond(mut self, solver: Self, inexact_rows: bool) -> Self {
         self.beyond = Some(Beyond {

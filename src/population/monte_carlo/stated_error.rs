@@ -33,8 +33,9 @@ impl ErrorTolerance {
 /// of the delivered peak and can be too small; a factor of safety on estimates of discretisation
 /// errors follows Roache (1994), its size what was measured (section 8 of docs/formulation.md).
 pub const HARMONIC_SAFETY: f64 = 1.5;
-/// The same of rows on tuned receptances. What is left there is that the harmonics move the peak, which the estimate does not follow:
-/// true changes are up to 1.8 times the estimate over the friction rows of tests/data/truth.
+/// Factor on the estimate of the harmonics in the stated error of rows on tuned receptances. What is left there is that the
+/// harmonics move the peak, which the estimate does not follow: true changes are up to 1.8 times the estimate over the friction
+/// rows of tests/data/truth.
 pub const HARMONIC_SAFETY_ON_RECEPTANCES: f64 = 2.0;
 
 /// Bound on the relative error of a peak amplitude that is stated with it: sampling, harmonics

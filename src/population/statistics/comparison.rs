@@ -25,9 +25,9 @@ pub struct IntervalEstimate {
 /// A percentile of a candidate compared with that of a baseline.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PercentileComparison {
-    /// Of the baseline, as an order statistic.
+    /// Percentile of the baseline, as an order statistic.
     pub baseline: Percentile,
-    /// Of the candidate, as an order statistic.
+    /// Percentile of the candidate, as an order statistic.
     pub candidate: Percentile,
     /// How the percentiles of difference and ratio are taken.
     pub estimator: PercentileEstimator,
@@ -240,7 +240,8 @@ impl Bounds {
         self.two_sided(share(not_above).min(share(not_below)))
     }
 
-    /// The same where no resample is on the other side.
+    /// Two-sided probability where no resample is on the other side of the contrast: the smallest that
+    /// so many resamples can give.
     fn p_value_floor(&self) -> f64 {
         self.two_sided(1.0 / (1.0 + self.lowest.len() as f64))
     }

@@ -76,7 +76,8 @@ pub fn fit_extreme_value(sorted: &[f64]) -> Result<ExtremeValueLaw, FitStatus> {
     scaled.best_of(&starts, None)
 }
 
-/// The same from a law that is known to be near, which is where a resample begins.
+/// Fits the law to `sorted` values (ascending) from a law that is known to be near, which is where a
+/// resample begins.
 ///
 /// # Errors
 /// Why there is no fit.

@@ -11,7 +11,8 @@ pub fn holm(p_values: &[Option<f64>]) -> Vec<Option<f64>> {
     adjusted.map(|own| own.map(|(value, _)| value)).collect()
 }
 
-/// The same, each with the place of the probability that it is a multiple of: its own, or a smaller one.
+/// Probabilities adjusted by the method of Holm, each with the place of the probability that it is a
+/// multiple of: its own, or a smaller one.
 #[must_use]
 pub fn holm_with_origins(p_values: &[Option<f64>]) -> Vec<Option<(f64, usize)>> {
     let mut order: Vec<usize> = (0..p_values.len())
@@ -38,10 +39,11 @@ pub fn best_set(columns: &[PercentileResamples]) -> Vec<bool> {
     best_set_at(columns, CONFIDENCE)
 }
 
-/// The same at `confidence`: the truly lowest is in the set with at least this probability, however
-/// many there are (inversion of one-sided tests against the largest of all studentised differences;
-/// Mogstad, Romano, Shaikh & Wilhelm 2024, section 3). Failed rows stand at minus infinity in the one
-/// that is judged and at plus infinity in those that it is compared with.
+/// Which of several percentiles over the same patterns could be the lowest, at `confidence`: the truly
+/// lowest is in the set with at least this probability, however many there are (inversion of one-sided
+/// tests against the largest of all studentised differences; Mogstad, Romano, Shaikh & Wilhelm 2024,
+/// section 3). Failed rows stand at minus infinity in the one that is judged and at plus infinity in
+/// those that it is compared with.
 #[must_use]
 pub fn best_set_at(columns: &[PercentileResamples], confidence: f64) -> Vec<bool> {
     (0..columns.len())

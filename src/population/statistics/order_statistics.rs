@@ -25,7 +25,7 @@ pub struct PercentileRanks {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PointStatus {
-    /// It has.
+    /// The percentile has a point value.
     Estimated,
     /// The sample is too small for a two-sided interval.
     TooFewPatterns {
@@ -77,7 +77,8 @@ pub fn percentile_ranks(n: u64, p: f64) -> PercentileRanks {
     percentile_ranks_at(n, p, CONFIDENCE)
 }
 
-/// The same at the two-sided `confidence`.
+/// Ranks of the equal-tailed interval of the `p`-quantile, `0 < p < 1`, among `n` values, at the
+/// two-sided `confidence`.
 #[must_use]
 pub fn percentile_ranks_at(n: u64, p: f64, confidence: f64) -> PercentileRanks {
     let tail = 0.5 * (1.0 - confidence);
@@ -143,7 +144,8 @@ pub fn percentile(sorted: &[f64], failed: u64, percent: impl Into<f64>) -> Perce
     percentile_at(sorted, failed, percent.into(), CONFIDENCE)
 }
 
-/// The same at the two-sided `confidence`.
+/// The percentile of `sorted` good values (ascending) beside `failed` rows without value, `percent`
+/// between 0 and 100, at the two-sided `confidence`.
 #[must_use]
 pub fn percentile_at(sorted: &[f64], failed: u64, percent: f64, confidence: f64) -> Percentile {
     let p = percent / 100.0;

@@ -16,7 +16,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Both, in the order of reports.
+    /// Both quantities, in the order of reports.
     pub const ALL: [Self; 2] = [Self::PeakAmplitudeM, Self::AmplificationFactor];
 
     /// Name in tables, `snake_case`.
@@ -28,7 +28,7 @@ impl Quantity {
         }
     }
 
-    /// Its value in `row`; none where the row failed.
+    /// Value of the quantity in `row`; none where the row failed.
     #[must_use]
     pub fn of(self, row: &ResponseRow) -> Option<f64> {
         let value = match self {

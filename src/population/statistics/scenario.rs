@@ -80,7 +80,7 @@ impl ScenarioAccumulator {
         self.finish_at(CONFIDENCE)
     }
 
-    /// The same with bounds at the two-sided `confidence`.
+    /// The statistics of the rows taken, bounds at the two-sided `confidence`.
     #[must_use]
     pub fn finish_at(self, confidence: f64) -> ScenarioStatistics {
         let planned = self.accounting.planned();

@@ -9,9 +9,9 @@ pub struct ScenarioStability {
     pub tuned: Option<bool>,
     /// Rows looked at.
     pub rows: u64,
-    /// Those that stay on their motion.
+    /// Rows looked at that stay on their motion.
     pub stable: u64,
-    /// Those whose motion is left.
+    /// Rows looked at that leave their motion.
     pub unstable: u64,
 }
 

@@ -151,9 +151,9 @@ pub struct ScenarioLook {
     pub scenario: usize,
     /// The percentile; null where it is not estimable.
     pub value: Option<f64>,
-    /// Its lower bound at the confidence of a look.
+    /// Lower bound of the percentile at the confidence of a look.
     pub lower: Option<f64>,
-    /// Its upper bound.
+    /// Upper bound of the percentile at the confidence of a look.
     pub upper: Option<f64>,
     /// Width of the interval over the value; null while there is none.
     pub relative_width: Option<f64>,

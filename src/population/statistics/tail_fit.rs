@@ -87,7 +87,7 @@ pub struct TailParameters {
 pub struct TailPercentile {
     /// The percentile in percent.
     pub percent: f64,
-    /// Of the fitted law.
+    /// Percentile of the fitted law.
     pub model: Option<Estimate>,
     /// Order statistic of the sample with its distribution-free interval.
     pub empirical: Percentile,
@@ -110,9 +110,9 @@ pub struct TailFit {
     pub anderson_darling: Option<f64>,
     /// Probability of a larger distance if the law were right.
     pub p_value: Option<f64>,
-    /// Resamples behind it.
+    /// Resamples behind the `p_value` and the intervals.
     pub resamples: u32,
-    /// Values of each of them: those of the sample, or [`MOST_RESAMPLED`] where it has more.
+    /// Values of each resample: those of the sample, or [`MOST_RESAMPLED`] where it has more.
     pub values_of_resample: u32,
     /// Resamples that could not be fitted; above 1 % there are no intervals and no `p_value`.
     pub failed_resamples: u32,

@@ -271,7 +271,8 @@ impl<'a> Population<'a> {
         Some(self.spreads(&JointLaw::of(pairs)?, exceeding))
     }
 
-    /// The same under a law of surrogate and value.
+    /// Standard deviation of the exceedance of the percentile in every stratum under `law`, the joint law of surrogate
+    /// and value.
     pub(super) fn spreads(&self, law: &JointLaw, exceeding: f64) -> Vec<f64> {
         let normal = Normal::standard();
         let beyond = |t: f64, s: f64| normal.sf((t - law.y - law.slope * (s - law.x)) / law.rest);

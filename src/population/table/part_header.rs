@@ -92,7 +92,7 @@ impl PartHeader {
         Ok(files.collect())
     }
 
-    /// Names the part `name` as coming, and the one before as there.
+    /// Records that the part `name` is coming, and whether the part announced before is there.
     pub(super) fn announce(&mut self, results: &Path, name: &str) -> Result<(), TableError> {
         self.settle(results)?;
         self.coming = Some(name.to_owned());

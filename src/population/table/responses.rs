@@ -60,7 +60,7 @@ impl ResponseWriter {
     /// Appends a row with what is known of the stability of its motion.
     ///
     /// # Errors
-    /// As [`Self::write`].
+    /// The file cannot be written, or the row belongs to no scenario.
     pub fn write_judged(
         &mut self,
         row: ResponseRow,
@@ -93,7 +93,7 @@ impl ResponseWriter {
         self.writer.finish()
     }
 
-    /// The same under a name made from the digest of the file.
+    /// Completes the file and puts it in its folder under a name made from its digest.
     pub(super) fn finish_as(
         mut self,
         name: impl FnOnce(&str) -> Result<String, TableError>,

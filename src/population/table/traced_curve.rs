@@ -60,7 +60,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// Both, in the order of the table.
+    /// Both directions, in the order of the table.
     pub const BOTH: [Self; 2] = [Self::Up, Self::Down];
 
     /// Name in the column `direction`.

@@ -43,9 +43,9 @@ pub struct TradeoffRecord {
     pub projection: &'static str,
     /// Errors of the peak amplitude.
     pub amplitude: Option<ErrorBound>,
-    /// What the worst of these over all rows is claimed to be at most.
+    /// What the worst error of the amplitude over all rows is claimed to be at most.
     pub amplitude_worst_upper: Option<f64>,
-    /// Errors of its frequency.
+    /// Errors of the frequency of the peak.
     pub frequency: Option<ErrorBound>,
     /// Errors of the amplification factor.
     pub amplification_factor: Option<ErrorBound>,
@@ -54,7 +54,8 @@ pub struct TradeoffRecord {
     /// Largest relative error of the P95 of the amplitude over the scenarios; none where the sample is
     /// too small for it.
     pub amplitude_p95_error: Option<f64>,
-    /// The same of the P99.
+    /// Largest relative error of the P99 of the amplitude over the scenarios; none where the sample is too
+    /// small for it.
     pub amplitude_p99_error: Option<f64>,
     /// Mean work counts of a row.
     pub work: RowWork,
@@ -85,7 +86,7 @@ pub struct TradeoffRow {
     pub harmonics: String,
     /// Amplitude, m, frequency, Hz, and amplification factor.
     pub values: [Option<f64>; 3],
-    /// Those of the reference.
+    /// Amplitude, m, frequency, Hz, and amplification factor of the reference.
     pub reference: [Option<f64>; 3],
     /// Work counts.
     pub work: RowWork,

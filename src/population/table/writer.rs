@@ -105,7 +105,8 @@ impl TableWriter {
         Self::create_with(path, columns, header, &[])
     }
 
-    /// The same with more key-value pairs in the metadata.
+    /// Creates the file `path` with `columns`, and with more key-value pairs in the metadata than
+    /// those of `header`.
     pub(super) fn create_with(
         path: &Path,
         columns: &'static [ColumnSpec],
@@ -167,7 +168,7 @@ impl TableWriter {
         self.file.commit()
     }
 
-    /// The same under a name made from the digest of the file.
+    /// Writes the footer and puts the file in its folder under a name made from its digest.
     pub(super) fn finish_as(
         self,
         name: impl FnOnce(&str) -> Result<String, TableError>,

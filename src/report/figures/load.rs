@@ -239,7 +239,7 @@ impl Load<'_> {
         self.percentile(percent)?.value
     }
 
-    /// All that is drawn of it.
+    /// All values that are drawn of the load.
     fn values(&self) -> Vec<f64> {
         let of = |percent: u32| {
             self.percentile(percent)

@@ -11,7 +11,8 @@ pub(super) enum Attempt {
     /// From what a solution with fewer harmonics and the converged points lead one to expect, with the derivatives
     /// of harmonics by themselves.
     ByHarmonic,
-    /// The same with the whole Jacobian, found once.
+    /// From what a solution with fewer harmonics and the converged points lead one to expect, with the whole
+    /// Jacobian, found once.
     Once,
     /// From what the converged points beside it lead one to expect, or from the stuck solution, with
     /// accelerated steps; those of all that follow are plain.

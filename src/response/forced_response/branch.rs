@@ -50,7 +50,7 @@ pub enum BranchPlace {
 pub struct ResponseTrace {
     /// Points in their order along the curve.
     pub points: Vec<BranchPoint>,
-    /// `ok` if the other end was reached: the curve is complete. Else why not.
+    /// `ok` if the curve reached the far end: it is complete. Else why not.
     pub status: Status,
 }
 

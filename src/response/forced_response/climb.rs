@@ -22,19 +22,19 @@ pub(super) struct Known {
 
 /// A top that is searched.
 pub(super) struct Climb {
-    /// Of every set so far.
+    /// What is known of the top with every set so far.
     pub(super) known: Vec<Vec<Known>>,
     /// Distance of points beside the top, Hz.
     pub(super) beside_hz: f64,
 }
 
 impl Climb {
-    /// Of the last set so far.
+    /// Points of the last set so far.
     pub(super) fn own(&self) -> &[Known] {
         self.known.last().map_or(&[], Vec::as_slice)
     }
 
-    /// The highest so far.
+    /// The highest point of the last set so far.
     pub(super) fn best(&self) -> &Known {
         let highest = |a: &&Known, b: &&Known| a.height_m.total_cmp(&b.height_m);
         let best = self.own().iter().max_by(highest);

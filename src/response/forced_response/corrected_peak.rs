@@ -58,7 +58,7 @@ const LED: Care = Care {
 const POINTS: usize = 20;
 /// Points beside a top, in its half-bandwidths: where it has fallen by a hundredth. Nearer than this a hump of that size shows.
 const BESIDE: f64 = 0.14;
-/// The same in half-bandwidths of a linear resonance, which is as narrow as a hump can be.
+/// Distance of points beside a narrow top, in half-bandwidths of a linear resonance, which is as narrow as a hump can be.
 const BESIDE_LINEAR: f64 = 0.5;
 /// Share that harmonics may change one top more than another at most.
 const MOST_MADE_UP: f64 = 0.5;

@@ -17,7 +17,7 @@ const CONTENDER: f64 = 0.98;
 pub struct DensePeak {
     /// Largest amplitude over blades and frequencies, m.
     pub amplitude_m: f64,
-    /// Its frequency, Hz.
+    /// Frequency of the largest amplitude, Hz.
     pub frequency_hz: f64,
     /// Number of frequencies solved, failed ones included.
     pub points: usize,

@@ -40,7 +40,8 @@ impl ErrorSettings {
         })
     }
 
-    /// The same of solutions under another law that was taken in the place of `law`.
+    /// These settings for solutions under another law in the place of `law`: their errors are those in the
+    /// equations of `law`.
     pub(super) fn in_place_of(self, law: ContactLaw) -> Self {
         Self {
             law: Some(law),

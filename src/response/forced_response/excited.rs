@@ -84,7 +84,7 @@ pub struct LimitsWanted {
 }
 
 impl LimitsWanted {
-    /// Those that the given conditions need.
+    /// The linear limits that the given conditions need.
     pub fn of<'a>(conditions: impl IntoIterator<Item = &'a ContactCondition>) -> Self {
         let mut wanted = Self::default();
         for condition in conditions {
@@ -238,7 +238,7 @@ impl Excited {
         }
     }
 
-    /// The same in some of its harmonics, 1 among them.
+    /// Copy of this structure under its excitation with some of its harmonics alone, 1 among them.
     #[must_use]
     pub fn in_harmonics(&self, harmonics: &[u32]) -> Self {
         let mut own = self.clone();
@@ -247,7 +247,8 @@ impl Excited {
         own
     }
 
-    /// The same with viscous damping, see [`Structure::with_viscous_damping`].
+    /// Copy of this structure with viscous damping that is equal to its damping at the angular frequency
+    /// `omega`, rad/s, see [`Structure::with_viscous_damping`].
     #[must_use]
     pub fn with_viscous_damping(&self, omega: f64) -> Self {
         let mut excited = self.clone();

@@ -23,7 +23,7 @@ pub enum SearchHarmonics {
     Auto,
     /// The whole set, without a search before.
     All,
-    /// Those of this set, ascending and with 1, that are in the set of the row.
+    /// The harmonics of this set, ascending and with 1, that are in the set of the row.
     Set(Vec<u32>),
 }
 
@@ -31,9 +31,9 @@ pub enum SearchHarmonics {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RowsBeyondTolerance {
-    /// It is marked.
+    /// The row is marked.
     Flag,
-    /// With an automatic harmonic set, it is solved again with more harmonics.
+    /// With an automatic harmonic set, the row is solved again with more harmonics.
     Resolve,
 }
 

@@ -27,7 +27,7 @@ const LEAST_FOR_SLOPES: f64 = 2e-4;
 const SCREENING_PRECISION: f64 = 1e-3;
 /// Starting points between the dominant stuck and slide peaks.
 const STARTS_BETWEEN: usize = 5;
-/// The same where points have slopes.
+/// Starting points between the dominant stuck and slide peaks where points have slopes.
 const SPARSE_BETWEEN: usize = 2;
 /// Least distance of starting points that have slopes, in half-bandwidths of a linear resonance.
 const SPARSE: f64 = 1.5;
@@ -139,7 +139,7 @@ pub struct SearchPlan {
     pub band_hz: (f64, f64),
     /// First frequencies to try, Hz.
     pub starts_hz: Vec<f64>,
-    /// The same where points have slopes, which say more of what lies between, ascending, Hz.
+    /// First frequencies to try where points have slopes, which say more of what lies between, ascending, Hz.
     pub sparse_starts_hz: Vec<f64>,
     /// Resonances of the stuck limit, or of the limit itself, in the band and within its width of it.
     pub stuck: Vec<LinearPeak>,
@@ -164,7 +164,7 @@ pub fn search_plan(
 /// [`search_plan`] from the resonances of the linear limits that bound the condition, the stuck one first.
 ///
 /// # Errors
-/// As there.
+/// A resonance is not finite, or nothing answers the excitation.
 pub(super) fn search_plan_of(
     limits: &[Vec<LinearPeak>],
     window: Window,

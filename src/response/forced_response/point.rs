@@ -19,7 +19,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// Both together.
+    /// The sum of this work and `other`.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self {
@@ -55,9 +55,9 @@ pub struct Point {
 /// Derivatives of a point by frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slope {
-    /// Of the unknowns, per Hz.
+    /// Derivatives of the unknowns, per Hz.
     pub solution: Vec<f64>,
-    /// Of the amplitude of every blade, m/Hz.
+    /// Derivative of the amplitude of every blade, m/Hz.
     pub amplitudes_m_per_hz: Vec<f64>,
 }
 

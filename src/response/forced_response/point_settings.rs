@@ -31,9 +31,9 @@ pub struct PointSettings {
     pub(super) ring: Ring,
     pub(super) geometry: ContactGeometry,
     pub(super) factors: ContactFactors,
-    /// The same with the harmonics of the search, where these are fewer.
+    /// Settings with the harmonics of the search for the top, where these are fewer than all.
     search: Option<Box<Self>>,
-    /// The same with the harmonics that lead to the top before all of them are solved there, where there are such.
+    /// Settings with the harmonics that lead to the top before all of them are solved there, where there are such.
     guide: Option<Box<Self>>,
 }
 
@@ -83,7 +83,7 @@ impl PointSettings {
         })
     }
 
-    /// The same with what a free ring does under mean friction; locked at first.
+    /// These settings with what a free ring does under mean friction; it is locked at first.
     #[must_use]
     pub fn with_ring(self, ring: Ring) -> Self {
         let same = |own: Option<Box<Self>>| own.map(|own| Box::new(own.with_ring(ring)));
@@ -95,7 +95,7 @@ impl PointSettings {
         }
     }
 
-    /// The same for a wheel whose contact differs from the nominal one by `factors`.
+    /// Copy of these settings for a wheel whose contact differs from the nominal one by `factors`.
     #[must_use]
     pub fn with_factors(&self, factors: &ContactFactors) -> Self {
         let same = |own: &Option<Box<Self>>| {
@@ -110,8 +110,8 @@ impl PointSettings {
         }
     }
 
-    /// The same where the law of `contact` is taken in the place of another with the same springs: what that changes is
-    /// in the errors. Nothing for none.
+    /// These settings for a law of `contact` that is taken in the place of `law`, which has the same springs: what that changes
+    /// is in the errors. They stay as they are where there is no `law`.
     ///
     /// # Errors
     /// If the harmonics that the other law excites cannot be told apart with the samples of the errors.
@@ -130,7 +130,8 @@ impl PointSettings {
         })
     }
 
-    /// The same with as few samples in the search with fewer harmonics as these need, but not fewer than `least`.
+    /// These settings with fewer samples in the search with fewer harmonics: those that its harmonics need, but not fewer than
+    /// `least`.
     ///
     /// # Errors
     /// If the harmonics cannot be told apart with them.
@@ -159,7 +160,7 @@ impl PointSettings {
             .transpose()
     }
 
-    /// The same with so many samples per period.
+    /// These settings with `samples` samples per period.
     fn at_samples(self, samples: usize) -> Result<Self, TransformError> {
         let transform = HarmonicTransform::new(self.transform.harmonics(), samples)?;
         Ok(Self {
@@ -168,7 +169,7 @@ impl PointSettings {
         })
     }
 
-    /// The same contact in other harmonics.
+    /// Settings for the same law, pairs, contact factors and ring in other harmonics.
     ///
     /// # Errors
     /// If these cannot be told apart with the samples asked for.

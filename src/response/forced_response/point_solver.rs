@@ -127,8 +127,9 @@ impl<'a> PointSolver<'a> {
         Some((&*system, workspace))
     }
 
-    /// The same for a search: from now on a point ends where the next step would change no amplitude by more
-    /// than `precision` of the largest, unless its contacts open. Its residual may be far above the tolerance.
+    /// This solver for a search: from now on a point ends where the next step would change no amplitude by more than
+    /// `precision` of the largest, unless its contacts open. Its residual may be far above the tolerance. Points with
+    /// a creeping ring are solved to the tolerance all the same.
     #[must_use]
     pub fn with_precision(self, precision: f64) -> Self {
         Self {
@@ -137,7 +138,8 @@ impl<'a> PointSolver<'a> {
         }
     }
 
-    /// The same with the slope of every point, where Newton's method has it at hand: for wheels with few contact rows.
+    /// This solver with the slope of every point, where Newton's method has it at hand: for wheels with few contact
+    /// rows and a locked ring.
     #[must_use]
     pub(super) fn with_slopes(mut self) -> Self {
         let condenses = |(system, _): &(HarmonicSystem, _)| system.condenses();
@@ -151,7 +153,7 @@ impl<'a> PointSolver<'a> {
         self.sloped
     }
 
-    /// The same for points beside those of a solver with fewer harmonics.
+    /// This solver for points that begin at the solutions of `coarse`, a solver with fewer harmonics.
     #[must_use]
     pub(super) fn refining(self, coarse: &PointSolver<'_>) -> Self {
         let coarse_excited = coarse.excited;

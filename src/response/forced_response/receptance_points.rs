@@ -308,7 +308,7 @@ pub(super) fn observed(
 /// The plan of the search for the peak of a row, see [`super::search_plan`].
 ///
 /// # Errors
-/// As there.
+/// The resonances are not found or not finite, or nothing answers the excitation.
 pub fn receptance_plan(row: &EngineRow<'_>, window: Window) -> Result<SearchPlan, Status> {
     let limits = row.linear_peaks().ok_or(Status::NonFinite)?;
     search_plan_of(&limits, window)

@@ -24,7 +24,7 @@ impl<F: FnMut(f64) -> Option<R>, R: Into<Reading>> Curve for F {
 pub struct Reading {
     /// Amplitudes, m.
     pub amplitudes: Vec<f64>,
-    /// Their derivatives by frequency, m/Hz; none where they are not known.
+    /// Derivatives of the amplitudes by frequency, m/Hz; none where they are not known.
     pub slopes: Option<Vec<f64>>,
 }
 
@@ -44,7 +44,7 @@ pub struct Sample {
     pub frequency_hz: f64,
     /// Amplitude of every blade; empty where the solution failed.
     pub amplitudes: Vec<f64>,
-    /// Their derivatives by frequency; none where they are not known.
+    /// Derivatives of the amplitudes by frequency; none where they are not known.
     pub slopes: Option<Vec<f64>>,
     /// Largest amplitude over the blades.
     pub largest: f64,

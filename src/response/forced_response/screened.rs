@@ -106,7 +106,7 @@ impl<'a, 'search> Screened<'a, 'search> {
         point.is_some_and(sticks)
     }
 
-    /// The solver of all harmonics, and the work of the others.
+    /// The solver of all harmonics, and the work of the solver of few.
     pub(super) fn into_parts(self) -> (PointSolver<'a>, Work) {
         let work = self.few.map_or(Work::default(), |(_, few)| few.work());
         (self.solver, work)

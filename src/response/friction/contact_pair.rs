@@ -51,7 +51,8 @@ impl PairParameters {
         })
     }
 
-    /// The same under another normal load, or the pairs of the whole wheel where they vary.
+    /// The pairs of a sector under the normal load `normal_load_n`, N per sector; the pairs of the
+    /// whole wheel where `factors` vary them.
     #[must_use]
     pub fn pairs_under(
         self,
@@ -71,7 +72,7 @@ impl PairParameters {
         varied.map(|(factors, pair)| pair.varied(factors)).collect()
     }
 
-    /// The same pair with each parameter multiplied by its factor.
+    /// This pair with each parameter multiplied by its factor.
     #[must_use]
     pub fn varied(self, factors: &PairFactors) -> Self {
         Self {

@@ -134,15 +134,15 @@ impl CoupledSlider {
         )
     }
 
-    /// As [`Self::solve`], for a displacement that besides grows steadily by `drift_m` per period,
-    /// in either direction.
+    /// Solves for the periodic offset under a displacement that besides grows steadily by `drift_m` per period,
+    /// in either direction; returns whether the slider slips at any sample.
     ///
     /// Periodic is then the force: the offset grows by `kt drift / n` before every sample. The march
     /// starts far ahead of the drift, whence it reaches at once the points of the disks that lie
     /// furthest ahead, to which a small drift would drag the slider in many periods.
     ///
     /// # Panics
-    /// As [`Self::solve`].
+    /// A history does not have `n_samples` samples.
     pub fn solve_drifting(
         &mut self,
         tangential_stiffness_n_per_m: f64,

@@ -65,10 +65,10 @@ impl ContactLaw {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ring {
-    /// Something holds it: mean friction has no effect.
+    /// Something holds the ring: mean friction has no effect.
     #[default]
     Locked,
-    /// It drifts along its rigid motions so that friction has no mean along them.
+    /// The ring drifts along its rigid motions so that friction has no mean along them.
     Creeping,
 }
 

@@ -102,7 +102,8 @@ impl PeriodicSlider {
         self.slipping
     }
 
-    /// As [`Self::solve`], for a displacement that besides grows steadily by `drift_m` per period.
+    /// Solves for the periodic offset under a displacement that besides grows steadily by `drift_m`
+    /// per period; returns whether the slider slips at any sample.
     ///
     /// Periodic is then the force, not the position of the slider: `y_j = clip(y_{j-1} + kt drift/n,
     /// a_j, b_j)` with the bounds of the periodic part of the displacement. One period maps y to
@@ -111,7 +112,7 @@ impl PeriodicSlider {
     /// the clips.
     ///
     /// # Panics
-    /// As [`Self::solve`].
+    /// A history does not have `n_samples` samples.
     pub fn solve_drifting(
         &mut self,
         tangential_stiffness_n_per_m: f64,
@@ -329,7 +330,7 @@ fn stretches(values: &[f64], length: usize) -> [&[f64]; STRETCHES] {
     std::array::from_fn(|s| &values[s * length..][..length])
 }
 
-/// As [`stretches`], to be written to.
+/// `values` (`STRETCHES * length`) cut into its stretches, to be written to.
 fn stretches_mut(values: &mut [f64], length: usize) -> [&mut [f64]; STRETCHES] {
     let (first, rest) = values.split_at_mut(length);
     let (second, rest) = rest.split_at_mut(length);

@@ -23,7 +23,7 @@ impl ContactHistory {
     /// and t2; the forces are periodic all the same.
     ///
     /// # Panics
-    /// As [`Self::respond`].
+    /// A history does not have `n_samples` samples.
     pub fn respond_drifting(
         &mut self,
         law: ContactLaw,

@@ -21,7 +21,7 @@ pub enum ContactQuantity {
 }
 
 impl ContactQuantity {
-    /// All of them, in the order of their columns.
+    /// All quantities, in the order of their columns.
     pub const ALL: [Self; 4] = [
         Self::FrictionCoefficient,
         Self::TangentialStiffness,

@@ -69,8 +69,8 @@ impl StructuralModes {
         })
     }
 
-    /// The same with the wheel held to the motions `shapes` (orthonormal columns, in its coordinates):
-    /// the Rayleigh-Ritz modes of that space.
+    /// Modes of the wheel, its stiffness changed by `change`, held to the motions `shapes`
+    /// (orthonormal columns, in its coordinates): the Rayleigh-Ritz modes of that space.
     #[must_use]
     pub fn of_subspace(
         basis: &WheelBasis,

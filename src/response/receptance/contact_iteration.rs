@@ -40,7 +40,7 @@ struct Plan {
 /// Blade shapes that a preconditioner takes in.
 #[derive(Clone, Copy)]
 enum PreconditionedShapes {
-    /// Those of every harmonic that are not nearly static.
+    /// The shapes of every harmonic that are not nearly static.
     Resonant,
     /// The first shape, of harmonic 1.
     FirstOfFundamental,
@@ -95,7 +95,7 @@ const STEP_ERROR: f64 = 1e-3;
 pub(super) struct ContactEquation<'a> {
     pub(super) transform: &'a SectorTransform,
     pub(super) contact: &'a mut WheelContact,
-    /// The same contact with fewer samples, from which tangents are taken, where there is one.
+    /// The contact with fewer samples, from which tangents are taken; none: they are taken from `contact`.
     pub(super) tangents: Option<&'a mut WheelContact>,
     /// A harmonic of the set each, in its order.
     pub(super) harmonics: &'a mut [WheelHarmonic],

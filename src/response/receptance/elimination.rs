@@ -47,7 +47,7 @@ pub(super) struct Elimination {
     sides: [Side; 2],
 }
 
-/// Fields of the leading shapes, or of the others.
+/// Fields of the leading shapes, or of the remaining ones.
 #[derive(Default)]
 struct Side {
     right: Field,

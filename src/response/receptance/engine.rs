@@ -65,7 +65,7 @@ impl EngineModel {
         })
     }
 
-    /// The same with so many times as many blade shapes as there are at least.
+    /// This model for an engine with `shape_factor` times as many blade shapes as an engine has at least.
     #[must_use]
     pub fn with_shape_factor(self, shape_factor: usize) -> Self {
         Self {
@@ -74,7 +74,7 @@ impl EngineModel {
         }
     }
 
-    /// The same with twice as many blade shapes.
+    /// This model for an engine with twice as many blade shapes.
     #[must_use]
     pub fn with_twice_the_shapes(self) -> Self {
         let shape_factor = 2 * self.shape_factor;

@@ -28,7 +28,7 @@ const NEAR: f64 = 0.1;
 const POINTS: [usize; 3] = [7, 11, 17];
 /// Relative error of the interpolation that is accepted.
 const ACCEPTED: f64 = 1e-7;
-/// The same from which on receptances are summed in the place of it.
+/// Relative error of the interpolation above which receptances are summed and not interpolated.
 const REFUSED: f64 = 1e-5;
 /// Modes of a nodal diameter up to which receptances are summed and not interpolated.
 const LARGEST_SUMMED: usize = 40;

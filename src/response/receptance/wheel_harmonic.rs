@@ -22,7 +22,7 @@ pub(super) struct WheelHarmonic {
     pub(super) sectors: usize,
     pub(super) contact: usize,
     shapes: usize,
-    /// Of the motions [contact, strain, observed] by forces at [contact, strain].
+    /// Receptance of the motions [contact, strain, observed] by forces at [contact, strain].
     pub(super) receptance: WaveMatrix,
     /// Deviation of every shape and sector, the loss factor included, shape after shape.
     pub(super) deviations: Vec<Complex64>,

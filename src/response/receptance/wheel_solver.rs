@@ -84,7 +84,7 @@ impl<'a> WheelSolver<'a> {
         }
     }
 
-    /// The same with tangents from `contact`, the same one with fewer samples.
+    /// This solver with tangents from `contact`, which is its contact with fewer samples; none: from its contact itself.
     #[must_use]
     pub fn with_tangents(self, contact: Option<WheelContact>) -> Self {
         Self {

@@ -40,7 +40,7 @@ pub(super) struct ContactPath {
     pub(super) pair_rows: Vec<[Option<usize>; 3]>,
     /// Tangential stiffness of every pair of the wheel, N/m.
     pub(super) tangential: Vec<f64>,
-    /// Step after step, in it pair after pair of the wheel.
+    /// Changes of the contact over a step: step after step, in it pair after pair of the wheel.
     changes: Vec<StepChange>,
     /// Whether a tangent of a pair sticks throughout the period, or is none, t1 then t2, pair after pair.
     pub(super) held: Vec<bool>,

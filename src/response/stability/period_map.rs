@@ -50,7 +50,7 @@ struct Instant {
     waves: Vec<Matrix<f64>>,
     /// `(I - T W_0)^-1` with the block of W of a sector.
     inverses: Vec<Matrix<f64>>,
-    /// Which of them, step after step, sector after sector.
+    /// Which of `inverses` applies, step after step, sector after sector.
     places: Vec<usize>,
 }
 

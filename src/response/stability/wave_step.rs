@@ -24,7 +24,7 @@ pub(super) struct WaveStep {
     gain: Vec<[f64; 2]>,
     /// Rows `[Re E; Im E]` of contact and strain, `2 m x n`, column-major.
     motion: Vec<f64>,
-    /// Of the strain alone.
+    /// The rows of `motion` of the strain alone.
     strain: Vec<f64>,
     inputs: usize,
     strains: usize,

@@ -28,11 +28,11 @@ use crate::study::{AccuracyOptions, PipelineError, Study, StudyDigest, pattern_s
 /// Rows that the sample has at least, and fewest patterns of it.
 const ROWS: usize = 18;
 const FEWEST_PATTERNS: usize = 6;
-/// Patterns of these on which single knobs are moved.
+/// Patterns of the sample on which single knobs are moved.
 const PROBED: usize = 2;
 /// Accepted error over what the harmonics of the reference may leave out.
 const FINER_REFERENCE: f64 = 5.0;
-/// Least tolerance of these harmonics.
+/// Least tolerance of the harmonics of the reference.
 const FINEST_REFERENCE: f64 = 1e-3;
 
 impl AccuracyChoice {

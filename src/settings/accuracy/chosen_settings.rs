@@ -47,21 +47,21 @@ pub struct AccuracyEvidence {
     pub reference: String,
     /// Errors of the peak amplitude.
     pub amplitude: ErrorBound,
-    /// What the worst of them over all rows is claimed to be at most, see [`ErrorBound::worst_upper`].
+    /// What the worst error of the peak amplitude over all rows is claimed to be at most, see [`ErrorBound::worst_upper`].
     pub amplitude_worst_upper: f64,
-    /// Errors of its frequency.
+    /// Errors of the frequency of the peak.
     pub frequency: Option<ErrorBound>,
     /// Errors of the amplification factor.
     pub amplification_factor: Option<ErrorBound>,
     /// Estimated floating-point operations of a row at the settings chosen.
     pub operations_per_row: f64,
-    /// Those of the whole choice: reference, single knobs and combinations.
+    /// Estimated floating-point operations of the whole choice: reference, single knobs and combinations.
     pub operations_of_choice: f64,
     /// Combinations measured, in order.
     pub tried: Vec<TriedSetting>,
     /// Load case of each scenario of the sample; empty in a study without load cases.
     pub load_cases: Vec<LoadCaseName>,
-    /// Errors of the peak amplitude under each of these.
+    /// Errors of the peak amplitude under each load case.
     pub errors_of_load_cases: Vec<LoadCaseErrors>,
 }
 
@@ -72,7 +72,7 @@ pub struct TriedSetting {
     pub setting: String,
     /// Rows measured before it was taken or given up.
     pub rows: u64,
-    /// Largest amplitude error of these.
+    /// Largest amplitude error of the rows measured.
     pub worst: f64,
     /// Estimated floating-point operations of a row.
     pub operations: f64,

@@ -18,9 +18,10 @@ const SAMPLES: usize = 128;
 const FINER_SAMPLES_BELOW: f64 = 0.004;
 /// Harmonics that rows are compared with go to this one; those that the study says are among them.
 const ENLARGED_HARMONIC: u32 = 15;
-/// Samples of these rows at least.
+/// Least samples per period of the rows that rows are compared with.
 const ENLARGED_SAMPLES: usize = 256;
-/// What a top of these rows may be off by because a solution had not settled, over the peak tolerance of the settings.
+/// What a top of the rows compared with may be off by because a solution had not settled, over the peak tolerance of the
+/// settings.
 const UNSETTLED: f64 = 1.0;
 
 /// Settings of rows on tuned receptances.

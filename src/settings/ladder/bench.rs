@@ -38,7 +38,7 @@ const FIXED_INTERFACE_ERROR: f64 = 1e-3;
 pub struct LadderValues {
     /// Peak amplitude, m.
     pub amplitude_m: Option<f64>,
-    /// Its frequency, Hz.
+    /// Frequency of the peak, Hz.
     pub frequency_hz: Option<f64>,
     /// Amplification factor.
     pub amplification_factor: Option<f64>,

@@ -26,7 +26,7 @@ pub struct Measured {
 pub enum Compared {
     /// Peak amplitude.
     Amplitude,
-    /// Its frequency.
+    /// Frequency of the peak.
     Frequency,
     /// Amplification factor.
     AmplificationFactor,

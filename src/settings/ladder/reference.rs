@@ -65,7 +65,7 @@ pub struct LadderReference {
     pub kind: ReferenceKind,
     /// Values, ordered as the rows of the sample.
     pub values: Vec<LadderValues>,
-    /// The same by ratios, whatever the kind.
+    /// Values of the reference by ratios, ordered as the rows of the sample, whatever the kind.
     pub by_ratios: Vec<LadderValues>,
     /// The base setting.
     pub base: Measured,

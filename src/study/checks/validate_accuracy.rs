@@ -5,7 +5,8 @@ use crate::model::reduction::Basis;
 use crate::study::raw::RawAccuracy;
 use crate::study::{AccuracyOptions, Study};
 
-/// Those of a basis: the ladder is one of bases, and none of its settings is left where the study says one.
+/// Keys of a basis, which conflict with an accepted error: the ladder is one of bases, and none of its
+/// settings is left where the study says one.
 const KEYS_OF_A_BASIS: [&str; 2] = ["reduction.stick_modes", "reduction.slide_modes"];
 
 /// The accepted error; none where the number is refused.

@@ -52,7 +52,7 @@ impl ContactForces {
         }
     }
 
-    /// The same pairs with the normal load multiplied by `factor`.
+    /// Copy of this contact with the normal load of every pair multiplied by `factor`.
     pub(super) fn with_load_factor(&self, factor: f64) -> Self {
         let loaded = |pair: &PairParameters| PairParameters {
             normal_load_n: factor * pair.normal_load_n,

@@ -23,9 +23,9 @@ pub struct ReferencePeak {
     pub status: Status,
     /// Largest amplitude over blades and frequency, m.
     pub amplitude_m: Option<f64>,
-    /// Its frequency, Hz.
+    /// Frequency of the largest amplitude, Hz.
     pub frequency_hz: Option<f64>,
-    /// Its blade.
+    /// Blade of the largest amplitude.
     pub blade: Option<u32>,
     /// Residual force relative to the excitation there.
     pub residual: Option<f64>,

@@ -159,7 +159,7 @@ pub fn compare_point(
 /// blade by harmonic balance, m.
 ///
 /// # Errors
-/// As [`compare_point`].
+/// The status of the harmonic balance, if it has no solution to start from; `invalid_pattern`.
 pub fn periodic_point(
     case: &PointCase<'_>,
     steps_per_period: usize,

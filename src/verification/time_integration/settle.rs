@@ -31,8 +31,9 @@ pub struct Settled {
     pub creep_m: f64,
     /// Amplitude of harmonic 1 of every blade over the last period, m.
     pub fundamental_m: Vec<f64>,
-    /// The same of its mean over the last `drift_periods`, m: what a motion that does not repeat
-    /// itself has at the frequency of the excitation.
+    /// Amplitude of harmonic 1 of every blade, averaged with its phase over the last
+    /// `drift_periods`, m: what a motion that does not repeat itself has at the frequency of the
+    /// excitation.
     pub mean_fundamental_m: Vec<f64>,
     /// Largest displacement of every blade about its mean over the period, m.
     pub time_maximum_m: Vec<f64>,

@@ -71,8 +71,8 @@ impl PeriodicMotion {
         self.multipliers.first().map(|multiplier| multiplier.norm())
     }
 
-    /// Whether deviations from it die out (or stay, as those of pairs that stick do); none where the
-    /// period is not closed.
+    /// Whether deviations from the periodic motion die out (or stay, as those of pairs that stick do);
+    /// none where the period is not closed.
     #[must_use]
     pub fn is_stable(&self) -> Option<bool> {
         let largest = self

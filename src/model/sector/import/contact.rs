@@ -44,7 +44,7 @@ struct Pair {
     first: ContactSide,
     second: ContactSide,
     nodal: NodalArea,
-    /// Its part of the weights that the contacts have of their own; 0 without such.
+    /// Part that the pair has of the weights that the contacts have of their own; 0 without such.
     share: f64,
 }
 

@@ -22,7 +22,7 @@ struct Keys<'a> {
     job: Option<&'a PathBuf>,
     stiffness: Option<&'a PathBuf>,
     mass: Option<&'a PathBuf>,
-    /// That of the blade alone is not needed.
+    /// Whether the mass matrix is needed; that of the blade alone is not.
     has_mass: bool,
     dofs: Option<&'a PathBuf>,
     stiffness_name: Option<&'a String>,

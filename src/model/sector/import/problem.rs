@@ -197,7 +197,7 @@ pub enum ImportProblem {
         node: usize,
         /// Nearest node of the high face.
         nearest: usize,
-        /// Their distance, m.
+        /// Distance of the two nodes, m.
         distance_m: f64,
         /// Largest distance accepted, m.
         tolerance_m: f64,
@@ -279,7 +279,7 @@ pub enum ImportProblem {
         node: usize,
         /// Nearest node on the second.
         nearest: usize,
-        /// Their distance, m.
+        /// Distance of the two nodes, m.
         distance_m: f64,
         /// Largest distance accepted, m.
         tolerance_m: f64,
@@ -291,7 +291,7 @@ pub enum ImportProblem {
     BladeElement {
         /// The element.
         element: usize,
-        /// Its type.
+        /// Type of the element.
         found: &'static str,
     },
     /// An element of the blade has no material.
@@ -323,7 +323,7 @@ pub enum ImportProblem {
     BodiesCoupled {
         /// Node of one body.
         first: usize,
-        /// Node of the other.
+        /// Node of the other body.
         second: usize,
         /// The bodies.
         bodies: [Body; 2],
@@ -387,9 +387,9 @@ pub enum ImportProblem {
         matrix: Matrix,
         /// Number of the element.
         element: usize,
-        /// A node of it.
+        /// A node of the element.
         first: usize,
-        /// Another one, not coupled with the first.
+        /// Another node of the element, not coupled with `first`.
         second: usize,
         /// Pairs of its nodes that are coupled.
         coupled: usize,

@@ -179,7 +179,7 @@ pub(super) enum Weights {
     /// By the area that each node stands for.
     #[default]
     Area,
-    /// The same for every pair.
+    /// Every pair has the same weight.
     Equal,
 }
 

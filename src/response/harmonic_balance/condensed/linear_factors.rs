@@ -80,7 +80,7 @@ impl LinearFactors {
         regular
     }
 
-    /// The same without exchange of rows; false also if that is not to be relied on.
+    /// Factors `S_k` without exchange of rows; false if it is singular or the factors are not to be relied on.
     fn factor_symmetric(&mut self, block: &HarmonicBlock, omega: f64, force: &[Complex64]) -> bool {
         let k_omega = f64::from(block.harmonic) * omega;
         let damping = match block.harmonic {

@@ -72,7 +72,7 @@ pub(in crate::response::harmonic_balance) struct CondensedJacobian {
     of: Option<(Arc<Structure>, Arc<ContactStiffnessMatrix>)>,
     pub(super) linear: Vec<LinearFactors>,
     couplings: ContactCouplings,
-    /// Of `I + G' R`, coefficient after coefficient, in each row after row of contact.
+    /// Factors of `I + G' R`, coefficient after coefficient, in each row after row of contact.
     factors: Option<LuWorkspace<f64>>,
     pub(super) motion: Vec<f64>,
     forces: Vec<f64>,

@@ -6,7 +6,7 @@ use super::{ContactStiffnessMatrix, HarmonicSystem, Structure};
 use crate::response::friction::{ContactLaw, PairParameters};
 
 impl HarmonicSystem {
-    /// The same system under another law with the same springs.
+    /// Copy of this system under another law with the same springs.
     #[must_use]
     pub fn under(&self, law: ContactLaw) -> Self {
         let mut system = self.clone();
@@ -14,7 +14,7 @@ impl HarmonicSystem {
         system
     }
 
-    /// The same system under another normal load per pair.
+    /// Copy of this system with `pairs`, which have another normal load.
     #[must_use]
     pub fn with_pairs(&self, pairs: Vec<PairParameters>) -> Self {
         let mut system = self.clone();
@@ -22,8 +22,8 @@ impl HarmonicSystem {
         system
     }
 
-    /// The same system with all tangential contact springs multiplied by `factor`, in the law and in
-    /// the stuck base.
+    /// Copy of this system with all tangential contact springs multiplied by `factor`, in the law and in the stuck
+    /// base.
     #[must_use]
     pub fn with_tangential_stiffness(&self, factor: f64) -> Self {
         let mut system = self.clone();

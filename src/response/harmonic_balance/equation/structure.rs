@@ -87,9 +87,9 @@ impl Structure {
         }
     }
 
-    /// The same structure with viscous damping: `C = eta diag(lambda) / omega` in the place of a
-    /// structural loss factor, equal to it at `omega` alone. For comparison with time integration,
-    /// in which structural damping has no form; viscous damping stays as it is.
+    /// Copy of this structure with viscous damping, `C = eta diag(lambda) / omega` in the place of a structural loss
+    /// factor, equal to it at `omega` alone. For comparison with time integration, in which structural damping has no
+    /// form; viscous damping stays as it is.
     #[must_use]
     pub fn with_viscous_damping(&self, omega: f64) -> Self {
         let mut structure = self.clone();

@@ -261,7 +261,8 @@ impl<'a> Continuation<'a> {
     /// stay by the curve, the stretch is halved.
     ///
     /// # Errors
-    /// As [`Self::advance`].
+    /// The status of Newton's method from the last chord, `branch_jump` where it does not stay by that
+    /// chord; the status of a corrector that fails; `work_budget` when the correctors are used up.
     pub fn land(
         &mut self,
         from: &PathPoint,

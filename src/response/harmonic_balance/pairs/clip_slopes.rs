@@ -62,7 +62,7 @@ impl ClipSlopes<'_> {
         }
     }
 
-    /// By the normal displacement, of a pair with this normal load, N, over the samples.
+    /// Derivatives by the normal displacement, of a pair with this normal load, N, over the samples.
     pub(super) fn normal(
         &self,
         sums: &mut ClipSums,

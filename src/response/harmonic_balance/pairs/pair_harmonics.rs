@@ -31,8 +31,8 @@ pub struct PairHarmonics {
     history: ContactHistory,
     /// Growth of the tangential displacement per period, m.
     drift_m: [f64; 2],
-    /// Coefficients, the first ones, whose derivatives by each other are wanted; of the others only those by
-    /// their own harmonic.
+    /// Number of leading coefficients whose derivatives by each other are needed; the remaining ones need only
+    /// those by their own harmonic.
     coupled_first: usize,
     sums: ClipSums,
     coupled: CoupledDerivative,
@@ -223,8 +223,8 @@ impl PairHarmonics {
         }
     }
 
-    /// The same from what is known of a pair under `simplified_3d`: its normal load where it separates, and the clips
-    /// (samples, signs) of its sliders that slip.
+    /// Blocks of the Jacobian of a pair under `simplified_3d` that are not zero, into cleared blocks, from what is
+    /// known of it: its normal load where it separates, and the clips (samples, signs) of its sliders that slip.
     pub(super) fn differentiate_clips(
         &mut self,
         parameters: &PairParameters,

@@ -260,7 +260,7 @@ impl Simplified3dPairs {
 }
 
 impl Clips {
-    /// Those of a lane.
+    /// Gathers the clips of the pair in lane `lane`; `state` is whether it separates, and whether each of its sliders slips.
     fn gather(&mut self, bounds: &[f64], samples: usize, lane: usize, state: [bool; 3]) {
         let bounds = &bounds[lane / LANES * HEIGHT * samples..][..HEIGHT * samples];
         let of = |direction: usize| {

@@ -55,12 +55,12 @@ pub struct EnlargedSet {
     alone: Arc<HarmonicTransform>,
     enlarged: Arc<HarmonicTransform>,
     linearised: Arc<HarmonicTransform>,
-    /// The enlarged set with as few samples as tell its harmonics apart.
+    /// The enlarged set with few samples: more than four per period of its highest harmonic.
     tangents: Arc<HarmonicTransform>,
 }
 
 impl EnlargedSet {
-    /// Those up to 15 that a law excites: odd ones alone where the normal load is constant.
+    /// Harmonics up to 15 that a law excites, ascending: odd ones alone where the normal load is constant.
     #[must_use]
     pub fn everything(variable_load: bool) -> Vec<u32> {
         excited_up_to(HIGHEST_HARMONIC, variable_load)
@@ -123,14 +123,14 @@ fn excited_up_to(highest: u32, variable_load: bool) -> Vec<u32> {
 pub struct Enlarged {
     /// The solution, zero outside of the set.
     pub before: Vec<f64>,
-    /// After one Newton correction at the finer sampling, in the set alone, or as many accelerated steps as bring it
-    /// about where the Jacobian is not to be had.
+    /// The solution after one Newton correction at the finer sampling, in the set alone, or after as many accelerated steps as
+    /// bring it about where the Jacobian is not to be had.
     pub resampled: Vec<f64>,
-    /// The same at the sampling of the enlarged set: what `after` would be without harmonics outside.
+    /// The solution in the set alone at the sampling of the enlarged set: what `after` would be without harmonics outside.
     pub alone: Vec<f64>,
-    /// With the harmonics outside: the iterate that the next step would change least.
+    /// The solution with the harmonics outside: the iterate that the next step would change least.
     pub after: Vec<f64>,
-    /// What that step would still change of the set, relative to the set.
+    /// What the next step from `after` would still change of the set, relative to the set.
     pub unsettled: f64,
     /// For each harmonic outside, where wanted, what `after` would be in the set without it.
     pub without: Vec<(u32, Vec<f64>)>,
@@ -139,9 +139,9 @@ pub struct Enlarged {
 /// Which effects of the harmonics outside are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effects {
-    /// That of all together.
+    /// The effect of all harmonics outside together.
     Together,
-    /// That of each one too.
+    /// The effect of each harmonic outside too.
     Each,
 }
 
@@ -159,11 +159,11 @@ struct Enlargement<'a> {
 
 /// Factors of P.
 enum Factors {
-    /// Of J.
+    /// Factors of the whole J.
     Whole(Box<KeptJacobian>),
-    /// But for those of `J_ss`, which are in the workspace of the set.
+    /// Factors of each harmonic outside of the set; those of `J_ss` are in the workspace of the set.
     Blocks(Vec<Option<LuWorkspace<Complex64>>>),
-    /// Of every harmonic by itself.
+    /// Factors of every harmonic by itself.
     ByHarmonic(Box<KeptJacobian>),
 }
 
@@ -424,7 +424,7 @@ fn embed(
 }
 
 impl Factors {
-    /// Of every harmonic of `system` by itself at `x`; none if one is singular.
+    /// Factors of every harmonic of `system` by itself at `x`, its leading ones together; none if one is singular.
     fn by_harmonic(system: &HarmonicSystem, omega: f64, x: &[f64]) -> Option<Self> {
         let mut buffers = system.workspace();
         system.couple_leading(&mut buffers);
@@ -435,7 +435,8 @@ impl Factors {
         regular.then(|| Self::ByHarmonic(Box::new(factors)))
     }
 
-    /// The others.
+    /// Factors of P at `x`: of the whole Jacobian for one sector or a small wheel, else of a block for each harmonic outside of
+    /// the set; none if one is singular.
     fn of(
         system: &HarmonicSystem,
         places: &[Option<usize>],

@@ -129,8 +129,9 @@ impl KeptJacobian {
         self.hold(Held::Whole, regular)
     }
 
-    /// The same by the forces at the contact where that is cheaper, see [`HarmonicSystem::condenses`]. Where contact is
-    /// stiff beside what it holds, that takes the difference of nearly equal numbers.
+    /// Factors the Jacobian by the forces at the contact where that is cheaper, see [`HarmonicSystem::condenses`], else
+    /// whole; false if it is singular. Where contact is much stiffer than what it holds, the step by contact forces
+    /// takes the difference of nearly equal numbers.
     pub(super) fn factor_cheaply(
         &mut self,
         system: &HarmonicSystem,
@@ -143,7 +144,8 @@ impl KeptJacobian {
         self.factor_condensed(system, omega, workspace)
     }
 
-    /// The same by the forces at the contact.
+    /// Factors the Jacobian by the forces at the contact, at the point last given to [`HarmonicSystem::residual`] with
+    /// derivative; false if it is singular.
     pub(super) fn factor_condensed(
         &mut self,
         system: &HarmonicSystem,

@@ -14,13 +14,14 @@ pub enum Steps {
     /// Simplified steps combined by Anderson's acceleration, with a Jacobian (its lower block triangle where it is
     /// large) that is renewed where they shrink too slowly.
     Accelerated,
-    /// The same with a Jacobian that is renewed as soon as steps do not shrink fast: for a system that
+    /// Simplified steps combined by Anderson's acceleration, with a Jacobian that is renewed as soon as they do
+    /// not shrink fast: for a system that
     /// [`crate::response::harmonic_balance::equation::HarmonicSystem::condenses`].
     Renewed,
     /// From a good start: the acceleration alone, with the derivatives of harmonic 1 and of every other one by
     /// themselves, found once. Steps may grow on the way.
     ByHarmonic,
-    /// The same with the whole Jacobian.
+    /// From a good start: the acceleration alone, with the whole Jacobian, found once. Steps may grow on the way.
     Once,
 }
 
@@ -55,7 +56,7 @@ impl Steps {
 
 /// Earlier iterates that the acceleration combines.
 pub(super) const DEPTH: usize = 16;
-/// The same where all are needed, see [`ONCE`].
+/// Earlier iterates that the acceleration combines where all of them are needed, see [`ONCE`].
 pub(super) const DEPTH_OF_ONCE: usize = 120;
 
 /// Outcome of one nonlinear solve; the solution itself is left in the caller's vector.
@@ -133,7 +134,7 @@ impl NewtonBuffers {
         }
     }
 
-    /// The same with room to accelerate simplified steps.
+    /// Vectors for `n` unknowns, with room to accelerate simplified steps by `depth` earlier iterates.
     pub(super) fn accelerated(n: usize, depth: usize) -> Self {
         Self {
             acceleration: Some(Anderson::new(n, depth)),

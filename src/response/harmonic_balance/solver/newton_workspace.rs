@@ -9,13 +9,14 @@ use crate::response::harmonic_balance::pairs::ContactShares;
 /// Buffers of Newton's method for one system.
 pub struct NewtonWorkspace {
     pub(in crate::response::harmonic_balance) system: SystemWorkspace,
-    /// Of the last point at which it was factored.
+    /// Factors of the Jacobian, of the last point at which it was factored.
     pub(super) jacobian: KeptJacobian,
     pub(super) buffers: NewtonBuffers,
     /// The start of the solve that follows, where several were compared.
     pub(super) start: Option<Start>,
-    /// The same in motions at the contact rows, and the buffers of steps of them.
+    /// The start of the solve that follows in motions at the contact rows, where starts were compared.
     pub(super) motion_start: Option<MotionStart>,
+    /// Buffers of steps in motions at the contact rows.
     pub(super) motions: Option<NewtonBuffers>,
 }
 
@@ -28,7 +29,7 @@ pub(super) struct Start {
     pub(super) shares: ContactShares,
 }
 
-/// The same in motions at the contact rows.
+/// A start in motions at the contact rows, with what its choice has found.
 pub(super) struct MotionStart {
     pub(super) omega: f64,
     /// In the unknowns of the whole equation.
