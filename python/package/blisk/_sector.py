@@ -172,8 +172,9 @@ class Sector:
         """A sector of Nastran. Needs pyYeti and SciPy, and no Nastran.
 
         ``bdf``: the bulk data; the SET1 entries are the sets, and their names are their numbers.
-        ``matrices``: stiffness and mass, ``.op2``, ``.op4`` or a punch file ``.pch`` with DMIG; ``mass``: the file of the
-        mass, where it is another one. ``stiffness_name``, ``mass_name``: unless only one name begins with K or M.
+        ``matrices``: stiffness and mass, ``.op2``, ``.op4`` (``.ou1`` to ``.ou7`` of MYSTRAN) or a punch file ``.pch`` with
+        DMIG; ``mass``: the file of the mass, where it is another one. ``stiffness_name``, ``mass_name``: unless only one
+        name begins with K or M.
         ``rows``: node and direction (1, 2, 3) of each row of an ``.op2`` or ``.op4``, shape (n, 2); unless given 3 or 6
         rows for each grid point in ascending order. Empty rows are left out, as those of rotations are.
         ``blade``: the stiffness of the blade's elements alone, likewise, with ``blade_rows`` and ``blade_stiffness_name``.
