@@ -107,6 +107,9 @@ pub struct ContactReport {
     /// Absent: every pair has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub constant_load_pairs: Option<usize>,
+    /// Pairs without a displacement across their normal, in which nothing can rub. Absent: every pair has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pairs_without_friction: Option<usize>,
     /// Nodes of the second sides (the ring's surface) that no node of the first meets.
     pub ring_nodes_without_pair: usize,
     /// Each two surfaces.
@@ -219,6 +222,12 @@ impl fmt::Display for ImportReport {
                 writeln!(
                     f,
                     "  {pairs} pairs have no displacement along their normal: their normal load is constant under every contact law"
+                )?;
+            }
+            if let Some(pairs) = contact.pairs_without_friction {
+                writeln!(
+                    f,
+                    "  {pairs} pairs have no displacement across their normal: they have no direction to rub in"
                 )?;
             }
         }
