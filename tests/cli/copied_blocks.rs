@@ -94,8 +94,8 @@ fn blocks_of_the_pages_are_accepted_in_a_study() {
                 // The file that the page begins, "and so on, a line for every blade"; what the page says to leave out.
                 let begun = self::blocks(page, "text").remove(0);
                 let next = begun.lines().count() - 1;
-                let rest: String = (next..24).map(|own| format!("0,{own},0.01\n")).collect();
-                place.write("wheel.csv", &(begun + &rest));
+                let rest: Vec<String> = (next..24).map(|own| format!("0,{own},0.01\n")).collect();
+                place.write("wheel.csv", &(begun + &rest.concat()));
                 for (at, key) in [("study", "patterns"), ("sweep", "standard_deviation")] {
                     let said = format!("`{at}.{key}`");
                     assert!(page.contains(&said), "{name} says nothing of {said}");
