@@ -1,13 +1,15 @@
 """Real files that no package installs, read and compared; by hand, as they have to be fetched first.
 
-    python python/tests/real_files.py ANSYS EXUDYN
+    python python/tests/real_files.py ANSYS EXUDYN PYNASTRAN
 
-ANSYS is a clone of https://github.com/ansys/pymapdl-reader, EXUDYN one of https://github.com/jgerstmayr/EXUDYN. What
-is found is in docs/import.md.
+ANSYS is a clone of https://github.com/ansys/pymapdl-reader (MIT), EXUDYN one of https://github.com/jgerstmayr/EXUDYN
+(BSD 3-Clause), PYNASTRAN one of https://github.com/SteveDoyle2/pyNastran (BSD 3-Clause). What is found is in
+docs/import.md.
 
 - Matrices of Abaqus (FORMAT=COORDINATE) of five blocks, as sectors of four: the bundle against a cyclic eigenproblem.
 - An element file of Ansys: each element leaves a rigid motion without force, and has the nodes of the archive.
 - A full file of a rotor of Ansys against the modes of its result file.
+- The stiffness of NX Nastran (OUTPUT2) of solids, plates and bars against the displacements that it prints.
 """
 
 import sys
@@ -19,7 +21,7 @@ from ansys.mapdl import reader
 from ansys.mapdl.reader import examples
 
 import blisk
-from blisk._import import _abaqus, _ansys, _check
+from blisk._import import _abaqus, _ansys, _check, _nastran, _run
 from blisk._import._run import Run
 
 
@@ -85,12 +87,37 @@ def rotor_of_ansys(full, rst):
           f" {check['worst_relative_difference']:.1e}")  # fmt: skip
 
 
-def main(ansys, exudyn):
+def solids_of_nastran(folder):
+    # The same model twice: one run wrote its stiffness, the other one printed its displacements.
+    rows, upper = _nastran.matrix(folder / "static_solid_shell_bar_kelm.op2", "KGG", "K")
+    assert rows is None
+    stiffness = _run.symmetric(upper, "KGG").toarray()
+    # Grid points 22 to 25 are held, the rotations of 5 to 13, which solids alone hold, too.
+    free = [row for row in range(126) if row % 6 < 3 or not 4 <= row // 6 <= 12]
+    force, found = numpy.zeros(150), numpy.zeros(150)
+    force[6 * 12 + 2] = 10000.0
+    found[free] = numpy.linalg.solve(stiffness[numpy.ix_(free, free)], force[free])
+    printed = numpy.full(150, numpy.nan)
+    text = (folder / "static_solid_shell_bar.f06").read_text().partition("D I S P L A C E M E N T")[2]
+    for line in text.splitlines()[:31]:
+        words = line.split()
+        if len(words) == 8 and words[1] == "G":
+            printed[6 * int(words[0]) - 6 : 6 * int(words[0])] = [float(word) for word in words[2:]]
+    moved = printed != 0.0
+    assert moved.sum() == len(free) and (found[~moved] == 0.0).all()
+    # Against the largest displacement, and against the largest rotation.
+    off, size = (abs(own).reshape(25, 2, 3).max(axis=(0, 2)) for own in (found - printed, printed))
+    print(f"{folder.name}: {len(free)} displacements of NX Nastran's stiffness within {(off / size).max():.1e} of the"
+          " printed ones")  # fmt: skip
+
+
+def main(ansys, exudyn, pynastran):
     ansys, exudyn = Path(ansys) / "tests" / "testfiles", Path(exudyn) / "main" / "pythonDev" / "TestModels" / "testData"
     with tempfile.TemporaryDirectory() as work:
         blocks_of_abaqus(exudyn / "abaqus", Path(work))
     elements_of_ansys(ansys / "file.emat")
     rotor_of_ansys(ansys / "sparse.full", exudyn / "rotorAnsys.rst")
+    solids_of_nastran(Path(pynastran) / "models" / "sol_101_elements")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 """What the pages show is run, and the stubs say what is there."""
 
+import dataclasses
 import importlib.metadata
+import inspect
 import re
 import shutil
 import subprocess
@@ -8,6 +10,7 @@ import sys
 from pathlib import Path
 
 import matplotlib
+import pytest
 from ansys.mapdl import reader
 from ansys.mapdl.reader import examples
 from conftest import ROOT, SMALL
@@ -16,6 +19,7 @@ from solid import Solid
 from test_sector import bulk_data, deck, labels, matrix_text
 
 import blisk
+from blisk._import._keywords import Keywords, Wheel
 from blisk._import._run import _component
 
 matplotlib.use("Agg")
@@ -84,6 +88,25 @@ def test_every_block_of_python_of_the_guide_to_imports_runs(tmp_path, monkeypatc
     assert [sector.sectors for sector in found] == [24, 6, 6]
 
 
+@pytest.mark.parametrize("code", ["ansys", "nastran", "abaqus", "arrays"])
+def test_help_shows_every_keyword_of_a_maker(code):
+    maker = getattr(blisk.Sector, f"from_{code}")
+    parameters = inspect.signature(maker).parameters
+    assert [name for name, own in parameters.items() if own.kind is own.VAR_KEYWORD] == []
+    required = {name for name, own in parameters.items() if own.kind is own.KEYWORD_ONLY and own.default is own.empty}
+    assert required == {"out", "sectors", "force", "observe"}
+    assert (parameters["axis"].default, parameters["units"].default) == ("z", "m-kg-s")
+    assert set(Keywords.__annotations__) == {own.name for own in dataclasses.fields(Wheel)} < set(parameters)
+    # Positions as many as there are before the keywords.
+    files = ["a file" for own in parameters.values() if own.kind is own.POSITIONAL_OR_KEYWORD]
+    given = {"out": "o", "sectors": 6, "force": {}, "observe": {}}
+    with pytest.raises(TypeError, match=f"from_{code}.*unexpected keyword argument 'axes'"):
+        maker(*files, **given, axes="z")
+    del given["sectors"]
+    with pytest.raises(TypeError, match=f"from_{code}.*missing a required argument: 'sectors'"):
+        maker(*files, **given)
+
+
 def test_the_example_runs_unchanged(tmp_path):
     example = ROOT / "python" / "examples" / "quickstart.py"
     ended = subprocess.run([sys.executable, str(example), str(tmp_path)], capture_output=True, text=True, check=False)
@@ -105,6 +128,18 @@ def test_types_hold_and_stubs_are_complete(tmp_path):
     assert own.returncode == 0, own.stdout
     used = subprocess.run([*mypy[:-2], example], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert used.returncode == 0, used.stdout
+    # The keywords that makers of sectors share are known to the checker, by name and by type.
+    (tmp_path / "wrong.py").write_text(
+        "import blisk\n"
+        'where = {"set": "9"}\n'
+        'blisk.Sector.from_nastran("a", "b", out="c", sectors=6, force=where, observe=where, axis="x")\n'
+        'blisk.Sector.from_nastran("a", "b", out="c", sectors=6, force=where, observe=where, axes="x")\n'
+        'blisk.Sector.from_arrays(1, 1, 1, 1, out="c", sectors="6", force=where, observe=where)\n'
+        'blisk.Sector.from_abaqus("a", "b", "c", out="c", force=where, observe=where)\n'
+    )
+    wrong = subprocess.run([*mypy[:-2], "wrong.py"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    found = re.findall(r"^wrong.py:(\d+): error: .*\[(\S+)\]$", wrong.stdout, flags=re.MULTILINE)
+    assert found == [("4", "call-arg"), ("5", "arg-type"), ("6", "call-arg")], wrong.stdout
     stubs = [sys.executable, "-m", "mypy.stubtest", "blisk._native"]
     same = subprocess.run(stubs, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert same.returncode == 0, same.stdout

@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::warning::read_each_wheel;
 use super::words::{excitation, force, hanging, load_words, trimmed};
 use crate::population::monte_carlo::LoadCaseName;
 
@@ -148,6 +149,16 @@ pub enum Remark {
         percent: u32,
         /// Smallest number of patterns with an interval.
         needed: u64,
+        /// Wheels in `mistuning.file`; absent: patterns are drawn.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        wheels_in_file: Option<u64>,
+    },
+    /// Contact pairs in which nothing can rub.
+    NoFriction {
+        /// Pairs of a sector without a displacement across their normal.
+        pairs: usize,
+        /// Pairs of a sector.
+        contact_pairs: usize,
     },
 }
 
@@ -197,9 +208,31 @@ impl fmt::Display for Remark {
                 "a standard deviation of {} % of the blades' stiffness is large; 0.03 means 3 %",
                 trimmed(100.0 * standard_deviation)
             ),
-            Self::FewPatterns { percent, needed } => write!(
+            Self::FewPatterns {
+                percent,
+                needed,
+                wheels_in_file: None,
+            } => write!(
                 f,
                 "P{percent} will have no value: a 95 % interval needs {needed} patterns"
+            ),
+            Self::FewPatterns {
+                percent,
+                needed,
+                wheels_in_file: Some(wheels),
+            } => write!(
+                f,
+                "P{percent} will have no value: a 95 % interval needs {needed} wheels, mistuning.file holds \
+                 {wheels}; {}",
+                read_each_wheel(*wheels)
+            ),
+            Self::NoFriction {
+                pairs,
+                contact_pairs,
+            } => write!(
+                f,
+                "{pairs} of {contact_pairs} contact pairs of a sector have no displacement across their normal: \
+                 they have no direction to rub in"
             ),
         }
     }

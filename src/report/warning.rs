@@ -280,7 +280,7 @@ fn unstable_motions(looked_at: u64, rows: u64, tuned: &[usize]) -> String {
 }
 
 /// Where the peak of each wheel of a file is read.
-fn read_each_wheel(wheels: u64) -> &'static str {
+pub(super) fn read_each_wheel(wheels: u64) -> &'static str {
     if wheels <= MOST_WHEELS_NAMED {
         "read the peak of each wheel, which blisk report DIR prints"
     } else {

@@ -55,7 +55,7 @@ pub fn echo(study: &Study, sector: &SectorModel) -> StudyEcho {
         scenarios: scenarios.len() as u64,
         rows: scenarios.len() as u64 * patterns,
         friction_rows: friction.count() as u64 * patterns,
-        remarks: remarks(study, sectors, &excitations),
+        remarks: remarks(study, sector, &excitations),
         excitations,
     }
 }
@@ -167,7 +167,8 @@ fn settings(study: &Study) -> String {
     format!("harmonics {harmonics}; basis {basis}")
 }
 
-fn remarks(study: &Study, sectors: usize, excitations: &[EchoedExcitation]) -> Vec<Remark> {
+fn remarks(study: &Study, sector: &SectorModel, excitations: &[EchoedExcitation]) -> Vec<Remark> {
+    let sectors = sector.sectors;
     let mut remarks: Vec<Remark> = Vec::new();
     for own in excitations {
         let remark = Remark::AliasedEngineOrder {
@@ -216,10 +217,23 @@ fn remarks(study: &Study, sectors: usize, excitations: &[EchoedExcitation]) -> V
             standard_deviation: largest,
         });
     }
+    let pairs = sector.pairs_without_friction();
+    if pairs > 0 {
+        remarks.push(Remark::NoFriction {
+            pairs,
+            contact_pairs: sector.contact_pairs.len(),
+        });
+    }
+    let patterns = u64::from(study.patterns);
+    let is_measured = matches!(study.mistuning.source, MistuningSource::File { .. });
     for percent in REPORTED {
         let needed = smallest_sample(f64::from(percent) / 100.0, CONFIDENCE);
-        if u64::from(study.patterns) < needed {
-            remarks.push(Remark::FewPatterns { percent, needed });
+        if patterns < needed {
+            remarks.push(Remark::FewPatterns {
+                percent,
+                needed,
+                wheels_in_file: is_measured.then_some(patterns),
+            });
         }
     }
     remarks

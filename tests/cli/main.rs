@@ -5,6 +5,7 @@ mod bad_study_table;
 mod blisk;
 mod builds;
 mod commands;
+mod copied_blocks;
 mod documentation;
 mod documented_commands;
 mod faults;

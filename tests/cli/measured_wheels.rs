@@ -34,6 +34,14 @@ fn output(place: &Place, arguments: &[&str]) -> String {
 #[test]
 fn few_measured_wheels_are_read_one_by_one_instead_of_drawing_more() {
     let place = of_file(3);
+    let check = output(&place, &["check", "study.toml"]);
+    let check = check.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        check.contains(
+            "a 95 % interval needs 72 wheels, mistuning.file holds 3; read the peak of each wheel, which blisk report DIR prints"
+        ),
+        "{check}"
+    );
     let run = output(&place, &["run", "study.toml"]);
     assert!(
         run.contains("at least 72 wheels, mistuning.file holds 3; read the peak of each wheel"),

@@ -185,6 +185,32 @@ fn check_says_the_study_in_words_and_remarks_on_what_is_unusual() {
     );
 }
 
+/// A bundle made by hand may have any normal.
+#[test]
+fn check_remarks_on_contact_pairs_in_which_nothing_can_rub() {
+    let place = Place::with(GOOD);
+    output(&place, &["model", "study.toml", "--export", "bundle"]);
+    let (head, rest) = GOOD.split_once("[model]").expect("a model");
+    let (_, rest) = rest.split_once("[contact]").expect("a contact");
+    let model = "[model]\nsource = \"bundle\"\nbundle = { path = \"bundle\" }\n\n[contact]";
+    place.write("study.toml", &format!("{head}{model}{rest}"));
+    let words = "1 of 1 contact pairs of a sector have no displacement across their normal";
+    let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(!flat(&output(&place, &["check", "study.toml"])).contains(words));
+    // Its masses move along theta.
+    let contact = place.path("bundle/contact.csv");
+    let radial = std::fs::read_to_string(&contact).expect("contact.csv");
+    let along = radial.replace(",-1e0,0e0,0e0,", ",0e0,1e0,0e0,");
+    assert_ne!(along, radial);
+    std::fs::write(&contact, along).expect("contact.csv");
+    let text = output(&place, &["check", "study.toml"]);
+    assert!(flat(&text).contains(words), "{text}");
+    let report = json(&place, &["check", "study.toml", "--json"]);
+    let remarks = report["echo"]["remarks"].as_array().expect("remarks");
+    let expected = serde_json::json!({ "remark": "no_friction", "pairs": 1, "contact_pairs": 1 });
+    assert!(remarks.contains(&expected), "{remarks:?}");
+}
+
 /// Patterns enough for the percentile that its report opens with, and loads of one sector.
 #[test]
 fn the_study_of_the_readme_gives_no_cause_for_remarks() {

@@ -6,17 +6,20 @@ import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 from . import _native
 from ._answer import Answer, answer_of
 from ._import import _abaqus, _ansys, _arrays, _nastran
-from ._import._run import Held, Matrices, held_nodes, name_of, refused, symmetric
-from ._import._write import Import, Imported, Tables, Wheel, blade_of
+from ._import._keywords import Keywords, Wheel, with_keywords
+from ._import._run import Matrices, held_nodes, refused, symmetric
+from ._import._write import Import, Imported, blade_of
 from ._needed import needed
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 _Path = Union[str, "os.PathLike[str]"]
-_Sets = Optional[Mapping[str, Iterable[int]]]
 
 
 class Sector:
@@ -31,8 +34,8 @@ class Sector:
     **What the makers have in common.** ``out`` is the folder of the bundle. The import file and the matrices that it
     was made of are kept in ``out/import``; ``blisk import out/import/import.toml --out DIR`` makes the same bundle.
 
-    ``sectors``: number of sectors of the wheel. ``axis``: axis of rotation through the origin, ``x``, ``y`` or ``z``.
-    ``units``: of the files, ``m-kg-s`` (SI) or ``mm-t-s`` (mm, tonne, N).
+    ``name``: of the model; that of the mesh's file unless given. ``sectors``: number of sectors of the wheel.
+    ``axis``: axis of rotation through the origin, ``x``, ``y`` or ``z``. ``units``: of the files, ``m-kg-s`` (SI) or ``mm-t-s`` (mm, tonne, N).
     ``low_face``, ``high_face``: sets of the cut faces; the high one is the low one turned by +360/sectors degrees. Where
     they are not named, they are found: the nodes that lie where other ones lie after that turn.
     ``force``, ``observe``, ``contact``, ``ring``, ``damper``: the tables of the import file as dictionaries
@@ -78,32 +81,17 @@ class Sector:
         return cls._of(Imported(Path(out), answer, {}))
 
     @classmethod
+    @with_keywords
     def from_ansys(
         cls,
         full: _Path,
         cdb: _Path,
         *,
-        out: _Path,
-        sectors: int,
-        force: Tables,
-        observe: Tables,
         blade_full: Optional[_Path] = None,
         blade_emat: Optional[_Path] = None,
         blade: Union[str, Iterable[int], None] = None,
         rst: Optional[_Path] = None,
-        held: Held = (),
-        name: Optional[str] = None,
-        low_face: Optional[str] = None,
-        high_face: Optional[str] = None,
-        ring: Optional[Mapping[str, Any]] = None,
-        damper: Optional[Mapping[str, Any]] = None,
-        contact: Tables = None,
-        sets: _Sets = None,
-        units: str = "m-kg-s",
-        axis: str = "z",
-        position_tolerance_m: Optional[float] = None,
-        frequencies: int = 6,
-        check: Union[bool, Iterable[int]] = True,
+        **keywords: Unpack[Keywords],
     ) -> Sector:
         """A sector of Ansys. Needs ansys-mapdl-reader and SciPy, and no Ansys.
 
@@ -116,10 +104,11 @@ class Sector:
         ``held``: nodes whose rows are taken out as well, like free ones on the axis: a set, or node numbers.
         ``ring``, ``damper`` with files of their own: the keys ``full`` and ``cdb``, and ``held``.
         """
-        own = _ansys.run(full, cdb, held, sets)
+        wheel = Wheel.of(cdb, keywords)
+        own = _ansys.run(full, cdb, wheel.held, wheel.sets)
         others = {
             body: _ansys.run(table["full"], table["cdb"], table.get("held", ()))
-            for body, table in _with_files(ring, damper, ("full", "cdb"))
+            for body, table in _with_files(wheel.ring, wheel.damper, ("full", "cdb"))
         }
         alone: Optional[Matrices] = None
         if blade_full is not None:
@@ -127,27 +116,20 @@ class Sector:
         elif blade_emat is not None and blade is not None:
             alone = _ansys.blade_of_elements(own, cdb, blade_emat, blade)
         alone = blade_of(own, alone, "blade_full, or blade_emat and blade")
-        wheel = Wheel(
-            name_of(name, cdb), sectors, out, force, observe, low_face, high_face, ring, damper, contact, sets, units,
-            axis, position_tolerance_m, frequencies, check,
-        )  # fmt: skip
         work = Import(wheel, own, alone, others)
         sector = cls._of(work.carried_out())
         if rst is not None:
             faces = [node for pair in work.pairs["blisk"] for node in pair]
-            sector.check["result_file"] = _ansys.result_checked(rst, own, faces, sector.frequencies_hz, sectors)
+            sector.check["result_file"] = _ansys.result_checked(rst, own, faces, sector.frequencies_hz, wheel.sectors)
         return sector
 
     @classmethod
+    @with_keywords
     def from_nastran(
         cls,
         bdf: _Path,
         matrices: _Path,
         *,
-        out: _Path,
-        sectors: int,
-        force: Tables,
-        observe: Tables,
         blade: Optional[_Path] = None,
         mass: Optional[_Path] = None,
         rows: Optional[Sequence[Sequence[int]]] = None,
@@ -155,36 +137,26 @@ class Sector:
         stiffness_name: Optional[str] = None,
         mass_name: Optional[str] = None,
         blade_stiffness_name: Optional[str] = None,
-        held: Held = (),
-        name: Optional[str] = None,
-        low_face: Optional[str] = None,
-        high_face: Optional[str] = None,
-        ring: Optional[Mapping[str, Any]] = None,
-        damper: Optional[Mapping[str, Any]] = None,
-        contact: Tables = None,
-        sets: _Sets = None,
-        units: str = "m-kg-s",
-        axis: str = "z",
-        position_tolerance_m: Optional[float] = None,
-        frequencies: int = 6,
-        check: Union[bool, Iterable[int]] = True,
+        **keywords: Unpack[Keywords],
     ) -> Sector:
         """A sector of Nastran. Needs pyYeti and SciPy, and no Nastran.
 
         ``bdf``: the bulk data; the SET1 entries are the sets, and their names are their numbers.
-        ``matrices``: stiffness and mass, ``.op2``, ``.op4`` or a punch file ``.pch`` with DMIG; ``mass``: the file of the
-        mass, where it is another one. ``stiffness_name``, ``mass_name``: unless only one name begins with K or M.
+        ``matrices``: stiffness and mass, ``.op2``, ``.op4`` (``.ou1`` to ``.ou7`` of MYSTRAN) or a punch file ``.pch`` with
+        DMIG; ``mass``: the file of the mass, where it is another one. ``stiffness_name``, ``mass_name``: unless only one
+        name begins with K or M.
         ``rows``: node and direction (1, 2, 3) of each row of an ``.op2`` or ``.op4``, shape (n, 2); unless given 3 or 6
         rows for each grid point in ascending order. Empty rows are left out, as those of rotations are.
         ``blade``: the stiffness of the blade's elements alone, likewise, with ``blade_rows`` and ``blade_stiffness_name``.
         ``held``: grid points whose rows are taken out, where the matrices are those without SPC: a set, or numbers.
         ``ring``, ``damper`` with files of their own: the keys ``bdf`` and ``matrices``, and ``rows``, ``held``.
         """
+        wheel = Wheel.of(bdf, keywords)
         names = (stiffness_name, mass_name)
         made = _nastran.matrices(_nastran.grids(bdf), matrices, mass or matrices, rows, names)
-        own = _nastran.run(bdf, made, held, sets)
+        own = _nastran.run(bdf, made, wheel.held, wheel.sets)
         others = {}
-        for body, table in _with_files(ring, damper, ("bdf", "matrices")):
+        for body, table in _with_files(wheel.ring, wheel.damper, ("bdf", "matrices")):
             points = _nastran.grids(table["bdf"])
             of_body = _nastran.matrices(points, table["matrices"], table["matrices"], table.get("rows"), (None, None))
             others[body] = _nastran.run(table["bdf"], of_body, table.get("held", ()))
@@ -192,41 +164,22 @@ class Sector:
         if blade is not None:
             of_blade = rows if blade_rows is None else blade_rows
             alone = _nastran.matrices(own.positions, blade, None, of_blade, (blade_stiffness_name, None)).without_held(
-                held_nodes(held, own.sets, sets)
+                held_nodes(wheel.held, own.sets, wheel.sets)
             )
         alone = blade_of(own, alone, "blade, a file with the stiffness of the blade's elements alone")
-        wheel = Wheel(
-            name_of(name, bdf), sectors, out, force, observe, low_face, high_face, ring, damper, contact, sets, units,
-            axis, position_tolerance_m, frequencies, check,
-        )  # fmt: skip
         return cls._of(Import(wheel, own, alone, others).carried_out())
 
     @classmethod
+    @with_keywords
     def from_abaqus(
         cls,
         inp: _Path,
         stiffness: _Path,
         mass: _Path,
         *,
-        out: _Path,
-        sectors: int,
-        force: Tables,
-        observe: Tables,
         blade_stiffness: Optional[_Path] = None,
         blade_inp: Optional[_Path] = None,
-        held: Held = (),
-        name: Optional[str] = None,
-        low_face: Optional[str] = None,
-        high_face: Optional[str] = None,
-        ring: Optional[Mapping[str, Any]] = None,
-        damper: Optional[Mapping[str, Any]] = None,
-        contact: Tables = None,
-        sets: _Sets = None,
-        units: str = "m-kg-s",
-        axis: str = "z",
-        position_tolerance_m: Optional[float] = None,
-        frequencies: int = 6,
-        check: Union[bool, Iterable[int]] = True,
+        **keywords: Unpack[Keywords],
     ) -> Sector:
         """A sector of Abaqus. Needs SciPy, and no Abaqus.
 
@@ -239,23 +192,21 @@ class Sector:
         diagonal are, too.
         ``ring``, ``damper`` with files of their own: the keys ``inp``, ``stiffness`` and ``mass``, and ``held``.
         """
-        own = _abaqus.run(inp, stiffness, mass, held, sets)
+        wheel = Wheel.of(inp, keywords)
+        own = _abaqus.run(inp, stiffness, mass, wheel.held, wheel.sets)
         others = {
             body: _abaqus.run(table["inp"], table["stiffness"], table["mass"], table.get("held", ()))
-            for body, table in _with_files(ring, damper, ("inp", "stiffness", "mass"))
+            for body, table in _with_files(wheel.ring, wheel.damper, ("inp", "stiffness", "mass"))
         }
         alone = None
         if blade_stiffness is not None:
             deck = _abaqus.Deck(inp if blade_inp is None else blade_inp)
-            alone = _abaqus.matrices(deck, blade_stiffness, None).without_held(held_nodes(held, own.sets, sets))
+            alone = _abaqus.matrices(deck, blade_stiffness, None).without_held(held_nodes(wheel.held, own.sets, wheel.sets))
         alone = blade_of(own, alone, "blade_stiffness, the .mtx file of a job with the blade's elements alone")
-        wheel = Wheel(
-            name_of(name, inp), sectors, out, force, observe, low_face, high_face, ring, damper, contact, sets, units,
-            axis, position_tolerance_m, frequencies, check,
-        )  # fmt: skip
         return cls._of(Import(wheel, own, alone, others).carried_out())
 
     @classmethod
+    @with_keywords
     def from_arrays(
         cls,
         stiffness: Any,
@@ -263,25 +214,9 @@ class Sector:
         blade_stiffness: Any,
         nodes: Any,
         *,
-        out: _Path,
-        sectors: int,
-        force: Tables,
-        observe: Tables,
         rows: Optional[Sequence[Sequence[int]]] = None,
         elements: Optional[Mapping[str, Any]] = None,
-        held: Held = (),
-        name: str = "wheel",
-        low_face: Optional[str] = None,
-        high_face: Optional[str] = None,
-        ring: Optional[Mapping[str, Any]] = None,
-        damper: Optional[Mapping[str, Any]] = None,
-        contact: Tables = None,
-        sets: _Sets = None,
-        units: str = "m-kg-s",
-        axis: str = "z",
-        position_tolerance_m: Optional[float] = None,
-        frequencies: int = 6,
-        check: Union[bool, Iterable[int]] = True,
+        **keywords: Unpack[Keywords],
     ) -> Sector:
         """A sector from matrices in memory. Needs NumPy and SciPy.
 
@@ -294,15 +229,13 @@ class Sector:
         a contact needs them, or a ``normal``.
         ``held``: nodes whose rows are taken out: a set, or node numbers.
         """
-        own, named = _arrays.run(stiffness, mass, rows, nodes, elements, held, sets)
+        wheel = Wheel.of("wheel", keywords)
+        own, named = _arrays.run(stiffness, mass, rows, nodes, elements, wheel.held, wheel.sets)
         blade = symmetric(blade_stiffness, "blade_stiffness")
         if blade.shape[0] != len(named):
             raise refused(f"blade_stiffness has {blade.shape[0]} rows, stiffness {len(named)}; accepted: the same rows")
-        alone = blade_of(own, Matrices(named, blade).without_held(held_nodes(held, own.sets, sets)), "blade_stiffness")
-        wheel = Wheel(
-            name, sectors, out, force, observe, low_face, high_face, ring, damper, contact, sets, units, axis,
-            position_tolerance_m, frequencies, check,
-        )  # fmt: skip
+        free = Matrices(named, blade).without_held(held_nodes(wheel.held, own.sets, wheel.sets))
+        alone = blade_of(own, free, "blade_stiffness")
         return cls._of(Import(wheel, own, alone, {}).carried_out())
 
     @classmethod

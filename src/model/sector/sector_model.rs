@@ -1,8 +1,13 @@
 //! One cyclic sector of a bladed disk with its dampers, in physical degrees of freedom.
 
+use std::collections::HashMap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::linalg::{Complex64, SymmetricSparse};
+
+/// Sine of the least angle between a component and a normal at which the component is a direction of friction.
+const LEAST_TANGENT: f64 = 1e-6;
 
 /// Largest number of sectors accepted.
 pub(super) const MAX_SECTORS: usize = 10_000;
@@ -191,6 +196,35 @@ impl SectorModel {
     #[must_use]
     pub fn moved_by(&self, node: usize) -> usize {
         self.rigid_point(node).map_or(node, |point| point.reference)
+    }
+
+    /// Contact pairs that have no displacement across their normal, so that nothing in them can rub.
+    #[must_use]
+    pub fn pairs_without_friction(&self) -> usize {
+        let mut of_node: HashMap<usize, Vec<Component>> = HashMap::new();
+        for dof in &self.dofs {
+            of_node.entry(dof.node).or_default().push(dof.component);
+        }
+        let rubs = |node: usize, normal: [f64; 3]| {
+            // A rigid body turns as well: its points move in any direction.
+            let Some(components) = of_node.get(&node) else {
+                return true;
+            };
+            let along = Component::DISPLACEMENTS.iter().zip(normal);
+            along
+                .filter(|(component, _)| components.contains(component))
+                .any(|(_, cosine)| 1.0 - cosine * cosine > LEAST_TANGENT * LEAST_TANGENT)
+        };
+        let sides = |pair: &ContactPair| [pair.first.node(), pair.second.node()];
+        let pairs = self.contact_pairs.iter();
+        pairs
+            .filter(|pair| {
+                !sides(pair)
+                    .into_iter()
+                    .flatten()
+                    .any(|node| rubs(node, pair.normal))
+            })
+            .count()
     }
 
     /// Body and position, m, of a node or of a point of a rigid body.

@@ -236,6 +236,28 @@ fn nodes_with_tangential_components_alone_have_a_constant_normal_load() {
     let imported = import(&path).unwrap();
     let contact = imported.report.contact.as_ref().unwrap();
     assert_eq!(contact.constant_load_pairs, None);
+    assert_eq!(contact.pairs_without_friction, None);
+}
+
+/// Along the normal alone there is nothing to rub: the import says so of every such pair.
+#[test]
+fn nodes_that_move_along_the_normal_alone_have_no_friction() {
+    let folder = tempfile::tempdir().unwrap();
+    write_files(folder.path());
+    let path = folder.path().join("import.toml");
+    // The first contact alone: its nodes move along z.
+    for (normal, expected) in [("[0, 0, 1]", Some(1)), ("[0, 1e-5, 1]", None)] {
+        let along = IMPORT.replacen("[0, 1, 0]", normal, 1);
+        assert_ne!(along, IMPORT);
+        fs::write(&path, along).unwrap();
+        let imported = import(&path).unwrap();
+        let contact = imported.report.contact.as_ref().unwrap();
+        assert_eq!(contact.pairs_without_friction, expected, "{normal}");
+        assert_eq!(contact.constant_load_pairs, Some(1));
+        let text = imported.report.to_string();
+        let said = "1 pairs have no displacement across their normal";
+        assert_eq!(text.contains(said), expected.is_some(), "{text}");
+    }
 }
 
 #[test]

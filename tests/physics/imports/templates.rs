@@ -103,8 +103,14 @@ fn the_wedge_of_each_template_stands_in_the_place_of_its_ring() {
         let wedge = wedge.lines().skip(1).map(|line| line.replacen("# ", "", 1));
         let wedge: Vec<String> = wedge.collect();
         let text = format!("{head}{}\n\n{tail}", wedge.join("\n"));
-        assert_eq!(wedge.len(), 9, "{text}");
+        assert_eq!(wedge.len(), 11, "{text}");
         assert_eq!(findings(&text), [], "{code}: {text}");
+        // Shares by the user in the place of those by area: in both contacts, or in none.
+        let shared = text.replace("# weight = ", "weight = ");
+        assert_eq!(shared.matches("\nweight = ").count(), 2, "{shared}");
+        assert_eq!(findings(&shared), [], "{code}: {shared}");
+        let one = text.replacen("# weight = ", "weight = ", 1);
+        assert!(findings(&one)[0].1.contains("weight"), "{code}");
         // It would be missed.
         let without = text.replace("damper.", "blisk.");
         assert!(findings(&without)[0].2.contains("nothing holds the damper"));

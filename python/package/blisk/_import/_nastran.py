@@ -11,6 +11,8 @@ from .._needed import needed
 from ._run import Held, Matrices, Path_, Run, held_nodes, refused, symmetric, text_of_file
 
 Rows = Optional[Sequence[Sequence[int]]]
+OUTPUT4 = (".op4", *(f".ou{unit}" for unit in range(1, 8)))
+"""Endings of files of OUTPUT4: what a run of Nastran names so, and the units 21 to 27 of MYSTRAN."""
 
 
 def _nastran() -> Any:
@@ -67,14 +69,14 @@ def matrix(path: Path_, name: Optional[str], letter: str, size: Optional[int] = 
         tables = _nastran().rddmig(os.fspath(path), square=True)
         frame = tables[_chosen(tables, name, letter, path)]
         return [(int(node), int(dof)) for node, dof in frame.index], frame.to_numpy()
-    if ending == ".op4":
+    if ending in OUTPUT4:
         read = needed("pyyeti.nastran.op4", "reading files of Nastran").read(os.fspath(path), sparse=None)
         read = {key.upper(): own for key, own in read.items()}
     elif ending == ".op2":
         file = needed("pyyeti.nastran.op2", "reading files of Nastran").OP2(os.fspath(path))
         read = file.rdop2mats()
     else:
-        raise refused(f"{path} is not read; accepted: .op2, .op4, or a punch file .pch")
+        raise refused(f"{path} is not read; accepted: .op2, .op4 (or .ou1 to .ou7 of MYSTRAN), or a punch file .pch")
     return None, read[_chosen(read, name, letter, path)]
 
 

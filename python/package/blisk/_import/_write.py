@@ -13,53 +13,12 @@ from .. import _native
 from .._needed import needed
 from .._toml import text_of
 from . import _check, _faces
-from ._run import Matrices, Path_, Run, refused
-
-Tables = Union[Mapping[str, Any], Sequence[Mapping[str, Any]], None]
+from ._keywords import Tables, Wheel
+from ._run import Matrices, Run, refused
 
 _ROWS_OF_ALL = 5000
 """A sector of at most so many rows is checked at every nodal diameter; SciPy takes seconds for each of a larger one."""
-
-
-@dataclass
-class Wheel:
-    """What an import file says beside the files."""
-
-    name: str
-    sectors: int
-    out: Path_
-    force: Tables
-    observe: Tables
-    low_face: Optional[str]
-    high_face: Optional[str]
-    ring: Optional[Mapping[str, Any]]
-    damper: Optional[Mapping[str, Any]]
-    contact: Tables
-    sets: Optional[Mapping[str, Iterable[int]]]
-    units: str
-    axis: str
-    position_tolerance_m: Optional[float]
-    frequencies: int
-    check: Union[bool, Iterable[int]]
-    check_tolerance: float = 1e-6
-
-    def checked(self) -> None:
-        """Refuses what would otherwise be found in the middle of the work."""
-        if self.axis not in _faces.PLACES:
-            raise ValueError(f"axis = {self.axis!r} is not accepted; accepted: x, y, z")
-        if self.units not in ("m-kg-s", "mm-t-s"):
-            raise ValueError(f"units = {self.units!r} is not accepted; accepted: m-kg-s, mm-t-s")
-        if not 0 <= self.frequencies <= 1000:
-            raise ValueError(f"frequencies = {self.frequencies} is not accepted; accepted: 0 to 1000")
-        if (self.low_face is None) != (self.high_face is None):
-            raise ValueError("low_face and high_face go together; accepted: both, or none and they are found")
-        if self.sectors < 1:
-            raise ValueError(f"sectors = {self.sectors} is not accepted; accepted: a whole number of at least 1")
-        if not isinstance(self.check, bool):
-            self.check = sorted({int(own) for own in self.check})
-            last = self.sectors // 2
-            if any(not 0 <= own <= last for own in self.check):
-                raise ValueError(f"check = {self.check} is not accepted; accepted: nodal diameters from 0 to {last}")
+_CHECK_TOLERANCE = 1e-6
 
 
 @dataclass
@@ -210,7 +169,7 @@ class Import:
             grounding_hz = float(self.tables[body].get("grounding_hz", 0.0))
             bodies.append((matrices, self.pairs.get(body, []), grounding_hz))
         theirs = _check.cyclic_frequencies_hz(bodies, wheel.axis, wheel.sectors, wheel.frequencies, diameters)
-        return _check.compared(ours, theirs, wheel.check_tolerance, "a cyclic eigenproblem of the matrices by SciPy")
+        return _check.compared(ours, theirs, _CHECK_TOLERANCE, "a cyclic eigenproblem of the matrices by SciPy")
 
 
 def _matrix_files(folder: Path, name: str, matrices: Matrices) -> dict[str, str]:

@@ -95,7 +95,7 @@ pub fn import(path: &Path) -> Result<Imported, ModelError> {
         .iter()
         .flat_map(|&(row, column, _)| [row, column])
         .collect();
-    let report = ImportReport {
+    let mut report = ImportReport {
         name: file.name.clone(),
         sectors: file.sectors,
         position_tolerance_m: tolerance_m(&file, &nodes),
@@ -127,6 +127,10 @@ pub fn import(path: &Path) -> Result<Imported, ModelError> {
         observed,
     };
     validate(&model)?;
+    if let Some(contact) = &mut report.contact {
+        let pairs = model.pairs_without_friction();
+        contact.pairs_without_friction = Some(pairs).filter(|&count| count > 0);
+    }
     Ok(Imported { model, report })
 }
 

@@ -107,10 +107,50 @@ pub struct ContactReport {
     /// Absent: every pair has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub constant_load_pairs: Option<usize>,
+    /// Pairs without a displacement across their normal, in which nothing can rub. Absent: every pair has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pairs_without_friction: Option<usize>,
     /// Nodes of the second sides (the ring's surface) that no node of the first meets.
     pub ring_nodes_without_pair: usize,
     /// Each two surfaces.
     pub surfaces: Vec<SurfacesReport>,
+}
+
+impl ContactReport {
+    /// What the surfaces are as a whole, each of several, and which pairs do less than others.
+    fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "contact: {} pairs, worst distance {:.2e} m (tolerance {:.2e} m), normals within {:.2} degrees, area {:.6e} m^2",
+            self.pairs,
+            self.worst_distance_m,
+            self.tolerance_m,
+            self.worst_normal_angle_deg,
+            self.area_m2
+        )?;
+        if let Some(nodes) = self.projected_ring_nodes {
+            writeln!(
+                f,
+                "  {nodes} nodes of the ring follow the nodes of the blisk's faces"
+            )?;
+        }
+        for own in &self.surfaces {
+            own.write(f, self.surfaces.len() > 1)?;
+        }
+        if let Some(pairs) = self.constant_load_pairs {
+            writeln!(
+                f,
+                "  {pairs} pairs have no displacement along their normal: their normal load is constant under every contact law"
+            )?;
+        }
+        if let Some(pairs) = self.pairs_without_friction {
+            writeln!(
+                f,
+                "  {pairs} pairs have no displacement across their normal: they have no direction to rub in"
+            )?;
+        }
+        Ok(())
+    }
 }
 
 /// Facts about an import.
@@ -197,30 +237,7 @@ impl fmt::Display for ImportReport {
         };
         writeln!(f, "blade: {} dofs, from {source}", self.blade_dofs)?;
         if let Some(contact) = &self.contact {
-            writeln!(
-                f,
-                "contact: {} pairs, worst distance {:.2e} m (tolerance {:.2e} m), normals within {:.2} degrees, area {:.6e} m^2",
-                contact.pairs,
-                contact.worst_distance_m,
-                contact.tolerance_m,
-                contact.worst_normal_angle_deg,
-                contact.area_m2
-            )?;
-            if let Some(nodes) = contact.projected_ring_nodes {
-                writeln!(
-                    f,
-                    "  {nodes} nodes of the ring follow the nodes of the blisk's faces"
-                )?;
-            }
-            for own in &contact.surfaces {
-                own.write(f, contact.surfaces.len() > 1)?;
-            }
-            if let Some(pairs) = contact.constant_load_pairs {
-                writeln!(
-                    f,
-                    "  {pairs} pairs have no displacement along their normal: their normal load is constant under every contact law"
-                )?;
-            }
+            contact.write(f)?;
         }
         for (body, hz) in [
             (Body::Ring, self.ring_grounding_hz),
