@@ -47,6 +47,7 @@ const WINGS: &[(&str, &[&str])] = &[
     ("study", &[]),
     ("settings", &[]),
     ("campaign", &["store", "pipeline", "commands"]),
+    ("library", &[]),
     ("cli", &[]),
 ];
 
