@@ -60,6 +60,8 @@ impl Engine {
     /// The sector is refused or cannot be reduced, or the study does not fit to it.
     pub fn of_study(study: &Study) -> Result<Self, PipelineError> {
         let sector = load_sector_model(study)?;
+        // Measured wheels may not fit to the sector.
+        pattern_source(study, &sector)?;
         let rows = ReducedEngineSource.build(study, &sector, None)?;
         let scenarios = study.scenarios();
         Ok(Self {

@@ -11,7 +11,7 @@ use crate::model::reduction::Basis;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Numerics {
     /// Accepted relative error of the peak amplitude of 95 % of the rows, from 0.001 to 0.2. The settings below are then found by
-    /// measured errors, which takes longer than a few hundred rows; those that are `Some` are kept.
+    /// measured errors of the first wheels, which takes a while; those that are `Some` are kept.
     pub accuracy: Option<f64>,
     /// What rows are solved on.
     pub basis: Option<Basis>,

@@ -13,6 +13,10 @@ use crate::study::StudyError;
 /// Name of a problem in messages, where that of a study file would stand.
 pub(super) const NAME: &str = "problem";
 
+/// Wheels of a problem with random ones for whatever is chosen by them, which are the first few. How many are solved is said by a
+/// population.
+const JUDGED: i64 = 1000;
+
 /// What is solved. Physics only; [`Numerics`](super::Numerics) says how.
 ///
 /// Every combination of engine order, standard deviation and contact condition is a [`Scenario`](crate::Scenario). What a problem does
@@ -115,12 +119,13 @@ impl Problem {
                 standard_deviations,
                 seed,
             } => {
-                let seed = i64::try_from(*seed).map_or(Value::Integer(-1), Value::Integer);
-                // A population says its number of patterns when it is solved.
+                // One beyond the integers of TOML is refused as it stands.
+                let seed = i64::try_from(*seed)
+                    .map_or_else(|_| Value::String(seed.to_string()), Value::Integer);
                 head = table(vec![
                     ("name", NAME.into()),
                     ("seed", seed),
-                    ("patterns", 1.into()),
+                    ("patterns", JUDGED.into()),
                 ]);
                 let deviations = standard_deviations.iter().map(|&own| Value::Float(own));
                 sweep.insert(
