@@ -18,6 +18,7 @@ pub struct Listener<W> {
 }
 
 impl<W: Write> Listener<W> {
+    /// Nothing is planned yet.
     pub fn new(out: W) -> Self {
         Self {
             out: Mutex::new(out),

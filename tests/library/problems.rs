@@ -198,7 +198,7 @@ fn a_refused_value_is_named_with_what_is_accepted() {
         ),
         (
             with(&|own| own.amplitude_n = f64::INFINITY),
-            ["excitation.amplitude_n", "inf", "finite"],
+            ["excitation.amplitude_n", "inf", "1e-30 to 1e30"],
         ),
         (
             with(&|own| own.damping = Damping::ModalRatio(-0.1)),
@@ -237,6 +237,11 @@ fn a_refused_value_is_named_with_what_is_accepted() {
             ],
         ),
     ];
+    let shown = cases[0].0.lines().next().unwrap();
+    assert!(
+        include_str!("../../docs/library.md").contains(shown),
+        "docs/library.md lacks {shown}"
+    );
     for (said, words) in cases {
         for word in words {
             assert!(said.contains(word), "no {word:?} in {said}");
