@@ -63,7 +63,7 @@ impl From<&PipelineError> for ExitStatus {
             | PipelineError::DifferentBuild { .. }
             | PipelineError::DifferentShards { .. }
             | PipelineError::InputsChanged { .. } => Self::DifferentStudy,
-            PipelineError::Interrupted { .. } => Self::Interrupted,
+            PipelineError::Interrupted { .. } | PipelineError::Stopped { .. } => Self::Interrupted,
             PipelineError::Locked { .. } => Self::Locked,
             PipelineError::Unfinished { .. }
             | PipelineError::Shards { .. }
@@ -104,7 +104,9 @@ impl From<&StudyError> for ExitStatus {
 impl From<&TableError> for ExitStatus {
     fn from(error: &TableError) -> Self {
         match error {
-            TableError::Io { .. } | TableError::Encoding { .. } => Self::InputOutput,
+            TableError::Io { .. } | TableError::Encoding { .. } | TableError::NoParquet { .. } => {
+                Self::InputOutput
+            }
             TableError::Damaged { .. } => Self::StoreDamaged,
         }
     }

@@ -17,6 +17,7 @@ pub use accuracy::{
     AccuracyChoice, AccuracyEvidence, ChosenSetting, ReceptanceSetting, TriedSetting,
 };
 pub use engines::{Engine, EngineSource, ReducedEngineSource, SurrogateOf};
+pub(crate) use engines::{RowWork, rows_of, tuned_references};
 pub(crate) use fixed_interface::FixedInterface;
 pub use full_model::{FullModel, FullRow, FullSettings};
 pub use ladder::{HarmonicLevel, Knob, LadderSetting};

@@ -87,6 +87,14 @@ pub enum PipelineError {
         /// Rows of the study.
         planned: u64,
     },
+    /// A population was asked to stop; nothing of it is stored.
+    #[error("stopped: {solved} of {planned} rows were solved, and none is stored")]
+    Stopped {
+        /// Rows solved.
+        solved: u64,
+        /// Rows of the population.
+        planned: u64,
+    },
     /// Shards that do not make up a study.
     #[error("{reason}")]
     Shards {

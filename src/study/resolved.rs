@@ -1,6 +1,7 @@
 //! A study in which every key has a value and all of them fit together.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde_json::{Value, json};
 
@@ -10,7 +11,8 @@ use super::raw::SCHEMA;
 use super::{AccuracyOptions, LoadCase, Mistuning, NodalDiameterTable, RotationLoad};
 use crate::input::SourceMap;
 use crate::model::reduction::{NodalDiameterDamping, ReductionOptions};
-use crate::model::sector::{LumpedOptions, ParametricOptions};
+use crate::model::reduction_digest;
+use crate::model::sector::{LumpedOptions, ParametricOptions, SectorModel};
 use crate::population::monte_carlo::{LoadCaseName, Scenario};
 use crate::population::statistics::StopOptions;
 use crate::population::table::Compression;
@@ -35,6 +37,8 @@ pub enum ModelSource {
         /// The folder, resolved against the study file.
         path: PathBuf,
     },
+    /// In memory, from a program that uses the library.
+    Given(Arc<SectorModel>),
 }
 
 /// What is written beside the statistics, and how.
@@ -279,6 +283,9 @@ impl Study {
             ModelSource::Lumped(options) => json!({ "source": "lumped", "lumped": options }),
             ModelSource::Bundle { written, .. } => {
                 json!({ "source": "bundle", "bundle": { "path": written } })
+            }
+            ModelSource::Given(model) => {
+                json!({ "source": "given", "digest": reduction_digest(model, "") })
             }
         }
     }

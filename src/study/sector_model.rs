@@ -4,7 +4,7 @@ use super::excitation::with_load_cases;
 use super::rotation_load::pressed_body;
 use super::{MistuningSource, ModelSource, PipelineError, Problem, Study, StudyError};
 use crate::model::cyclic::ring_free;
-use crate::model::sector::{Body, ModelError, SectorModel, bundle, lumped, parametric};
+use crate::model::sector::{Body, ModelError, SectorModel, bundle, lumped, parametric, validate};
 use crate::response::forced_response::ContactCondition;
 use crate::response::friction::{ContactOptions, Ring};
 use crate::response::mistuning::{ContactSource, Pattern, PatternSource};
@@ -33,6 +33,7 @@ pub(super) fn sector_of(study: &Study) -> Result<SectorModel, StudyError> {
         ModelSource::Parametric(options) => parametric::build(options),
         ModelSource::Lumped(options) => lumped::build(options),
         ModelSource::Bundle { path, .. } => bundle::read(path),
+        ModelSource::Given(model) => validate(model).map(|()| SectorModel::clone(model)),
     }
     .map_err(|error| refused(study, error))
 }

@@ -47,6 +47,7 @@ const WINGS: &[(&str, &[&str])] = &[
     ("study", &[]),
     ("settings", &[]),
     ("campaign", &["store", "pipeline", "commands"]),
+    ("library", &[]),
     ("cli", &[]),
 ];
 
@@ -156,9 +157,13 @@ fn what_composes_is_named_by_nothing_below_it() {
             let named = path.first().map(String::as_str);
             let allowed = match named {
                 Some("cli") => own == Some("cli"),
-                Some("campaign") => matches!(own, Some("campaign" | "cli")),
+                Some("library") => own == Some("library"),
+                Some("campaign") => matches!(own, Some("campaign" | "library" | "cli")),
                 Some("study" | "settings") => {
-                    matches!(own, Some("study" | "settings" | "campaign" | "cli"))
+                    matches!(
+                        own,
+                        Some("study" | "settings" | "campaign" | "library" | "cli")
+                    )
                 }
                 _ => true,
             };
@@ -169,7 +174,7 @@ fn what_composes_is_named_by_nothing_below_it() {
         }
     }
     complain(
-        "study, settings, campaign and cli compose and are named by nothing below",
+        "study, settings, campaign, library and cli compose and are named by nothing below",
         &violations,
     );
 }

@@ -29,7 +29,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 24] = [
+const NOT_RUN: [(&str, &str); 26] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -38,6 +38,14 @@ const NOT_RUN: [(&str, &str); 24] = [
     ),
     ("BLISK_WRITE_MAP=", "writes a page of the clone"),
     ("cargo check", "compiles everything from nothing"),
+    (
+        "cargo doc",
+        "writes the documentation of the crate; the stage documentation of .ci/run does too",
+    ),
+    (
+        "cargo run --release --example",
+        "is a program; tests/library runs what it runs",
+    ),
     ("cargo bench", "takes many minutes"),
     (
         "cargo deny",

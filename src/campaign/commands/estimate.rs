@@ -13,7 +13,7 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use super::estimate_sample::Sample;
-use crate::campaign::pipeline::{Clock, Facts, RowCounts, RowWork, Stop, pool_of};
+use crate::campaign::pipeline::{Clock, Facts, RowCounts, Stop, pool_of};
 use crate::campaign::store::ResultsFolder;
 use crate::identity;
 use crate::platform::thread_processor_time_s;
@@ -29,7 +29,7 @@ use crate::population::table::{
 };
 use crate::report::{EstimateReport, ScenarioEstimate};
 use crate::response::mistuning::PatternSource;
-use crate::settings::{Engine, EngineSource, Progress, Stage, SurrogateOf};
+use crate::settings::{Engine, EngineSource, Progress, RowWork, Stage, SurrogateOf};
 use crate::study::{
     MistuningSource, PipelineError, Study, StudyDigest, load_sector_model, pattern_source,
 };

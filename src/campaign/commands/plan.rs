@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::campaign::pipeline::{Facts, RowWork, TableWork, pool_of};
+use crate::campaign::pipeline::{Facts, TableWork, pool_of};
 use crate::platform::{peak_memory_bytes, thread_processor_time_s};
 use crate::population::monte_carlo::{ResponseRow, block_size};
 use crate::population::statistics::{
@@ -20,7 +20,7 @@ use crate::report::{
     PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan,
 };
 use crate::response::mistuning::PatternSource;
-use crate::settings::{EngineSource, Progress, Stage};
+use crate::settings::{EngineSource, Progress, RowWork, Stage};
 use crate::study::{PipelineError, Study, StudyDigest, load_sector_model, pattern_source};
 
 /// Bytes that the statistics of a row take while the tables are written, and those of a look at it.

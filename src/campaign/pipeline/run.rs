@@ -7,7 +7,6 @@ use std::time::Instant;
 use rayon::ThreadPool;
 
 use super::goal::Goal;
-use super::rows::RowWork;
 use super::tables::{Facts, TableWork};
 use super::{can_be_cut, is_shard_of};
 use crate::campaign::store::{
@@ -20,7 +19,7 @@ use crate::population::table::{
 };
 use crate::report::StudySummary;
 use crate::response::mistuning::PatternSource;
-use crate::settings::{Engine, EngineSource, Progress, Stage};
+use crate::settings::{Engine, EngineSource, Progress, RowWork, Stage};
 use crate::study::{PipelineError, Study, StudyDigest, load_sector_model, pattern_source};
 use crate::{identity, platform};
 

@@ -20,7 +20,7 @@ use crate::population::table::{
 };
 use crate::report::StudySummary;
 use crate::response::mistuning::{GENERATOR, PatternSource};
-use crate::settings::Engine;
+use crate::settings::{Engine, tuned_references};
 use crate::study::{PipelineError, Study, StudyDigest};
 
 /// Patterns up to which `patterns.parquet` is written without being asked for.
@@ -40,29 +40,15 @@ pub(in crate::campaign) struct Facts {
 }
 
 impl Facts {
-    /// Asks the engine; the tuned wheel, which knows no standard deviation, is solved once per
-    /// engine order and contact condition.
+    /// Asks the engine.
     pub(in crate::campaign) fn solve(
         engine: &dyn Engine,
         study: &Study,
         digest: &StudyDigest,
     ) -> Self {
         let scenarios = study.scenarios();
-        let mut tuned: Vec<TunedReference> = Vec::new();
-        for scenario in &scenarios {
-            let same = scenarios[..tuned.len()].iter().position(|other| {
-                other.same_excitation(scenario) && other.contact == scenario.contact
-            });
-            tuned.push(match same {
-                Some(same) => TunedReference {
-                    scenario: scenario.index,
-                    ..tuned[same].clone()
-                },
-                None => engine.tuned(scenario),
-            });
-        }
         Self {
-            tuned,
+            tuned: tuned_references(engine, &scenarios),
             row_digests: scenarios
                 .iter()
                 .map(|scenario| digest.of_rows(scenario, &engine.rows_made_from(scenario)))

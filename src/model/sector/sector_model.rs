@@ -147,8 +147,8 @@ impl ObservedNode {
 /// One cyclic sector, structure only: no contact springs, boundary conditions already applied.
 ///
 /// Both cyclic faces are present; the high face of sector n is the low face of sector n + 1.
-/// Conventions of frame, signs and faces: the module documentation of [`crate::model::cyclic`].
-/// Built by the sources beside this file and checked by [`super::validate`] before use.
+/// Conventions of frame, signs and faces: `docs/sector-bundle.md` and the head of `src/model/cyclic/mod.rs`.
+/// Checked by `validate` before use.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectorModel {
     /// Name of the model.

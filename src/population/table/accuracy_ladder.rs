@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::TableError;
 use super::column::{ColumnKind, ColumnSpec};
-use super::reader::TableReader;
+use super::parquet::TableReader;
 use super::side_tables::{SideTable, check_side_table};
 
 use ColumnKind::{Boolean, Float64, Int32, String as Text};
@@ -135,7 +135,7 @@ impl AccuracyLadder {
 mod tests {
     use super::*;
     use crate::population::table::column::Values;
-    use crate::population::table::writer::TableWriter;
+    use crate::population::table::parquet::TableWriter;
     use crate::population::table::{CHECKSUMS, Compression, TableHeader, write_side_table};
 
     #[test]

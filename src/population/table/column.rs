@@ -1,9 +1,5 @@
 //! Columns of a table, each declared once: name, type, unit, meaning, value in a row, way back into a row.
 
-use polars::prelude::{
-    ArrowField, ArrowSchema, CompatLevel, DataFrame, DataType, NamedFrom, Schema, Series,
-};
-
 use crate::population::monte_carlo::Scenario;
 
 /// Type of a column; the set that pandas, R, `DuckDB` and MATLAB all read.
@@ -192,7 +188,7 @@ pub(super) enum Values {
 }
 
 impl Values {
-    fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         match self {
             Self::Int32(values) => values.len(),
             Self::Int64(values) => values.len(),
@@ -201,57 +197,6 @@ impl Values {
             Self::String(values) => values.len(),
         }
     }
-
-    fn into_column(self, name: &str) -> polars::prelude::Column {
-        let series = match self {
-            Self::Int32(values) => Series::new(name.into(), values),
-            Self::Int64(values) => Series::new(name.into(), values),
-            Self::Float64(values) => Series::new(name.into(), values),
-            Self::Boolean(values) => Series::new(name.into(), values),
-            Self::String(values) => Series::new(name.into(), values),
-        };
-        series.into()
-    }
-}
-
-pub(super) fn polars_type(kind: ColumnKind) -> DataType {
-    match kind {
-        ColumnKind::Int32 => DataType::Int32,
-        ColumnKind::Int64 => DataType::Int64,
-        ColumnKind::Float64 => DataType::Float64,
-        ColumnKind::Boolean => DataType::Boolean,
-        ColumnKind::String => DataType::String,
-    }
-}
-
-pub(super) fn polars_schema(columns: &[ColumnSpec]) -> Schema {
-    columns
-        .iter()
-        .map(|column| (column.name.into(), polars_type(column.kind)))
-        .collect()
-}
-
-/// The Arrow schema of `columns`, each field with its unit and description.
-pub(super) fn described_schema(columns: &[ColumnSpec]) -> ArrowSchema {
-    let field = |column: &ColumnSpec| -> ArrowField {
-        let metadata = [("unit", column.unit), ("description", column.description)];
-        let metadata = metadata.map(|(key, value)| (key.into(), value.into()));
-        polars_type(column.kind)
-            .to_arrow_field(column.name.into(), CompatLevel::newest())
-            .with_metadata(metadata.into_iter().collect())
-    };
-    columns.iter().map(field).collect()
-}
-
-/// The frame of `values`, one per column; the reason if they do not fit together.
-pub(super) fn frame(columns: &[ColumnSpec], values: Vec<Values>) -> Result<DataFrame, String> {
-    let height = values.first().map_or(0, Values::len);
-    let columns: Vec<_> = columns
-        .iter()
-        .zip(values)
-        .map(|(column, values)| values.into_column(column.name))
-        .collect();
-    DataFrame::new(height, columns).map_err(|error| error.to_string())
 }
 
 /// Columns that name a row in every table that has it.

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::column::{ColumnKind, ColumnSpec, Values};
-use super::writer::TableWriter;
+use super::parquet::TableWriter;
 use super::{TableError, TableHeader, write_atomically};
 use crate::response::harmonic_balance::Status;
 

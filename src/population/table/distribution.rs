@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::column::{Cells, Column, ColumnSpec, InScenario, key, specs, values_of};
+use super::parquet::TableWriter;
 use super::percentiles::QUANTITY;
-use super::writer::TableWriter;
 use super::{ScenarioRecord, TableError, TableHeader};
 use crate::population::monte_carlo::Scenario;
 use crate::population::statistics::BandPoint;

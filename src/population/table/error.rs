@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::response::mistuning::PatternFileError;
+
 /// A table that cannot be written or read.
 #[derive(Debug, Error)]
 pub enum TableError {
@@ -33,6 +35,23 @@ pub enum TableError {
         /// What is wrong.
         reason: String,
     },
+    /// A Parquet file is to be read or written without the feature that does it.
+    #[error("{} is a Parquet file, and this build of blisk has none of them; accepted: the feature `parquet`", path.display())]
+    NoParquet {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// What is wrong with a Parquet file of patterns.
+#[derive(Debug, Error)]
+pub enum PatternParquetError {
+    /// The file cannot be read as Parquet.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// Its content is not accepted.
+    #[error(transparent)]
+    Content(#[from] PatternFileError),
 }
 
 impl TableError {

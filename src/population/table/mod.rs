@@ -8,17 +8,21 @@ mod curve;
 mod distribution;
 mod error;
 mod estimate_rows;
+mod header;
 mod main_effects;
 mod manifest;
+#[cfg(feature = "parquet")]
+mod parquet;
+#[cfg(not(feature = "parquet"))]
+#[path = "no_parquet.rs"]
+mod parquet;
 mod part_header;
 mod parts;
-mod pattern_file;
 mod patterns;
 mod peak_audit;
 mod percentiles;
 mod places;
 mod publication;
-mod reader;
 mod response_columns;
 mod responses;
 mod row_file;
@@ -28,7 +32,6 @@ mod tail_fits;
 mod traced_curve;
 mod tradeoff;
 mod verification;
-mod writer;
 
 pub use accuracy_ladder::{AccuracyLadder, MeasuredSetting};
 pub use atomic::{abandon_unfinished, digest_file, remove_leftovers, write_atomically};
@@ -36,15 +39,16 @@ pub use checked_json::{ESTIMATE, SAMPLE, read_estimate, write_estimate};
 pub use column::{ColumnKind, ColumnSpec};
 pub use curve::{CURVE_COLUMNS, CurveFormat, CurvePoint, write_curve};
 pub use distribution::{DISTRIBUTION_COLUMNS, write_distribution};
-pub use error::TableError;
+pub use error::{PatternParquetError, TableError};
 pub use estimate_rows::{ESTIMATE_ROW_COLUMNS, EstimateRow, write_estimate_rows, write_sample};
+pub use header::{Compression, SCHEMA_VERSION, TableHeader};
 pub use main_effects::{EffectRows, MAIN_EFFECT_COLUMNS, write_main_effects};
 pub use manifest::{Manifest, RunRecord, RunState, ScenarioEntry, Shard, StatusCounts};
+pub use parquet::read_pattern_parquet;
 pub use part_header::{
     PartHeader, check_parts, holds_results, part_files, renew_header, unlisted_parts,
 };
 pub use parts::{PartSink, RowSchema, RowStore, remove_parts};
-pub use pattern_file::{PatternParquetError, read_pattern_parquet};
 pub use patterns::{PATTERN_COLUMNS, StoredPatterns, read_patterns, write_patterns};
 pub use peak_audit::{PEAK_AUDIT_COLUMNS, PeakAuditRecord, write_peak_audit};
 pub use percentiles::{PERCENTILE_COLUMNS, write_percentiles};
@@ -65,4 +69,3 @@ pub use tradeoff::{
     TradeoffRecord, TradeoffRow, write_tradeoff, write_tradeoff_rows, write_tradeoff_times,
 };
 pub use verification::{VERIFICATION_COLUMNS, VerificationRecord, write_verification};
-pub use writer::{Compression, SCHEMA_VERSION, TableHeader};

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::column::{ColumnKind, ColumnSpec, Values, key};
-use super::reader::TableReader;
-use super::writer::TableWriter;
+use super::parquet::{TableReader, TableWriter};
 use super::{TableError, TableHeader};
 use crate::response::mistuning::PatternSource;
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::column::{Cells, Column, ColumnKind, ColumnSpec, InScenario, key, specs, values_of};
-use super::writer::TableWriter;
+use super::parquet::TableWriter;
 use super::{ScenarioRecord, TableError, TableHeader};
 use crate::population::monte_carlo::Scenario;
 use crate::population::statistics::Percentile;

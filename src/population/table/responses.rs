@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use super::column::{Column, values_of};
-use super::reader::TableReader;
+use super::header::ROW_DIGESTS_KEY;
+use super::parquet::TableReader;
+use super::parquet::TableWriter;
 use super::response_columns::{COLUMNS, RESPONSE_COLUMNS, WrittenRow};
-use super::writer::{ROW_DIGESTS_KEY, TableWriter};
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::column::{ColumnKind, ColumnSpec, Values, key};
-use super::writer::TableWriter;
+use super::parquet::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{Scenario, TunedReference};
 use crate::population::statistics::{

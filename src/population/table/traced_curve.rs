@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::column::{ColumnKind, ColumnSpec, Values};
 use super::curve::CurveFormat;
-use super::writer::TableWriter;
+use super::parquet::TableWriter;
 use super::{TableError, TableHeader, write_atomically};
 use crate::response::harmonic_balance::Status;
 

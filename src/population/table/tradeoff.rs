@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::column::{ColumnKind, ColumnSpec, Values, key};
-use super::writer::TableWriter;
+use super::parquet::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{RowWork, Scenario};
 use crate::population::statistics::ErrorBound;

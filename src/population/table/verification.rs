@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::column::{Cells, Column, ColumnSpec, InScenario, key, specs, values_of};
-use super::writer::TableWriter;
+use super::parquet::TableWriter;
 use super::{TableError, TableHeader};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;

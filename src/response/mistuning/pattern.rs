@@ -28,6 +28,16 @@ pub struct Pattern {
 }
 
 impl Pattern {
+    /// A wheel of nominal contact with one relative deviation of the blade stiffness per blade, in blade order.
+    #[must_use]
+    pub fn of_blades(id: u32, deviations: Vec<f64>) -> Self {
+        Self {
+            id,
+            deviations: Deviations::PerBlade(deviations),
+            contact: ContactFactors::default(),
+        }
+    }
+
     /// Number of blades.
     #[must_use]
     pub fn blades(&self) -> usize {

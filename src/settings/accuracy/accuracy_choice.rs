@@ -21,7 +21,6 @@ use crate::settings::ladder::{
     Compared, LadderBench, LadderEnds, LadderReference, LadderSearch, Measured, error_bound,
     errors_of_load_cases, most_scenarios, sample_of_patterns,
 };
-use crate::settings::progress::Unwatched;
 use crate::settings::reduced_study::is_on_receptances;
 use crate::study::{AccuracyOptions, PipelineError, Study, StudyDigest, pattern_source};
 
@@ -86,7 +85,7 @@ fn on_the_ladder(
 ) -> Result<AccuracyChoice, PipelineError> {
     let accepted = accuracy.amplitude_error;
     let ids = sample_of_patterns(study, patterns, sampled_patterns(study));
-    let mut bench = LadderBench::new(study, sector, ids, &Unwatched)?;
+    let mut bench = LadderBench::new(study, sector, ids, &())?;
     let tolerance = (accepted / FINER_REFERENCE).max(FINEST_REFERENCE);
     let mut ends = LadderEnds::choose(&mut bench, tolerance, accepted)?;
     ends.base = ends.base.but_for_those_of(study);

@@ -21,7 +21,6 @@ use crate::settings::ladder::{
     Compared, LadderEngine, LadderRow, LadderSample, LadderValues, Remainders, error_bound,
     errors_of_load_cases, sampled_scenarios,
 };
-use crate::settings::progress::Unwatched;
 use crate::settings::reduced_study::{Stored, solver_of, stored_for};
 use crate::study::{PipelineError, Study};
 
@@ -110,7 +109,7 @@ impl Rows {
             &setting.enlarged(study, &harmonics),
             &stored.enlarged(&harmonics),
         )?;
-        let engine = LadderEngine::new(solver, &sample.scenarios, &Unwatched);
+        let engine = LadderEngine::new(solver, &sample.scenarios, &());
         let rows = engine.rows(patterns, ids);
         let tuned: Vec<Option<f64>> = sample
             .scenarios

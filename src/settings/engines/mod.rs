@@ -3,6 +3,8 @@
 mod accurate_engine;
 mod engine;
 mod reduced_engine;
+mod row_work;
 
 pub use engine::{Engine, EngineSource, SurrogateOf};
 pub use reduced_engine::ReducedEngineSource;
+pub(crate) use row_work::{RowWork, rows_of, tuned_references};

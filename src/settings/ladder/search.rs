@@ -259,7 +259,6 @@ fn chunks(ids: &[u32]) -> Vec<&[u32]> {
 mod tests {
     use super::super::reference::{LadderEnds, ReferenceKind};
     use super::*;
-    use crate::settings::progress::Unwatched;
     use crate::study::{Study, load_sector_model, pattern_source};
 
     #[test]
@@ -269,7 +268,7 @@ mod tests {
         let study = Study::read(&path).expect("a study");
         let sector = load_sector_model(&study).expect("a sector");
         let patterns = pattern_source(&study, &sector).expect("patterns");
-        let mut bench = LadderBench::new(&study, &sector, vec![0], &Unwatched).expect("a bench");
+        let mut bench = LadderBench::new(&study, &sector, vec![0], &()).expect("a bench");
         let ends = LadderEnds::choose(&mut bench, 0.002, 0.01).expect("two ends");
         let engine = bench.engine(&ends.base).expect("an engine");
         let rows = engine.rows(&patterns, &[0]);

@@ -18,10 +18,10 @@ use crate::model::sector::{Damper, ParametricOptions};
 use crate::response::forced_response::{Harmonics, SolverOptions};
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
 use crate::response::receptance::HIGHEST_HARMONIC;
-use crate::study::raw::{RawContact, RawHead, RawModel, RawModelKind, RawStudy, SCHEMA};
+use crate::study::raw::{RawContact, RawHead, RawModel, RawModelKind, RawOutput, RawStudy, SCHEMA};
 use crate::study::rotation::pressed_by;
 use crate::study::{
-    AccuracyOptions, MistuningSource, ModelSource, OutputOptions, RotationOptions, Study,
+    AccuracyOptions, Given, MistuningSource, ModelSource, OutputOptions, RotationOptions, Study,
     StudyError,
 };
 
@@ -73,6 +73,14 @@ impl Study {
     /// # Errors
     /// Everything in it that is not accepted.
     pub fn parse(path: &Path, text: &str) -> Result<Self, StudyError> {
+        Self::parse_with(path, text, Given::default())
+    }
+
+    /// Checks a text that leaves out what is `given` in memory.
+    ///
+    /// # Errors
+    /// Everything in it that is not accepted.
+    pub(crate) fn parse_with(path: &Path, text: &str, given: Given) -> Result<Self, StudyError> {
         let invalid = |findings| StudyError::Invalid {
             path: path.to_owned(),
             findings,
@@ -88,7 +96,7 @@ impl Study {
             map: &map,
             findings: Vec::new(),
         };
-        let study = resolve(&mut check, path, raw)?;
+        let study = resolve(&mut check, path, raw, given)?;
         match study {
             Some((study, rotation)) if check.findings.is_empty() => {
                 let map = map.clone();
@@ -107,6 +115,7 @@ fn resolve(
     check: &mut Check,
     path: &Path,
     mut raw: RawStudy,
+    given: Given,
 ) -> Result<Option<(Study, Option<RotationOptions>)>, StudyError> {
     match raw.schema {
         Some(SCHEMA) => {}
@@ -115,7 +124,10 @@ fn resolve(
     }
     let head = raw.study.unwrap_or_default();
     let (name, seed) = identity(check, &head);
-    let model = model(check, path, raw.model.unwrap_or_default());
+    let model = match given.model {
+        Some(sector) => Some(ModelSource::Given(sector)),
+        None => model(check, path, raw.model.unwrap_or_default()),
+    };
     reduction(check, &raw.reduction);
     let damping = damping(check, raw.damping);
     let nodal_diameter_damping = raw
@@ -152,7 +164,8 @@ fn resolve(
             check.conflict(key, &format!("basis = \"tuned_receptances\" {reason}"));
         }
     }
-    let mistuning = mistuning(check, path, raw.mistuning, &sweep, head.patterns)?;
+    let patterns = (head.patterns, given.records);
+    let mistuning = mistuning(check, path, raw.mistuning, &sweep, patterns)?;
     let (Some(model), Some(damping), Some(mistuning)) = (model, damping, mistuning) else {
         return Ok(None);
     };
@@ -186,25 +199,29 @@ fn resolve(
         solver,
         accuracy: None,
         stop,
-        output: OutputOptions {
-            patterns: raw.output.patterns,
-            compression: raw.output.compression.unwrap_or_default(),
-            stress_pa_per_m: raw.output.stress_pa_per_m.map(|scale| {
-                check.within(
-                    "output.stress_pa_per_m",
-                    scale,
-                    scale.is_finite() && scale > 0.0,
-                    "a finite number above 0, in Pa/m",
-                )
-            }),
-            stability: raw.output.stability.map_or(0, |rows| {
-                let accepted = "a whole number from 0 to 1000";
-                check.within("output.stability", rows, rows <= 1000, accepted) as u32
-            }),
-        },
+        output: output(check, &raw.output),
     };
     let study = with_accuracy(study, accuracy, |key| check.is_written(key));
     Ok(Some((study, rotation)))
+}
+
+fn output(check: &mut Check, raw: &RawOutput) -> OutputOptions {
+    OutputOptions {
+        patterns: raw.patterns,
+        compression: raw.compression.unwrap_or_default(),
+        stress_pa_per_m: raw.stress_pa_per_m.map(|scale| {
+            check.within(
+                "output.stress_pa_per_m",
+                scale,
+                scale.is_finite() && scale > 0.0,
+                "a finite number above 0, in Pa/m",
+            )
+        }),
+        stability: raw.stability.map_or(0, |rows| {
+            let accepted = "a whole number from 0 to 1000";
+            check.within("output.stability", rows, rows <= 1000, accepted) as u32
+        }),
+    }
 }
 
 fn identity(check: &mut Check, head: &RawHead) -> (String, u64) {

@@ -24,7 +24,8 @@ pub(super) struct ResolvedMistuning {
     pub(super) standard_deviations: Vec<Option<f64>>,
 }
 
-/// None where there is no usable source of patterns; the findings then say why.
+/// None where there is no usable source of patterns; the findings then say why. `patterns` are their number, and their records where
+/// these are in memory and not in the file.
 ///
 /// # Errors
 /// The file of patterns is not accepted.
@@ -33,7 +34,7 @@ pub(super) fn mistuning(
     study_file: &Path,
     raw: Option<RawMistuning>,
     sweep: &RawSweep,
-    patterns: Option<u64>,
+    (patterns, given): (Option<u64>, Option<PatternRecords>),
 ) -> Result<Option<ResolvedMistuning>, StudyError> {
     let accepted = "distribution = { kind = \"normal\" }, or file = \"...\"";
     let Some(raw) = raw else {
@@ -74,7 +75,7 @@ pub(super) fn mistuning(
                 );
             }
             let path = Study::beside(study_file, &written);
-            let records = read_patterns(&path)?;
+            let records = given.map_or_else(|| read_patterns(&path), Ok)?;
             if records.has_modes() && projection == Projection::Exact {
                 check.conflict(
                     "mistuning.projection",

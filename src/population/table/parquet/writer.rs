@@ -4,90 +4,17 @@ use std::path::{Path, PathBuf};
 
 use polars::prelude::{BatchedWriter, KeyValueMetadata, ParquetCompression, ParquetWriter};
 use polars_parquet::write::schema_to_metadata_key;
-use serde::{Deserialize, Serialize};
 
-use super::atomic::{AtomicFile, BufferedFile};
-use super::column::{Values, described_schema, frame, key, polars_schema};
-use super::{ColumnSpec, TableError};
+use super::columns::{described_schema, frame, polars_schema};
 use crate::identity;
-use crate::population::monte_carlo::{LoadCaseName, Scenario};
-
-/// Version of the tables; raised when a column changes its meaning.
-pub const SCHEMA_VERSION: u32 = 1;
-
-/// Key of the study digest in the metadata of a file.
-pub(super) const STUDY_DIGEST_KEY: &str = "blisk.study_digest";
-/// Key of the digests of what the rows of each scenario are made from, separated by commas.
-pub(super) const ROW_DIGESTS_KEY: &str = "blisk.row_digests";
-
-/// Compression of the pages.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Compression {
-    /// Zstandard; small. Default.
-    #[default]
-    Zstd,
-    /// Snappy; for readers without Zstandard.
-    Snappy,
-}
-
-/// What every table of a study says about itself.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct TableHeader {
-    /// Digest of the study, hexadecimal.
-    pub study_digest: String,
-    /// Compression of its tables.
-    pub compression: Compression,
-    /// Load case of each scenario, in their order; empty in a study without load cases. Every table
-    /// with scenarios and engine orders then has the column `load_case`.
-    pub load_cases: Vec<LoadCaseName>,
-}
-
-impl TableHeader {
-    /// Load case of each of `scenarios`, where the study has any.
-    #[must_use]
-    pub fn load_cases_of(scenarios: &[Scenario]) -> Vec<LoadCaseName> {
-        scenarios
-            .iter()
-            .filter_map(|scenario| scenario.load_case)
-            .collect()
-    }
-
-    /// Place of the column `load_case` in a table of `columns`, if it has one.
-    fn place_of_load_case(&self, columns: &[ColumnSpec]) -> Option<usize> {
-        let has_load_cases = !self.load_cases.is_empty() && columns.contains(&key::SCENARIO);
-        let engine_order = || columns.iter().position(|own| *own == key::ENGINE_ORDER);
-        has_load_cases.then(engine_order).flatten()
-    }
-
-    fn metadata(&self, columns: &[ColumnSpec], more: &[(&str, String)]) -> KeyValueMetadata {
-        let mut pairs = vec![
-            (
-                "blisk.schema_version".to_owned(),
-                SCHEMA_VERSION.to_string(),
-            ),
-            ("blisk.version".to_owned(), identity::VERSION.to_owned()),
-            (STUDY_DIGEST_KEY.to_owned(), self.study_digest.clone()),
-        ];
-        for (key, value) in more {
-            pairs.push(((*key).to_owned(), value.clone()));
-        }
-        for column in columns {
-            pairs.push((format!("unit.{}", column.name), column.unit.to_owned()));
-            pairs.push((
-                format!("description.{}", column.name),
-                column.description.to_owned(),
-            ));
-        }
-        // In the place of the schema that the writer would make, which says nothing about the columns.
-        let schema = schema_to_metadata_key(&described_schema(columns));
-        pairs.extend(schema.value.map(|value| (schema.key, value)));
-        KeyValueMetadata::from_static(pairs)
-    }
-}
+use crate::population::monte_carlo::LoadCaseName;
+use crate::population::table::atomic::{AtomicFile, BufferedFile};
+use crate::population::table::column::{Values, key};
+use crate::population::table::header::STUDY_DIGEST_KEY;
+use crate::population::table::{ColumnSpec, Compression, SCHEMA_VERSION, TableError, TableHeader};
 
 /// A Parquet file under construction.
-pub(super) struct TableWriter {
+pub(in crate::population::table) struct TableWriter {
     path: PathBuf,
     columns: Vec<ColumnSpec>,
     /// Place of the column `load_case`, and the load case of each scenario.
@@ -97,7 +24,7 @@ pub(super) struct TableWriter {
 }
 
 impl TableWriter {
-    pub(super) fn create(
+    pub(in crate::population::table) fn create(
         path: &Path,
         columns: &'static [ColumnSpec],
         header: &TableHeader,
@@ -107,7 +34,7 @@ impl TableWriter {
 
     /// Creates the file `path` with `columns`, and with more key-value pairs in the metadata than
     /// those of `header`.
-    pub(super) fn create_with(
+    pub(in crate::population::table) fn create_with(
         path: &Path,
         columns: &'static [ColumnSpec],
         header: &TableHeader,
@@ -127,7 +54,7 @@ impl TableWriter {
         let writer = ParquetWriter::new(file.writer()?)
             .with_compression(compression)
             .set_parallel(false)
-            .with_key_value_metadata(Some(header.metadata(&columns, more)))
+            .with_key_value_metadata(Some(metadata(header, &columns, more)))
             .batched(&polars_schema(&columns))
             .map_err(|error| file.failed(error))?;
         Ok(Self {
@@ -140,7 +67,10 @@ impl TableWriter {
     }
 
     /// Writes one row group.
-    pub(super) fn write(&mut self, mut values: Vec<Values>) -> Result<(), TableError> {
+    pub(in crate::population::table) fn write(
+        &mut self,
+        mut values: Vec<Values>,
+    ) -> Result<(), TableError> {
         if let Some((place, names)) = &self.load_case {
             let of_scenarios = self
                 .columns
@@ -161,7 +91,7 @@ impl TableWriter {
     }
 
     /// Writes the footer and puts the file in its place.
-    pub(super) fn finish(self) -> Result<(), TableError> {
+    pub(in crate::population::table) fn finish(self) -> Result<(), TableError> {
         self.writer
             .finish()
             .map_err(|error| self.file.failed(error))?;
@@ -169,7 +99,7 @@ impl TableWriter {
     }
 
     /// Writes the footer and puts the file in its folder under a name made from its digest.
-    pub(super) fn finish_as(
+    pub(in crate::population::table) fn finish_as(
         self,
         name: impl FnOnce(&str) -> Result<String, TableError>,
     ) -> Result<(), TableError> {
@@ -178,6 +108,36 @@ impl TableWriter {
             .map_err(|error| self.file.failed(error))?;
         self.file.commit_as(name)
     }
+}
+
+/// Version, study, and what each column holds.
+fn metadata(
+    header: &TableHeader,
+    columns: &[ColumnSpec],
+    more: &[(&str, String)],
+) -> KeyValueMetadata {
+    let mut pairs = vec![
+        (
+            "blisk.schema_version".to_owned(),
+            SCHEMA_VERSION.to_string(),
+        ),
+        ("blisk.version".to_owned(), identity::VERSION.to_owned()),
+        (STUDY_DIGEST_KEY.to_owned(), header.study_digest.clone()),
+    ];
+    for (key, value) in more {
+        pairs.push(((*key).to_owned(), value.clone()));
+    }
+    for column in columns {
+        pairs.push((format!("unit.{}", column.name), column.unit.to_owned()));
+        pairs.push((
+            format!("description.{}", column.name),
+            column.description.to_owned(),
+        ));
+    }
+    // In the place of the schema that the writer would make, which says nothing about the columns.
+    let schema = schema_to_metadata_key(&described_schema(columns));
+    pairs.extend(schema.value.map(|value| (schema.key, value)));
+    KeyValueMetadata::from_static(pairs)
 }
 
 /// The load cases of a column of scenarios; none where one of them has none.

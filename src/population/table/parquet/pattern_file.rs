@@ -5,22 +5,11 @@ use std::path::Path;
 
 use polars::prelude::{DataFrame, DataType, ParallelStrategy, ParquetReader, SerReader};
 
-use super::TableError;
+use crate::population::table::{PatternParquetError, TableError};
 use crate::response::mistuning::{PatternFileError, PatternRecord, PatternRecords};
 
 const ACCEPTED: &str = "a Parquet file with the columns pattern, blade (whole numbers), deviation \
                         (a number) and optionally mode (a whole number or null)";
-
-/// What is wrong with a Parquet file of patterns.
-#[derive(Debug, thiserror::Error)]
-pub enum PatternParquetError {
-    /// The file cannot be read as Parquet.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// Its content is not accepted.
-    #[error(transparent)]
-    Content(#[from] PatternFileError),
-}
 
 /// Reads the patterns of a Parquet file; "line" in errors is the row counted from 1.
 ///

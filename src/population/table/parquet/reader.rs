@@ -8,13 +8,14 @@ use polars::prelude::{
     DataFrame, DataType, ParallelStrategy, ParquetReader, PolarsError, SerReader,
 };
 
-use super::column::{Cells, Column, polars_type};
-use super::writer::{ROW_DIGESTS_KEY, STUDY_DIGEST_KEY};
-use super::{ColumnSpec, TableError};
+use super::columns::polars_type;
+use crate::population::table::column::{Cells, Column};
+use crate::population::table::header::{ROW_DIGESTS_KEY, STUDY_DIGEST_KEY};
+use crate::population::table::{ColumnSpec, TableError};
 
 /// An open Parquet file whose columns have been checked.
 #[derive(Debug)]
-pub(super) struct TableReader {
+pub(in crate::population::table) struct TableReader {
     path: PathBuf,
     columns: &'static [ColumnSpec],
     rows: usize,
@@ -24,7 +25,10 @@ pub(super) struct TableReader {
 
 impl TableReader {
     /// Opens `path` and checks that it has `columns` with their types (others may follow).
-    pub(super) fn open(path: &Path, columns: &'static [ColumnSpec]) -> Result<Self, TableError> {
+    pub(in crate::population::table) fn open(
+        path: &Path,
+        columns: &'static [ColumnSpec],
+    ) -> Result<Self, TableError> {
         guarded(path, || Self::open_unguarded(path, columns))
     }
 
@@ -65,21 +69,25 @@ impl TableReader {
         })
     }
 
-    pub(super) fn rows(&self) -> usize {
+    pub(in crate::population::table) fn rows(&self) -> usize {
         self.rows
     }
 
-    pub(super) fn study_digest(&self) -> Option<&str> {
+    pub(in crate::population::table) fn study_digest(&self) -> Option<&str> {
         self.study_digest.as_deref()
     }
 
     /// Digests of what the rows of each scenario are made from; one empty text where there are none.
-    pub(super) fn row_digests(&self) -> &[String] {
+    pub(in crate::population::table) fn row_digests(&self) -> &[String] {
         &self.row_digests
     }
 
     /// `count` rows from row `first` on.
-    pub(super) fn read(&self, first: usize, count: usize) -> Result<Slice<'_>, TableError> {
+    pub(in crate::population::table) fn read(
+        &self,
+        first: usize,
+        count: usize,
+    ) -> Result<Slice<'_>, TableError> {
         let frame = guarded(&self.path, || self.read_unguarded(first, count))?;
         let whole = frame.columns().iter().all(|column| column.len() == count);
         if !whole || frame.width() != self.columns.len() {
@@ -121,7 +129,7 @@ fn parquet(path: &Path) -> Result<ParquetReader<File>, TableError> {
 }
 
 /// Rows in memory, column by column.
-pub(super) struct Slice<'a> {
+pub(in crate::population::table) struct Slice<'a> {
     path: &'a Path,
     /// Place of its first row in the file.
     first: usize,
@@ -130,7 +138,7 @@ pub(super) struct Slice<'a> {
 
 impl Slice<'_> {
     /// Sets `column` in the rows that are read back, one for each of these.
-    pub(super) fn read_back<Row, Back>(
+    pub(in crate::population::table) fn read_back<Row, Back>(
         &self,
         column: &Column<Row, Back>,
         rows: &mut [Back],
@@ -169,7 +177,10 @@ impl Slice<'_> {
             .map_err(|error| TableError::damaged(self.path, error.to_string()))
     }
 
-    pub(super) fn int32(&self, name: &str) -> Result<Vec<Option<i32>>, TableError> {
+    pub(in crate::population::table) fn int32(
+        &self,
+        name: &str,
+    ) -> Result<Vec<Option<i32>>, TableError> {
         let column = self.column(name)?;
         let values = column
             .i32()
@@ -177,7 +188,10 @@ impl Slice<'_> {
         Ok(values.iter().collect())
     }
 
-    pub(super) fn int64(&self, name: &str) -> Result<Vec<Option<i64>>, TableError> {
+    pub(in crate::population::table) fn int64(
+        &self,
+        name: &str,
+    ) -> Result<Vec<Option<i64>>, TableError> {
         let column = self.column(name)?;
         let values = column
             .i64()
@@ -185,7 +199,10 @@ impl Slice<'_> {
         Ok(values.iter().collect())
     }
 
-    pub(super) fn float64(&self, name: &str) -> Result<Vec<Option<f64>>, TableError> {
+    pub(in crate::population::table) fn float64(
+        &self,
+        name: &str,
+    ) -> Result<Vec<Option<f64>>, TableError> {
         let column = self.column(name)?;
         let values = column
             .f64()
@@ -193,7 +210,10 @@ impl Slice<'_> {
         Ok(values.iter().collect())
     }
 
-    pub(super) fn boolean(&self, name: &str) -> Result<Vec<Option<bool>>, TableError> {
+    pub(in crate::population::table) fn boolean(
+        &self,
+        name: &str,
+    ) -> Result<Vec<Option<bool>>, TableError> {
         let column = self.column(name)?;
         let values = column
             .bool()
@@ -201,7 +221,10 @@ impl Slice<'_> {
         Ok(values.iter().collect())
     }
 
-    pub(super) fn string(&self, name: &str) -> Result<Vec<Option<String>>, TableError> {
+    pub(in crate::population::table) fn string(
+        &self,
+        name: &str,
+    ) -> Result<Vec<Option<String>>, TableError> {
         let column = self.column(name)?;
         let values = column
             .str()
