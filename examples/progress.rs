@@ -68,6 +68,9 @@ impl<W: Write + Send> Progress for Listener<W> {
 }
 
 /// Carries out the study file `study` in the folder `results`, and writes what it came to.
+///
+/// # Errors
+/// The study is refused or its folder not written, or `out` not.
 pub fn told(
     study: &Path,
     results: &Path,

@@ -205,6 +205,16 @@ impl ReceptanceEngine {
         self.pencils.iter().all(|pencil| pencil.exact)
     }
 
+    /// Largest relative error of the interpolated receptances so far.
+    #[must_use]
+    pub fn table_error(&self) -> f64 {
+        let tables = self.pencils.iter().flat_map(|pencil| &pencil.tables);
+        let tables = tables.filter_map(|own| own.get()?.as_ref());
+        tables
+            .map(|own| own.receptances.error())
+            .fold(0.0, f64::max)
+    }
+
     /// Strain coordinates of the blades in a harmonic under a limit.
     #[must_use]
     pub fn shape_count(&self, limit: Limit, harmonic: u32) -> usize {

@@ -160,6 +160,13 @@ impl Receptances {
         panels.get(&place).cloned()
     }
 
+    /// Largest relative error of the interpolation in the panels made so far and used.
+    pub(super) fn error(&self) -> f64 {
+        let panels = self.panels.read().unwrap_or_else(PoisonError::into_inner);
+        let errors = panels.values().map(|panel| panel.error);
+        errors.filter(|&error| error <= REFUSED).fold(0.0, f64::max)
+    }
+
     fn panel(&self, diameters: &[TunedDiameter], place: i32) -> Option<Panel> {
         let end = |place: i32| (f64::from(place) / PANELS).exp2();
         let ends = (end(place), end(place + 1));
