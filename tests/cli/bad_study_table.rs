@@ -582,14 +582,6 @@ pub const CASES: &[Case] = &[
     ),
     (
         "source = \"lumped\"",
-        "source = \"parametric\"\n[model.parametric]\ndamper = \"ring\"\ndamper_shape = \"wedge\"",
-        &[
-            "study.toml:12: model.parametric.damper_shape",
-            "not used with damper = \"ring\"; accepted: damper = \"underplatform\", or no damper_shape",
-        ],
-    ),
-    (
-        "source = \"lumped\"",
         "source = \"parametric\"\n[model.parametric]\ndamper = \"shroud\"\ndamper_body = \"rigid\"",
         &[
             "study.toml:12: model.parametric.damper_body",

@@ -14,7 +14,7 @@ use super::validate_solver::solver;
 use super::validate_stop::stop;
 use crate::input::{Finding, Problem, SourceMap};
 use crate::model::reduction::{Basis, ReductionOptions};
-use crate::model::sector::{Damper, ParametricOptions};
+use crate::model::sector::{Damper, DamperBody, DamperShape, ParametricOptions};
 use crate::response::forced_response::{Harmonics, SolverOptions};
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
 use crate::response::receptance::HIGHEST_HARMONIC;
@@ -252,11 +252,18 @@ fn check_damper(check: &mut Check, options: &ParametricOptions) {
         Damper::Shroud => "shroud",
         Damper::BladeToGround => "blade_to_ground",
     };
-    for key in ["damper_shape", "damper_body"] {
-        let written = format!("model.parametric.{key}");
-        if check.is_written(&written) {
+    // A resolved study writes the defaults of every key.
+    let keys = [
+        (
+            "damper_shape",
+            options.damper_shape != DamperShape::default(),
+        ),
+        ("damper_body", options.damper_body != DamperBody::default()),
+    ];
+    for (key, is_chosen) in keys {
+        if is_chosen {
             check.conflict(
-                &written,
+                &format!("model.parametric.{key}"),
                 &format!("it is not used with damper = \"{damper}\"; accepted: damper = \"underplatform\", or no {key}"),
             );
         }
