@@ -11,17 +11,15 @@ use blisk::{
     lumped_sector,
 };
 
-/// Frequency of each blade by itself, Hz, in the direction of rotation.
-pub const BLADES_HZ: [f64; 8] = [503.9, 498.2, 506.1, 501.0, 496.4, 504.7, 500.3, 507.2];
-/// Frequency of the blade as designed, Hz.
-pub const DESIGN_HZ: f64 = 502.0;
+/// Frequency of each blade by itself, Hz, in the direction of rotation, and that of the design.
+pub(crate) const BLADES_HZ: [f64; 8] = [503.9, 498.2, 506.1, 501.0, 496.4, 504.7, 500.3, 507.2];
+pub(crate) const DESIGN_HZ: f64 = 502.0;
 
 /// Normal loads of the ring per sector, N.
-pub const LOADS_N: [f64; 3] = [10.0, 40.0, 160.0];
+pub(crate) const LOADS_N: [f64; 3] = [10.0, 40.0, 160.0];
 
 /// Relative deviation of the stiffness of each blade: `(f / f0)^2 - 1`.
-#[must_use]
-pub fn deviations() -> Vec<f64> {
+pub(crate) fn deviations() -> Vec<f64> {
     let deviation = |hz: &f64| (hz / DESIGN_HZ).powi(2) - 1.0;
     BLADES_HZ.iter().map(deviation).collect()
 }
@@ -31,10 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Writes what is found to `out`.
-///
-/// # Errors
-/// The wheel is not solved, or `out` not written.
-pub fn told(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
+pub(crate) fn told(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
     // Blade, disk and ring of a sector; the ring touches the disk.
     let sector = lumped_sector(&LumpedOptions {
         sectors: BLADES_HZ.len(),

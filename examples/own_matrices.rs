@@ -61,10 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Writes what is found to `out`.
-///
-/// # Errors
-/// The matrices are no sector, the wheel is not solved, or `out` not written.
-pub fn told(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
+pub(crate) fn told(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
     let wheels = Mistuning::Random {
         law: Distribution::Normal,
         standard_deviations: vec![0.03],

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use blisk::{Progress, RunRequest, Stage, Status, Study, run};
 
 /// Tells stages and tenths of the rows; called from every thread that solves rows.
-pub struct Listener<W> {
+pub(crate) struct Listener<W> {
     out: Mutex<W>,
     planned: AtomicU64,
     done: AtomicU64,
@@ -19,7 +19,7 @@ pub struct Listener<W> {
 
 impl<W: Write> Listener<W> {
     /// Nothing is planned yet.
-    pub fn new(out: W) -> Self {
+    pub(crate) fn new(out: W) -> Self {
         Self {
             out: Mutex::new(out),
             planned: AtomicU64::new(0),
@@ -68,10 +68,7 @@ impl<W: Write + Send> Progress for Listener<W> {
 }
 
 /// Carries out the study file `study` in the folder `results`, and writes what it came to.
-///
-/// # Errors
-/// The study is refused or its folder not written, or `out` not.
-pub fn told(
+pub(crate) fn told(
     study: &Path,
     results: &Path,
     out: &mut (impl Write + Send),
