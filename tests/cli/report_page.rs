@@ -138,6 +138,34 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
 }
 
 #[test]
+fn a_load_by_the_median_alone_is_none_to_design_for() {
+    let (_place, page, _) = reported(&study().replace("patterns = 80", "patterns = 20"), 0);
+    let [load, percentile, _] = &big_numbers(&page)[..] else {
+        panic!("three numbers: {page}");
+    };
+    assert_eq!(percentile[0], "P50 of the peak amplitude");
+    let words = "by the P50 alone, not a load to design for: no P95 is known";
+    assert!(load[2].contains(words), "{}", load[2]);
+    // A P95 has no such word.
+    let (_place, page, _) = reported(&study(), 0);
+    assert!(!page.contains("not a load to design for"));
+}
+
+#[test]
+fn the_first_screen_says_that_other_settings_have_loads_of_their_own() {
+    let both = study().replace(
+        "standard_deviation = [0.03]",
+        "standard_deviation = [0.03, 0.04]",
+    );
+    let (_place, page, report) = reported(&both, 0);
+    assert_eq!(report["groups"].as_array().expect("a list").len(), 2);
+    let [load, ..] = &big_numbers(&page)[..3] else {
+        panic!("three numbers: {page}");
+    };
+    assert!(load[2].contains("3 %; 1 more below"), "{}", load[2]);
+}
+
+#[test]
 fn a_load_of_a_speed_has_four_digits_and_its_speed() {
     let of_speed = study()
         .replace(
@@ -179,7 +207,7 @@ fn the_first_screen_says_whether_anything_is_wrong() {
     let (_place, page, report) = reported(&quiet, 0);
     assert_eq!(report["summary"]["warnings"], serde_json::json!([]));
     assert!(page.contains("<div class=\"health good\">"));
-    assert!(page.contains("Nothing is wrong: all 800 rows have a result"));
+    assert!(page.contains("No problem found: all 800 rows have a result"));
     assert!(!page.contains("#warnings"));
 
     let (_place, page, report) = reported(&study(), 0);

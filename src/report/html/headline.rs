@@ -11,6 +11,9 @@ use crate::report::{
 /// Warnings that the first screen names.
 const NAMED: usize = 3;
 
+/// Percentile below which a choice of the load says too little of the highest blades.
+const LEAST_OF_A_DESIGN: f64 = 90.0;
+
 /// Letters of a load that is shown as it is written.
 const LONGEST_LOAD: usize = 8;
 
@@ -118,7 +121,7 @@ fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
             vec!["no load has a percentile to choose it by".to_owned()],
         ),
         unknown("Percentile of the peak amplitude", vec![why]),
-        unknown("Numerical error of it, at most", Vec::new()),
+        unknown("Numerical error, at most", Vec::new()),
     ]
 }
 
@@ -148,12 +151,26 @@ fn notes_of_load(
     let percent = percent_words(choice.percent);
     notes.push(if others.is_empty() {
         format!(
-            "lowest P{percent} of {} loads, 95 % sure",
+            "the lowest P{percent} of {} loads, at 95 % confidence",
             group.scenarios.len()
         )
     } else {
         format!("could be as good: {}", others.join(", "))
     });
+    let mut higher = { group.choices.iter() }.filter(|own| own.percent > choice.percent);
+    let higher = higher.next_back();
+    notes.extend(
+        higher
+            .filter(|_| choice.percent < LEAST_OF_A_DESIGN)
+            .map(|higher| {
+                let higher = percent_words(higher.percent);
+                format!("by the P{percent} alone, not a load to design for: no P{higher} is known")
+            }),
+    );
+    if report.groups.len() > 1 {
+        let others = report.groups.len() - 1;
+        notes.push(format!("of {}; {others} more below", setting(group)));
+    }
     if !choice.enclosed {
         notes.push("no load on both sides was studied: the optimum may lie beyond".to_owned());
     }
@@ -179,10 +196,10 @@ fn notes_of_percentile(
             units.length(upper)
         ),
         Some((Some(lower), None)) => {
-            format!("{confidence} % sure: above {}", units.length(lower))
+            format!("above {} at {confidence} % confidence", units.length(lower))
         }
         Some((None, Some(upper))) => {
-            format!("{confidence} % sure: below {}", units.length(upper))
+            format!("below {} at {confidence} % confidence", units.length(upper))
         }
         _ => "no interval".to_owned(),
     });
@@ -209,7 +226,7 @@ fn number_of_error(
     percent: &str,
     error: Option<&PercentileError>,
 ) -> BigNumber {
-    let label = "Numerical error of it, at most".to_owned();
+    let label = format!("Numerical error of P{percent}, at most");
     let bounds = error.and_then(|own| Some((own.lowest?, own.highest?, own.percentile.value?)));
     let Some((low, high, value)) = bounds else {
         let errors = { group.errors.iter() }.find(|own| own.scenario == lowest);
@@ -231,9 +248,9 @@ fn number_of_error(
     let widths = error.and_then(|own| Some((own.numerical_width()?, own.statistical_width()?)));
     let beside = widths.map(|(numerical, statistical)| {
         if numerical > statistical {
-            format!("more than the interval of P{percent}: finer solutions help more")
+            format!("more than the interval of P{percent}: finer solutions narrow the result")
         } else {
-            format!("less than the interval of P{percent}: more patterns help more")
+            format!("less than the interval of P{percent}: more patterns narrow the result")
         }
     });
     BigNumber {
@@ -261,13 +278,13 @@ pub(super) fn health(report: &StudyReport) -> Health {
     let (class, verdict) = if summary.failures_cost_a_statistic() {
         (
             "bad",
-            "Something is wrong: failed rows cost a result.".to_owned(),
+            "Something is wrong: rows failed, and results are missing.".to_owned(),
         )
     } else if findings.is_empty() {
         (
             "good",
             format!(
-                "Nothing is wrong: all {} rows have a result, and there is no warning.",
+                "No problem found: all {} rows have a result, and there is no warning.",
                 summary.rows.ok()
             ),
         )
