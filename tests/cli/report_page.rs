@@ -162,7 +162,11 @@ fn the_first_screen_says_that_other_settings_have_loads_of_their_own() {
     let [load, ..] = &big_numbers(&page)[..3] else {
         panic!("three numbers: {page}");
     };
-    assert!(load[2].contains("3 %; 1 more below"), "{}", load[2]);
+    assert!(
+        load[2].contains("for the other setting see below"),
+        "{}",
+        load[2]
+    );
 }
 
 #[test]

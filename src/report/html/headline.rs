@@ -151,7 +151,7 @@ fn notes_of_load(
     let percent = percent_words(choice.percent);
     notes.push(if others.is_empty() {
         format!(
-            "the lowest P{percent} of {} loads, at 95 % confidence",
+            "lowest P{percent} of {} loads (95 % confidence)",
             group.scenarios.len()
         )
     } else {
@@ -169,7 +169,10 @@ fn notes_of_load(
     );
     if report.groups.len() > 1 {
         let others = report.groups.len() - 1;
-        notes.push(format!("of {}; {others} more below", setting(group)));
+        notes.push(match others {
+            1 => "for the other setting see below".to_owned(),
+            _ => format!("for {others} other settings see below"),
+        });
     }
     if !choice.enclosed {
         notes.push("no load on both sides was studied: the optimum may lie beyond".to_owned());
@@ -248,9 +251,9 @@ fn number_of_error(
     let widths = error.and_then(|own| Some((own.numerical_width()?, own.statistical_width()?)));
     let beside = widths.map(|(numerical, statistical)| {
         if numerical > statistical {
-            format!("more than the interval of P{percent}: finer solutions narrow the result")
+            format!("more than the interval of P{percent}: refine first")
         } else {
-            format!("less than the interval of P{percent}: more patterns narrow the result")
+            format!("less than the interval of P{percent}: add patterns first")
         }
     });
     BigNumber {
@@ -276,10 +279,7 @@ pub(super) fn health(report: &StudyReport) -> Health {
         );
     }
     let (class, verdict) = if summary.failures_cost_a_statistic() {
-        (
-            "bad",
-            "Something is wrong: rows failed, and results are missing.".to_owned(),
-        )
+        ("bad", "Something is wrong: results are missing.".to_owned())
     } else if findings.is_empty() {
         (
             "good",
