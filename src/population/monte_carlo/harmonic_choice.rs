@@ -14,9 +14,10 @@ pub struct HarmonicChoice {
     /// The set, ascending, with 1.
     pub harmonics: Vec<u32>,
     /// What the set leaves out of the tuned peak of the full contact model, on tuned receptances of that of every judging wheel, by
-    /// [`ErrorEstimate::harmonics`] and its doubt; none where one has no peak.
+    /// [`crate::response::forced_response::ErrorEstimate::harmonics`] and its doubt; none where one has no peak.
     pub remainder: Option<f64>,
-    /// The largest of [`ErrorEstimate::sampling`] there; none on a basis, whose rows are asked themselves.
+    /// The largest of [`crate::response::forced_response::ErrorEstimate::sampling`] there; none on a basis, whose rows are asked
+    /// themselves.
     pub sampling: Option<f64>,
 }
 

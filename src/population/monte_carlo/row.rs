@@ -52,7 +52,7 @@ pub struct ResponseRow {
     pub sampling_error: Option<f64>,
     /// Relative change of the amplitude by the harmonics up to 15 outside of the set.
     pub harmonic_error: Option<f64>,
-    /// Bound on the relative error of the amplitude, see [`super::stated_error`].
+    /// Bound on the relative error of the amplitude, see `stated_error.rs`.
     pub stated_error: Option<f64>,
     /// Whether sampling and harmonic error are within their tolerances.
     pub error_within_tolerance: Option<bool>,
