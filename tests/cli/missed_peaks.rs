@@ -11,7 +11,7 @@ use super::blisk::Place;
 
 /// 36 sectors whose disk joins the blades strongly: resonances from 345 to 370 Hz, some of which the tuned wheel does not answer in, so
 /// that friction, which takes nine tenths off the highest, leaves them as they are.
-const WHEEL: &str = r#"schema = 1
+pub(super) const WHEEL: &str = r#"schema = 1
 [study]
 name = "lumped36"
 seed = 36

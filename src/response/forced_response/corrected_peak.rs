@@ -12,7 +12,7 @@
 //! side of it, where another harmonic that meets a resonance of its own would show.
 //!
 //! Between few and all may stand a set that is cheap and close: then the same is done with that set first, and what all harmonics
-//! leave beyond it is one more force, that takes two or three solutions with all of them to know.
+//! leave beyond it is one more force, that takes three or four solutions with all of them to know.
 
 use super::climb::{Climb, Known};
 use super::peak::{Peak, SearchPlan};

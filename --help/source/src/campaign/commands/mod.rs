@@ -1,0 +1,42 @@
+//! The work of each command beside the run: what is asked and what is found; nothing here prints.
+
+mod campbell;
+mod compare;
+mod estimate;
+mod estimate_sample;
+mod load_search;
+mod merge;
+mod optimum;
+mod pairing;
+mod peak_audit;
+mod plan;
+mod repair;
+mod replay;
+mod report_model;
+mod report_wheels;
+mod response_curve;
+mod solved_loads;
+mod study_report;
+mod tails;
+mod time_domain;
+mod traced_curve;
+mod tradeoff;
+mod verify;
+
+pub use campbell::{CampbellRequest, campbell};
+pub use compare::{CompareRequest, compare};
+pub use estimate::{EstimateRequest, estimate};
+pub use merge::merge;
+pub use optimum::{OptimumRequest, find_optimum};
+pub use pairing::{PairedPlaces, Pairing};
+pub use peak_audit::audit_peaks;
+pub use plan::{PlanRequest, plan};
+pub use repair::{Repair, repair};
+pub use replay::{Replay, ReplayRequest, replay};
+pub use response_curve::{CurveRequest, full_response_curve, response_curve, traced_response};
+pub use study_report::{ReportRequest, report};
+pub use tails::fit_result_tails;
+pub use time_domain::{TimeDomainRequest, verify_in_time};
+pub use traced_curve::{TracedCurve, TracedFold};
+pub use tradeoff::{TradeoffRequest, tradeoff};
+pub use verify::{VerifyRequest, verify};

@@ -1,0 +1,127 @@
+//! A random sample of delivered rows swept densely: whether the peak search missed a higher peak.
+
+use rayon::prelude::*;
+
+use super::VerifyRequest;
+use crate::campaign::store::{ResultsFolder, StoredModel, StoredStudy};
+use crate::population::monte_carlo::{ResponseRow, Scenario};
+use crate::population::statistics::draw;
+use crate::population::table::{PeakAuditRecord, TableHeader, write_peak_audit, write_side_table};
+use crate::report::PeakAuditReport;
+use crate::response::forced_response::{DensePeak, FrequencyBand, dense_peak};
+use crate::response::harmonic_balance::Status;
+use crate::response::mistuning::Pattern;
+use crate::settings::{Engine, EngineSource, Progress, Stage};
+use crate::study::PipelineError;
+
+/// Share of the width of the searched band that the sweep goes beyond either end: a peak outside of
+/// the band is what the search cannot see.
+const BEYOND: f64 = 0.25;
+
+/// Sweeps a sample of the rows of a finished study and writes `peak_audit.parquet` into its folder.
+///
+/// # Errors
+/// A table cannot be read or written, the folder is in use, or the model cannot be reduced. A row
+/// whose peak was missed is no error: the report says so.
+pub fn audit_peaks(
+    stored: &StoredStudy,
+    source: &dyn EngineSource,
+    request: VerifyRequest,
+    progress: &dyn Progress,
+) -> Result<PeakAuditReport, PipelineError> {
+    let folder = ResultsFolder::open(&stored.folder)?;
+    let stored = &stored.again()?;
+    request.pool()?.install(|| {
+        let seed = request.seed.unwrap_or(stored.manifest.seed);
+        let rows = stored.row_count()?;
+        let drawn = stored.rows_at(&draw(rows, request.sample, seed))?;
+        progress.stage(Stage::LoadModel);
+        let model = stored.model()?;
+        progress.stage(Stage::Reduce);
+        let engine = stored.engine(&model, source)?;
+        progress.begin_rows(drawn.len() as u64, 0);
+        let records = drawn
+            .into_par_iter()
+            .with_max_len(1)
+            .map(|row| {
+                let record = audit_row(stored, &model, engine.as_ref(), row)?;
+                progress.row(record.delivered.status);
+                Ok(record)
+            })
+            .collect::<Result<Vec<_>, PipelineError>>()?;
+        progress.stage(Stage::Tables);
+        let header = TableHeader {
+            study_digest: stored.manifest.study_digest.clone(),
+            compression: stored.study.output.compression,
+            load_cases: stored.load_cases(),
+        };
+        write_side_table(folder.path(), "peak_audit.parquet", |path| {
+            write_peak_audit(path, &records, &header, seed)
+        })?;
+        Ok(PeakAuditReport::new(
+            &stored.manifest.name,
+            seed,
+            rows,
+            &records,
+        ))
+    })
+}
+
+fn audit_row(
+    stored: &StoredStudy,
+    model: &StoredModel,
+    engine: &dyn Engine,
+    delivered: ResponseRow,
+) -> Result<PeakAuditRecord, PipelineError> {
+    let no_row = || PipelineError::NoRow {
+        scenario: delivered.scenario,
+        pattern: delivered.pattern,
+        scenarios: stored.manifest.scenarios.len(),
+    };
+    let (scenario, tuned) = stored.scenario(delivered.scenario).ok_or_else(no_row)?;
+    let pattern = model
+        .pattern(delivered.pattern, &scenario)
+        .ok_or_else(no_row)?;
+    let swept = if delivered.status == Status::Ok {
+        let band = stored.study.solver.frequency_band;
+        sweep(engine, &scenario, &pattern, tuned.frequency_hz, band)
+    } else {
+        None
+    };
+    Ok(PeakAuditRecord {
+        scenario,
+        delivered,
+        swept,
+    })
+}
+
+/// The highest value in and around the band that the peak was sought in; none where the linear
+/// limits give no band.
+fn sweep(
+    engine: &dyn Engine,
+    scenario: &Scenario,
+    pattern: &Pattern,
+    tuned_hz: Option<f64>,
+    band: FrequencyBand,
+) -> Option<DensePeak> {
+    let plan = engine.search_plan(scenario, pattern, tuned_hz).ok()?;
+    let (start, stop) = plan.band_hz;
+    let margin = match band {
+        FrequencyBand::Auto => BEYOND * (stop - start),
+        FrequencyBand::Fixed { .. } => 0.0,
+    };
+    let half_bandwidth_hz = plan.envelope.linear_half_bandwidth_hz;
+    let band_hz = ((start - margin).max(0.5 * start), stop + margin);
+    Some(dense_peak(band_hz, half_bandwidth_hz, |frequencies| {
+        let points = engine.curve(scenario, Some(pattern), frequencies);
+        points
+            .chunks(points.len() / frequencies.len())
+            .map(|blades| {
+                let amplitudes = blades.iter().map(|point| point.amplitude_m);
+                amplitudes.fold(None, |largest: Option<f64>, amplitude| {
+                    amplitude.map(|a| largest.map_or(a, |largest| largest.max(a)))
+                })
+            })
+            .collect()
+    }))
+}

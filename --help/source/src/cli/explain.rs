@@ -1,0 +1,191 @@
+//! `blisk explain`, `blisk schema` and `blisk completions`: what a study file and the command line accept.
+
+use std::fmt;
+
+use clap::Args;
+use clap_complete::Shell;
+use serde::{Serialize, Serializer};
+
+use super::exit::Failure;
+use super::{ExitStatus, output};
+use crate::input::nearest_key_names;
+use crate::input::{Term, terms_about};
+use crate::model::sector::import::{import_keys, import_schema};
+use crate::study::{KeySpec, keys_about, keys_below, nearest_keys, study_schema};
+
+/// Arguments of `blisk explain`.
+#[derive(Debug, Args)]
+pub struct ExplainArguments {
+    /// A key, like `solver.peak_tolerance`, a table, like `solver`, or words, like `friction`, that are sought in
+    /// names and meanings; `import` for the keys of import files [default: all keys of study files].
+    #[arg(value_name = "KEY|WORD")]
+    words: Vec<String>,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Arguments of `blisk schema`.
+#[derive(Debug, Args)]
+pub struct SchemaArguments {
+    /// The schema of import files (`blisk import`) instead.
+    #[arg(long)]
+    import: bool,
+}
+
+/// Arguments of `blisk completions`.
+#[derive(Debug, Args)]
+pub struct CompletionsArguments {
+    /// The shell.
+    shell: Shell,
+}
+
+/// A key in the words of a user.
+#[derive(Debug, Serialize)]
+struct Explanation {
+    key: String,
+    accepted: String,
+    default: &'static str,
+    required: bool,
+    meaning: &'static str,
+}
+
+impl From<&KeySpec> for Explanation {
+    fn from(key: &KeySpec) -> Self {
+        Self {
+            key: key.key.clone(),
+            accepted: key.value.to_string(),
+            default: key.default,
+            required: key.required,
+            meaning: key.meaning,
+        }
+    }
+}
+
+impl fmt::Display for Explanation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.key)?;
+        let lines = [
+            ("accepted", self.accepted.as_str()),
+            ("default", self.default),
+            ("meaning", self.meaning),
+        ];
+        for (name, words) in lines {
+            if !words.is_empty() {
+                writeln!(f, "  {name:<8}  {}", plain(words))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Markdown as plain text: no marks of code, and a link as the file it leads to.
+fn plain(words: &str) -> String {
+    let mut parts = words.split(['[', ']']);
+    let mut plain = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        // `[file](file)` comes as `file` and `(file)...`.
+        match part.strip_prefix('(').and_then(|rest| rest.split_once(')')) {
+            Some((_, rest)) => plain.push_str(rest),
+            None => plain.push_str(part),
+        }
+    }
+    plain.replace('`', "")
+}
+
+pub(super) fn explain(arguments: &ExplainArguments) -> Result<ExitStatus, Failure> {
+    let found = Explanations::about(&arguments.words.join(" "))?;
+    output::result(arguments.json, &found)?;
+    Ok(ExitStatus::Done)
+}
+
+/// Keys and terms that were asked for: as JSON the keys, as text both.
+#[derive(Debug)]
+pub struct Explanations {
+    keys: Vec<Explanation>,
+    terms: Vec<Term>,
+}
+
+impl Explanations {
+    /// The keys that `name` is or that stand below it, else the keys and terms that have its words; all keys for "".
+    ///
+    /// # Errors
+    /// There is none of them; the message has the nearest names.
+    pub fn about(name: &str) -> Result<Self, Failure> {
+        let mut keys = keys_below(name);
+        if keys.is_empty() {
+            keys = import_keys_below(name);
+        }
+        let mut terms = Vec::new();
+        if keys.is_empty() {
+            keys = keys_about(name);
+            terms = terms_about(name);
+        }
+        if keys.is_empty() && terms.is_empty() {
+            let near = if name.starts_with("import.") {
+                nearest_key_names(&import_keys_below("import"), name)
+            } else {
+                nearest_keys(name)
+            };
+            return Err(Failure::usage(format!(
+                "there is no key {name}; did you mean {}?",
+                near.join(" or ")
+            )));
+        }
+        let keys = keys.iter().map(Explanation::from).collect();
+        Ok(Self { keys, terms })
+    }
+}
+
+impl Serialize for Explanations {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.keys.serialize(serializer)
+    }
+}
+
+impl fmt::Display for Explanations {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let apart = !self.terms.is_empty() || self.keys.len() > 1;
+        let terms = { self.terms.iter() }
+            .map(|term| format!("{}\n  meaning   {}\n", term.word, term.meaning));
+        let text: Vec<String> = terms
+            .chain(self.keys.iter().map(ToString::to_string))
+            .collect();
+        f.write_str(&text.join(if apart { "\n" } else { "" }))
+    }
+}
+
+/// Keys of import files, each after the word `import`: all of them for that word, else those that `name` is, or
+/// that stand below it.
+fn import_keys_below(name: &str) -> Vec<KeySpec> {
+    let name = name.strip_prefix("import.").unwrap_or(name);
+    let below = format!("{name}.");
+    let chosen = |key: &KeySpec| name == "import" || key.key == name || key.key.starts_with(&below);
+    import_keys()
+        .into_iter()
+        .filter(chosen)
+        .map(|key| KeySpec {
+            key: format!("import.{}", key.key),
+            ..key
+        })
+        .collect()
+}
+
+pub(super) fn schema(arguments: &SchemaArguments) -> Result<ExitStatus, Failure> {
+    output::json_only(&if arguments.import {
+        import_schema()
+    } else {
+        study_schema()
+    })?;
+    Ok(ExitStatus::Done)
+}
+
+pub(super) fn completions(
+    arguments: &CompletionsArguments,
+    mut program: clap::Command,
+) -> Result<ExitStatus, Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut program, "blisk", &mut script);
+    output::text(&String::from_utf8_lossy(&script))?;
+    Ok(ExitStatus::Done)
+}

@@ -1,0 +1,121 @@
+//! From the command line to an exit code.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::{CommandFactory, Parser};
+
+use super::exit::Failure;
+use super::{
+    Arguments, Command, ExitStatus, campbell, check, compare, estimate, explain, import, init,
+    interrupt, man, merge, model, optimum, output, plan, replay, report, response, run, slurm,
+    stats, status, tradeoff, verify,
+};
+
+/// Carries out the command line `arguments` (the first is the program's name) of this executable.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
+    let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("blisk"));
+    main_of(&program, arguments)
+}
+
+/// Carries out the command line `arguments` of the command `program`, which need not be this executable.
+pub fn main_of(program: &Path, arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => return output::of_clap(&error).unwrap_or_else(|failure| failed(&failure)),
+    };
+    if let Err(error) = interrupt::watch(arguments.command.kept()) {
+        return failed(&Failure {
+            status: ExitStatus::InternalError,
+            message: format!("cannot watch for signals: {error}"),
+        });
+    }
+    carry_out(program, arguments.command).unwrap_or_else(|failure| failed(&failure))
+}
+
+fn failed(failure: &Failure) -> ExitStatus {
+    output::message(&format!("error: {}", failure.message));
+    interrupt::ended(failure.status)
+}
+
+fn carry_out(program: &Path, command: Command) -> Result<ExitStatus, Failure> {
+    match command {
+        Command::Init(arguments) => init::command(&arguments),
+        Command::Check { study, json } => check::command(&study, json),
+        Command::Model {
+            study,
+            export,
+            json,
+        } => model::command(&study, export.as_deref(), json),
+        Command::Campbell(arguments) => campbell::command(&arguments),
+        Command::Import(arguments) => import::command(&arguments),
+        Command::Plan(arguments) => plan::command(&arguments),
+        Command::Run(arguments) => run::command(arguments),
+        Command::Merge(arguments) => merge::command(&arguments),
+        Command::Slurm(arguments) => slurm::command(&arguments, program),
+        Command::Status(arguments) => status::command(&arguments),
+        Command::Response {
+            study,
+            pattern,
+            load,
+            frequencies,
+            out,
+            load_case,
+            engine_order,
+            standard_deviation,
+            fidelity,
+            continuation,
+            json,
+        } => response::command(&response::ResponseArguments {
+            study,
+            pattern,
+            load,
+            frequencies,
+            out,
+            load_case,
+            engine_order,
+            standard_deviation,
+            fidelity,
+            continuation,
+            json,
+        }),
+        Command::Replay(arguments) => replay::command(&arguments),
+        Command::Verify {
+            target,
+            sample,
+            seed,
+            dense_sweep,
+            time_domain,
+            scenario,
+            pattern,
+            repair,
+            integrity,
+            study,
+            threads,
+            json,
+        } => verify::command(&verify::VerifyArguments {
+            target,
+            sample,
+            seed,
+            question: match (repair, integrity) {
+                (true, _) => verify::Question::Files,
+                (_, true) => verify::Question::Integrity,
+                _ => verify::Question::of(dense_sweep, time_domain, scenario.zip(pattern)),
+            },
+            study,
+            threads,
+            json,
+        }),
+        Command::Compare(arguments) => compare::command(&arguments),
+        Command::Optimum(arguments) => optimum::command(&arguments),
+        Command::Tradeoff(arguments) => tradeoff::command(&arguments),
+        Command::Estimate(arguments) => estimate::command(&arguments),
+        Command::Stats(arguments) => stats::command(&arguments),
+        Command::Report(arguments) => report::command(&arguments),
+        Command::Plot(arguments) => report::plot(&arguments),
+        Command::Explain(arguments) => explain::explain(&arguments),
+        Command::Schema(arguments) => explain::schema(&arguments),
+        Command::Completions(arguments) => explain::completions(&arguments, Arguments::command()),
+        Command::Man(arguments) => man::command(&arguments, Arguments::command()),
+    }
+}

@@ -1,0 +1,20 @@
+//! The files that a user writes in TOML: which keys they may have, where each stands, and what is wrong with it.
+
+mod check;
+mod finding;
+mod key;
+mod schema;
+mod source_map;
+mod terms;
+mod value;
+
+pub(crate) use check::check;
+pub(crate) use finding::listed;
+pub use finding::{Excerpt, Finding, Problem};
+pub(crate) use key::{Entry, REQUIRED, entry};
+pub use key::{KeySpec, nearest_key_names};
+pub(crate) use schema::schema_of;
+pub(crate) use source_map::{SourceMap, nearest};
+pub(crate) use terms::mentions;
+pub use terms::{Term, term_of, terms_about};
+pub use value::{Range, Value};

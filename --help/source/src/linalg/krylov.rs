@@ -1,0 +1,88 @@
+//! Generalised minimal residuals (Saad & Schultz 1986, SIAM J. Sci. Stat. Comput. 7(3)).
+
+use super::dot;
+
+/// Products with the matrix at most.
+const PRODUCTS: usize = 120;
+
+/// `x` with `A x` near `right`, until the residual is `enough` of `right` or 120 products are spent, and the number of products
+/// with A that it took.
+pub fn gmres(
+    right: &[f64],
+    enough: f64,
+    mut product: impl FnMut(&[f64]) -> Vec<f64>,
+) -> (Vec<f64>, usize) {
+    let size = dot(right, right).sqrt();
+    if size == 0.0 || !size.is_finite() {
+        return (vec![0.0; right.len()], 0);
+    }
+    let mut basis: Vec<Vec<f64>> = vec![right.iter().map(|b| b / size).collect()];
+    // Columns of the triangle, and the rotations that made them.
+    let mut triangle: Vec<Vec<f64>> = Vec::new();
+    let mut rotations: Vec<(f64, f64)> = Vec::new();
+    let mut left = vec![size];
+    while triangle.len() < PRODUCTS {
+        let mut vector = product(&basis[triangle.len()]);
+        let mut column = vec![0.0; basis.len()];
+        for _ in 0..2 {
+            for (share, own) in column.iter_mut().zip(&basis) {
+                let part = dot(own, &vector);
+                *share += part;
+                vector.iter_mut().zip(own).for_each(|(v, o)| *v -= part * o);
+            }
+        }
+        let norm = dot(&vector, &vector).sqrt();
+        for (at, (cosine, sine)) in rotations.iter().enumerate() {
+            let (a, b) = (column[at], column[at + 1]);
+            column[at] = cosine * a + sine * b;
+            column[at + 1] = cosine * b - sine * a;
+        }
+        let last = column.len() - 1;
+        let length = column[last].hypot(norm);
+        if length == 0.0 || !length.is_finite() {
+            break;
+        }
+        let (cosine, sine) = (column[last] / length, norm / length);
+        column[last] = length;
+        rotations.push((cosine, sine));
+        triangle.push(column);
+        let rest = left[last];
+        left[last] = cosine * rest;
+        left.push(-sine * rest);
+        if (sine * rest).abs() <= enough * size || norm == 0.0 {
+            break;
+        }
+        basis.push(vector.iter().map(|v| v / norm).collect());
+    }
+    let count = triangle.len();
+    let mut shares = left[..count].to_vec();
+    for row in (0..count).rev() {
+        let known: f64 = (row + 1..count).map(|j| triangle[j][row] * shares[j]).sum();
+        shares[row] = (shares[row] - known) / triangle[row][row];
+    }
+    let mut x = vec![0.0; right.len()];
+    for (share, own) in shares.iter().zip(&basis) {
+        x.iter_mut().zip(own).for_each(|(x, o)| *x += share * o);
+    }
+    (x, count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::gmres;
+
+    #[test]
+    fn a_small_system_is_solved() {
+        let a = [[4.0, 1.0, 0.5], [-2.0, 5.0, 0.25], [1.0, 2.0, 6.0]];
+        let product = |x: &[f64]| -> Vec<f64> {
+            let row = |row: &[f64; 3]| row.iter().zip(x).map(|(a, x)| a * x).sum();
+            a.iter().map(row).collect()
+        };
+        let (x, products) = gmres(&[1.0, 2.0, 3.0], 1e-3, product);
+        let back = product(&x);
+        assert!(products <= 3);
+        for (b, own) in [1.0, 2.0, 3.0].iter().zip(&back) {
+            assert!((b - own).abs() < 4e-3, "{back:?}");
+        }
+    }
+}

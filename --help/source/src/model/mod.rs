@@ -1,0 +1,12 @@
+//! From a sector in physical coordinates to the reduced model that the Monte Carlo loop uses.
+
+mod cache;
+pub mod cyclic;
+mod reduced_model;
+pub mod reduction;
+pub mod sector;
+
+pub use cache::{
+    CacheError, is_whole_entry, read_cached, reduction_digest, write_cached, writer_of_leftover,
+};
+pub use reduced_model::{NodalDiameterReport, ReducedModel, ReducedNodalDiameter};

@@ -1,0 +1,5 @@
+//! All patterns: rows, tables, statistics.
+
+pub mod monte_carlo;
+pub mod statistics;
+pub mod table;

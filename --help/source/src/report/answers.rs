@@ -1,0 +1,484 @@
+//! The answers that a report opens with: which normal load, how sure, and how much of it is numerical error.
+
+use super::words::{
+    LengthUnit, four_digits, load_per_sector, load_with_unit, percent_words, share_words,
+};
+use super::{
+    BestLoads, CommonErrors, GroupReport, LoadChoice, MeasuredPeak, NumericalError,
+    PercentileError, ScenarioErrors, ScenarioSummary, StatedErrors, StudyReport,
+};
+use crate::population::monte_carlo::{
+    HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, TUNED_RECEPTANCES,
+};
+use crate::population::statistics::{CONFIDENCE, Percentile};
+
+/// A question of an engineer with its answer from the numbers of a report.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Answer {
+    /// The question.
+    pub question: String,
+    /// The answer in a sentence.
+    pub verdict: String,
+    /// What it rests on, a sentence each.
+    pub reasons: Vec<String>,
+}
+
+/// The answers for one group: the peak of each measured wheel, where they are few; for P99 and P95 which load to choose, those that are known before those that are
+/// not, and how much is numerical error.
+#[must_use]
+pub fn answers(report: &StudyReport, group: &GroupReport) -> Vec<Answer> {
+    let writer = Writer {
+        report,
+        group,
+        units: LengthUnit::of_summary(&report.summary),
+    };
+    let asked = || group.choices.iter().filter(|choice| choice.percent > 90.0);
+    let (known, unknown): (Vec<&LoadChoice>, Vec<&LoadChoice>) =
+        asked().partition(|choice| choice.lowest.is_some());
+    let loads = known.into_iter().chain(unknown);
+    let mut answers: Vec<Answer> = writer.measured_wheels().into_iter().collect();
+    answers.extend(loads.map(|choice| writer.load(choice)));
+    answers.extend(asked().find_map(|choice| writer.error(choice)));
+    answers
+}
+
+struct Writer<'a> {
+    report: &'a StudyReport,
+    group: &'a GroupReport,
+    units: LengthUnit,
+}
+
+impl Writer<'_> {
+    fn scenario(&self, index: usize) -> &ScenarioSummary {
+        &self.report.summary.scenarios[index]
+    }
+
+    fn load_of(&self, index: usize) -> String {
+        self.with_speed(index, load_with_unit)
+    }
+
+    /// The load of scenario `index` in words, per sector: where a load is named for the first time.
+    fn load_per_sector_of(&self, index: usize) -> String {
+        self.with_speed(index, load_per_sector)
+    }
+
+    fn with_speed(&self, index: usize, words: fn(&str, Option<f64>) -> String) -> String {
+        let scenario = self.scenario(index);
+        let load = words(scenario.contact, scenario.normal_load_n);
+        match scenario.speed_rpm {
+            Some(speed) => format!("{load} ({speed} rpm)"),
+            None => load,
+        }
+    }
+
+    fn error_of(
+        &self,
+        scenario: usize,
+        percent: f64,
+    ) -> Option<(&ScenarioErrors, &PercentileError)> {
+        let errors = self
+            .group
+            .errors
+            .iter()
+            .find(|errors| errors.scenario == scenario)?;
+        let of_percent = errors
+            .percentiles
+            .iter()
+            .find(|error| error.percentile.percent.total_cmp(&percent).is_eq())?;
+        Some((errors, of_percent))
+    }
+
+    /// Which load to choose for a percentile, and how sure that is.
+    fn load(&self, choice: &LoadChoice) -> Answer {
+        let percent = percent_words(choice.percent);
+        let question = format!(
+            "Which normal load should I choose for the {percent}th percentile (P{percent}) of the peak amplitude, and how \
+             sure is that?"
+        );
+        let found = choice
+            .lowest
+            .and_then(|lowest| Some((lowest, self.error_of(lowest, choice.percent)?.1)));
+        let Some((lowest, found)) = found else {
+            return Answer {
+                question,
+                verdict: format!("Not known: these rows give no P{percent}."),
+                reasons: self.why_none(choice),
+            };
+        };
+        let value = found.percentile.value.unwrap_or(f64::NAN);
+        let verdict = format!(
+            "{}: P{percent} = {}{}.",
+            self.load_per_sector_of(lowest),
+            self.units.length(value),
+            self.as_stress(value),
+        );
+        let mut reasons = vec![self.how_sure(lowest, &found.percentile)];
+        match &choice.best {
+            Some(best) => reasons.extend(self.could_be_best(best, lowest, choice)),
+            None => reasons.push("It is the only load of this study.".to_owned()),
+        }
+        if choice.best.is_some() {
+            reasons.extend(self.by_numerical_error(lowest, choice.percent));
+        }
+        if choice.best.is_some() && !choice.enclosed {
+            reasons.push(
+                "No lower and higher normal load than this one were both studied, so the optimum may lie beyond: add \
+                 loads to sweep.normal_load_n and run again."
+                    .to_owned(),
+            );
+        }
+        Answer {
+            question,
+            verdict,
+            reasons,
+        }
+    }
+
+    /// An amplitude as stress, where the study has a scale.
+    fn as_stress(&self, amplitude_m: f64) -> String {
+        let scale = self.report.summary.stress_pa_per_m;
+        scale.map_or_else(String::new, |pa_per_m| {
+            format!(" ({} MPa)", four_digits(1e-6 * pa_per_m * amplitude_m))
+        })
+    }
+
+    /// The interval of a percentile, and what the percentile means.
+    fn how_sure(&self, scenario: usize, found: &Percentile) -> String {
+        let percent = percent_words(found.percent);
+        let confidence = percent_words(100.0 * self.confidence());
+        let range = match (found.lower, found.upper) {
+            (Some(lower), Some(upper)) => format!(
+                "lies between {} and {}",
+                self.units.number(lower),
+                self.units.length(upper)
+            ),
+            (Some(lower), None) => format!("is above {}", self.units.length(lower)),
+            (None, Some(upper)) => format!("is below {}", self.units.length(upper)),
+            (None, None) => "has no bounds".to_owned(),
+        };
+        format!(
+            "{percent} % of such wheels have a lower peak. From {} random patterns: with {confidence} % confidence the \
+             P{percent} at {} {range}.",
+            self.report.summary.patterns,
+            self.load_of(scenario),
+        )
+    }
+
+    /// Confidence of the intervals.
+    fn confidence(&self) -> f64 {
+        let stop = self.report.summary.stop.as_ref();
+        stop.map_or(CONFIDENCE, |stop| stop.confidence)
+    }
+
+    fn why_none(&self, choice: &LoadChoice) -> Vec<String> {
+        let patterns = self.report.summary.patterns;
+        let few = patterns < choice.needed_patterns;
+        let of_file = self.group.standard_deviation.is_none();
+        let mut reasons = vec![if few && of_file {
+            format!(
+                "A 95 % interval needs {} wheels, mistuning.file holds {patterns}: read the peak of each wheel, or put \
+                 more wheels into the file.",
+                choice.needed_patterns
+            )
+        } else if few {
+            format!(
+                "A 95 % interval needs {} patterns, the study has {patterns}: raise study.patterns and run again, only \
+                 the new ones are solved.",
+                choice.needed_patterns
+            )
+        } else {
+            "Too many rows failed: see the accounting below.".to_owned()
+        }];
+        // The next lower percentile that there is may serve meanwhile.
+        let lower = self.group.choices.iter();
+        let mut lower = lower.filter(|other| other.percent < choice.percent);
+        if let Some((percent, lowest)) =
+            lower.find_map(|other| Some((other.percent, other.lowest?)))
+        {
+            reasons.push(format!(
+                "The lowest P{} is that of {}.",
+                percent_words(percent),
+                self.load_of(lowest)
+            ));
+        }
+        reasons
+    }
+
+    /// The peak of each wheel of a file, a sentence for each load; none where they are many or drawn.
+    fn measured_wheels(&self) -> Option<Answer> {
+        let of_load = |peaks: &[MeasuredPeak]| {
+            let named: Vec<String> = peaks
+                .iter()
+                .map(|own| {
+                    let peak = own.peak_amplitude_m;
+                    let peak = peak.map_or("failed".to_owned(), |peak| self.units.length(peak));
+                    format!("wheel {} {peak}", own.pattern)
+                })
+                .collect();
+            format!(
+                "Peaks at {}: {}.",
+                self.load_of(peaks[0].scenario),
+                named.join(", ")
+            )
+        };
+        let loads = self
+            .group
+            .measured
+            .chunk_by(|a, b| a.scenario == b.scenario);
+        let peaks = { self.group.measured.iter() }.filter_map(|own| own.peak_amplitude_m);
+        let lowest = peaks.clone().reduce(f64::min);
+        let verdict = lowest.zip(peaks.reduce(f64::max)).map_or_else(
+            || "Not known: no row of these wheels has a result.".to_owned(),
+            |(lowest, highest)| {
+                let highest = self.units.length(highest);
+                format!("From {} to {highest}.", self.units.number(lowest))
+            },
+        );
+        (!self.group.measured.is_empty()).then(|| Answer {
+            question: "How large is the peak amplitude of each wheel of mistuning.file?".to_owned(),
+            verdict,
+            reasons: loads.map(of_load).collect(),
+        })
+    }
+
+    /// Which other loads could be the best, and how low the percentile of the best can be.
+    fn could_be_best(&self, best: &BestLoads, lowest: usize, choice: &LoadChoice) -> Vec<String> {
+        let percent = percent_words(choice.percent);
+        let others: Vec<String> = best
+            .loads
+            .iter()
+            .filter(|load| load.could_be_best && load.scenario.scenario != lowest)
+            .map(|load| {
+                let of_sample = load.percentile.value.map(|value| self.units.length(value));
+                let of_sample = of_sample.map_or(String::new(), |value| format!(" ({value})"));
+                format!("{}{of_sample}", self.load_of(load.scenario.scenario))
+            })
+            .collect();
+        let count = best.loads.len();
+        let compared = "all were compared on the same patterns";
+        let mut reasons = vec![if others.is_empty() {
+            format!(
+                "With 95 % confidence none of the {count} loads studied has a lower P{percent}; {compared}."
+            )
+        } else {
+            format!(
+                "The P{percent} at {} is not significantly higher: with 95 % confidence the best of the {count} loads \
+                 studied is among these; {compared}.",
+                listed(&others)
+            )
+        }];
+        match best.lower.zip(best.upper) {
+            Some((lower, upper)) => reasons.push(format!(
+                "At the truly best of these loads the P{percent} lies between {} and {} (95 %, the choice allowed for).",
+                self.units.number(lower),
+                self.units.length(upper)
+            )),
+            None if self.report.summary.patterns < choice.patterns_of_best => reasons.push(format!(
+                "Bounds on the P{percent} at the truly best of these loads, the choice allowed for, need {} patterns.",
+                choice.patterns_of_best
+            )),
+            None => {}
+        }
+        reasons
+    }
+
+    /// Which other loads could have a lower percentile if rows are wrong by what they state; none where
+    /// the rows of the chosen load state no bound.
+    fn by_numerical_error(&self, lowest: usize, percent: f64) -> Option<String> {
+        let highest = self.error_of(lowest, percent)?.1.highest?;
+        let could: Vec<String> = self
+            .group
+            .scenarios
+            .iter()
+            .filter(|&&other| other != lowest)
+            .filter(|&&other| {
+                let bound = self
+                    .error_of(other, percent)
+                    .and_then(|(_, own)| own.lowest);
+                bound.is_none_or(|bound| bound < highest)
+            })
+            .map(|&other| self.load_of(other))
+            .collect();
+        let words = percent_words(percent);
+        Some(if could.is_empty() {
+            format!(
+                "By what the rows state, numerical error cannot make the P{words} of another load the lowest."
+            )
+        } else {
+            format!(
+                "By what the rows state, numerical error could hide a lower P{words} at {}: finer solutions decide.",
+                listed(&could)
+            )
+        })
+    }
+
+    /// How much of the percentile at the chosen load is numerical error; none without a percentile.
+    fn error(&self, choice: &LoadChoice) -> Option<Answer> {
+        let lowest = choice.lowest?;
+        let (errors, found) = self.error_of(lowest, choice.percent)?;
+        let rows = &errors.rows;
+        let value = found.percentile.value?;
+        let percent = percent_words(choice.percent);
+        let statistical = found.statistical_width();
+        let numerical = found.numerical_width();
+        let around = |low: Option<f64>, high: Option<f64>| {
+            let side = |end: f64| {
+                let share = end / value - 1.0;
+                let sign = if share < 0.0 { "−" } else { "+" };
+                format!("{sign}{}", share_words(share.abs()))
+            };
+            low.zip(high)
+                .map(|(low, high)| format!("{} to {}", side(low), side(high)))
+        };
+        let verdict = match around(found.lowest, found.highest) {
+            Some(range) => format!(
+                "At most {range} of the P{percent} at {}, by what the rows state.",
+                self.load_of(lowest)
+            ),
+            None => format!(
+                "Not bounded: {} of {} rows at {} state no bound.",
+                rows.without_bound,
+                rows.rows,
+                self.load_of(lowest)
+            ),
+        };
+        let mut reasons = Vec::new();
+        if let Some((lowest, highest)) = found.lowest.zip(found.highest) {
+            reasons.push(format!(
+                "Were these wheels solved without error, their P{percent} would lie between {} and {}.",
+                self.units.number(lowest),
+                self.units.length(highest)
+            ));
+        }
+        if let Some(range) = around(found.percentile.lower, found.percentile.upper) {
+            let beside = match statistical.zip(numerical) {
+                Some((statistical, numerical)) if numerical > statistical => {
+                    ": less than the numerical bounds, so finer solutions (reduction.error, solver.harmonics) before more \
+                     patterns"
+                }
+                Some(_) => {
+                    ": more than the numerical bounds, so more patterns before finer solutions"
+                }
+                None => "",
+            };
+            reasons.push(format!("The statistical interval spans {range}{beside}."));
+        }
+        reasons.push(format!(
+            "The bound takes every row as wrong by all that it states, and all in the same direction. {}",
+            stated(rows)
+        ));
+        if let Some(corrected) = found.corrected {
+            reasons.push(format!(
+                "With every row corrected by its own sampling and harmonic error the P{percent} would be {}.",
+                self.units.length(corrected)
+            ));
+        }
+        reasons.extend(self.common(&errors.common));
+        reasons.extend(self.report.summary.numerical_error.map(measured));
+        reasons.push(
+            "Not in these numbers: errors of the model that was given, as of its mesh, contact stiffness, friction \
+             coefficient or damping."
+                .to_owned(),
+        );
+        Some(Answer {
+            question: "How much of that number is numerical error?".to_owned(),
+            verdict,
+            reasons,
+        })
+    }
+
+    /// Errors that every row of a load states, whatever its own.
+    fn common(&self, common: &CommonErrors) -> Option<String> {
+        let basis = &self.report.summary.basis;
+        let (safety, judged_by, measured_on) = if basis.name == TUNED_RECEPTANCES {
+            // The tuned wheel judges harmonics too, mistuned ones alone the modes.
+            (
+                HARMONIC_SAFETY_ON_RECEPTANCES,
+                "the worst of the wheels that judge",
+                "mistuned wheels",
+            )
+        } else {
+            (HARMONIC_SAFETY, "the tuned wheel", "the tuned wheel")
+        };
+        let parts = [
+            (
+                common.harmonics.map(|change| safety * change),
+                format!("harmonics left out ({safety} times what they change on {judged_by})"),
+            ),
+            (common.peak, "the peak search".to_owned()),
+            (
+                basis.tuned_peak_error,
+                format!(
+                    "the reduced model ({}, measured on {measured_on})",
+                    basis.name
+                ),
+            ),
+        ];
+        let parts: Vec<String> = parts
+            .into_iter()
+            .filter_map(|(error, of)| Some(format!("{} for {of}", share_words(error?))))
+            .collect();
+        (!parts.is_empty()).then(|| format!("Every row here states at least {}.", listed(&parts)))
+    }
+}
+
+/// What was measured of the error before the settings were chosen by it.
+fn measured(error: NumericalError) -> String {
+    let accepted = share_words(error.accepted);
+    let kept = match (error.p95_upper, error.met) {
+        (Some(bound), true) => format!(
+            "with 95 % confidence 95 % of the amplitudes are within {} of a finer solution",
+            share_words(bound)
+        ),
+        (Some(bound), false) => format!(
+            "not kept, 95 % of the amplitudes are within {} of a finer solution",
+            share_words(bound)
+        ),
+        (None, _) => "without a bound".to_owned(),
+    };
+    let worst = error.worst_upper.map_or(String::new(), |worst| {
+        format!(
+            ", and the worst is claimed to be within {}",
+            share_words(worst)
+        )
+    });
+    let law = error
+        .law_words()
+        .map_or(String::new(), |words| format!(" They have {words}."));
+    format!(
+        "The settings were chosen on a sample of rows for an error of {accepted} (accuracy.amplitude_error): {kept}{worst}.{law}"
+    )
+}
+
+/// What the rows of the chosen load state.
+fn stated(rows: &StatedErrors) -> String {
+    let mut parts = Vec::new();
+    let sources = [
+        ("all sources", &rows.stated),
+        ("sampling", &rows.sampling),
+        ("harmonics left out", &rows.harmonics),
+    ];
+    for (name, spread) in sources {
+        if let Some(spread) = spread {
+            parts.push(format!(
+                "{name} {} (largest {})",
+                share_words(spread.median),
+                share_words(spread.largest)
+            ));
+        }
+    }
+    if parts.is_empty() {
+        "These rows state no errors.".to_owned()
+    } else {
+        format!("Median of the rows: {}.", parts.join(", "))
+    }
+}
+
+/// Names with commas, and an `and` before the last.
+fn listed(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [only] => only.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}

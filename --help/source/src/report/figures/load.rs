@@ -1,0 +1,402 @@
+//! A quantity against the damper normal load: percentiles with bounds, tuned wheel, linear limits.
+
+use std::fmt::Write;
+
+use super::{Figure, FigureName};
+use crate::population::statistics::{Percentile, SampleStatistics};
+use crate::report::plot::{
+    Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend, nice_top,
+};
+use crate::report::words::{LengthUnit, load_words, percent_words};
+use crate::report::{GroupReport, LoadChoice, ScenarioSummary, StudyReport, setting};
+
+/// Lower end of the vertical axis.
+const BOTTOM: f64 = 330.0;
+/// Height of the drawing.
+const HEIGHT: f64 = 382.0;
+/// Width of the place of a linear limit beside the axis of loads.
+const SLOT: f64 = 48.0;
+/// Ratio of the largest to the smallest value from which on an axis is logarithmic.
+const LOGARITHMIC_FROM: f64 = 4.0;
+/// Share of the largest value below which the smallest one makes an axis begin at zero.
+const FROM_ZERO: f64 = 0.4;
+/// Percentiles drawn: in percent, class, mark.
+const DRAWN: [(u32, &str, Mark); 3] = [
+    (99, "extreme", Mark::Diamond),
+    (95, "high", Mark::Square),
+    (50, "median", Mark::Circle),
+];
+
+/// Places of the loads of a group: `slide` and `free` on the left, `stuck` on the right, the loads in
+/// newtons between them.
+pub(super) struct LoadAxis {
+    axis: Axis,
+    /// Whether there is one load alone, which then stands in the middle.
+    alone: bool,
+}
+
+impl LoadAxis {
+    pub(super) fn new(loads: &[&ScenarioSummary]) -> Self {
+        let newtons: Vec<f64> = loads.iter().filter_map(|load| load.normal_load_n).collect();
+        let low = newtons.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = newtons.iter().copied().fold(0.0, f64::max);
+        let scale = if low > 0.0 && low < high {
+            Scale::Logarithmic
+        } else {
+            Scale::Linear
+        };
+        let has = |names: &[&str]| loads.iter().any(|load| names.contains(&load.contact));
+        let left = SIDES.0
+            + if has(&["slide", "free"]) {
+                1.4 * SLOT
+            } else {
+                0.5 * SLOT
+            };
+        let right = SIDES.1
+            - if has(&["stuck"]) {
+                1.4 * SLOT
+            } else {
+                0.5 * SLOT
+            };
+        Self {
+            alone: loads.len() == 1,
+            axis: Axis {
+                scale,
+                low,
+                high,
+                ends: (left, right),
+            },
+        }
+    }
+
+    pub(super) fn title(&self) -> &'static str {
+        match self.axis.scale {
+            Scale::Logarithmic => "damper normal load per sector, N (logarithmic)",
+            _ => "damper normal load per sector, N",
+        }
+    }
+
+    /// Place of a load.
+    pub(super) fn at(&self, load: &ScenarioSummary) -> f64 {
+        match (load.contact, load.normal_load_n) {
+            _ if self.alone => f64::midpoint(SIDES.0, SIDES.1),
+            ("stuck", _) => SIDES.1 - 0.5 * SLOT,
+            ("free", _) | (_, None) => SIDES.0 + 0.5 * SLOT,
+            (_, Some(newtons)) => self.axis.at(newtons),
+        }
+    }
+
+    /// A tick per load; the names of those that would touch are left out.
+    pub(super) fn ticks(&self, svg: &mut Svg, frame: &Frame<'_>, loads: &[&ScenarioSummary]) {
+        let mut ordered: Vec<&&ScenarioSummary> = loads.iter().collect();
+        ordered.sort_by(|a, b| self.at(a).total_cmp(&self.at(b)));
+        let mut free_from = f64::NEG_INFINITY;
+        for load in ordered {
+            let (x, name) = (self.at(load), load_words(load.contact, load.normal_load_n));
+            let half = 4.6 * name.chars().count() as f64;
+            let name = if x - half < free_from { "" } else { &name };
+            if !name.is_empty() {
+                free_from = x + half;
+            }
+            frame.x_tick(svg, x, name);
+        }
+    }
+}
+
+/// An axis from `bottom` to `top` that shows `values`, all positive.
+pub(super) fn value_axis(values: &[f64], bottom: f64, top: f64) -> Axis {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(0.0, f64::max);
+    let ends = (bottom, top);
+    if low > 0.0 && high > LOGARITHMIC_FROM * low {
+        return Axis {
+            scale: Scale::Logarithmic,
+            low: 0.8 * low,
+            high: 1.25 * high,
+            ends,
+        };
+    }
+    if low < FROM_ZERO * high || high <= low {
+        return Axis {
+            scale: Scale::Linear,
+            low: 0.0,
+            high: nice_top(high, 5),
+            ends,
+        };
+    }
+    let margin = 0.08 * (high - low);
+    Axis {
+        scale: Scale::Linear,
+        low: low - margin,
+        high: high + margin,
+        ends,
+    }
+}
+
+/// The figure of the peak amplitude or of the amplification factor.
+pub(super) fn by_load(
+    report: &StudyReport,
+    group: &GroupReport,
+    name: FigureName,
+) -> Option<Figure> {
+    let loads: Vec<&ScenarioSummary> = group
+        .scenarios
+        .iter()
+        .map(|&scenario| &report.summary.scenarios[scenario])
+        .collect();
+    let units = LengthUnit::of_summary(&report.summary);
+    let amplitude = name == FigureName::Amplitude;
+    let scale = if amplitude { units.metres() } else { 1.0 };
+    let sample = |load: &ScenarioSummary| -> SampleStatistics {
+        if amplitude {
+            load.peak_amplitude_m.clone()
+        } else {
+            load.amplification_factor.clone()
+        }
+    };
+    let drawn: Vec<Load<'_>> = loads
+        .iter()
+        .map(|load| Load {
+            scenario: load,
+            tuned: load
+                .tuned_amplitude_m
+                .filter(|_| amplitude)
+                .map(|tuned| tuned / scale),
+            percentiles: sample(load)
+                .percentiles
+                .iter()
+                .map(|found| scaled(found, scale))
+                .collect(),
+        })
+        .collect();
+    let values: Vec<f64> = drawn.iter().flat_map(Load::values).collect();
+    if values.is_empty() {
+        return None;
+    }
+    let x = LoadAxis::new(&loads);
+    let y_title = if amplitude {
+        format!("peak blade amplitude, {}", units.name())
+    } else {
+        "amplification factor".to_owned()
+    };
+    let y = value_axis(&values, BOTTOM, TOP);
+    let y_title = match y.scale {
+        Scale::Logarithmic => format!("{y_title} (log.)"),
+        _ => y_title,
+    };
+    let frame = Frame {
+        x: Axis {
+            scale: Scale::Linear,
+            low: SIDES.0,
+            high: SIDES.1,
+            ends: SIDES,
+        },
+        y,
+        x_title: x.title(),
+        y_title: &y_title,
+    };
+    let mut svg = Svg::default();
+    frame.draw(&mut svg);
+    x.ticks(&mut svg, &frame, &loads);
+    // Without a choice by the amplitude there is nothing to point at.
+    let choice = group.choices.iter().find(|choice| choice.lowest.is_some());
+    if let (Some(choice), true) = (choice, amplitude) {
+        point_at(&mut svg, &frame, &x, &loads, choice);
+    }
+    curves(&mut svg, &frame, &x, &drawn);
+    points(&mut svg, &frame, &x, &drawn);
+    legend(&mut svg, &entries(&drawn));
+    let what = if amplitude {
+        "Peak amplitude"
+    } else {
+        "Amplification factor"
+    };
+    Some(Figure {
+        name,
+        title: format!("{what} against damper normal load"),
+        setting: setting(group),
+        caption: caption(amplitude, choice, report.summary.patterns),
+        height: HEIGHT,
+        body: svg.into_body(),
+    })
+}
+
+/// A load with its numbers in the unit of the figure.
+struct Load<'a> {
+    scenario: &'a ScenarioSummary,
+    tuned: Option<f64>,
+    percentiles: Vec<Percentile>,
+}
+
+impl Load<'_> {
+    fn percentile(&self, percent: u32) -> Option<&Percentile> {
+        self.percentiles
+            .iter()
+            .find(|found| found.percent.total_cmp(&f64::from(percent)).is_eq())
+    }
+
+    fn value(&self, percent: u32) -> Option<f64> {
+        self.percentile(percent)?.value
+    }
+
+    /// All values that are drawn of the load.
+    fn values(&self) -> Vec<f64> {
+        let of = |percent: u32| {
+            self.percentile(percent)
+                .filter(|found| found.value.is_some())
+                .map_or([None; 3], |found| [found.value, found.lower, found.upper])
+        };
+        [5, 50, 95, 99]
+            .into_iter()
+            .flat_map(of)
+            .chain([self.tuned])
+            .flatten()
+            .collect()
+    }
+}
+
+fn scaled(found: &Percentile, scale: f64) -> Percentile {
+    let of = |value: Option<f64>| value.map(|value| value / scale);
+    Percentile {
+        value: of(found.value),
+        lower: of(found.lower),
+        upper: of(found.upper),
+        ..*found
+    }
+}
+
+/// The loads that could be the best, and the one that is in this sample.
+fn point_at(
+    svg: &mut Svg,
+    frame: &Frame<'_>,
+    x: &LoadAxis,
+    loads: &[&ScenarioSummary],
+    choice: &LoadChoice,
+) {
+    let (bottom, top) = frame.y.ends;
+    for load in loads {
+        let at = x.at(load);
+        if choice.lowest == Some(load.scenario) {
+            svg.rectangle("chosen", (at - 11.0, top), (at + 11.0, bottom), "");
+        }
+        let could = choice.best.iter().flat_map(|best| &best.loads);
+        if could
+            .filter(|other| other.scenario.scenario == load.scenario)
+            .any(|other| other.could_be_best)
+        {
+            let words = format!("could be the best for P{}", percent_words(choice.percent));
+            svg.rectangle(
+                "could",
+                (at - 11.0, bottom - 5.0),
+                (at + 11.0, bottom),
+                &words,
+            );
+        }
+    }
+}
+
+/// Band and lines through the loads in newtons.
+fn curves(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
+    let mut newtons: Vec<&Load<'_>> = drawn
+        .iter()
+        .filter(|load| load.scenario.normal_load_n.is_some())
+        .collect();
+    newtons.sort_by(|a, b| x.at(a.scenario).total_cmp(&x.at(b.scenario)));
+    let line = |value: &dyn Fn(&Load<'_>) -> Option<f64>| -> Vec<(f64, f64)> {
+        newtons
+            .iter()
+            .filter_map(|load| Some((x.at(load.scenario), frame.y.at(value(load)?))))
+            .collect()
+    };
+    let mut band = line(&|load| load.value(95));
+    let lower = line(&|load| load.value(5));
+    if band.len() == lower.len() {
+        band.extend(lower.into_iter().rev());
+        svg.polygon("band", &band);
+    }
+    for limit in drawn
+        .iter()
+        .filter(|load| load.scenario.normal_load_n.is_none())
+    {
+        let at = x.at(limit.scenario);
+        if let (Some(low), Some(high)) = (limit.value(5), limit.value(95)) {
+            let (low, high) = (frame.y.at(low), frame.y.at(high));
+            svg.rectangle("band", (at - 13.0, low), (at + 13.0, high), "");
+        }
+        if let Some(tuned) = limit.tuned {
+            let y = frame.y.at(tuned);
+            svg.line("curve limit", (SIDES.0, y), (SIDES.1, y));
+        }
+    }
+    svg.polyline("curve tuned", &line(&|load| load.tuned));
+    for (percent, class, _) in DRAWN.iter().rev() {
+        let points = line(&|load| load.value(*percent));
+        svg.polyline(&format!("curve {class}"), &points);
+    }
+}
+
+/// Marks with their bounds.
+fn points(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
+    for load in drawn {
+        let at = x.at(load.scenario);
+        let name = load_words(load.scenario.contact, load.scenario.normal_load_n);
+        if let Some(tuned) = load.tuned {
+            let words = format!("tuned, {name}: {tuned:.4}");
+            Mark::Triangle.draw(svg, "tuned", (at, frame.y.at(tuned)), &words);
+        }
+        for (percent, class, mark) in DRAWN.iter().rev() {
+            let Some(found) = load.percentile(*percent) else {
+                continue;
+            };
+            let Some(value) = found.value else { continue };
+            let bounds = found.lower.zip(found.upper);
+            if let Some(bounds) = bounds {
+                frame.bound(svg, class, at, bounds);
+            }
+            let bounds =
+                bounds.map_or_else(String::new, |(low, high)| format!(" [{low:.4}, {high:.4}]"));
+            let words = format!("P{percent}, {name}: {value:.4}{bounds}");
+            mark.draw(svg, class, (at, frame.y.at(value)), &words);
+        }
+    }
+}
+
+fn entries(drawn: &[Load<'_>]) -> Vec<LegendEntry<'static>> {
+    let mut entries: Vec<LegendEntry<'static>> = DRAWN
+        .iter()
+        .zip(["P99", "P95", "P50"])
+        .filter(|((percent, ..), _)| drawn.iter().any(|load| load.value(*percent).is_some()))
+        .map(|((_, class, mark), name)| LegendEntry::Line(class, Some(*mark), name))
+        .collect();
+    let any =
+        |value: &dyn Fn(&Load<'_>) -> Option<f64>| drawn.iter().any(|load| value(load).is_some());
+    if any(&|load| load.value(5)) {
+        entries.push(LegendEntry::Area("band", "P5 to P95"));
+    }
+    if any(&|load| load.tuned) {
+        entries.push(LegendEntry::Line("tuned", Some(Mark::Triangle), "tuned"));
+    }
+    entries
+}
+
+fn caption(amplitude: bool, choice: Option<&LoadChoice>, patterns: u64) -> String {
+    let mut words = format!(
+        "Percentiles over {patterns} patterns with distribution-free 95 % bounds. slide, stuck and free are linear \
+         limits: friction gone, contact welded, no contact springs."
+    );
+    if !amplitude {
+        words.push_str(
+            " The factor refers to the tuned wheel of the same load, so that a lower factor over a higher tuned peak \
+             is no improvement.",
+        );
+    } else if let Some(choice) = choice {
+        let percent = percent_words(choice.percent);
+        // Writing to a String cannot fail.
+        let _ = write!(
+            words,
+            " Shaded: the lowest P{percent}; bars on the axis: loads that could have the lowest P{percent} with 95 % \
+             confidence. Dotted: tuned linear limits."
+        );
+    }
+    words
+}

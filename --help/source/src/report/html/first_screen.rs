@@ -1,0 +1,122 @@
+//! What a group opens with: three numbers, whether anything is wrong, the main figure, and the folded answers.
+
+use std::fmt::Write;
+
+use super::headline::{BigNumber, big_numbers, health, in_one_line};
+use super::model::figure_html;
+use crate::report::plot::escaped;
+use crate::report::words::tied;
+use crate::report::{Answer, FigureName, GroupReport, StudyReport, answers, figure, setting};
+
+/// Numbers, main figure and answers of a group.
+pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usize) -> String {
+    let mut html = format!(
+        "<section id=\"answer-{place}\">\n<h2>{}</h2>\n<div class=\"first\">\n<div class=\"numbers\">\n",
+        escaped(&setting(group))
+    );
+    for BigNumber {
+        label,
+        value,
+        notes,
+    } in big_numbers(report, group)
+    {
+        // Writing to a String cannot fail.
+        let _ = write!(
+            html,
+            "<div class=\"number\"><p class=\"label\">{}</p><p class=\"value\">{}</p>",
+            escaped(&label),
+            escaped(&tied(&value))
+        );
+        for note in notes {
+            let _ = write!(html, "<p class=\"note\">{}</p>", escaped(&tied(&note)));
+        }
+        html.push_str("</div>\n");
+    }
+    if place == 0 {
+        html.push_str(&health_of(report));
+    }
+    html.push_str("</div>\n");
+    if let Some(drawn) = figure(report, group, FigureName::Amplitude) {
+        html.push_str(&figure_html(&drawn, &format!("amplitude-{place}")));
+    }
+    html.push_str("</div>\n");
+    html.push_str(&folded(report, group));
+    html.push_str("</section>\n");
+    html
+}
+
+fn health_of(report: &StudyReport) -> String {
+    let found = health(report);
+    let mut html = format!(
+        "<div class=\"health {}\"><p><strong>{}</strong></p>",
+        found.class,
+        escaped(&tied(&found.verdict))
+    );
+    if !found.findings.is_empty() {
+        html.push_str("<ul>");
+        for finding in &found.findings {
+            let _ = write!(html, "<li>{}</li>", escaped(&tied(finding)));
+        }
+        html.push_str("</ul>");
+    }
+    if !report.summary.warnings.is_empty() {
+        html.push_str("<p><a href=\"#warnings\">What to do about it</a></p>");
+    }
+    html.push_str("</div>\n");
+    html
+}
+
+/// The questions with their answers; what each rests on is folded.
+fn folded(report: &StudyReport, group: &GroupReport) -> String {
+    let mut html = "<div class=\"answers\">\n".to_owned();
+    for Answer {
+        question,
+        verdict,
+        reasons,
+    } in answers(report, group)
+    {
+        let _ = writeln!(
+            html,
+            "<details class=\"answer\"><summary><span class=\"question\">{}</span> <span class=\"verdict\">{}</span></summary>",
+            escaped(&tied(&question)),
+            escaped(&tied(&verdict))
+        );
+        for reason in reasons {
+            let _ = writeln!(html, "<p>{}</p>", escaped(&tied(&reason)));
+        }
+        html.push_str("</details>\n");
+    }
+    html.push_str("</div>\n");
+    html
+}
+
+/// Links to the parts of the page; of several groups each with its answer.
+pub(super) fn contents(report: &StudyReport) -> String {
+    let several = report.groups.len() > 1;
+    let mut html = "<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ul>\n".to_owned();
+    let mut entry = |target: &str, words: &str| {
+        let _ = writeln!(
+            html,
+            "<li><a href=\"#{target}\">{}</a></li>",
+            escaped(&tied(words))
+        );
+    };
+    if !report.summary.warnings.is_empty() {
+        entry("warnings", "Warnings");
+    }
+    entry("model", "The model");
+    for (place, group) in report.groups.iter().enumerate() {
+        if several {
+            entry(&format!("answer-{place}"), &in_one_line(report, group));
+        } else {
+            entry("population-0", "The population");
+            entry("wheels-0", "Single wheels");
+            entry("numbers-0", "Numbers");
+        }
+    }
+    entry("accounting", "Accounting");
+    entry("words", "Words");
+    entry("provenance", "Provenance");
+    html.push_str("</ul>\n</nav>\n");
+    html
+}

@@ -1,0 +1,313 @@
+//! What the first screen says: three numbers and whether anything is wrong.
+
+use crate::population::statistics::CONFIDENCE;
+use crate::report::words::{
+    LengthUnit, force, four_digits, load_with_unit, percent_words, share_words,
+};
+use crate::report::{
+    GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, Warning, setting,
+};
+
+/// Warnings that the first screen names.
+const NAMED: usize = 3;
+
+/// Percentile below which a choice of the load says too little of the highest blades.
+const LEAST_OF_A_DESIGN: f64 = 90.0;
+
+/// Letters of a load that is shown as it is written.
+const LONGEST_LOAD: usize = 8;
+
+/// A number in large type.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct BigNumber {
+    /// What it is.
+    pub(super) label: String,
+    /// The number with its unit.
+    pub(super) value: String,
+    /// How sure it is, a line each.
+    pub(super) notes: Vec<String>,
+}
+
+/// Whether anything is wrong with a study.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Health {
+    /// `good`, `look` or `bad`: the class of its style.
+    pub(super) class: &'static str,
+    /// In a few words.
+    pub(super) verdict: String,
+    /// What there is to see, a line each.
+    pub(super) findings: Vec<String>,
+}
+
+/// The percentile that a group is judged by: the highest that has a value.
+pub(super) fn known_choice(group: &GroupReport) -> Option<(&LoadChoice, usize)> {
+    let mut choices = group.choices.iter();
+    choices.find_map(|choice| Some((choice, choice.lowest?)))
+}
+
+/// Load, percentile and numerical error of a group.
+pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
+    let units = LengthUnit::of_summary(&report.summary);
+    let Some((choice, lowest)) = known_choice(group) else {
+        return nothing_known(report, group);
+    };
+    let percent = percent_words(choice.percent);
+    let scenario = &report.summary.scenarios[lowest];
+    let error = error_of(group, lowest, choice.percent);
+    [
+        BigNumber {
+            label: "Normal load per sector".to_owned(),
+            value: short_load(scenario),
+            notes: notes_of_load(report, group, choice, scenario),
+        },
+        BigNumber {
+            label: format!("P{percent} of the peak amplitude"),
+            value: error
+                .and_then(|own| own.percentile.value)
+                .map_or_else(|| "not known".to_owned(), |value| units.length(value)),
+            notes: notes_of_percentile(report, group, choice, error),
+        },
+        number_of_error(group, lowest, &percent, error),
+    ]
+}
+
+/// The load that a group is answered by and its percentile, in one line.
+pub(super) fn in_one_line(report: &StudyReport, group: &GroupReport) -> String {
+    let answer = known_choice(group).map_or_else(
+        || "not known".to_owned(),
+        |(choice, _)| {
+            let [load, percentile, _] = big_numbers(report, group);
+            let percent = percent_words(choice.percent);
+            format!("{}, P{percent} = {}", load.value, percentile.value)
+        },
+    );
+    format!("{}: {answer}", setting(group))
+}
+
+/// A load as written, or with four digits where more are written: those of a rotation have many.
+fn short_load(scenario: &ScenarioSummary) -> String {
+    let written = load_with_unit(scenario.contact, scenario.normal_load_n);
+    match scenario.normal_load_n {
+        Some(newtons) if written.len() > LONGEST_LOAD => force(newtons),
+        _ => written,
+    }
+}
+
+fn error_of(group: &GroupReport, scenario: usize, percent: f64) -> Option<&PercentileError> {
+    let errors = { group.errors.iter() }.find(|errors| errors.scenario == scenario)?;
+    let mut percentiles = errors.percentiles.iter();
+    percentiles.find(|error| error.percentile.percent.total_cmp(&percent).is_eq())
+}
+
+fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
+    let unknown = |label: &str, notes: Vec<String>| BigNumber {
+        label: label.to_owned(),
+        value: "not known".to_owned(),
+        notes,
+    };
+    let lowest = group.choices.iter().min_by_key(|own| own.needed_patterns);
+    let why = match lowest {
+        Some(choice) if report.summary.patterns < choice.needed_patterns => format!(
+            "P{} needs {} patterns, the study has {}",
+            percent_words(choice.percent),
+            choice.needed_patterns,
+            report.summary.patterns
+        ),
+        _ => "too many rows failed".to_owned(),
+    };
+    [
+        unknown(
+            "Normal load per sector",
+            vec!["no load has a percentile to choose it by".to_owned()],
+        ),
+        unknown("Percentile of the peak amplitude", vec![why]),
+        unknown("Numerical error, at most", Vec::new()),
+    ]
+}
+
+fn notes_of_load(
+    report: &StudyReport,
+    group: &GroupReport,
+    choice: &LoadChoice,
+    scenario: &ScenarioSummary,
+) -> Vec<String> {
+    let mut notes = Vec::new();
+    notes.extend(
+        scenario
+            .speed_rpm
+            .map(|speed| format!("that of {speed} rpm")),
+    );
+    let Some(best) = &choice.best else {
+        notes.push("the only load of this study".to_owned());
+        return notes;
+    };
+    let others: Vec<String> = { best.loads.iter() }
+        .filter(|own| own.could_be_best && own.scenario.scenario != scenario.scenario)
+        .map(|own| {
+            let other = &report.summary.scenarios[own.scenario.scenario];
+            short_load(other)
+        })
+        .collect();
+    let percent = percent_words(choice.percent);
+    notes.push(if others.is_empty() {
+        format!(
+            "lowest P{percent} of {} loads (95 % confidence)",
+            group.scenarios.len()
+        )
+    } else {
+        format!("could be as good: {}", others.join(", "))
+    });
+    let mut higher = { group.choices.iter() }.filter(|own| own.percent > choice.percent);
+    let higher = higher.next_back();
+    notes.extend(
+        higher
+            .filter(|_| choice.percent < LEAST_OF_A_DESIGN)
+            .map(|higher| {
+                let higher = percent_words(higher.percent);
+                format!("by the P{percent} alone, not a load to design for: no P{higher} is known")
+            }),
+    );
+    if report.groups.len() > 1 {
+        let others = report.groups.len() - 1;
+        notes.push(match others {
+            1 => "for the other setting see below".to_owned(),
+            _ => format!("for {others} other settings see below"),
+        });
+    }
+    if !choice.enclosed {
+        notes.push("no load on both sides was studied: the optimum may lie beyond".to_owned());
+    }
+    notes
+}
+
+fn notes_of_percentile(
+    report: &StudyReport,
+    group: &GroupReport,
+    choice: &LoadChoice,
+    error: Option<&PercentileError>,
+) -> Vec<String> {
+    let summary = &report.summary;
+    let units = LengthUnit::of_summary(summary);
+    let confidence = { summary.stop.as_ref() }.map_or(CONFIDENCE, |stop| stop.confidence);
+    let confidence = percent_words(100.0 * confidence);
+    let mut notes = Vec::new();
+    let found = error.map(|own| own.percentile);
+    notes.push(match found.map(|own| (own.lower, own.upper)) {
+        Some((Some(lower), Some(upper))) => format!(
+            "{confidence} % interval {} to {}",
+            units.number(lower),
+            units.length(upper)
+        ),
+        Some((Some(lower), None)) => {
+            format!("above {} at {confidence} % confidence", units.length(lower))
+        }
+        Some((None, Some(upper))) => {
+            format!("below {} at {confidence} % confidence", units.length(upper))
+        }
+        _ => "no interval".to_owned(),
+    });
+    let stress = summary.stress_pa_per_m.zip(found.and_then(|own| own.value));
+    notes.extend(
+        stress.map(|(pa_per_m, value)| format!("{} MPa", four_digits(1e-6 * pa_per_m * value))),
+    );
+    let mut higher = { group.choices.iter() }
+        .filter(|own| own.percent > choice.percent && summary.patterns < own.needed_patterns);
+    notes.extend(higher.next_back().map(|own| {
+        format!(
+            "P{} needs {} patterns",
+            percent_words(own.percent),
+            own.needed_patterns
+        )
+    }));
+    notes
+}
+
+/// Numerical error of the percentile: the larger side of its bounds.
+fn number_of_error(
+    group: &GroupReport,
+    lowest: usize,
+    percent: &str,
+    error: Option<&PercentileError>,
+) -> BigNumber {
+    let label = format!("Numerical error of P{percent}, at most");
+    let bounds = error.and_then(|own| Some((own.lowest?, own.highest?, own.percentile.value?)));
+    let Some((low, high, value)) = bounds else {
+        let errors = { group.errors.iter() }.find(|own| own.scenario == lowest);
+        return BigNumber {
+            label,
+            value: "no bound".to_owned(),
+            notes: errors
+                .map(|own| {
+                    format!(
+                        "{} of {} rows state none",
+                        own.rows.without_bound, own.rows.rows
+                    )
+                })
+                .into_iter()
+                .collect(),
+        };
+    };
+    let largest = (1.0 - low / value).max(high / value - 1.0);
+    let widths = error.and_then(|own| Some((own.numerical_width()?, own.statistical_width()?)));
+    let beside = widths.map(|(numerical, statistical)| {
+        if numerical > statistical {
+            format!("more than the interval of P{percent}: refine first")
+        } else {
+            format!("less than the interval of P{percent}: add patterns first")
+        }
+    });
+    BigNumber {
+        label,
+        value: share_words(largest),
+        notes: beside.into_iter().collect(),
+    }
+}
+
+/// Whether anything is wrong with the study.
+pub(super) fn health(report: &StudyReport) -> Health {
+    let summary = &report.summary;
+    // What costs a result comes first.
+    let (costly, others): (Vec<&Warning>, Vec<&Warning>) =
+        { summary.warnings.iter() }.partition(|warning| warning.costs_a_statistic());
+    let mut findings: Vec<String> = { costly.into_iter().chain(others) }
+        .map(Warning::headline)
+        .collect();
+    if summary.misses_its_target() {
+        findings.insert(
+            0,
+            "the wanted width of the interval was not reached".to_owned(),
+        );
+    }
+    let (class, verdict) = if summary.failures_cost_a_statistic() {
+        ("bad", "Something is wrong: results are missing.".to_owned())
+    } else if findings.is_empty() {
+        (
+            "good",
+            format!(
+                "No problem found: all {} rows have a result, and there is no warning.",
+                summary.rows.ok()
+            ),
+        )
+    } else {
+        let count = findings.len();
+        let warnings = if count == 1 { "warning" } else { "warnings" };
+        (
+            "look",
+            format!(
+                "{count} {warnings}; {} of {} rows have a result.",
+                summary.rows.ok(),
+                summary.rows.planned()
+            ),
+        )
+    };
+    let more = findings.len().saturating_sub(NAMED);
+    findings.truncate(NAMED);
+    if more > 0 {
+        findings.push(format!("and {more} more"));
+    }
+    Health {
+        class,
+        verdict,
+        findings,
+    }
+}

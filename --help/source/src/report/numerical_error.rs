@@ -1,0 +1,179 @@
+//! The numerical error of a study whose settings were chosen by it, beside its statistical uncertainty.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::population::statistics::Percentile;
+use crate::response::friction::ContactLaw;
+
+/// Share of an interval beyond which numerical error is no longer small beside it.
+const LARGE_SHARE: f64 = 0.1;
+/// Share of an interval below which accuracy is paid for in vain.
+const NEEDLESS_SHARE: f64 = 0.01;
+
+/// Numerical error of the peak amplitudes of a study with `[accuracy]`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NumericalError {
+    /// Error accepted.
+    pub accepted: f64,
+    /// Upper bound of the error of 95 % of the rows, measured on a sample; none where it has no bound.
+    pub p95_upper: Option<f64>,
+    /// What the worst is claimed to be at most.
+    pub worst_upper: Option<f64>,
+    /// Whether that is accepted.
+    pub met: bool,
+    /// The contact law that was taken, and that of the study, where they differ.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simpler_law: Option<[ContactLaw; 2]>,
+}
+
+/// What there is to say of a numerical error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "finding", rename_all = "snake_case")]
+pub enum NumericalFinding {
+    /// The accepted error is not kept.
+    Missed {
+        /// Error accepted.
+        accepted: f64,
+        /// Upper bound of the error of 95 % of the rows at the settings taken; none without a bound.
+        reached: Option<f64>,
+    },
+    /// The error is not small beside the statistical uncertainty.
+    Large {
+        /// Upper bound of the error of 95 % of the rows.
+        error: f64,
+        /// The percentile whose interval is meant.
+        percent: f64,
+        /// Relative width of the narrowest interval of the percentile over the scenarios.
+        width: f64,
+    },
+    /// The error is so small beside the statistical uncertainty that it is paid for in vain.
+    Needless {
+        /// Upper bound of the error of 95 % of the rows.
+        error: f64,
+        /// The percentile whose interval is meant.
+        percent: f64,
+        /// Relative width of the narrowest interval of the percentile over the scenarios.
+        width: f64,
+    },
+}
+
+impl NumericalError {
+    /// Which contact law took the place of which, in words.
+    #[must_use]
+    pub fn law_words(&self) -> Option<String> {
+        let [taken, own] = self.simpler_law?.map(ContactLaw::name);
+        Some(format!("contact law {taken} in the place of {own}"))
+    }
+
+    /// What there is to say of the error beside the intervals of the percentile of the amplitude asked for,
+    /// one of each scenario.
+    #[must_use]
+    pub fn findings(&self, percentiles: &[Percentile]) -> Vec<NumericalFinding> {
+        let mut found = Vec::new();
+        if !self.met {
+            found.push(NumericalFinding::Missed {
+                accepted: self.accepted,
+                reached: self.p95_upper,
+            });
+        }
+        let width = |own: &Percentile| Some((own.upper? - own.lower?) / own.value?);
+        let widths = percentiles.iter().filter_map(width);
+        let narrowest = widths.reduce(f64::min).filter(|&width| width > 0.0);
+        let percent = percentiles.first().map_or(95.0, |own| own.percent);
+        if let (Some(error), Some(width)) = (self.p95_upper, narrowest) {
+            if error > LARGE_SHARE * width {
+                found.push(NumericalFinding::Large {
+                    error,
+                    percent,
+                    width,
+                });
+            } else if error < NEEDLESS_SHARE * width {
+                found.push(NumericalFinding::Needless {
+                    error,
+                    percent,
+                    width,
+                });
+            }
+        }
+        found
+    }
+}
+
+impl fmt::Display for NumericalFinding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missed { accepted, reached } => write!(
+                f,
+                "no settings that were tried keep accuracy.amplitude_error = {accepted}; the most accurate \
+                 were taken ({}); accept a larger error, or see `blisk tradeoff`",
+                reached.map_or("without a bound".to_owned(), |reached| format!(
+                    "95 % of the amplitudes within {:.2} %",
+                    100.0 * reached
+                ))
+            ),
+            Self::Large {
+                error,
+                percent,
+                width,
+            } => write!(
+                f,
+                "the numerical error (95 % of the amplitudes within {:.2} %) is more than a tenth of the \
+                 interval of P{percent} ({:.2} % wide): differences as small as that are no statistics; \
+                 take a smaller accuracy.amplitude_error",
+                100.0 * error,
+                100.0 * width
+            ),
+            Self::Needless {
+                error,
+                percent,
+                width,
+            } => write!(
+                f,
+                "the numerical error (95 % of the amplitudes within {:.3} %) is less than a hundredth of \
+                 the interval of P{percent} ({:.1} % wide): a larger accuracy.amplitude_error is faster \
+                 and would hardly show",
+                100.0 * error,
+                100.0 * width
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NumericalError, NumericalFinding};
+    use crate::population::statistics::percentile;
+
+    #[test]
+    fn an_error_is_large_or_needless_beside_the_interval() {
+        let sorted: Vec<f64> = (0..200).map(|i| 1.0 + f64::from(i) / 2000.0).collect();
+        let found = percentile(&sorted, 0, 95);
+        let width = (found.upper.expect("estimable") - found.lower.expect("estimable"))
+            / found.value.expect("estimable");
+        let warned = |share: f64, met| {
+            let error = NumericalError {
+                accepted: 0.01,
+                p95_upper: Some(share * width),
+                worst_upper: None,
+                met,
+                simpler_law: None,
+            };
+            error.findings(&[found])
+        };
+        assert!(matches!(
+            warned(0.11, true)[..],
+            [NumericalFinding::Large { .. }]
+        ));
+        assert!(warned(0.09, true).is_empty() && warned(0.011, true).is_empty());
+        assert!(matches!(
+            warned(0.009, true)[..],
+            [NumericalFinding::Needless { .. }]
+        ));
+        assert!(matches!(
+            warned(0.09, false)[..],
+            [NumericalFinding::Missed { .. }]
+        ));
+    }
+}

@@ -1,0 +1,142 @@
+//! The frame of a plot: panel, grid, ticks, titles of the axes, legend.
+
+use super::{Anchor, Axis, Svg};
+
+/// Width of all plots, user units.
+pub(in crate::report) const WIDTH: f64 = 560.0;
+/// Left and right end of the horizontal axis of a plot.
+pub(in crate::report) const SIDES: (f64, f64) = (70.0, 546.0);
+/// Upper end of the vertical axis; above it stands the legend.
+pub(in crate::report) const TOP: f64 = 44.0;
+/// Length of a tick.
+const TICK: f64 = 4.0;
+/// Space between entries of a legend and the width of a letter, about.
+const LEGEND: (f64, f64) = (40.0, 8.0);
+
+/// What stands at a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::report) enum Mark {
+    Circle,
+    Square,
+    Diamond,
+    Triangle,
+}
+
+impl Mark {
+    /// Draws the mark with the classes `mark` and `class`.
+    pub(in crate::report) fn draw(self, svg: &mut Svg, class: &str, at: (f64, f64), words: &str) {
+        const R: f64 = 4.2;
+        let class = format!("mark {class}");
+        let (x, y) = at;
+        let shape: &[(f64, f64)] = match self {
+            Self::Circle => return svg.circle(&class, at, R, words),
+            Self::Square => &[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)],
+            Self::Diamond => &[(0.0, -1.35), (1.35, 0.0), (0.0, 1.35), (-1.35, 0.0)],
+            Self::Triangle => &[(0.0, -1.2), (1.15, 0.9), (-1.15, 0.9)],
+        };
+        let points: Vec<(f64, f64)> = shape
+            .iter()
+            .map(|(dx, dy)| (x + 0.92 * R * dx, y + 0.92 * R * dy))
+            .collect();
+        svg.shape(&class, &points, words);
+    }
+}
+
+/// An entry of a legend.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::report) enum LegendEntry<'a> {
+    /// A line of the classes `curve` and this, with a mark.
+    Line(&'a str, Option<Mark>, &'a str),
+    /// A mark of this class alone.
+    Point(&'a str, Mark, &'a str),
+    /// An area of this class.
+    Area(&'a str, &'a str),
+}
+
+/// Axes of a plot.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::report) struct Frame<'a> {
+    pub(in crate::report) x: Axis,
+    pub(in crate::report) y: Axis,
+    pub(in crate::report) x_title: &'a str,
+    pub(in crate::report) y_title: &'a str,
+}
+
+impl Frame<'_> {
+    /// Panel, horizontal grid and titles.
+    pub(in crate::report) fn draw(&self, svg: &mut Svg) {
+        let (left, right) = self.x.ends;
+        let (bottom, top) = self.y.ends;
+        svg.rectangle("panel", (left, top), (right, bottom), "");
+        for (value, name) in self.y.ticks(5) {
+            let y = self.y.at(value);
+            svg.line("grid", (left, y), (right, y));
+            svg.text("quiet", (left - 8.0, y + 4.5), Anchor::End, &name);
+        }
+        svg.line("axis", (left, bottom), (right, bottom));
+        let middle = f64::midpoint(left, right);
+        svg.text("", (middle, bottom + 42.0), Anchor::Middle, self.x_title);
+        svg.upright("", (15.0, f64::midpoint(top, bottom)), self.y_title);
+    }
+
+    /// Ticks of the horizontal axis, with vertical grid.
+    pub(in crate::report) fn x_ticks(&self, svg: &mut Svg, count: u32) {
+        for (value, name) in self.x.ticks(count) {
+            self.x_tick(svg, self.x.at(value), &name);
+        }
+    }
+
+    /// One tick of the horizontal axis at the place `x`.
+    pub(in crate::report) fn x_tick(&self, svg: &mut Svg, x: f64, name: &str) {
+        let (bottom, top) = self.y.ends;
+        svg.line("grid", (x, top), (x, bottom));
+        svg.line("axis", (x, bottom), (x, bottom + TICK));
+        svg.text("quiet", (x, bottom + 20.0), Anchor::Middle, name);
+    }
+
+    /// Place of a point.
+    pub(in crate::report) fn at(&self, x: f64, y: f64) -> (f64, f64) {
+        (self.x.at(x), self.y.at(y))
+    }
+
+    /// A vertical bound with caps at the place `x`.
+    pub(in crate::report) fn bound(&self, svg: &mut Svg, class: &str, x: f64, ends: (f64, f64)) {
+        let (low, high) = (self.y.at(ends.0), self.y.at(ends.1));
+        let class = format!("bound {class}");
+        svg.line(&class, (x, low), (x, high));
+        for y in [low, high] {
+            svg.line(&class, (x - 3.5, y), (x + 3.5, y));
+        }
+    }
+}
+
+/// Entries from left to right above the plot.
+pub(in crate::report) fn legend(svg: &mut Svg, entries: &[LegendEntry<'_>]) {
+    let mut at = (SIDES.0, 14.0);
+    for entry in entries {
+        let (LegendEntry::Line(_, _, words)
+        | LegendEntry::Point(_, _, words)
+        | LegendEntry::Area(_, words)) = entry;
+        let width = LEGEND.0 + LEGEND.1 * words.chars().count() as f64;
+        if at.0 + width > WIDTH + 10.0 && at.0 > SIDES.0 {
+            at = (SIDES.0, at.1 + 19.0);
+        }
+        let (x, y) = at;
+        match entry {
+            LegendEntry::Line(class, mark, _) => {
+                svg.line(&format!("curve {class}"), (x, y - 4.0), (x + 24.0, y - 4.0));
+                if let Some(mark) = mark {
+                    mark.draw(svg, class, (x + 12.0, y - 4.0), "");
+                }
+            }
+            LegendEntry::Point(class, mark, _) => {
+                mark.draw(svg, class, (x + 12.0, y - 4.0), "");
+            }
+            LegendEntry::Area(class, _) => {
+                svg.rectangle(class, (x, y - 9.0), (x + 24.0, y + 1.0), "");
+            }
+        }
+        svg.text("small", (x + 30.0, y), Anchor::Start, words);
+        at.0 += width;
+    }
+}

@@ -1,0 +1,297 @@
+//! Warnings: what a reader of the numbers must know, and what can be done about it.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::NumericalFinding;
+
+/// Largest number of wheels of a file that a report names one by one.
+pub const MOST_WHEELS_NAMED: u64 = 12;
+
+/// A warning about the results of a study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "warning", rename_all = "snake_case")]
+pub enum Warning {
+    /// Contacts separate, which the harmonics of the solution cannot represent.
+    SeparationWithFewHarmonics {
+        /// Scenarios concerned.
+        scenarios: Vec<usize>,
+        /// Largest share of separated pairs of a row, the tuned wheel included.
+        largest_fraction: f64,
+    },
+    /// Rows whose sampling or harmonic error exceeds its tolerance.
+    BeyondTolerance {
+        /// Rows concerned.
+        rows: u64,
+        /// All rows.
+        planned: u64,
+        /// Largest stated error of a row.
+        largest_stated_error: f64,
+    },
+    /// The basis that the study names is replaced.
+    ReplacedBasis {
+        /// What rows are solved on.
+        taken: String,
+    },
+    /// Motions at peaks that the wheel does not stay on.
+    Unstable {
+        /// Rows that were looked at.
+        looked_at: u64,
+        /// Rows, among those looked at, whose motion is unstable.
+        rows: u64,
+        /// Scenarios whose tuned wheel does not stay on its motion.
+        tuned: Vec<usize>,
+    },
+    /// The basis is less accurate than the study asks for.
+    BasisError {
+        /// The basis.
+        basis: String,
+        /// Measured relative error of the tuned peak.
+        error: f64,
+        /// Error asked for.
+        wanted: f64,
+    },
+    /// The Craig-Bampton model itself has too few modes.
+    CraigBamptonModes {
+        /// Highest fixed-interface frequency over what it should be.
+        reach: f64,
+    },
+    /// More fixed-interface modes change the tuned peak.
+    CraigBamptonError {
+        /// Measured relative change.
+        error: f64,
+        /// Error asked for.
+        wanted: f64,
+    },
+    /// The numerical error by which the settings were chosen.
+    NumericalError(NumericalFinding),
+    /// Rows without result.
+    Failures {
+        /// Rows that failed.
+        failed: u64,
+        /// All rows.
+        planned: u64,
+    },
+    /// Tuned wheels without result, so that there are no amplification factors.
+    TunedFailures {
+        /// Scenarios concerned.
+        scenarios: Vec<usize>,
+    },
+    /// A percentile has no value because there are too few patterns.
+    TooFewPatterns {
+        /// The percentile.
+        percent: u32,
+        /// Smallest number of patterns that gives a two-sided interval.
+        needed: u64,
+        /// Wheels in `mistuning.file`; absent: patterns are drawn.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        wheels_in_file: Option<u64>,
+    },
+    /// A percentile has no value because too many rows failed.
+    TooManyFailures {
+        /// The percentile.
+        percent: u32,
+        /// Scenarios concerned.
+        scenarios: Vec<usize>,
+    },
+}
+
+impl Warning {
+    /// Whether failures leave a percentile or a tuned reference without value.
+    #[must_use]
+    pub fn costs_a_statistic(&self) -> bool {
+        matches!(
+            self,
+            Self::TooManyFailures { .. } | Self::TunedFailures { .. }
+        )
+    }
+
+    /// What is wrong in a few words; [`fmt::Display`] adds what to do about it.
+    #[must_use]
+    pub fn headline(&self) -> String {
+        let share = |ratio: f64| format!("{:.2} %", 100.0 * ratio);
+        match self {
+            Self::SeparationWithFewHarmonics { scenarios, .. } => format!(
+                "contacts separate in scenarios {}, which the harmonics cannot show",
+                list(scenarios)
+            ),
+            Self::BeyondTolerance { rows, planned, .. } => {
+                format!("{rows} of {planned} rows state a numerical error beyond their tolerance")
+            }
+            Self::ReplacedBasis { .. } => "the basis of the study is replaced".to_owned(),
+            Self::Unstable { rows, tuned, .. } => {
+                let tuned = tuned.len();
+                format!("unstable motions: {rows} rows, {tuned} tuned wheels")
+            }
+            Self::BasisError { error, wanted, .. } => format!(
+                "the basis misses the tuned peak by {} instead of {}",
+                share(*error),
+                share(*wanted)
+            ),
+            Self::CraigBamptonModes { .. } => "too few fixed-interface modes".to_owned(),
+            Self::CraigBamptonError { error, wanted } => format!(
+                "more fixed-interface modes change the tuned peak by {} instead of {}",
+                share(*error),
+                share(*wanted)
+            ),
+            Self::NumericalError(NumericalFinding::Missed { accepted, .. }) => {
+                format!("the accepted error of {} is not kept", share(*accepted))
+            }
+            Self::NumericalError(NumericalFinding::Large { percent, .. }) => {
+                format!("the numerical error is not small beside the interval of P{percent}")
+            }
+            Self::NumericalError(NumericalFinding::Needless { percent, .. }) => {
+                format!("the numerical error is needlessly small beside the interval of P{percent}")
+            }
+            Self::Failures { failed, planned } => {
+                format!("{failed} of {planned} rows have no result")
+            }
+            Self::TunedFailures { scenarios } => {
+                format!("no tuned peak in scenarios {}", list(scenarios))
+            }
+            Self::TooFewPatterns {
+                percent, needed, ..
+            } => {
+                format!("P{percent} has no value: it needs {needed} patterns")
+            }
+            Self::TooManyFailures { percent, scenarios } => format!(
+                "P{percent} has no value in scenarios {}: too many rows failed",
+                list(scenarios)
+            ),
+        }
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::SeparationWithFewHarmonics {
+                scenarios,
+                largest_fraction,
+            } => write!(
+                f,
+                "contacts separate in scenarios {} (up to {:.0} % of the pairs of a wheel): \
+                 harmonic 1 or odd harmonics alone cannot represent that; raise the normal load, or \
+                 set solver.harmonics = [0, 1, 2, 3]",
+                list(scenarios),
+                100.0 * largest_fraction
+            ),
+            Self::BeyondTolerance {
+                rows,
+                planned,
+                largest_stated_error,
+            } => write!(
+                f,
+                "{rows} of {planned} rows state a sampling or harmonic error beyond its tolerance \
+                 (stated errors up to {:.1} %); take solver.harmonics = \"auto\" with \
+                 solver.rows_beyond_tolerance = \"resolve\", a larger set, or accept it by a larger \
+                 solver.harmonic_tolerance",
+                100.0 * largest_stated_error
+            ),
+            Self::ReplacedBasis { taken } => write!(
+                f,
+                "basis = \"stick_attachment\" is replaced: rows are on {taken}, which has no modes to choose; take \
+                 basis = \"auto\", or leave it out"
+            ),
+            Self::Unstable {
+                looked_at,
+                rows,
+                tuned,
+            } => f.write_str(&unstable_motions(*looked_at, *rows, tuned)),
+            Self::BasisError {
+                basis,
+                error,
+                wanted,
+            } => write!(
+                f,
+                "basis {basis} misses the tuned peak by {:.2} %, more than reduction.error = {wanted}; \
+                 take more modes or basis = \"auto\", or accept it by a larger reduction.error",
+                100.0 * error
+            ),
+            Self::CraigBamptonModes { reach } => write!(
+                f,
+                "the fixed-interface modes reach only {reach:.2} times the frequency that they should \
+                 (6 times that of the tuned peak, 1.5 times that of its harmonics); raise \
+                 reduction.craig_bampton_modes"
+            ),
+            Self::CraigBamptonError { error, wanted } => write!(
+                f,
+                "more fixed-interface modes change the tuned peak by {:.2} %, more than \
+                 reduction.error = {wanted}; leave reduction.craig_bampton_modes out or raise it, or \
+                 accept it by a larger reduction.error",
+                100.0 * error
+            ),
+            Self::NumericalError(finding) => finding.fmt(f),
+            Self::Failures { failed, planned } => write!(
+                f,
+                "{failed} of {planned} rows have no result; the bounds take them as infinitely low \
+                 and infinitely high; manifest.json counts them by status"
+            ),
+            Self::TunedFailures { scenarios } => write!(
+                f,
+                "the tuned wheel of scenarios {} has no peak, so these have no amplification factor; \
+                 widen solver.frequency_band_hz or raise solver.samples_per_period",
+                list(scenarios)
+            ),
+            Self::TooFewPatterns {
+                percent,
+                needed,
+                wheels_in_file: None,
+            } => write!(
+                f,
+                "P{percent} is not estimable: a 95 % interval needs at least {needed} patterns; raise \
+                 study.patterns and run again, only the new ones are solved"
+            ),
+            Self::TooFewPatterns {
+                percent,
+                needed,
+                wheels_in_file: Some(wheels),
+            } => write!(
+                f,
+                "P{percent} is not estimable: a 95 % interval needs at least {needed} wheels, mistuning.file holds \
+                 {wheels}; {}, or put more wheels into the file",
+                read_each_wheel(*wheels)
+            ),
+            Self::TooManyFailures { percent, scenarios } => write!(
+                f,
+                "P{percent} of scenarios {} has no value: too many rows failed; see their status in \
+                 responses.parquet",
+                list(scenarios)
+            ),
+        }
+    }
+}
+
+/// Which motions are unstable, and what follows from it.
+fn unstable_motions(looked_at: u64, rows: u64, tuned: &[usize]) -> String {
+    let mut motions = Vec::new();
+    if rows > 0 {
+        motions.push(format!("of {rows} of the {looked_at} rows looked at"));
+    }
+    if !tuned.is_empty() {
+        motions.push(format!("of the tuned wheel of scenarios {}", list(tuned)));
+    }
+    format!(
+        "the motions {} are unstable: the wheel does not stay on them, and its amplitude in time differs, by a few per cent \
+         where that was marched; see the columns stable and tuned_stable",
+        motions.join(" and ")
+    )
+}
+
+/// Where the peak of each wheel of a file is read.
+pub(super) fn read_each_wheel(wheels: u64) -> &'static str {
+    if wheels <= MOST_WHEELS_NAMED {
+        "read the peak of each wheel, which blisk report DIR prints"
+    } else {
+        "read the peak of each wheel in responses.parquet"
+    }
+}
+
+fn list(scenarios: &[usize]) -> String {
+    scenarios
+        .iter()
+        .map(usize::to_string)
+        .collect::<Vec<_>>()
+        .join(", ")
+}

@@ -1,0 +1,242 @@
+//! Words, units and number formats of everything that people read: texts for a terminal, tables and figures of a report.
+
+use super::StudySummary;
+use crate::population::monte_carlo::LoadCaseName;
+
+/// Units of length, the largest first: name, metres, and the length in m from which on it is taken. Amplitudes
+/// of blades are in µm, so that one text does not say mm where another says µm.
+const LENGTH_UNITS: [(&str, f64, f64); 4] = [
+    ("m", 1.0, 100.0),
+    ("mm", 1e-3, 0.1),
+    ("µm", 1e-6, 1e-8),
+    ("nm", 1e-9, 0.0),
+];
+
+/// The unit in which amplitudes are shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LengthUnit {
+    name: &'static str,
+    metres: f64,
+}
+
+impl LengthUnit {
+    /// The unit for `lengths_m` by the smallest of them: µm from 0.01 µm to 10 cm, and without any.
+    #[must_use]
+    pub fn of(lengths_m: impl IntoIterator<Item = f64>) -> Self {
+        let smallest = lengths_m.into_iter().reduce(f64::min).unwrap_or(1e-6);
+        let fits = |unit: &&(&str, f64, f64)| smallest >= unit.2;
+        let last = LENGTH_UNITS[LENGTH_UNITS.len() - 1];
+        let (name, metres, _) = *LENGTH_UNITS.iter().find(fits).unwrap_or(&last);
+        Self { name, metres }
+    }
+
+    /// The unit of the tuned amplitudes and means of a study.
+    pub(super) fn of_summary(summary: &StudySummary) -> Self {
+        let amplitudes = summary
+            .scenarios
+            .iter()
+            .flat_map(|scenario| [scenario.tuned_amplitude_m, scenario.peak_amplitude_m.mean]);
+        Self::of(amplitudes.flatten())
+    }
+
+    /// Metres per unit.
+    pub(super) fn metres(self) -> f64 {
+        self.metres
+    }
+
+    /// Name of the unit.
+    pub(super) fn name(self) -> &'static str {
+        self.name
+    }
+
+    /// A length in m, four digits in the unit.
+    #[must_use]
+    pub fn length(self, metres: f64) -> String {
+        format!("{} {}", self.number(metres), self.name)
+    }
+
+    /// A length in m, seven digits in the unit, where small differences matter.
+    #[must_use]
+    pub fn precise(self, metres: f64) -> String {
+        format!("{} {}", digits(metres / self.metres, 7), self.name)
+    }
+
+    /// A length in m, four digits in the unit, without its name.
+    pub(super) fn number(self, metres: f64) -> String {
+        four_digits(metres / self.metres)
+    }
+}
+
+/// `value` with four significant digits, or as a whole number.
+pub(super) fn four_digits(value: f64) -> String {
+    digits(value, 4)
+}
+
+/// Size below which a number is written with an exponent.
+const SMALL: f64 = 1e-4;
+
+/// `value` with `count` significant digits, or as a whole number.
+fn digits(value: f64, count: i32) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if value.abs() < SMALL {
+        let decimals = (count - 1).max(0) as usize;
+        return format!("{value:.decimals$e}");
+    }
+    let before_point = value.abs().log10().floor() as i32;
+    let decimals = (count - 1 - before_point).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// `value` with at most six decimals and no trailing zeros.
+pub(super) fn trimmed(value: f64) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Load case, where there is one, and engine order.
+pub(super) fn excitation(load_case: Option<LoadCaseName>, engine_order: u32) -> String {
+    let case = load_case.map_or_else(String::new, |name| format!("load case {name}, "));
+    format!("{case}engine order {engine_order}")
+}
+
+/// Load case, where there is one, engine order and standard deviation of the blades, or that their patterns are from a
+/// file.
+pub(super) fn excitation_and_deviation(
+    load_case: Option<LoadCaseName>,
+    engine_order: u32,
+    standard_deviation: Option<f64>,
+) -> String {
+    let excitation = excitation(load_case, engine_order);
+    match standard_deviation {
+        Some(deviation) => format!(
+            "{excitation}, standard deviation {} %",
+            trimmed(100.0 * deviation)
+        ),
+        None => format!("{excitation}, patterns from a file"),
+    }
+}
+
+/// A load as written in the study: a number of newtons, or the name of a linear limit.
+pub(super) fn load_words(contact: &str, normal_load_n: Option<f64>) -> String {
+    normal_load_n.map_or_else(|| contact.to_owned(), |load| load.to_string())
+}
+
+/// A load with its unit: a number of newtons, or the name of a linear limit.
+pub(super) fn load_with_unit(contact: &str, normal_load_n: Option<f64>) -> String {
+    let words = load_words(contact, normal_load_n);
+    if normal_load_n.is_some() {
+        format!("{words} N")
+    } else {
+        words
+    }
+}
+
+/// A load with its unit, newtons per sector, since it acts on every sector; or the name of a linear limit.
+pub(super) fn load_per_sector(contact: &str, normal_load_n: Option<f64>) -> String {
+    let words = load_with_unit(contact, normal_load_n);
+    if normal_load_n.is_some() {
+        format!("{words} per sector")
+    } else {
+        words
+    }
+}
+
+/// A percentile in percent, without needless digits.
+pub(super) fn percent_words(percent: f64) -> String {
+    trimmed(percent)
+}
+
+/// A ratio as percent with two digits that matter.
+pub(super) fn share_words(ratio: f64) -> String {
+    let percent = 100.0 * ratio;
+    if percent == 0.0 {
+        return "0 %".to_owned();
+    }
+    let decimals = (1 - percent.abs().log10().floor() as i32).clamp(0, 4) as usize;
+    if percent.abs() < 1e-4 {
+        return "below 0.0001 %".to_owned();
+    }
+    format!("{percent:.decimals$} %")
+}
+
+/// `text` with its units held to their numbers by spaces that do not break.
+pub(super) fn tied(text: &str) -> String {
+    const UNITS: [&str; 9] = ["%", "N", "MPa", "rpm", "Hz", "m", "mm", "µm", "nm"];
+    let mut tied = String::with_capacity(text.len() + 16);
+    for word in text.split(' ') {
+        if !tied.is_empty() {
+            let bare = word.trim_end_matches(['.', ',', ';', ':', ')', ']']);
+            let of_number = tied.ends_with(|before: char| before.is_ascii_digit() || before == ']');
+            tied.push(if UNITS.contains(&bare) && of_number {
+                '\u{a0}'
+            } else {
+                ' '
+            });
+        }
+        tied.push_str(word);
+    }
+    tied
+}
+
+/// A force in the unit that suits it, four digits without trailing zeros.
+pub(super) fn force(newtons: f64) -> String {
+    let (scale, unit) = if newtons.abs() < 1e4 {
+        (1.0, "N")
+    } else if newtons.abs() < 1e7 {
+        (1e-3, "kN")
+    } else {
+        (1e-6, "MN")
+    };
+    let digits = four_digits(scale * newtons);
+    let digits = if digits.contains('.') {
+        digits.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &digits
+    };
+    format!("{digits} {unit}")
+}
+
+/// A time in the unit that suits it.
+pub(super) fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 1.0 => format!("{s:.3} s"),
+        s if s < 120.0 => format!("{s:.1} s"),
+        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
+        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
+        s => format!("{:.1} d", s / 86_400.0),
+    }
+}
+
+/// Columns of a paragraph on a terminal.
+const COLUMNS: usize = 80;
+
+/// `text` in lines of at most 80 columns.
+pub(super) fn paragraph(text: &str) -> String {
+    hanging("", "", text)
+}
+
+/// `text` after `head` in lines of at most 80 columns, those after the first behind `margin`.
+pub(super) fn hanging(head: &str, margin: &str, text: &str) -> String {
+    let mut lines = vec![head.to_owned()];
+    let mut used = head.chars().count();
+    let mut empty = true;
+    for word in text.split_whitespace() {
+        let width = word.chars().count();
+        let line = lines.len() - 1;
+        if empty {
+            lines[line].push_str(word);
+            used += width;
+            empty = false;
+        } else if used + 1 + width <= COLUMNS {
+            lines[line].push(' ');
+            lines[line].push_str(word);
+            used += 1 + width;
+        } else {
+            lines.push(format!("{margin}{word}"));
+            used = margin.chars().count() + width;
+        }
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,108 @@
+//! A top of a row that is climbed with one set of harmonics after the other: what every set leaves on few harmonics, between the
+//! frequencies that are solved with it.
+
+use crate::response::receptance::ContactForces;
+
+/// Least and largest distance, over that wanted, at which a point serves as one beside a top.
+const SERVES: (f64, f64) = (0.5, 1.5);
+/// Least distance of points that a force is interpolated between, over that of points beside a top.
+const APART: f64 = 0.4;
+/// Points that a force is interpolated between at most.
+const NODES: usize = 3;
+
+/// A frequency that is solved with the harmonics of a set.
+pub(super) struct Known {
+    pub(super) frequency_hz: f64,
+    pub(super) height_m: f64,
+    /// What the set leaves on few harmonics beyond what the sets before it do.
+    pub(super) force: ContactForces,
+    /// Amplitude of every blade with the set over that of few harmonics in the same solution, over the same by the sets before it.
+    pub(super) growth: Vec<f64>,
+}
+
+/// A top that is searched.
+pub(super) struct Climb {
+    /// What is known of the top with every set so far.
+    pub(super) known: Vec<Vec<Known>>,
+    /// Distance of points beside the top, Hz.
+    pub(super) beside_hz: f64,
+}
+
+impl Climb {
+    /// Points of the last set so far.
+    pub(super) fn own(&self) -> &[Known] {
+        self.known.last().map_or(&[], Vec::as_slice)
+    }
+
+    /// The highest point of the last set so far.
+    pub(super) fn best(&self) -> &Known {
+        let highest = |a: &&Known, b: &&Known| a.height_m.total_cmp(&b.height_m);
+        let best = self.own().iter().max_by(highest);
+        best.expect("a climb begins with a point")
+    }
+
+    /// A frequency beside the top, Hz, on a side on which no point serves. Both sides are looked at with every set: a harmonic of the
+    /// last one may meet a resonance of its own on the side that the sets before it have not shown.
+    pub(super) fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
+        let is_unseen = |side: &f64| {
+            let way = |own: &Known| (own.frequency_hz - top_hz) / side;
+            let serves = |own: &Known| (SERVES.0..=SERVES.1).contains(&way(own));
+            !self.own().iter().any(serves)
+        };
+        let unseen = [-self.beside_hz, self.beside_hz]
+            .into_iter()
+            .find(is_unseen);
+        unseen.map(|side| top_hz + side)
+    }
+
+    /// What the first `sets` sets leave on few harmonics at a frequency, Hz, and the growth of every blade's amplitude by them.
+    pub(super) fn left(&self, sets: usize, frequency_hz: f64) -> Option<(ContactForces, Vec<f64>)> {
+        let mut forces = Vec::new();
+        let mut growth: Vec<f64> = Vec::new();
+        for known in &self.known[..sets] {
+            let nodes = self.nodes(known, frequency_hz);
+            let of_set: Vec<f64> = (0..known.first()?.growth.len())
+                .map(|blade| {
+                    nodes
+                        .iter()
+                        .map(|(share, own)| share * own.growth[blade])
+                        .sum()
+                })
+                .collect();
+            if growth.is_empty() {
+                growth = of_set;
+            } else {
+                growth
+                    .iter_mut()
+                    .zip(of_set)
+                    .for_each(|(all, own)| *all *= own);
+            }
+            forces.extend(nodes.into_iter().map(|(share, own)| (share, &own.force)));
+        }
+        Some((ContactForces::combined(&forces)?, growth))
+    }
+
+    /// The nearest known points to a frequency, Hz, each with its share in the polynomial through them there.
+    fn nodes<'a>(&self, known: &'a [Known], frequency_hz: f64) -> Vec<(f64, &'a Known)> {
+        let mut near: Vec<&Known> = known.iter().collect();
+        let distance = |own: &Known| (own.frequency_hz - frequency_hz).abs();
+        near.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let mut nodes: Vec<&Known> = Vec::new();
+        for own in near {
+            let apart = |node: &&Known| {
+                (node.frequency_hz - own.frequency_hz).abs() >= APART * self.beside_hz
+            };
+            if nodes.len() < NODES && nodes.iter().all(apart) {
+                nodes.push(own);
+            }
+        }
+        let share = |at: usize| -> f64 {
+            let others = nodes.iter().enumerate().filter(|(other, _)| *other != at);
+            let factors = others.map(|(_, other)| {
+                (frequency_hz - other.frequency_hz) / (nodes[at].frequency_hz - other.frequency_hz)
+            });
+            factors.product()
+        };
+        (0..nodes.len()).map(|at| (share(at), nodes[at])).collect()
+    }
+}

@@ -1,0 +1,92 @@
+//! A solution at one frequency, and the work that solutions took.
+
+use super::samples::Reading;
+use crate::response::harmonic_balance::ContactShares;
+
+/// Work done for a row.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Points solved nonlinearly.
+    pub nonlinear_solves: u64,
+    /// Newton iterations, all attempts.
+    pub newton_iterations: u64,
+    /// Jacobians assembled and factored.
+    pub factorisations: u64,
+    /// Points that needed more than the first attempt.
+    pub retries: u64,
+    /// Folds of the response curve passed by continuation.
+    pub folds: u64,
+}
+
+impl Work {
+    /// The sum of this work and `other`.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            nonlinear_solves: self.nonlinear_solves + other.nonlinear_solves,
+            newton_iterations: self.newton_iterations + other.newton_iterations,
+            factorisations: self.factorisations + other.factorisations,
+            retries: self.retries + other.retries,
+            folds: self.folds + other.folds,
+        }
+    }
+}
+
+/// A converged point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Real unknowns of the harmonic balance, see [`crate::response::harmonic_balance::HarmonicSystem`]; for a
+    /// linear limit those of harmonic 1 alone.
+    pub solution: Vec<f64>,
+    /// Amplitude of every blade, m.
+    pub amplitudes_m: Vec<f64>,
+    /// Residual relative to the excitation; 0 for a linear limit.
+    pub residual: f64,
+    /// Shares of slipping and separated pairs.
+    pub shares: ContactShares,
+    /// Drift of the ring along its rigid motions, m per period: 0 unless it creeps.
+    pub ring_drift_m: [f64; 2],
+    /// How the point moves on with frequency, where that was asked for and is cheap.
+    pub slope: Option<Slope>,
+}
+
+/// Derivatives of a point by frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slope {
+    /// Derivatives of the unknowns, per Hz.
+    pub solution: Vec<f64>,
+    /// Derivative of the amplitude of every blade, m/Hz.
+    pub amplitudes_m_per_hz: Vec<f64>,
+}
+
+impl Point {
+    /// Largest amplitude over the blades, m.
+    #[must_use]
+    pub fn largest_amplitude_m(&self) -> f64 {
+        self.amplitudes_m.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// What a search reads.
+    pub(super) fn reading(&self) -> Reading {
+        let slope = self.slope.as_ref();
+        Reading {
+            amplitudes: self.amplitudes_m.clone(),
+            slopes: slope.map(|slope| slope.amplitudes_m_per_hz.clone()),
+        }
+    }
+
+    /// Blade of the largest amplitude, the first where several share it.
+    #[must_use]
+    pub fn largest_blade(&self) -> usize {
+        let amplitudes = &self.amplitudes_m;
+        (0..amplitudes.len()).fold(0, |best, blade| {
+            if amplitudes[blade] > amplitudes[best] {
+                blade
+            } else {
+                best
+            }
+        })
+    }
+}

@@ -1,0 +1,243 @@
+//! What the solution of a point needs besides the structure.
+
+use std::sync::Arc;
+
+use super::error_settings::ErrorSettings;
+use super::observed_amplitude::ObservedAmplitude;
+use super::options::{Harmonics, SearchHarmonics, SolverOptions, samples_per_period};
+use crate::model::cyclic::ContactGeometry;
+use crate::response::friction::{ContactLaw, PairParameters, Ring};
+use crate::response::harmonic_balance::{
+    ContactInterface, EnlargedSet, HarmonicTransform, NewtonBounds, TransformError,
+};
+use crate::response::mistuning::ContactFactors;
+
+/// Harmonics that lead to the top before all of an automatic set are solved there.
+const GUIDE: [u32; 2] = [1, 3];
+/// Share of the samples asked for that they are sampled with.
+const SAMPLES_OF_GUIDE: (usize, usize) = (1, 2);
+
+/// Everything of a study that the solution of a point needs besides the structure.
+#[derive(Debug, Clone)]
+pub struct PointSettings {
+    pub(super) harmonics: Vec<u32>,
+    pub(super) transform: Arc<HarmonicTransform>,
+    pub(super) amplitude: ObservedAmplitude,
+    errors: Arc<ErrorSettings>,
+    pub(super) bounds: NewtonBounds,
+    /// Whether the tolerance of the residual was asked for.
+    pub(super) residual_is_stated: bool,
+    pub(super) contact: Option<(ContactLaw, PairParameters)>,
+    pub(super) ring: Ring,
+    pub(super) geometry: ContactGeometry,
+    pub(super) factors: ContactFactors,
+    /// Settings with the harmonics of the search for the top, where these are fewer than all.
+    search: Option<Box<Self>>,
+    /// Settings with the harmonics that lead to the top before all of them are solved there, where there are such.
+    guide: Option<Box<Self>>,
+}
+
+impl PointSettings {
+    /// `harmonics` ascending, with 1; `contact` is the law with its per-sector parameters (the
+    /// normal load is set per scenario).
+    ///
+    /// # Errors
+    /// If the harmonics cannot be told apart with the samples asked for.
+    pub fn new(
+        options: &SolverOptions,
+        harmonics: &[u32],
+        contact: Option<(ContactLaw, PairParameters)>,
+        geometry: ContactGeometry,
+    ) -> Result<Self, TransformError> {
+        let set: Vec<usize> = harmonics.iter().map(|&k| k as usize).collect();
+        let samples = samples_per_period(options, harmonics);
+        let law = contact.map(|(law, _)| law);
+        let sought = sought(&options.search_harmonics, harmonics);
+        let search = match &sought {
+            Some(sought) if contact.is_some() => {
+                let search = Self::new(options, sought, contact, geometry.clone())?;
+                Some(Box::new(search))
+            }
+            _ => None,
+        };
+        let guided = options.harmonics == Harmonics::Auto && contact.is_some();
+        let guided = guided && search.is_some() && is_everything(harmonics);
+        let guide = guided.then(|| {
+            let own = Self::new(options, &GUIDE, contact, geometry.clone())?;
+            let (share, whole) = SAMPLES_OF_GUIDE;
+            own.at_samples(share * options.samples_per_period / whole)
+        });
+        Ok(Self {
+            search,
+            guide: guide.transpose()?.map(Box::new),
+            harmonics: harmonics.to_vec(),
+            transform: Arc::new(HarmonicTransform::new(&set, samples)?),
+            amplitude: ObservedAmplitude::new(options.amplitude, harmonics, options.time_samples)?,
+            errors: Arc::new(ErrorSettings::new(options, harmonics, law)?),
+            bounds: NewtonBounds::with_tolerance(options.residual_tolerance),
+            residual_is_stated: options.residual_is_stated,
+            contact,
+            ring: Ring::Locked,
+            geometry,
+            factors: ContactFactors::default(),
+        })
+    }
+
+    /// These settings with what a free ring does under mean friction; it is locked at first.
+    #[must_use]
+    pub fn with_ring(self, ring: Ring) -> Self {
+        let same = |own: Option<Box<Self>>| own.map(|own| Box::new(own.with_ring(ring)));
+        Self {
+            ring,
+            search: same(self.search),
+            guide: same(self.guide),
+            ..self
+        }
+    }
+
+    /// Copy of these settings for a wheel whose contact differs from the nominal one by `factors`.
+    #[must_use]
+    pub fn with_factors(&self, factors: &ContactFactors) -> Self {
+        let same = |own: &Option<Box<Self>>| {
+            let own = own.as_ref();
+            own.map(|own| Box::new(own.with_factors(factors)))
+        };
+        Self {
+            factors: factors.clone(),
+            search: same(&self.search),
+            guide: same(&self.guide),
+            ..self.clone()
+        }
+    }
+
+    /// These settings for a law of `contact` that is taken in the place of `law`, which has the same springs: what that changes
+    /// is in the errors. They stay as they are where there is no `law`.
+    ///
+    /// # Errors
+    /// If the harmonics that the other law excites cannot be told apart with the samples of the errors.
+    pub fn in_place_of(
+        self,
+        law: Option<ContactLaw>,
+        options: &SolverOptions,
+    ) -> Result<Self, TransformError> {
+        let Some(law) = law else {
+            return Ok(self);
+        };
+        let errors = ErrorSettings::new(options, &self.harmonics, Some(law))?.in_place_of(law);
+        Ok(Self {
+            errors: Arc::new(errors),
+            ..self
+        })
+    }
+
+    /// These settings with fewer samples in the search with fewer harmonics: those that its harmonics need, but not fewer than
+    /// `least`.
+    ///
+    /// # Errors
+    /// If the harmonics cannot be told apart with them.
+    pub fn with_search_samples(self, least: usize) -> Result<Self, TransformError> {
+        let Some(mut search) = self.search else {
+            return Ok(self);
+        };
+        let set = search.transform.harmonics().to_vec();
+        let highest = set.last().copied().unwrap_or(1);
+        let samples = least.max(8 * highest).min(search.transform.n_samples());
+        search.transform = Arc::new(HarmonicTransform::new(&set, samples)?);
+        Ok(Self {
+            search: Some(search),
+            ..self
+        })
+    }
+
+    /// The search with fewer harmonics at the samples of all of them; none without such a search.
+    ///
+    /// # Errors
+    /// If the harmonics cannot be told apart with them.
+    pub(super) fn search_at_own_samples(&self) -> Result<Option<Self>, TransformError> {
+        let search = self.search().cloned();
+        search
+            .map(|search| search.at_samples(self.transform.n_samples()))
+            .transpose()
+    }
+
+    /// These settings with `samples` samples per period.
+    fn at_samples(self, samples: usize) -> Result<Self, TransformError> {
+        let transform = HarmonicTransform::new(self.transform.harmonics(), samples)?;
+        Ok(Self {
+            transform: Arc::new(transform),
+            ..self
+        })
+    }
+
+    /// Settings for the same law, pairs, contact factors and ring in other harmonics.
+    ///
+    /// # Errors
+    /// If these cannot be told apart with the samples asked for.
+    pub fn with_harmonics(
+        &self,
+        harmonics: &[u32],
+        options: &SolverOptions,
+    ) -> Result<Self, TransformError> {
+        let other = Self::new(options, harmonics, self.contact, self.geometry.clone())?;
+        Ok(other.with_ring(self.ring).with_factors(&self.factors))
+    }
+
+    /// The pairs of the wheel under a law and a normal load.
+    #[must_use]
+    pub fn interface(
+        &self,
+        law: ContactLaw,
+        sector: PairParameters,
+        normal_load_n: f64,
+    ) -> ContactInterface {
+        ContactInterface {
+            law,
+            pairs: sector.pairs_under(normal_load_n, &self.geometry, &self.factors),
+            geometry: self.geometry.clone(),
+        }
+    }
+
+    /// Harmonic set of the nonlinear solution.
+    #[must_use]
+    pub fn harmonics(&self) -> &[u32] {
+        &self.harmonics
+    }
+
+    /// Settings of a search with fewer harmonics, if there is one, see [`super::refined_peak`].
+    #[must_use]
+    pub fn search(&self) -> Option<&Self> {
+        self.search.as_deref()
+    }
+
+    /// Settings with the harmonics that lead to the top before all of them are solved there, if there are such: an automatic set on
+    /// tuned receptances.
+    #[must_use]
+    pub fn guide(&self) -> Option<&Self> {
+        self.guide.as_deref()
+    }
+
+    /// How the errors of a solution are estimated.
+    #[must_use]
+    pub fn errors(&self) -> &ErrorSettings {
+        &self.errors
+    }
+}
+
+/// Harmonics of the search for tops of rows with `harmonics`; none where all of them are sought with.
+fn sought(search: &SearchHarmonics, harmonics: &[u32]) -> Option<Vec<u32>> {
+    let sought: Vec<u32> = match search {
+        SearchHarmonics::All => return None,
+        SearchHarmonics::Auto => vec![1],
+        SearchHarmonics::Set(set) => {
+            let own = harmonics.iter().filter(|harmonic| set.contains(harmonic));
+            own.copied().collect()
+        }
+    };
+    (sought.len() < harmonics.len()).then_some(sought)
+}
+
+/// Whether a set has everything that a law without separation excites, up to the highest that is looked at.
+fn is_everything(harmonics: &[u32]) -> bool {
+    let everything = EnlargedSet::everything(false);
+    everything.iter().all(|k| harmonics.contains(k))
+}

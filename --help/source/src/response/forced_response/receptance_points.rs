@@ -1,0 +1,365 @@
+//! Points, peaks and errors of rows on the receptances of the tuned wheel.
+
+use std::sync::Arc;
+
+use super::linear_peaks::LinearPeak;
+use super::observed_amplitude::{ObservedAmplitude, ObservedHarmonic};
+use super::options::ContactCondition;
+use super::peak::{SearchPlan, Window, search_plan_of};
+use super::point::{Point, Work};
+use super::point_settings::PointSettings;
+use super::point_source::PointSource;
+use super::starts::between;
+use crate::linalg::Complex64;
+use crate::response::friction::ContactLaw;
+use crate::response::harmonic_balance::{HarmonicTransform, PairContact, Status, WheelContact};
+use crate::response::receptance::{
+    EngineWheel, Limit, ReceptanceEngine, Resonance, WaveForce, WheelSolution, WheelSolver,
+    embedded,
+};
+
+/// One wheel on an engine under one excitation and contact condition.
+#[derive(Debug, Clone, Copy)]
+pub struct EngineRow<'a> {
+    /// What the rows of a study share.
+    pub engine: &'a ReceptanceEngine,
+    /// The wheel.
+    pub wheel: &'a EngineWheel,
+    /// The excitation.
+    pub force: &'a WaveForce,
+    /// The contact condition.
+    pub condition: ContactCondition,
+}
+
+impl ContactCondition {
+    /// The linear limit whose springs a solution under the condition is built on.
+    #[must_use]
+    pub fn limit(self) -> Limit {
+        match self {
+            Self::Full { .. } | Self::Stuck => Limit::Stuck,
+            Self::Slide => Limit::Slide,
+            Self::Free => Limit::Free,
+        }
+    }
+
+    /// The linear limits that bound a solution under the condition, the stuck one first.
+    #[must_use]
+    pub fn bounding_limits(self) -> Vec<Limit> {
+        match self {
+            Self::Full { .. } => vec![Limit::Stuck, Limit::Slide],
+            other => vec![other.limit()],
+        }
+    }
+}
+
+impl From<Resonance> for LinearPeak {
+    fn from(resonance: Resonance) -> Self {
+        Self {
+            frequency_hz: resonance.frequency_hz,
+            amplitude_m: resonance.amplitude_m,
+            half_bandwidth_hz: resonance.half_bandwidth_hz,
+        }
+    }
+}
+
+/// Resonances as a search takes them.
+#[must_use]
+pub fn linear_peaks_of(resonances: Vec<Resonance>) -> Vec<LinearPeak> {
+    resonances.into_iter().map(LinearPeak::from).collect()
+}
+
+impl<'a> EngineRow<'a> {
+    /// Resonances of the linear limits that bound the condition, the stuck one first; none if they are not found.
+    #[must_use]
+    pub fn linear_peaks(&self) -> Option<Vec<Vec<LinearPeak>>> {
+        let limits = self.condition.bounding_limits().into_iter();
+        limits
+            .map(|limit| {
+                let peaks = self.engine.peaks(limit, self.wheel, self.force)?;
+                Some(linear_peaks_of(peaks))
+            })
+            .collect()
+    }
+
+    /// Solver in the harmonics of `transform`.
+    pub(super) fn solver(
+        &self,
+        settings: &PointSettings,
+        transform: &Arc<HarmonicTransform>,
+        in_place_of: Option<ContactLaw>,
+    ) -> WheelSolver<'a> {
+        let contact = self.contact(settings, transform, in_place_of);
+        let set: Vec<u32> = transform.harmonics().iter().map(|&k| k as u32).collect();
+        let limit = self.condition.limit();
+        WheelSolver::new(self.engine, self.wheel, limit, self.force, &set, contact)
+    }
+
+    /// The contact in the harmonics of `transform`; none for a linear limit of a wheel whose contact is nominal.
+    pub(super) fn contact(
+        &self,
+        settings: &PointSettings,
+        transform: &Arc<HarmonicTransform>,
+        in_place_of: Option<ContactLaw>,
+    ) -> Option<WheelContact> {
+        let limit = self.condition.limit();
+        let springs = self.engine.springs(limit);
+        let varied = !settings.factors.is_nominal() && !springs.is_empty();
+        let load_n = self.condition.normal_load_n();
+        let contact = settings.contact.filter(|_| load_n.is_some() || varied);
+        contact.map(|(law, sector)| {
+            let own = settings.factors.springs(springs, &settings.geometry.rows);
+            let law = in_place_of.unwrap_or(law);
+            let interface = settings.interface(law, sector, load_n.unwrap_or(0.0));
+            let sectors = self.engine.sectors();
+            let contact = WheelContact::new(interface, sectors, springs, Arc::clone(transform));
+            if load_n.is_some() {
+                contact
+            } else {
+                contact.linear(&own, springs)
+            }
+        })
+    }
+}
+
+/// Solver of the points of one row; keeps the converged points as starts for others.
+pub(super) struct ReceptancePoints<'a> {
+    pub(super) solver: WheelSolver<'a>,
+    row: EngineRow<'a>,
+    settings: &'a PointSettings,
+    pub(super) points: Vec<Point>,
+    failures: Vec<(f64, Status)>,
+    precision: f64,
+    is_nonlinear: bool,
+    work: Work,
+}
+
+impl<'a> ReceptancePoints<'a> {
+    pub(super) fn new(row: &EngineRow<'a>, settings: &'a PointSettings) -> Self {
+        Self {
+            solver: row.solver(settings, &settings.transform, None),
+            row: *row,
+            settings,
+            points: Vec::new(),
+            failures: Vec::new(),
+            precision: 0.0,
+            is_nonlinear: row.condition.normal_load_n().is_some(),
+            work: Work::default(),
+        }
+    }
+
+    fn solve(&mut self, frequency_hz: f64, tolerance: f64) -> Result<Point, Status> {
+        let mut starts = between(&self.points, frequency_hz);
+        starts.truncate(1);
+        if let Some(guide) = self
+            .settings
+            .guide()
+            .filter(|_| starts.is_empty() && self.is_nonlinear)
+        {
+            // From the linear response all harmonics at once are hard to find.
+            let mut few = Self::new(&self.row, guide);
+            let led = few.solve_from(frequency_hz, &[], tolerance);
+            self.work = self.work.plus(few.work);
+            let set = self.solver.harmonics();
+            starts.extend(led.map(|led| embedded(&led.solution, &guide.harmonics, set)));
+        }
+        self.solve_from(frequency_hz, &starts, tolerance)
+    }
+
+    /// The point at a frequency, Hz, from the best of `starts`.
+    ///
+    /// # Errors
+    /// The status of the last attempt, if none converged.
+    pub(super) fn solve_from(
+        &mut self,
+        frequency_hz: f64,
+        starts: &[Vec<f64>],
+        tolerance: f64,
+    ) -> Result<Point, Status> {
+        let (solved, work) = self.solver.solve(frequency_hz, starts, tolerance);
+        self.work.nonlinear_solves += u64::from(self.is_nonlinear);
+        self.work.newton_iterations += work.iterations;
+        self.work.factorisations += work.tangents;
+        self.work.retries += work.retries;
+        let WheelSolution {
+            motions,
+            residual,
+            shares,
+        } = solved?;
+        let observed = observed(&mut self.solver, &self.settings.amplitude);
+        let amplitudes_m = self.settings.amplitude.of_observed(&observed);
+        if amplitudes_m.iter().any(|amplitude| !amplitude.is_finite()) {
+            return Err(Status::NonFinite);
+        }
+        Ok(Point {
+            frequency_hz,
+            solution: motions,
+            amplitudes_m,
+            residual,
+            shares,
+            ring_drift_m: [0.0; 2],
+            slope: None,
+        })
+    }
+
+    /// Amplitude of every blade at the solution last solved, over what `few` take for it in the harmonics that they count.
+    pub(super) fn growth_over(&mut self, few: &Self) -> Vec<f64> {
+        let own = observed(&mut self.solver, &self.settings.amplitude);
+        let counted = own
+            .iter()
+            .filter(|own| few.solver.harmonics().contains(&own.harmonic));
+        let counted: Vec<ObservedHarmonic> = counted.cloned().collect();
+        let of_few = few.settings.amplitude.of_observed(&counted);
+        let amplitudes = self.settings.amplitude.of_observed(&own).into_iter();
+        amplitudes.zip(of_few).map(|(own, few)| own / few).collect()
+    }
+
+    pub(super) fn residual_is_stated(&self) -> bool {
+        self.settings.residual_is_stated
+    }
+
+    /// Tolerance of the residual that is asked for.
+    pub(super) fn least_tolerance(&self) -> f64 {
+        self.settings.bounds.residual_tolerance
+    }
+
+    fn tolerance(&self) -> f64 {
+        self.settings.bounds.residual_tolerance.max(self.precision)
+    }
+
+    fn added(&mut self, frequency_hz: f64) -> Result<&Point, Status> {
+        let lost = self.failures.first().map(|(_, status)| *status);
+        if let Some(status) = lost.filter(|_| self.settings.guide().is_some()) {
+            return Err(status);
+        }
+        match self.solve(frequency_hz, self.tolerance()) {
+            Ok(point) => {
+                self.points.push(point);
+                Ok(&self.points[self.points.len() - 1])
+            }
+            Err(status) => {
+                self.failures.push((frequency_hz, status));
+                Err(status)
+            }
+        }
+    }
+}
+
+impl PointSource for ReceptancePoints<'_> {
+    fn amplitudes_at(&mut self, frequency_hz: f64) -> Option<Vec<f64>> {
+        let known = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
+        if let Some(point) = self.points.iter().find(known) {
+            return Some(point.amplitudes_m.clone());
+        }
+        let point = self.added(frequency_hz).ok()?;
+        Some(point.amplitudes_m.clone())
+    }
+
+    fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    fn failures(&self) -> &[(f64, Status)] {
+        &self.failures
+    }
+
+    fn finished(&mut self, frequency_hz: f64) -> Result<Point, Status> {
+        let same = |point: &Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
+        let tolerance = self.settings.bounds.residual_tolerance;
+        let point = self.solve(frequency_hz, tolerance)?;
+        self.points.retain(|own| !same(own));
+        self.points.push(point.clone());
+        Ok(point)
+    }
+
+    fn set_precision(&mut self, share: f64) {
+        self.precision = share;
+    }
+
+    fn mean_friction_n(&mut self, point: &Point) -> Option<[f64; 2]> {
+        let force = self.solver.mean_friction_n(&point.solution);
+        force.filter(|_| self.is_nonlinear)
+    }
+
+    fn work(&self) -> Work {
+        self.work
+    }
+}
+
+/// What is observed of the solution last solved, in every harmonic that the amplitude takes notice of.
+pub(super) fn observed(
+    solver: &mut WheelSolver<'_>,
+    amplitude: &ObservedAmplitude,
+) -> Vec<ObservedHarmonic> {
+    let set = solver.harmonics().to_vec();
+    let blades = solver.sectors();
+    set.into_iter()
+        .enumerate()
+        .map(|(place, harmonic)| ObservedHarmonic {
+            harmonic,
+            displacement: if amplitude.counts(harmonic) && harmonic > 0 {
+                solver.observed(place)
+            } else {
+                vec![Complex64::default(); 3 * blades]
+            },
+        })
+        .collect()
+}
+
+/// The plan of the search for the peak of a row, see [`super::search_plan`].
+///
+/// # Errors
+/// The resonances are not found or not finite, or nothing answers the excitation.
+pub fn receptance_plan(row: &EngineRow<'_>, window: Window) -> Result<SearchPlan, Status> {
+    let limits = row.linear_peaks().ok_or(Status::NonFinite)?;
+    search_plan_of(&limits, window)
+}
+
+/// The point of a row at a frequency, Hz, with the state of every contact pair; none for a linear limit.
+///
+/// # Errors
+/// The status of the last attempt, if none converged.
+pub fn receptance_state(
+    row: &EngineRow<'_>,
+    settings: &PointSettings,
+    frequency_hz: f64,
+) -> Result<(Point, Option<Vec<PairContact>>), Status> {
+    let mut solver = ReceptancePoints::new(row, settings);
+    let point = solver.finished(frequency_hz)?;
+    let states = solver.solver.contact_states();
+    Ok((point, states.filter(|_| solver.is_nonlinear)))
+}
+
+/// A harmonic and its complex motion of every contact row, m, sector after sector.
+pub type ContactMotion = (u32, Vec<Complex64>);
+
+/// The motion of every contact row of a row at a frequency, Hz, in every harmonic of `settings`, sector after sector, solved beside
+/// that in the harmonics of `coarse`; none for a linear limit.
+///
+/// # Errors
+/// The status of the last attempt, if none converged.
+pub fn receptance_contact_motion(
+    row: &EngineRow<'_>,
+    coarse: &PointSettings,
+    settings: &PointSettings,
+    frequency_hz: f64,
+) -> Result<Option<Vec<ContactMotion>>, Status> {
+    let beside = ReceptancePoints::new(row, coarse).finished(frequency_hz)?;
+    let mut solver = ReceptancePoints::new(row, settings);
+    let (few, all) = (&coarse.harmonics, solver.solver.harmonics());
+    let start = embedded(&beside.solution, few, all);
+    solver.solve_from(frequency_hz, &[start], settings.bounds.residual_tolerance)?;
+    let motion = solver.solver.contact_motion();
+    Ok(motion.filter(|_| solver.is_nonlinear))
+}
+
+/// Points of a row at the given frequencies, Hz, in their order.
+#[must_use]
+pub fn receptance_curve(
+    row: &EngineRow<'_>,
+    settings: &PointSettings,
+    frequencies_hz: &[f64],
+) -> Vec<(f64, Result<Point, Status>)> {
+    let mut solver = ReceptancePoints::new(row, settings);
+    let solve = |&hz: &f64| (hz, solver.added(hz).cloned());
+    frequencies_hz.iter().map(solve).collect()
+}

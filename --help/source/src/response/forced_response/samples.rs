@@ -1,0 +1,178 @@
+//! The samples of a search in order of frequency, and what neighbours say of each.
+
+use super::summit::{self, CurvePoint, Summit};
+
+/// Curves over frequency, one per blade, that a search reads.
+pub trait Curve {
+    /// What is read at a frequency, Hz; none where the solution failed.
+    fn read(&mut self, frequency_hz: f64) -> Option<Reading>;
+
+    /// A frequency, Hz, that a search has to look at for other reasons than its `samples`, of which `best` is the highest.
+    fn unseen(&self, _samples: &[Sample], _best: usize) -> Option<f64> {
+        None
+    }
+}
+
+impl<F: FnMut(f64) -> Option<R>, R: Into<Reading>> Curve for F {
+    fn read(&mut self, frequency_hz: f64) -> Option<Reading> {
+        self(frequency_hz).map(R::into)
+    }
+}
+
+/// Amplitude of every blade at one frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Amplitudes, m.
+    pub amplitudes: Vec<f64>,
+    /// Derivatives of the amplitudes by frequency, m/Hz; none where they are not known.
+    pub slopes: Option<Vec<f64>>,
+}
+
+impl From<Vec<f64>> for Reading {
+    fn from(amplitudes: Vec<f64>) -> Self {
+        Self {
+            amplitudes,
+            slopes: None,
+        }
+    }
+}
+
+/// One evaluated frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Amplitude of every blade; empty where the solution failed.
+    pub amplitudes: Vec<f64>,
+    /// Derivatives of the amplitudes by frequency; none where they are not known.
+    pub slopes: Option<Vec<f64>>,
+    /// Largest amplitude over the blades.
+    pub largest: f64,
+    /// Blade of the largest amplitude.
+    pub blade: usize,
+}
+
+/// Samples, ascending in frequency.
+#[derive(Debug, Clone, Default)]
+pub struct Samples(pub Vec<Sample>);
+
+impl Samples {
+    pub fn insert(&mut self, frequency_hz: f64, reading: Option<Reading>) {
+        let (amplitudes, slopes) = match reading {
+            Some(reading) => (reading.amplitudes, reading.slopes),
+            None => (Vec::new(), None),
+        };
+        let (blade, largest) = amplitudes.iter().copied().enumerate().fold(
+            (0, f64::NEG_INFINITY),
+            |best, (blade, amplitude)| {
+                if amplitude > best.1 {
+                    (blade, amplitude)
+                } else {
+                    best
+                }
+            },
+        );
+        let place = self
+            .0
+            .partition_point(|sample| sample.frequency_hz < frequency_hz);
+        self.0.insert(
+            place,
+            Sample {
+                frequency_hz,
+                amplitudes,
+                slopes,
+                largest,
+                blade,
+            },
+        );
+    }
+
+    pub fn best(&self) -> Option<usize> {
+        (0..self.0.len())
+            .filter(|&i| !self.0[i].amplitudes.is_empty())
+            .reduce(|best, i| {
+                if self.0[i].largest > self.0[best].largest {
+                    i
+                } else {
+                    best
+                }
+            })
+    }
+
+    /// Nearest evaluated neighbours of a sample, failed ones passed over.
+    pub fn neighbours(&self, at: usize) -> Option<(usize, usize)> {
+        let good = |i: &usize| !self.0[*i].amplitudes.is_empty();
+        let left = (0..at).rev().find(good)?;
+        let right = (at + 1..self.0.len()).find(good)?;
+        Some((left, right))
+    }
+
+    /// Whether lower amplitudes were seen on both sides, or are told by the slope at an end.
+    pub fn bracketed(&self, best: usize) -> bool {
+        let own = &self.0[best];
+        // Where the curve jumps a search can ask for the same frequency twice.
+        let elsewhere = |other: &&Sample| {
+            let same = other.frequency_hz.total_cmp(&own.frequency_hz).is_eq();
+            !other.amplitudes.is_empty() && !same
+        };
+        let left = self.0[..best].iter().rev().find(elsewhere);
+        let right = self.0[best + 1..].iter().find(elsewhere);
+        match (left, right) {
+            (Some(left), Some(right)) => left.largest < own.largest && right.largest < own.largest,
+            _ => self.rises_inward(best),
+        }
+    }
+
+    /// Whether there is a sample beyond the neighbours of one.
+    pub fn has_fourth(&self, at: usize) -> bool {
+        self.neighbours(at).is_some_and(|(left, right)| {
+            self.neighbours(left).is_some() || self.neighbours(right).is_some()
+        })
+    }
+
+    /// Summits near a sample by cubics, of every blade that is the largest there or beside it.
+    pub fn skewed_summits(&self, at: usize) -> Vec<Summit> {
+        let Some((left, right)) = self.neighbours(at) else {
+            return Vec::new();
+        };
+        let beyond = [
+            self.neighbours(left).map(|(beyond, _)| beyond),
+            self.neighbours(right).map(|(_, beyond)| beyond),
+        ];
+        let mut blades = [left, at, right].map(|i| self.0[i].blade).to_vec();
+        blades.dedup();
+        blades
+            .iter()
+            .flat_map(|&blade| {
+                let points = self.points([left, at, right], blade);
+                beyond
+                    .iter()
+                    .flatten()
+                    .filter_map(move |&i| summit::of_cubic(points, self.point(i, blade)))
+            })
+            .collect()
+    }
+
+    /// The height of the best, or what polynomials through it and its neighbours promise above it.
+    pub fn promised(&self) -> f64 {
+        let Some(best) = self.best() else {
+            return 0.0;
+        };
+        let parabola = self.neighbours(best).and_then(|(left, right)| {
+            summit::of_parabola(self.points([left, best, right], self.0[best].blade))
+        });
+        let summits = self.skewed_summits(best).into_iter().chain(parabola);
+        summits.fold(self.0[best].largest, |height, summit| {
+            height.max(summit.amplitude)
+        })
+    }
+
+    pub fn points(&self, at: [usize; 3], blade: usize) -> [CurvePoint; 3] {
+        at.map(|i| self.point(i, blade))
+    }
+
+    pub fn point(&self, at: usize, blade: usize) -> CurvePoint {
+        let sample = &self.0[at];
+        (sample.frequency_hz, sample.amplitudes[blade].powi(-2))
+    }
+}

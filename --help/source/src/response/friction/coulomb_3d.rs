@@ -1,0 +1,35 @@
+//! The law `coulomb_3d`: variable normal load with separation, friction circle in the tangential
+//! plane.
+//!
+//! ```text
+//! N_j = max(0, N0 + kn g_j)
+//! T_j = kt x_j + y_j,    |T_j| <= mu N_j     x, y, T plane vectors along t1, t2
+//! ```
+//!
+//! Contact kinematics of Yang & Menq (1998, J. Sound and Vibration 217(5)). For y see
+//! [`CoupledSlider`](super::CoupledSlider). Motion along one tangent alone gives what
+//! `simplified_3d` gives; in general that law allows forces up to `sqrt(2) mu N`, since either
+//! tangent has a limit of its own, and its answer depends on how the tangents are turned.
+
+use super::{ContactHistory, PairDisplacement, PairParameters, PairState};
+
+/// Fills `history` with the response to `displacement`.
+pub(super) fn respond(
+    history: &mut ContactHistory,
+    parameters: &PairParameters,
+    displacement: PairDisplacement<'_>,
+) {
+    let separated = history.press(parameters, displacement.normal);
+    let slipping = history.coupled.solve_drifting(
+        parameters.tangential_stiffness_n_per_m,
+        parameters.friction_coefficient,
+        displacement.tangential,
+        &history.normal_load,
+        history.drift_m,
+    );
+    history.state = PairState {
+        slipping,
+        separated,
+        unclosed: !history.coupled.is_closed(),
+    };
+}

@@ -1,0 +1,19 @@
+//! Contact laws as pure functions of a displacement history: force, derivative, contact state. They are also marched from
+//! one instant to the next.
+
+mod contact_march;
+mod contact_pair;
+mod coulomb_3d;
+mod coulomb_slider;
+mod friction_circle;
+mod macro_slip;
+mod options;
+mod periodic_slider;
+mod respond;
+mod simplified_3d;
+
+pub use contact_march::{PairMemory, march};
+pub use contact_pair::{ContactHistory, PairDisplacement, PairParameters, PairState};
+pub use coulomb_slider::{CoupledSlider, Slip};
+pub use options::{ContactLaw, ContactOptions, Ring};
+pub use periodic_slider::PeriodicSlider;

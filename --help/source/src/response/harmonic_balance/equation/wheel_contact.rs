@@ -1,0 +1,254 @@
+//! The contact of a whole wheel by itself: motions at the contact rows in, forces out, in harmonics.
+
+use std::sync::Arc;
+
+use super::{HarmonicBlock, HarmonicSystem, PairContact, Structure, SystemWorkspace};
+use crate::linalg::{Complex64, Matrix};
+use crate::response::harmonic_balance::pairs::{ContactInterface, ContactShares};
+use crate::response::harmonic_balance::{Damping, HarmonicTransform};
+use crate::response::mistuning::{ModalRows, StructuralModes};
+
+/// The correction `G(u) = F(u) - k_c u` of the contact forces to those of the tuned wheel's stuck springs.
+///
+/// Vectors have one real number per coefficient, sector and contact row: coefficient after coefficient of the transform
+/// (one for harmonic 0, real and imaginary part for every other), in it sector after sector, in it row after row.
+pub struct WheelContact {
+    system: HarmonicSystem,
+    workspace: SystemWorkspace,
+    sectors: usize,
+    /// Springs of the wheel's own contact rows less those of the tuned wheel, N/m; empty where they are the same.
+    springs: Vec<f64>,
+    /// Whether the springs are all there is: a linear limit.
+    linear: bool,
+}
+
+/// Complex-linear part of the derivative of the contact forces of one harmonic, the mean over the sectors, N/m: of every pair
+/// of a sector a `3 x 3` matrix over normal and both tangents, row after row.
+pub type MeanTangent = Vec<[Complex64; 9]>;
+
+impl WheelContact {
+    /// The contact `interface` of a wheel of so many sectors. `springs` are those of a sector's rows in the tuned wheel, N/m.
+    #[must_use]
+    pub fn new(
+        interface: ContactInterface,
+        sectors: usize,
+        springs: &[f64],
+        transform: Arc<HarmonicTransform>,
+    ) -> Self {
+        let rows = sectors * interface.geometry.row_count();
+        let none = |rows| ModalRows {
+            real: Matrix::zeros(rows, 0),
+            imaginary: None,
+        };
+        let nothing = StructuralModes {
+            eigenvalues: Vec::new(),
+            tuned_eigenvalues: Vec::new(),
+            added_damping_per_s: Vec::new(),
+            rotation: None,
+            contact: none(rows),
+            observed: none(3 * sectors),
+            sectors,
+        };
+        let structure = Arc::new(Structure::new(nothing, Damping::StructuralLossFactor(0.0)));
+        let stuck = Arc::new(structure.contact_stiffness(springs));
+        let blocks = transform.harmonics().iter().map(|&harmonic| HarmonicBlock {
+            harmonic: harmonic as u32,
+            structure: Arc::clone(&structure),
+            stuck: Arc::clone(&stuck),
+        });
+        let own = interface.stuck_springs(1.0);
+        let varied = own
+            .iter()
+            .zip(springs.iter().cycle())
+            .map(|(own, tuned)| own - tuned);
+        let varied: Vec<f64> = varied.collect();
+        let system = HarmonicSystem::new(blocks.collect(), Vec::new(), interface, transform);
+        Self {
+            workspace: system.decoupled_workspace(),
+            springs: if own.len() > springs.len() {
+                varied
+            } else {
+                Vec::new()
+            },
+            system,
+            sectors,
+            linear: false,
+        }
+    }
+
+    /// The contact of a linear limit whose springs, N/m, `own` of all rows of the wheel, differ from those of the tuned wheel.
+    #[must_use]
+    pub fn linear(self, own: &[f64], tuned: &[f64]) -> Self {
+        let varied = own.iter().zip(tuned.iter().cycle());
+        Self {
+            springs: varied.map(|(own, tuned)| own - tuned).collect(),
+            linear: true,
+            ..self
+        }
+    }
+
+    /// Motions to evaluate next, to be filled.
+    pub fn motion_mut(&mut self) -> &mut [f64] {
+        &mut self.workspace.displacement
+    }
+
+    /// The motions last given.
+    #[must_use]
+    pub fn motion(&self) -> &[f64] {
+        &self.workspace.displacement
+    }
+
+    /// The correction last evaluated.
+    #[must_use]
+    pub fn correction(&self) -> &[f64] {
+        &self.workspace.correction
+    }
+
+    /// Evaluates the correction at the motions given; with its derivative where that is wanted.
+    pub fn evaluate(&mut self, derivative: bool) -> ContactShares {
+        let shares = if self.linear {
+            self.workspace.correction.fill(0.0);
+            ContactShares::default()
+        } else {
+            self.system
+                .contact_correction(derivative, &mut self.workspace)
+        };
+        if !self.springs.is_empty() {
+            let rows = self.springs.len();
+            let motions = self.workspace.displacement.chunks_exact(rows);
+            let corrections = self.workspace.correction.chunks_exact_mut(rows);
+            for (correction, motion) in corrections.zip(motions) {
+                for ((force, spring), u) in correction.iter_mut().zip(&self.springs).zip(motion) {
+                    *force += spring * u;
+                }
+            }
+        }
+        shares
+    }
+
+    /// The mean tangent of the harmonic at place `at` of the set, after an evaluation with derivative.
+    #[must_use]
+    pub fn mean_tangent(&self, at: usize) -> MeanTangent {
+        let interface = &self.system.interface;
+        let pairs = interface.per_sector();
+        let coefficients = self.system.transform.n_coefficients();
+        let first = self.system.coefficient[at];
+        let is_mean = self.system.blocks[at].harmonic == 0;
+        let mut tangent = vec![[Complex64::default(); 9]; pairs];
+        let share = 1.0 / self.sectors as f64;
+        for (pair, jacobian) in self.workspace.jacobians.iter().enumerate() {
+            if !self.workspace.active[pair] {
+                continue;
+            }
+            let sum = &mut tangent[pair % pairs];
+            for (place, sum) in sum.iter_mut().enumerate() {
+                let Some(block) = jacobian.block(place / 3, place % 3) else {
+                    continue;
+                };
+                let at = |i: usize, j: usize| block[(first + i) * coefficients + first + j];
+                *sum += if is_mean {
+                    Complex64::from(at(0, 0)) * share
+                } else {
+                    Complex64::new(at(0, 0) + at(1, 1), at(1, 0) - at(0, 1)) * (0.5 * share)
+                };
+            }
+        }
+        self.add_mean_springs(&mut tangent);
+        tangent
+    }
+
+    /// Adds the mean difference of the springs to those of the tuned wheel.
+    fn add_mean_springs(&self, tangent: &mut MeanTangent) {
+        let geometry = &self.system.interface.geometry;
+        let per_sector = geometry.row_count();
+        for (pair, rows) in geometry.rows.iter().enumerate() {
+            for (direction, row) in rows.iter().enumerate() {
+                let Some(row) = row.filter(|_| !self.springs.is_empty()) else {
+                    continue;
+                };
+                let of_sectors = self.springs.iter().skip(row).step_by(per_sector);
+                tangent[pair][4 * direction] += of_sectors.sum::<f64>() / self.sectors as f64;
+            }
+        }
+    }
+
+    /// What the correction changes by where the motions change by `change`, at the motions last evaluated with derivative, all
+    /// harmonics coupled as far as [`Self::couple`] says; added to `correction`, both in the order of the motions.
+    pub fn add_derivative(&self, change: &[f64], correction: &mut [f64]) {
+        let interface = &self.system.interface;
+        let geometry = &interface.geometry;
+        let (pairs, per_sector) = (interface.per_sector(), geometry.row_count());
+        let coefficients = self.system.transform.n_coefficients();
+        let rows = self.system.rows;
+        for (pair, jacobian) in self.workspace.jacobians.iter().enumerate() {
+            if !self.workspace.active[pair] {
+                continue;
+            }
+            let base = pair / pairs * per_sector;
+            let places = geometry.rows[pair % pairs];
+            for (along, to) in places.iter().enumerate() {
+                for (by, from) in places.iter().enumerate() {
+                    let (Some(to), Some(from), Some(block)) = (to, from, jacobian.block(along, by))
+                    else {
+                        continue;
+                    };
+                    for (c, slopes) in block.chunks_exact(coefficients).enumerate() {
+                        let moved = slopes.iter().enumerate();
+                        let moved = moved.map(|(d, slope)| slope * change[d * rows + base + from]);
+                        correction[c * rows + base + to] += moved.sum::<f64>();
+                    }
+                }
+            }
+        }
+        if !self.springs.is_empty() {
+            let count = self.springs.len();
+            let changes = change.chunks_exact(count);
+            for (correction, change) in correction.chunks_exact_mut(count).zip(changes) {
+                for ((force, spring), u) in correction.iter_mut().zip(&self.springs).zip(change) {
+                    *force += spring * u;
+                }
+            }
+        }
+    }
+
+    /// From now on derivatives are of every harmonic by every other one, or each by itself.
+    pub fn couple(&mut self, all: bool) {
+        self.workspace
+            .pairs
+            .couple_first(if all { usize::MAX } else { 0 });
+    }
+
+    /// The harmonic transform.
+    #[must_use]
+    pub fn transform(&self) -> &HarmonicTransform {
+        &self.system.transform
+    }
+
+    /// Number of sectors.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.sectors
+    }
+
+    /// Contact rows of a sector.
+    #[must_use]
+    pub fn sector_rows(&self) -> usize {
+        self.system.interface.geometry.row_count()
+    }
+
+    /// Rows of every pair of a sector, see [`crate::model::cyclic::ContactGeometry::rows`].
+    #[must_use]
+    pub fn pair_rows(&self) -> &[[Option<usize>; 3]] {
+        &self.system.interface.geometry.rows
+    }
+
+    /// Mean friction force on the ring at the motions last given, N per sector, see [`HarmonicSystem::mean_friction_n`].
+    pub fn mean_friction_n(&mut self) -> [f64; 2] {
+        self.system.mean_friction_at(&mut self.workspace)
+    }
+
+    /// State of every contact pair at the motions last given, see [`HarmonicSystem::contact_states`].
+    pub fn contact_states(&mut self) -> Vec<PairContact> {
+        self.system.contact_states_at(&mut self.workspace)
+    }
+}

@@ -1,0 +1,74 @@
+//! The closed set of ways in which a row can end.
+
+use serde::{Deserialize, Serialize};
+
+/// How the solution of one row ended. Everything but [`Status::Ok`] counts as failed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// Converged, and the peak is bracketed.
+    Ok,
+    /// The largest amplitude found lies at an end of the searched band.
+    NotBracketed,
+    /// Newton's method used up its iterations.
+    IterationLimit,
+    /// No step reduces the residual any further, above the tolerance.
+    Stagnated,
+    /// The residual grew without bound.
+    Diverged,
+    /// A value that is not finite appeared.
+    NonFinite,
+    /// The Jacobian is singular to working precision.
+    SingularJacobian,
+    /// The step of a continuation became too small.
+    StepTooSmall,
+    /// A sweep or search ended with points missing.
+    SweepIncomplete,
+    /// The solution left its branch.
+    BranchJump,
+    /// The budget of nonlinear solves for the row is used up.
+    WorkBudget,
+    /// The pattern cannot be applied (a blade stiffness not positive).
+    InvalidPattern,
+    /// A defect of the program, caught.
+    Panicked,
+}
+
+impl Status {
+    /// Every status, in the order of reports.
+    pub const ALL: [Self; 13] = [
+        Self::Ok,
+        Self::NotBracketed,
+        Self::IterationLimit,
+        Self::Stagnated,
+        Self::Diverged,
+        Self::NonFinite,
+        Self::SingularJacobian,
+        Self::StepTooSmall,
+        Self::SweepIncomplete,
+        Self::BranchJump,
+        Self::WorkBudget,
+        Self::InvalidPattern,
+        Self::Panicked,
+    ];
+
+    /// Name in tables, `snake_case`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ok => "ok",
+            Self::NotBracketed => "not_bracketed",
+            Self::IterationLimit => "iteration_limit",
+            Self::Stagnated => "stagnated",
+            Self::Diverged => "diverged",
+            Self::NonFinite => "non_finite",
+            Self::SingularJacobian => "singular_jacobian",
+            Self::StepTooSmall => "step_too_small",
+            Self::SweepIncomplete => "sweep_incomplete",
+            Self::BranchJump => "branch_jump",
+            Self::WorkBudget => "work_budget",
+            Self::InvalidPattern => "invalid_pattern",
+            Self::Panicked => "panicked",
+        }
+    }
+}

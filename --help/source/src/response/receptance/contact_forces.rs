@@ -1,0 +1,49 @@
+//! Forces at the contact of a wheel beyond those of its springs, in some harmonics.
+
+use super::fields::Field;
+
+/// Contact forces of a wheel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactForces {
+    pub(super) harmonics: Vec<u32>,
+    /// Over the waves, a field per harmonic.
+    pub(super) fields: Vec<Field>,
+}
+
+impl ContactForces {
+    /// What these forces are more than `others`, in the harmonics of these others.
+    #[must_use]
+    pub fn beyond(&self, others: &Self) -> Self {
+        let fields = others.harmonics.iter().zip(&others.fields);
+        let beyond = fields.map(|(harmonic, other)| {
+            let own = self.harmonics.iter().position(|own| own == harmonic);
+            let mut field = Field::zeros_like(other);
+            field.add(-1.0, other);
+            if let Some(place) = own {
+                field.add(1.0, &self.fields[place]);
+            }
+            field
+        });
+        Self {
+            harmonics: others.harmonics.clone(),
+            fields: beyond.collect(),
+        }
+    }
+
+    /// The sum of forces in the same harmonics, each with its share; none of no forces.
+    #[must_use]
+    pub fn combined(shares: &[(f64, &Self)]) -> Option<Self> {
+        let (_, first) = shares.first()?;
+        let fields = (0..first.fields.len()).map(|place| {
+            let mut sum = Field::zeros_like(&first.fields[place]);
+            for (share, forces) in shares {
+                sum.add(*share, &forces.fields[place]);
+            }
+            sum
+        });
+        Some(Self {
+            harmonics: first.harmonics.clone(),
+            fields: fields.collect(),
+        })
+    }
+}

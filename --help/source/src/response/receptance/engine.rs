@@ -1,0 +1,476 @@
+//! What the rows of a study share: the tuned wheel under each linear contact condition, its receptances and blade shapes.
+
+use std::f64::consts::TAU;
+use std::sync::OnceLock;
+
+use serde::{Deserialize, Serialize};
+
+use crate::linalg::{Complex64, Matrix};
+use crate::model::ReducedModel;
+use crate::model::cyclic::NodalDiameter;
+use crate::response::harmonic_balance::Damping;
+use crate::response::mistuning::{Deviations, Pattern, Projection};
+
+use super::blade_shapes::{
+    Participation, ShapesWanted, blade_shapes, in_cantilever_modes, in_shapes, strain_coordinates,
+};
+use super::fields::SectorTransform;
+use super::resonances::{BandModes, MistunedModes, Resonance};
+use super::tables::Receptances;
+use super::tuned_wheel::TunedDiameter;
+use super::wave_force::WaveForce;
+
+/// Blade shapes of harmonic 1, and of every other one.
+const SHAPES: [usize; 2] = [3, 2];
+/// Frequencies of the band at which the shapes of harmonic 1 are made, and of every other one.
+const SHAPE_FREQUENCIES: [usize; 2] = [9, 5];
+/// Relative margin of the band whose modes make the resonances of a limit.
+const BAND_MARGIN: f64 = 0.1;
+/// Share of the highest tuned resonance from which on others count.
+const COUNTS: f64 = 0.5;
+
+/// A Craig-Bampton model with every contact degree of freedom, its blade strain in few coordinates.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EngineModel {
+    /// The model, without the strain energy of its blade.
+    pub model: ReducedModel,
+    /// Participation of the contact-free modes of nodal diameters 0..=N/2 in coordinates of the blade's strain.
+    strain: Vec<Matrix<Complex64>>,
+    /// Factor on the number of blade shapes.
+    shape_factor: usize,
+}
+
+impl EngineModel {
+    /// From a Craig-Bampton model, for the harmonics of the resonances that the excitations meet; none if its modes are not
+    /// found.
+    #[must_use]
+    pub fn new(model: &ReducedModel, options: &EngineOptions) -> Option<Self> {
+        let diameters = under_limits(model, options.damping)?;
+        let band = band(&diameters, model.sectors, options);
+        let of_harmonic = |k: u32| (f64::from(k) * band.0, f64::from(k) * band.1);
+        let bands: Vec<(f64, f64)> = (1..=HIGHEST_OF_SHAPES).map(of_harmonic).collect();
+        let strain = if model.blade_gram.rows() == 0 {
+            Vec::new()
+        } else {
+            strain_coordinates(model, &diameters[0], &bands)
+        };
+        let model = ReducedModel {
+            blade_gram: Matrix::zeros(0, 0),
+            ..model.clone()
+        };
+        Some(Self {
+            model,
+            strain,
+            shape_factor: 1,
+        })
+    }
+
+    /// This model for an engine with `shape_factor` times as many blade shapes as an engine has at least.
+    #[must_use]
+    pub fn with_shape_factor(self, shape_factor: usize) -> Self {
+        Self {
+            shape_factor,
+            ..self
+        }
+    }
+
+    /// This model for an engine with twice as many blade shapes.
+    #[must_use]
+    pub fn with_twice_the_shapes(self) -> Self {
+        let shape_factor = 2 * self.shape_factor;
+        self.with_shape_factor(shape_factor)
+    }
+}
+
+/// What an engine is made for.
+#[derive(Debug, Clone)]
+pub struct EngineOptions {
+    /// Damping of the structure.
+    pub damping: Damping,
+    /// How deviations enter.
+    pub projection: Projection,
+    /// The excitations.
+    pub forces: Vec<WaveForce>,
+    /// Largest deviation of a blade that is expected.
+    pub deviation: f64,
+    /// The band that is asked for, Hz; none for that of the resonances.
+    pub band_hz: Option<(f64, f64)>,
+}
+
+/// Receptances of the tuned wheel, shared by all threads.
+#[derive(Debug)]
+pub struct ReceptanceEngine {
+    pub(super) transform: SectorTransform,
+    pub(super) loss_factor: f64,
+    /// Under stuck springs, under sliding ones, and without.
+    pencils: [Pencil; 3],
+}
+
+/// The tuned wheel with one set of contact springs.
+#[derive(Debug)]
+pub(super) struct Pencil {
+    pub(super) diameters: Vec<TunedDiameter>,
+    /// What takes part in all strain coordinates, or in exactly the cantilever modes.
+    strain: Participation,
+    exact: bool,
+    /// Motion times spring of the contact rows under the excitation, N.
+    contact_forces: Vec<f64>,
+    /// Frequencies of harmonic 1, rad/s.
+    band: (f64, f64),
+    forces: Vec<WaveForce>,
+    deviation: f64,
+    shape_factor: usize,
+    sectors: usize,
+    modes: Option<BandModes>,
+    /// By harmonic.
+    tables: Vec<OnceLock<Option<HarmonicTables>>>,
+}
+
+/// Blade shapes and receptances of one harmonic.
+#[derive(Debug)]
+pub(super) struct HarmonicTables {
+    pub(super) shapes: usize,
+    pub(super) receptances: Receptances,
+}
+
+/// A linear contact condition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limit {
+    /// Normal and tangential springs.
+    Stuck,
+    /// Normal springs.
+    Slide,
+    /// No springs.
+    Free,
+}
+
+/// Highest harmonic of a solution that an engine has tables for.
+pub const HIGHEST_HARMONIC: u32 = 63;
+/// Highest harmonic by whose motions strain coordinates are chosen.
+const HIGHEST_OF_SHAPES: u32 = 15;
+
+impl ReceptanceEngine {
+    /// An engine on `model`; none where modes are not found.
+    #[must_use]
+    pub fn new(own: &EngineModel, options: &EngineOptions) -> Option<Self> {
+        let model = &own.model;
+        let loss_factor = match options.damping {
+            Damping::StructuralLossFactor(eta) => eta,
+            Damping::ModalRatio(_) | Damping::Rayleigh { .. } => 0.0,
+        };
+        let exact = match options.projection {
+            Projection::Exact => None,
+            Projection::CantileverModes => Some(in_cantilever_modes(model)?),
+        };
+        let strain = exact.as_ref().unwrap_or(&own.strain);
+        let diameters = under_limits(model, options.damping)?;
+        let band = band(&diameters, model.sectors, options);
+        let pencils = diameters.map(|diameters| Pencil {
+            strain: strain.clone(),
+            exact: exact.is_some(),
+            contact_forces: contact_forces(&diameters, band, &options.forces),
+            band,
+            forces: options.forces.clone(),
+            deviation: options.deviation,
+            shape_factor: own.shape_factor,
+            sectors: model.sectors,
+            modes: None,
+            tables: (0..=HIGHEST_HARMONIC).map(|_| OnceLock::new()).collect(),
+            diameters,
+        });
+        let mut engine = Self {
+            transform: SectorTransform::new(model.sectors),
+            loss_factor,
+            pencils,
+        };
+        for pencil in &mut engine.pencils {
+            let near = (band.0 * (1.0 - BAND_MARGIN), band.1 * (1.0 + BAND_MARGIN));
+            let shapes = pencil.shapes(1)?;
+            let (diameters, sectors) = (&pencil.diameters, pencil.sectors);
+            let modes = BandModes::new(diameters, &shapes, sectors, loss_factor, near);
+            pencil.modes = Some(modes);
+        }
+        Some(engine)
+    }
+
+    /// Number of sectors.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.transform.sectors()
+    }
+
+    /// Whether deviations act on exactly the cantilever modes, so that no shape is left out.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.pencils.iter().all(|pencil| pencil.exact)
+    }
+
+    /// Largest relative error of the interpolated receptances so far.
+    #[must_use]
+    pub fn table_error(&self) -> f64 {
+        let tables = self.pencils.iter().flat_map(|pencil| &pencil.tables);
+        let tables = tables.filter_map(|own| own.get()?.as_ref());
+        tables
+            .map(|own| own.receptances.error())
+            .fold(0.0, f64::max)
+    }
+
+    /// Strain coordinates of the blades in a harmonic under a limit.
+    #[must_use]
+    pub fn shape_count(&self, limit: Limit, harmonic: u32) -> usize {
+        self.pencil(limit)
+            .tables(harmonic)
+            .map_or(0, |own| own.shapes)
+    }
+
+    /// Springs of the contact rows of a sector under a limit, N/m; empty where there are none.
+    #[must_use]
+    pub fn springs(&self, limit: Limit) -> &[f64] {
+        let diameters = self.pencil(limit).diameters.first();
+        diameters.map_or(&[], TunedDiameter::springs)
+    }
+
+    pub(super) fn pencil(&self, limit: Limit) -> &Pencil {
+        match limit {
+            Limit::Stuck => &self.pencils[0],
+            Limit::Slide => &self.pencils[1],
+            Limit::Free => &self.pencils[2],
+        }
+    }
+
+    /// Resonances of the tuned wheel under a limit and an excitation, ascending.
+    #[must_use]
+    pub fn tuned_peaks(&self, limit: Limit, force: &WaveForce) -> Vec<Resonance> {
+        let pencil = self.pencil(limit);
+        let modes = pencil.modes.as_ref();
+        modes.map_or_else(Vec::new, |modes| {
+            modes.tuned_peaks(&pencil.diameters, force)
+        })
+    }
+
+    /// Resonances of a mistuned wheel under a limit and an excitation, ascending; none if they are not found.
+    #[must_use]
+    pub fn peaks(
+        &self,
+        limit: Limit,
+        wheel: &EngineWheel,
+        force: &WaveForce,
+    ) -> Option<Vec<Resonance>> {
+        let pencil = self.pencil(limit);
+        let modes = pencil.modes.as_ref()?;
+        let place = match limit {
+            Limit::Stuck => 0,
+            Limit::Slide => 1,
+            Limit::Free => 2,
+        };
+        let own = wheel.modes[place].get_or_init(|| {
+            let shapes = self.shape_count(limit, 1);
+            modes.mistuned(&wheel.deviations(shapes))
+        });
+        Some(modes.peaks(&pencil.diameters, own.as_ref()?, force))
+    }
+}
+
+/// One pattern on an engine.
+#[derive(Debug)]
+pub struct EngineWheel {
+    sectors: usize,
+    pattern: Deviations,
+    modes: [OnceLock<Option<MistunedModes>>; 3],
+}
+
+impl EngineWheel {
+    /// A wheel with the deviations of `pattern`, or a tuned one of so many sectors.
+    #[must_use]
+    pub fn new(pattern: Option<&Pattern>, sectors: usize) -> Self {
+        Self {
+            sectors,
+            pattern: pattern.map_or_else(
+                || Deviations::PerBlade(vec![0.0; sectors]),
+                |pattern| pattern.deviations.clone(),
+            ),
+            modes: std::array::from_fn(|_| OnceLock::new()),
+        }
+    }
+
+    /// Deviation of every shape and sector, shape after shape.
+    pub(super) fn deviations(&self, shapes: usize) -> Vec<f64> {
+        (0..shapes)
+            .flat_map(|shape| (0..self.sectors).map(move |n| (shape, n)))
+            .map(|(shape, n)| match &self.pattern {
+                Deviations::PerBlade(values) => values[n],
+                Deviations::PerMode { modes, values } => {
+                    let place = modes.iter().position(|&own| own as usize == shape);
+                    place.map_or(0.0, |place| values[n * modes.len() + place])
+                }
+            })
+            .collect()
+    }
+}
+
+impl Pencil {
+    /// What takes part in all strain coordinates.
+    pub(super) fn strain(&self) -> &Participation {
+        &self.strain
+    }
+
+    /// Motion times spring of the contact rows under the excitation, N.
+    pub(super) fn contact_forces(&self) -> &[f64] {
+        &self.contact_forces
+    }
+
+    /// The excitations.
+    pub(super) fn forces(&self) -> &[WaveForce] {
+        &self.forces
+    }
+
+    /// Largest deviation of a blade that is expected.
+    pub(super) fn deviation(&self) -> f64 {
+        self.deviation
+    }
+
+    /// Shapes and receptances of a harmonic, made when first asked for.
+    pub(super) fn tables(&self, harmonic: u32) -> Option<&HarmonicTables> {
+        let own = self.tables.get(harmonic as usize)?;
+        let made = own.get_or_init(|| {
+            let participation = self.shapes(harmonic)?;
+            Some(HarmonicTables {
+                shapes: participation[0].rows(),
+                receptances: Receptances::new(&self.diameters, &participation, self.sectors),
+            })
+        });
+        made.as_ref()
+    }
+
+    fn shapes(&self, harmonic: u32) -> Option<Participation> {
+        if self.exact {
+            return Some(self.strain.clone());
+        }
+        let place = usize::from(harmonic != 1);
+        let count = SHAPE_FREQUENCIES[place];
+        let at = |i: usize| {
+            let way = i as f64 / (count - 1) as f64;
+            f64::from(harmonic) * (self.band.0 + way * (self.band.1 - self.band.0))
+        };
+        let frequencies: Vec<f64> = if harmonic == 0 {
+            vec![0.0]
+        } else {
+            (0..count).map(at).collect()
+        };
+        let wanted = ShapesWanted {
+            frequencies: &frequencies,
+            contact_forces: &self.contact_forces,
+            excitations: if harmonic == 1 { &self.forces } else { &[] },
+            deviation: self.deviation,
+            count: SHAPES[place] * self.shape_factor,
+        };
+        let shapes = blade_shapes(&self.diameters, &self.strain, &wanted)?;
+        Some(in_shapes(&self.strain, &shapes))
+    }
+}
+
+/// The nodal diameters of a wheel, 0..=N/2, with springs at the contact; none if their modes are not found.
+fn tuned_diameters(
+    model: &ReducedModel,
+    springs: &[f64],
+    damping: Damping,
+) -> Option<Vec<TunedDiameter>> {
+    let acts = springs.iter().any(|&spring| spring != 0.0);
+    let springs = if acts { springs } else { &[] };
+    (0..=model.sectors / 2)
+        .map(|index| {
+            let wave = model.wave(NodalDiameter {
+                index,
+                conjugate: false,
+            });
+            let waves = if model.is_standing(index) { 1 } else { 2 };
+            TunedDiameter::new(&wave, springs, damping, waves)
+        })
+        .collect()
+}
+
+/// The tuned wheel under stuck springs, under sliding ones, and without.
+fn under_limits(model: &ReducedModel, damping: Damping) -> Option<[Vec<TunedDiameter>; 3]> {
+    Some([
+        tuned_diameters(model, &model.springs.stick, damping)?,
+        tuned_diameters(model, &model.springs.slide, damping)?,
+        tuned_diameters(model, &[], damping)?,
+    ])
+}
+
+/// Angular frequencies, rad/s, of harmonic 1 in which peaks of mistuned wheels lie.
+fn band(
+    diameters: &[Vec<TunedDiameter>; 3],
+    sectors: usize,
+    options: &EngineOptions,
+) -> (f64, f64) {
+    if let Some((start_hz, stop_hz)) = options.band_hz {
+        return (TAU * start_hz, TAU * stop_hz);
+    }
+    let span = tuned_span(diameters, sectors, &options.forces);
+    span.map_or((0.0, 0.0), |(low, high)| {
+        let share = 0.6 * options.deviation + 0.05;
+        (low * (1.0 - share), high * (1.0 + share))
+    })
+}
+
+/// Lowest and highest angular frequency of the resonances that count, over all excitations and linear conditions.
+fn tuned_span(
+    diameters: &[Vec<TunedDiameter>; 3],
+    sectors: usize,
+    forces: &[WaveForce],
+) -> Option<(f64, f64)> {
+    let mut span: Option<(f64, f64)> = None;
+    for diameters in diameters {
+        let none: Participation = diameters
+            .iter()
+            .map(|own| Matrix::zeros(0, own.size()))
+            .collect();
+        let all = BandModes::new(
+            diameters,
+            &none,
+            sectors,
+            0.0,
+            (f64::MIN_POSITIVE, f64::MAX),
+        );
+        for force in forces {
+            let peaks = all.tuned_peaks(diameters, force);
+            let highest = peaks
+                .iter()
+                .map(|peak| peak.amplitude_m)
+                .fold(0.0, f64::max);
+            let count = |peak: &&Resonance| peak.amplitude_m > COUNTS * highest;
+            for omega in peaks
+                .iter()
+                .filter(count)
+                .map(|peak| TAU * peak.frequency_hz)
+            {
+                let (low, high) = span.unwrap_or((omega, omega));
+                span = Some((low.min(omega), high.max(omega)));
+            }
+        }
+    }
+    span
+}
+
+/// Largest motion of every contact row under the excitations over the band, times its spring.
+fn contact_forces(diameters: &[TunedDiameter], band: (f64, f64), forces: &[WaveForce]) -> Vec<f64> {
+    let Some(count) = diameters.first().map(TunedDiameter::spring_count) else {
+        return Vec::new();
+    };
+    let mut largest = vec![0.0_f64; count];
+    for force in forces {
+        let diameter = &diameters[force.diameter.index];
+        let inside = diameter.natural.0.iter().copied();
+        let inside = inside.filter(|omega| *omega > band.0 && *omega < band.1);
+        for s in inside.chain([band.0, band.1]).filter(|&s| s > 0.0) {
+            let motion =
+                diameter.response(s, &diameter.contact, &force.modal, force.diameter.conjugate);
+            for (largest, own) in largest.iter_mut().zip(motion.into_iter().flatten()) {
+                *largest = largest.max(own.norm());
+            }
+        }
+    }
+    let springs = diameters.first().map_or(&[][..], TunedDiameter::springs);
+    largest.iter().zip(springs).map(|(u, k)| u * k).collect()
+}

@@ -1,0 +1,32 @@
+//! Mistuned wheels on the receptances of the tuned one: no basis and no eigenproblem of a pattern in its solution.
+//!
+//! The tuned wheel with stuck contact is one small matrix a wave and frequency (`tables.rs`). Blade deviations are eliminated
+//! exactly in few strain coordinates (`elimination.rs`, `blade_shapes.rs`), and the motions at the contact are the only
+//! unknowns of the nonlinear equation (`contact_iteration.rs`, `preconditioner.rs`, `acceleration.rs`).
+
+mod acceleration;
+mod blade_shapes;
+mod contact_forces;
+mod contact_iteration;
+mod contact_places;
+mod elimination;
+mod engine;
+mod fields;
+mod free_waves;
+mod preconditioner;
+mod resonances;
+mod tables;
+mod tuned_wheel;
+mod wave_force;
+mod wave_matrix;
+mod wheel_harmonic;
+mod wheel_solver;
+
+pub use contact_forces::ContactForces;
+pub use engine::{
+    EngineModel, EngineOptions, EngineWheel, HIGHEST_HARMONIC, Limit, ReceptanceEngine,
+};
+pub use free_waves::{FreeWave, FreeWheel};
+pub use resonances::Resonance;
+pub use wave_force::WaveForce;
+pub use wheel_solver::{SolutionWork, WheelSolution, WheelSolver, embedded, overlay};

@@ -1,0 +1,187 @@
+//! A mistuned wheel in one harmonic at one frequency: the answer of its contact to forces there.
+//!
+//! With the receptances R of the tuned wheel, strain coordinates z of the blades and their deviations D,
+//!
+//! ```text
+//! u = u_0 - R_cc g - R_cz D z,    (I + R_zz D) z = z_0 - R_zc g
+//! ```
+//!
+//! Receptances act on every wave by itself, deviations on every sector by itself; z is eliminated exactly.
+
+use crate::linalg::Complex64;
+
+use super::elimination::Elimination;
+use super::fields::{Field, SectorTransform, padded};
+use super::wave_matrix::WaveMatrix;
+
+/// Unknowns of all sectors up to which a preconditioner takes in more than one shape of the blades.
+const UNKNOWNS: usize = 192;
+
+/// One harmonic of a mistuned wheel; fields are over the waves unless said otherwise.
+pub(super) struct WheelHarmonic {
+    pub(super) sectors: usize,
+    pub(super) contact: usize,
+    shapes: usize,
+    /// Receptance of the motions [contact, strain, observed] by forces at [contact, strain].
+    pub(super) receptance: WaveMatrix,
+    /// Deviation of every shape and sector, the loss factor included, shape after shape.
+    pub(super) deviations: Vec<Complex64>,
+    elimination: Elimination,
+    /// Whether a blade deviates.
+    is_mistuned: bool,
+    /// Blade forces `D z` without contact forces beyond those of the springs.
+    excited: Field,
+    strain: Field,
+}
+
+impl WheelHarmonic {
+    /// A harmonic with `contact` rows a sector and strain coordinates for as many shapes.
+    pub(super) fn new(sectors: usize, contact: usize, shapes: usize) -> Self {
+        let field = || Field::zeros(shapes, sectors);
+        Self {
+            sectors,
+            contact,
+            shapes,
+            receptance: WaveMatrix::zeros(contact + shapes + 3, contact + shapes, sectors),
+            deviations: Vec::new(),
+            elimination: Elimination::new(sectors, contact, shapes),
+            is_mistuned: false,
+            excited: field(),
+            strain: field(),
+        }
+    }
+
+    /// Takes the deviations in, of every shape and sector, shape after shape, at the receptances filled in before; false if
+    /// `I + R_zz D` is singular.
+    pub(super) fn mistune(
+        &mut self,
+        transform: &SectorTransform,
+        deviations: impl Iterator<Item = Complex64>,
+    ) -> bool {
+        self.deviations.clear();
+        self.deviations.extend(deviations);
+        self.excited.fill(0.0);
+        let deviates = |own: &Complex64| own.norm_sqr() != 0.0;
+        self.is_mistuned = self.deviations.iter().any(deviates);
+        !self.is_mistuned
+            || self
+                .elimination
+                .prepare(transform, &self.receptance, &self.deviations)
+    }
+
+    /// The first shapes, so many; none where no blade deviates.
+    pub(super) fn first_shapes(&self, count: usize) -> Vec<usize> {
+        if self.is_mistuned {
+            (0..count.min(self.shapes)).collect()
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// Shapes that are not nearly static, as many as a preconditioner takes in; none where no blade deviates.
+    pub(super) fn resonant_shapes(&self) -> Vec<usize> {
+        let resonant = self.elimination.resonant().iter();
+        let most = (UNKNOWNS / self.sectors).max(1);
+        let shapes = resonant.take(most).copied();
+        shapes.filter(|_| self.is_mistuned).collect()
+    }
+
+    /// Strain coordinates to blade forces `D (I + R_zz D)^-1 z`, in place.
+    fn blade_forces(&mut self, transform: &SectorTransform) {
+        if self.is_mistuned {
+            self.elimination
+                .blade_forces(transform, &self.receptance, &mut self.strain);
+        } else {
+            self.strain.fill(0.0);
+        }
+    }
+
+    /// Motion of the contact under an excitation whose tuned response of the motions [contact, strain, observed] is `response` in
+    /// the wave `wave`; into `motion`.
+    pub(super) fn excite(
+        &mut self,
+        transform: &SectorTransform,
+        wave: usize,
+        response: &[Complex64],
+        motion: &mut Field,
+    ) {
+        let stride = padded(self.sectors);
+        motion.fill(0.0);
+        let (own, rest) = response.split_at(self.contact);
+        for (row, u) in own.iter().enumerate() {
+            motion.set(row * stride + wave, *u);
+        }
+        self.strain.fill(0.0);
+        for (shape, z) in rest.iter().take(self.shapes).enumerate() {
+            self.strain.set(shape * stride + wave, *z);
+        }
+        self.blade_forces(transform);
+        let (contact, shapes) = (self.contact, self.shapes);
+        let columns = contact..contact + shapes;
+        self.receptance
+            .add_product(0..contact, columns, -1.0, &self.strain, motion);
+        std::mem::swap(&mut self.excited, &mut self.strain);
+    }
+
+    /// Adds the motion that contact forces `g` take off: `R_cc g - R_cz D (I + R_zz D)^-1 R_zc g`.
+    pub(super) fn add_answer(
+        &mut self,
+        transform: &SectorTransform,
+        g: &Field,
+        answer: &mut Field,
+    ) {
+        let (contact, shapes) = (self.contact, self.shapes);
+        self.receptance
+            .add_product(0..contact, 0..contact, 1.0, g, answer);
+        if !self.is_mistuned {
+            return;
+        }
+        let strained = contact..contact + shapes;
+        self.strain.fill(0.0);
+        self.receptance
+            .add_product(strained.clone(), 0..contact, 1.0, g, &mut self.strain);
+        self.blade_forces(transform);
+        self.receptance
+            .add_product(0..contact, strained, -1.0, &self.strain, answer);
+    }
+
+    /// Displacement r, theta, z of the observed node of every sector under contact forces `g`; `response` as in
+    /// [`Self::excite`], for the harmonic that is excited.
+    pub(super) fn observed(
+        &mut self,
+        transform: &SectorTransform,
+        g: &Field,
+        response: Option<(usize, &[Complex64])>,
+    ) -> Field {
+        let (contact, shapes) = (self.contact, self.shapes);
+        let stride = padded(self.sectors);
+        let strained = contact..contact + shapes;
+        let rows = contact + shapes..contact + shapes + 3;
+        let mut waves = Field::zeros(3, self.sectors);
+        if let Some((wave, response)) = response {
+            for row in 0..3 {
+                waves.set(row * stride + wave, response[contact + shapes + row]);
+            }
+            self.receptance.add_product(
+                rows.clone(),
+                strained.clone(),
+                -1.0,
+                &self.excited,
+                &mut waves,
+            );
+        }
+        self.receptance
+            .add_product(rows.clone(), 0..contact, -1.0, g, &mut waves);
+        if self.is_mistuned {
+            self.strain.fill(0.0);
+            self.receptance
+                .add_product(strained.clone(), 0..contact, 1.0, g, &mut self.strain);
+            self.blade_forces(transform);
+            self.receptance
+                .add_product(rows, strained, 1.0, &self.strain, &mut waves);
+        }
+        let mut sectors = Field::zeros(3, self.sectors);
+        transform.to_sectors(&waves, &mut sectors);
+        sectors
+    }
+}

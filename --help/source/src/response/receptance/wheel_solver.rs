@@ -1,0 +1,324 @@
+//! One wheel under one excitation and contact condition, solved at any frequency.
+
+use std::f64::consts::TAU;
+
+use crate::linalg::Complex64;
+use crate::response::harmonic_balance::{ContactShares, PairContact, Status, WheelContact};
+
+use super::contact_forces::ContactForces;
+use super::contact_iteration::{Buffers, ContactEquation, angular, damped};
+use super::engine::{EngineWheel, Limit, ReceptanceEngine};
+use super::fields::Field;
+use super::wave_force::WaveForce;
+use super::wheel_harmonic::WheelHarmonic;
+
+/// Solves one wheel at one frequency after the other; buffers are kept.
+pub struct WheelSolver<'a> {
+    engine: &'a ReceptanceEngine,
+    wheel: &'a EngineWheel,
+    limit: Limit,
+    force: &'a WaveForce,
+    set: Vec<u32>,
+    contact: Option<WheelContact>,
+    tangents: Option<WheelContact>,
+    harmonics: Vec<WheelHarmonic>,
+    linear: Field,
+    /// Forces on the contact besides its own.
+    load: Option<ContactForces>,
+    buffers: Buffers,
+    /// Tuned response to the excitation of the motions [contact, strain, observed].
+    excited: Vec<Complex64>,
+}
+
+/// A solution at one frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WheelSolution {
+    /// Motions at the contact of every harmonic, in the waves.
+    pub motions: Vec<f64>,
+    /// Norm of the residual over that of the motions; 0 for a linear limit.
+    pub residual: f64,
+    /// Shares of slipping and separated pairs.
+    pub shares: ContactShares,
+}
+
+/// What a solution took.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SolutionWork {
+    /// Steps of the iteration.
+    pub iterations: u64,
+    /// Tangents taken.
+    pub tangents: u64,
+    /// Attempts after the first.
+    pub retries: u64,
+}
+
+impl<'a> WheelSolver<'a> {
+    /// A solver in the harmonics `set`, ascending and with 1; `contact` is none for a linear limit.
+    #[must_use]
+    pub fn new(
+        engine: &'a ReceptanceEngine,
+        wheel: &'a EngineWheel,
+        limit: Limit,
+        force: &'a WaveForce,
+        set: &[u32],
+        contact: Option<WheelContact>,
+    ) -> Self {
+        let set = if contact.is_some() {
+            set.to_vec()
+        } else {
+            vec![1]
+        };
+        Self {
+            engine,
+            wheel,
+            limit,
+            force,
+            set,
+            contact,
+            tangents: None,
+            harmonics: Vec::new(),
+            linear: Field::default(),
+            load: None,
+            buffers: Buffers::default(),
+            excited: Vec::new(),
+        }
+    }
+
+    /// This solver with tangents from `contact`, which is its contact with fewer samples; none: from its contact itself.
+    #[must_use]
+    pub fn with_tangents(self, contact: Option<WheelContact>) -> Self {
+        Self {
+            tangents: contact,
+            ..self
+        }
+    }
+
+    /// One attempt beside `start`, of the same harmonics: motions, and the share of them that the next step would still move;
+    /// none where it failed, or for a linear limit.
+    pub fn settle(
+        &mut self,
+        frequency_hz: f64,
+        start: &[f64],
+        tolerance: f64,
+    ) -> Option<(Vec<f64>, f64)> {
+        if !self.prepare(frequency_hz) {
+            return None;
+        }
+        let outcome = self.equation()?.settle(start, tolerance);
+        let settled = matches!(outcome.status, Status::Ok | Status::IterationLimit);
+        (settled && outcome.step < 1.0).then(|| (self.motions(), outcome.step))
+    }
+
+    /// The equation at the frequency prepared; none for a linear limit.
+    fn equation(&mut self) -> Option<ContactEquation<'_>> {
+        let contact = self.contact.as_mut()?;
+        let sectors = self.engine.sectors();
+        let fundamental = self.set.iter().position(|&k| k == 1).unwrap_or(0);
+        self.buffers
+            .resize(self.set.len(), contact.sector_rows(), sectors);
+        Some(ContactEquation {
+            transform: &self.engine.transform,
+            contact,
+            tangents: self.tangents.as_mut(),
+            harmonics: &mut self.harmonics,
+            linear: &self.linear,
+            load: self.load.as_ref(),
+            fundamental,
+            buffers: &mut self.buffers,
+        })
+    }
+
+    fn motions(&self) -> Vec<f64> {
+        let fields = self.buffers.motions.iter();
+        let parts = fields.flat_map(|field| field.re.iter().chain(&field.im));
+        parts.copied().collect()
+    }
+
+    /// Solves at a frequency, Hz, from the one of `starts` (as [`WheelSolution::motions`]) that has the smallest residual, or from
+    /// the linear response without any.
+    ///
+    /// # Errors
+    /// How the last attempt ended.
+    pub fn solve(
+        &mut self,
+        frequency_hz: f64,
+        starts: &[Vec<f64>],
+        tolerance: f64,
+    ) -> (Result<WheelSolution, Status>, SolutionWork) {
+        let mut work = SolutionWork::default();
+        if !self.prepare(frequency_hz) {
+            return (Err(Status::SingularJacobian), work);
+        }
+        let Some(mut equation) = self.equation() else {
+            let solution = WheelSolution {
+                motions: Vec::new(),
+                residual: 0.0,
+                shares: ContactShares::default(),
+            };
+            return (Ok(solution), work);
+        };
+        let outcome = equation.solve(starts, tolerance);
+        work.iterations = outcome.iterations;
+        work.tangents = outcome.tangents;
+        work.retries = outcome.retries;
+        let solved = (outcome.status == Status::Ok).then(|| WheelSolution {
+            motions: self.motions(),
+            residual: outcome.residual,
+            shares: outcome.shares,
+        });
+        (solved.ok_or(outcome.status), work)
+    }
+
+    /// Receptances, deviations and linear response at a frequency; false where one is singular.
+    fn prepare(&mut self, frequency_hz: f64) -> bool {
+        let pencil = self.engine.pencil(self.limit);
+        let transform = &self.engine.transform;
+        let sectors = self.engine.sectors();
+        let contact_rows = pencil.diameters[0].spring_count();
+        for (place, &harmonic) in self.set.iter().enumerate() {
+            let Some(tables) = pencil.tables(harmonic) else {
+                return false;
+            };
+            if self.harmonics.len() == place {
+                let own = WheelHarmonic::new(sectors, contact_rows, tables.shapes);
+                self.harmonics.push(own);
+            }
+            let own = &mut self.harmonics[place];
+            let s = angular(harmonic, frequency_hz);
+            let filled = tables
+                .receptances
+                .at(&pencil.diameters, s, &mut own.receptance);
+            let deviations = self.wheel.deviations(tables.shapes).into_iter();
+            let loss = self.engine.loss_factor;
+            let deviations = deviations.map(|delta| damped(delta, loss, harmonic));
+            if filled.is_none() || !own.mistune(transform, deviations) {
+                return false;
+            }
+            if harmonic == 1 {
+                let diameter = &pencil.diameters[self.force.diameter.index];
+                let motions = tables.receptances.motions(self.force.diameter.index);
+                let conjugate = self.force.diameter.conjugate;
+                let Some(excited) =
+                    diameter.response(TAU * frequency_hz, motions, &self.force.modal, conjugate)
+                else {
+                    return false;
+                };
+                self.excited = excited;
+                self.linear = Field::zeros(contact_rows, sectors);
+                let wave = self.force.wave(sectors);
+                own.excite(transform, wave, &self.excited, &mut self.linear);
+            }
+        }
+        true
+    }
+
+    /// Complex displacement r, theta, z of the observed node, blade after blade, of the harmonic at a place of the set, at the
+    /// frequency and solution last solved.
+    pub fn observed(&mut self, place: usize) -> Vec<Complex64> {
+        let sectors = self.engine.sectors();
+        let wave = self.force.wave(sectors);
+        let rows = self.engine.pencil(self.limit).diameters[0].spring_count();
+        let none = Field::zeros(rows, sectors);
+        let force = if self.contact.is_some() {
+            &self.buffers.forces[place]
+        } else {
+            &none
+        };
+        let excited = (self.set[place] == 1).then_some((wave, &*self.excited));
+        let field = self.harmonics[place].observed(&self.engine.transform, force, excited);
+        let stride = field.re.len() / 3;
+        (0..sectors)
+            .flat_map(|n| [0, 1, 2].map(|row| field.at(row * stride + n)))
+            .collect()
+    }
+
+    /// Mean friction force on the ring at the motions of a solution, N per sector; none for a linear limit.
+    pub fn mean_friction_n(&mut self, motions: &[f64]) -> Option<[f64; 2]> {
+        self.equation()?.place(motions);
+        Some(self.contact.as_mut()?.mean_friction_n())
+    }
+
+    /// From now on these forces, in the harmonics of the solver, act on the contact besides its own.
+    pub fn load_contact(&mut self, load: ContactForces) {
+        self.load = Some(load);
+    }
+
+    /// Contact forces at the solution last solved.
+    #[must_use]
+    pub fn contact_forces(&self) -> ContactForces {
+        ContactForces {
+            harmonics: self.set.clone(),
+            fields: self.buffers.forces.clone(),
+        }
+    }
+
+    /// The contact's own forces at the motions of a solution; none for a linear limit.
+    pub fn contact_forces_at(&mut self, motions: &[f64]) -> Option<ContactForces> {
+        self.equation()?.evaluate_forces(motions);
+        Some(self.contact_forces())
+    }
+
+    /// State of every contact pair at the solution last solved; none for a linear limit.
+    pub fn contact_states(&mut self) -> Option<Vec<PairContact>> {
+        Some(self.contact.as_mut()?.contact_states())
+    }
+
+    /// Motion of every contact row in every harmonic at the solution last solved, sector after sector; none for a linear limit.
+    #[must_use]
+    pub fn contact_motion(&self) -> Option<Vec<(u32, Vec<Complex64>)>> {
+        let contact = self.contact.as_ref()?;
+        let rows = contact.sector_rows() * contact.sectors();
+        let mut parts = contact.motion().chunks_exact(rows.max(1));
+        self.set
+            .iter()
+            .map(|&harmonic| {
+                let re = parts.next()?;
+                let im = if harmonic == 0 {
+                    None
+                } else {
+                    Some(parts.next()?)
+                };
+                let row =
+                    |(row, &re): (usize, &f64)| Complex64::new(re, im.map_or(0.0, |im| im[row]));
+                Some((harmonic, re.iter().enumerate().map(row).collect()))
+            })
+            .collect()
+    }
+
+    /// Number of sectors.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.engine.sectors()
+    }
+
+    /// Whether the contact is solved for; else the solution is a linear limit.
+    #[must_use]
+    pub fn is_nonlinear(&self) -> bool {
+        self.contact.is_some()
+    }
+
+    /// The harmonics, ascending.
+    #[must_use]
+    pub fn harmonics(&self) -> &[u32] {
+        &self.set
+    }
+}
+
+/// Puts motions in the harmonics `from` in the place of those of a solution in `to`.
+pub fn overlay(all: &mut [f64], motions: &[f64], from: &[u32], to: &[u32]) {
+    let size = motions.len() / from.len().max(1);
+    for (own, part) in from.iter().zip(motions.chunks_exact(size.max(1))) {
+        if let Some(place) = to.iter().position(|k| k == own) {
+            all[place * size..][..size].copy_from_slice(part);
+        }
+    }
+}
+
+/// Motions in the harmonics `from` as a start in those of `to`; harmonics that `from` does not have do not move.
+#[must_use]
+pub fn embedded(motions: &[f64], from: &[u32], to: &[u32]) -> Vec<f64> {
+    let size = motions.len() / from.len().max(1);
+    let mut all = vec![0.0; size * to.len()];
+    overlay(&mut all, motions, from, to);
+    all
+}

@@ -1,0 +1,121 @@
+//! The settings chosen for an accepted error, and the evidence that they were chosen by.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::ReceptanceSetting;
+use crate::population::monte_carlo::LoadCaseName;
+use crate::population::statistics::{ErrorBound, LoadCaseErrors};
+use crate::settings::ladder::{Knob, LadderSetting};
+use crate::study::Study;
+
+/// The settings chosen for an accepted error.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AccuracyChoice {
+    /// Error accepted.
+    pub accepted: f64,
+    /// The settings.
+    pub setting: ChosenSetting,
+    /// Fixed-interface modes.
+    pub craig_bampton_modes: usize,
+    /// Whether the upper bound of the 95th percentile of the amplitude error is accepted, and on tuned receptances most rows of the
+    /// sample are known at the enlarged settings.
+    pub met: bool,
+    /// Errors on the sample; none where nothing was to be measured.
+    pub evidence: Option<AccuracyEvidence>,
+}
+
+/// Settings that were chosen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum ChosenSetting {
+    /// A combination of the ladder, for rows on a basis.
+    Ladder(LadderSetting),
+    /// For rows on tuned receptances.
+    Receptances(ReceptanceSetting),
+}
+
+/// What a choice was made by.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AccuracyEvidence {
+    /// Ids of the patterns of the sample.
+    pub patterns: Vec<u32>,
+    /// Normal loads of its scenarios, N.
+    pub normal_loads_n: Vec<f64>,
+    /// Tolerance of the harmonics of the reference; none where they are fixed.
+    pub reference_tolerance: Option<f64>,
+    /// `joint`, `by_knobs`, or `enlarged` on tuned receptances.
+    pub reference: String,
+    /// Errors of the peak amplitude.
+    pub amplitude: ErrorBound,
+    /// What the worst error of the peak amplitude over all rows is claimed to be at most, see [`ErrorBound::worst_upper`].
+    pub amplitude_worst_upper: f64,
+    /// Errors of the frequency of the peak.
+    pub frequency: Option<ErrorBound>,
+    /// Errors of the amplification factor.
+    pub amplification_factor: Option<ErrorBound>,
+    /// Estimated floating-point operations of a row at the settings chosen.
+    pub operations_per_row: f64,
+    /// Estimated floating-point operations of the whole choice: reference, single knobs and combinations.
+    pub operations_of_choice: f64,
+    /// Combinations measured, in order.
+    pub tried: Vec<TriedSetting>,
+    /// Load case of each scenario of the sample; empty in a study without load cases.
+    pub load_cases: Vec<LoadCaseName>,
+    /// Errors of the peak amplitude under each load case.
+    pub errors_of_load_cases: Vec<LoadCaseErrors>,
+}
+
+/// A combination that was measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TriedSetting {
+    /// The setting, in words.
+    pub setting: String,
+    /// Rows measured before it was taken or given up.
+    pub rows: u64,
+    /// Largest amplitude error of the rows measured.
+    pub worst: f64,
+    /// Estimated floating-point operations of a row.
+    pub operations: f64,
+}
+
+impl AccuracyChoice {
+    /// The study at the settings chosen.
+    #[must_use]
+    pub fn applied_to(&self, study: &Study) -> Study {
+        match &self.setting {
+            ChosenSetting::Ladder(setting) => {
+                let mut own = setting.applied_to(study);
+                own.reduction.craig_bampton_modes = Some(self.craig_bampton_modes);
+                if study.states("solver.rows_beyond_tolerance") {
+                    own.solver.rows_beyond_tolerance = study.solver.rows_beyond_tolerance;
+                }
+                own
+            }
+            ChosenSetting::Receptances(setting) => setting.applied_to(study),
+        }
+    }
+
+    /// The choice for the manifest.
+    #[must_use]
+    pub fn facts(&self) -> Value {
+        let setting: Value = match &self.setting {
+            ChosenSetting::Ladder(setting) => Knob::ALL
+                .into_iter()
+                .map(|knob| (knob.name(), json!(setting.level(knob))))
+                .collect(),
+            ChosenSetting::Receptances(setting) => setting.facts(),
+        };
+        let mut evidence = json!(self.evidence);
+        if let Some(evidence) = evidence.as_object_mut() {
+            // A study without load cases has none in its manifest.
+            evidence.retain(|key, value| !key.contains("load_cases") || *value != json!([]));
+        }
+        json!({
+            "accepted_error": self.accepted,
+            "met": self.met,
+            "craig_bampton_modes": self.craig_bampton_modes,
+            "setting": setting,
+            "evidence": evidence,
+        })
+    }
+}

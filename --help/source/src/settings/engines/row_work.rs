@@ -1,0 +1,86 @@
+//! Rows of an engine, whatever happens while they are solved, and the tuned references beside them.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use super::Engine;
+use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use crate::response::harmonic_balance::Status;
+use crate::response::mistuning::{Pattern, PatternSource};
+use crate::settings::progress::Progress;
+
+/// All that the solution of rows needs.
+pub(crate) struct RowWork<'a> {
+    pub(crate) engine: &'a dyn Engine,
+    pub(crate) patterns: &'a PatternSource,
+    pub(crate) scenarios: &'a [Scenario],
+    /// One for each scenario.
+    pub(crate) tuned: &'a [TunedReference],
+    pub(crate) progress: &'a dyn Progress,
+}
+
+impl RowWork<'_> {
+    /// Rows of one pattern under the scenarios `wanted`, in their order; the engine sees the
+    /// scenarios of each standard deviation together.
+    pub(crate) fn of_pattern(&self, id: u32, wanted: &[usize]) -> Vec<ResponseRow> {
+        let mut standard_deviations: Vec<Option<f64>> = Vec::new();
+        for &index in wanted {
+            let standard_deviation = self.scenarios[index].standard_deviation;
+            if !standard_deviations.contains(&standard_deviation) {
+                standard_deviations.push(standard_deviation);
+            }
+        }
+        let mut rows = Vec::with_capacity(wanted.len());
+        for standard_deviation in standard_deviations {
+            let group: Vec<(&Scenario, &TunedReference)> = wanted
+                .iter()
+                .map(|&index| (&self.scenarios[index], &self.tuned[index]))
+                .filter(|(scenario, _)| scenario.standard_deviation == standard_deviation)
+                .collect();
+            let pattern = self.patterns.pattern(id, standard_deviation);
+            let pattern = pattern.expect("every id of a run is one of its patterns");
+            rows.extend(rows_of(self.engine, &pattern, &group));
+        }
+        rows.sort_by_key(|row| row.scenario);
+        for row in &rows {
+            self.progress.row(row.status);
+        }
+        rows
+    }
+}
+
+/// Rows of one pattern under scenarios of the same standard deviation. A panic costs the rows of that pattern, not the run.
+pub(crate) fn rows_of(
+    engine: &dyn Engine,
+    pattern: &Pattern,
+    scenarios: &[(&Scenario, &TunedReference)],
+) -> Vec<ResponseRow> {
+    let solve = AssertUnwindSafe(|| engine.rows(pattern, scenarios));
+    catch_unwind(solve).unwrap_or_else(|_| {
+        scenarios
+            .iter()
+            .map(|(scenario, _)| ResponseRow {
+                contact_factors: pattern.contact.means(),
+                ..ResponseRow::without_result(scenario.index, pattern.id, Status::Panicked)
+            })
+            .collect()
+    })
+}
+
+/// Tuned reference of each scenario. The tuned wheel, which knows no standard deviation, is solved once per engine order and
+/// contact condition.
+pub(crate) fn tuned_references(engine: &dyn Engine, scenarios: &[Scenario]) -> Vec<TunedReference> {
+    let mut tuned: Vec<TunedReference> = Vec::new();
+    for scenario in scenarios {
+        let same = scenarios[..tuned.len()]
+            .iter()
+            .position(|other| other.same_excitation(scenario) && other.contact == scenario.contact);
+        tuned.push(match same {
+            Some(same) => TunedReference {
+                scenario: scenario.index,
+                ..tuned[same].clone()
+            },
+            None => engine.tuned(scenario),
+        });
+    }
+    tuned
+}
