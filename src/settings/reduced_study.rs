@@ -18,7 +18,9 @@ use super::tuned_receptances::{COMPANION_MODES, Refined, engine_of, engine_optio
 use crate::model::reduction::{Basis, BasisChoice, Reduction, WHOLE_SPACE_DOFS};
 use crate::model::sector::SectorModel;
 use crate::model::{ReducedModel, read_cached, reduction_digest, write_cached};
-use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
+use crate::population::monte_carlo::{
+    HarmonicChoice, LoadCaseSolver, LoadCaseSolvers, RowSettings, RowSolver,
+};
 use crate::response::forced_response::{Harmonics, RowsBeyondTolerance};
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::EnlargedSet;
@@ -363,7 +365,7 @@ fn basis_error(evidence: &BasisEvidence) -> f64 {
 ///
 /// # Errors
 /// If the samples per period cannot tell the harmonics apart, or an engine is not found.
-pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, PipelineError> {
+pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolvers, PipelineError> {
     // Either part is measured on its own: what the basis leaves out of the Craig-Bampton model, and
     // what that model leaves out of the sector.
     let truncation = stored.fixed_interface.error.unwrap_or(f64::INFINITY);
@@ -397,7 +399,7 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Pip
             }
             None => Ok(solver),
         };
-        let solver = on_engine(solver)?;
+        let solver = LoadCaseSolver::from(on_engine(solver)?);
         let Some(beyond) = &stored.beyond else {
             return Ok(solver);
         };
@@ -405,7 +407,7 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<RowSolver, Pip
             beyond.harmonics[sets].to_vec(),
             beyond.basis_error + truncation,
         )?;
-        Ok(solver.with_beyond(on_engine(finer)?, inexact))
+        Ok(solver.with_fallback(on_engine(finer)?, inexact))
     })
 }
 

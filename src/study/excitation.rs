@@ -5,7 +5,7 @@ use crate::linalg::Complex64;
 use crate::model::ReducedModel;
 use crate::model::sector::bundle::read_force;
 use crate::model::sector::{Component, ModelError, SectorModel, validate_force};
-use crate::population::monte_carlo::{LoadCaseName, RowSolver};
+use crate::population::monte_carlo::{LoadCaseName, LoadCaseSolver, LoadCaseSolvers};
 
 /// A study under one of its force vectors.
 #[derive(Debug, Clone)]
@@ -27,11 +27,11 @@ impl Excitation {
     }
 }
 
-/// One solver for all of `excitations`, of a solver for each: that of the first, which knows the others.
+/// The solvers of all of `excitations`.
 pub(crate) fn solver_under<E>(
     excitations: &[Excitation],
-    solver: impl FnMut(&Excitation) -> Result<RowSolver, E>,
-) -> Result<RowSolver, E> {
+    solver: impl FnMut(&Excitation) -> Result<LoadCaseSolver, E>,
+) -> Result<LoadCaseSolvers, E> {
     let mut solvers = excitations
         .iter()
         .map(solver)
@@ -41,7 +41,7 @@ pub(crate) fn solver_under<E>(
     let others = names
         .zip(others)
         .filter_map(|(name, solver)| Some((name?, solver)));
-    Ok(solvers.remove(0).with_load_cases(others.collect()))
+    Ok(LoadCaseSolvers::new(solvers.remove(0), others.collect()))
 }
 
 /// `study` under each of its force vectors; of a study without load cases, the study itself.

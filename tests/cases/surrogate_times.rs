@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use blisk::population::monte_carlo::counted_time;
 use blisk::response::forced_response::ContactCondition;
 use blisk::settings::{EngineSource, ReducedEngineSource};
 use blisk::study::{Study, load_sector_model, pattern_source};
@@ -19,14 +20,14 @@ fn ratios(file: &str, contact: ContactCondition, patterns: u32) -> (f64, f64) {
     let scenario = study.scenarios().remove(0);
     let tuned = engine.tuned(&scenario);
     let surrogate = engine.surrogate(&scenario, &tuned).unwrap();
-    let solver = engine.row_solver().unwrap();
+    let solver = engine.solvers().unwrap().under(&scenario).rows();
     let (mut counted, mut measured) = ([0.0; 2], [0.0; 2]);
     for id in 0..patterns {
         let pattern = source.pattern(id, scenario.standard_deviation).unwrap();
         let began = Instant::now();
         let row = engine.rows(&pattern, &[(&scenario, &tuned)]).remove(0);
         measured[0] += began.elapsed().as_secs_f64();
-        counted[0] += solver.counted_time(&scenario, &row);
+        counted[0] += counted_time(solver, &scenario, &row);
         let began = Instant::now();
         let peak = surrogate(&pattern).unwrap();
         measured[1] += began.elapsed().as_secs_f64();

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use blisk::linalg::{Complex64, Matrix};
+use blisk::population::monte_carlo::Surrogate;
 use blisk::response::forced_response::{
     ContactCondition, Excited, PointSettings, PointSolver, SolverOptions,
 };
@@ -105,7 +106,7 @@ fn under_sticking_contact_the_surrogate_is_the_linear_peak() {
     let wheel = Wheel::lumped24();
     let solver = wheel.solver(&[1], SolverOptions::default());
     let stuck = scenario(ContactCondition::Stuck);
-    let surrogate = solver.surrogate(&stuck, &solver.tuned(&stuck)).unwrap();
+    let surrogate = Surrogate::new(&solver, &stuck, &solver.tuned(&stuck)).unwrap();
     let mut random = Random(5);
     for _ in 0..3 {
         let deviations = wheel.deviations(&mut random, 0.03);
@@ -134,9 +135,7 @@ fn under_friction_the_surrogate_ranks_as_the_rows_do() {
     let wheel = Wheel::lumped24();
     let solver = wheel.solver(&[1, 3], SolverOptions::default());
     let friction = scenario(full(7.5));
-    let surrogate = solver
-        .surrogate(&friction, &solver.tuned(&friction))
-        .unwrap();
+    let surrogate = Surrogate::new(&solver, &friction, &solver.tuned(&friction)).unwrap();
     let mut random = Random(7);
     let pairs: Vec<(f64, f64)> = (0..24)
         .map(|_| {

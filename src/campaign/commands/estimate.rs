@@ -18,7 +18,8 @@ use crate::campaign::store::ResultsFolder;
 use crate::identity;
 use crate::platform::thread_processor_time_s;
 use crate::population::monte_carlo::{
-    ResponseRow, Scenario, SurrogatePeak, TunedReference, block_size, plan_blocks, solve_blocks,
+    ResponseRow, Scenario, SurrogatePeak, TunedReference, block_size, counted_time, plan_blocks,
+    solve_blocks,
 };
 use crate::population::statistics::{
     Accounting, EstimateTarget, Population, Quantity, SurrogateWorth, TwoPhaseSample, pilot_places,
@@ -339,8 +340,9 @@ impl Work<'_> {
                 (surrogate.map(|peak| peak.amplitude_m), value)
             })
             .collect();
-        let cost = self.engine.row_solver().map_or(0.0, |solver| {
-            let of_rows = rows.iter().map(|row| solver.counted_time(scenario, row));
+        let cost = self.engine.solvers().map_or(0.0, |solvers| {
+            let solver = solvers.under(scenario).rows();
+            let of_rows = rows.iter().map(|row| counted_time(solver, scenario, row));
             let of_surrogates = found.iter().flatten().map(|peak| peak.counted_time);
             mean(of_surrogates) / mean(of_rows)
         });

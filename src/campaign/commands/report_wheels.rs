@@ -187,7 +187,7 @@ fn state(
     pattern: &Pattern,
     row: &ResponseRow,
 ) -> Option<WheelStateReport> {
-    let solver = engine.row_solver()?;
+    let solver = engine.solvers()?;
     let state = solver.wheel_state(pattern, scenario, row).ok()?;
     let sectors = state.amplitudes_m.len();
     let contact: Vec<PairReport> = state

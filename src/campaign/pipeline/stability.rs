@@ -5,7 +5,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use rayon::prelude::*;
 
-use crate::population::monte_carlo::{ResponseRow, RowSolver, Scenario, TunedReference};
+use crate::population::monte_carlo::{
+    LoadCaseSolvers, ResponseRow, Scenario, TunedReference, is_row_stable, is_tuned_stable,
+};
 use crate::population::statistics::{
     PERCENTILES, SampleStatistics, ScenarioStability, nearest_rows,
 };
@@ -54,7 +56,7 @@ impl StabilityWork<'_> {
     pub(super) fn find(
         &self,
         store: &RowStore,
-        solver: &RowSolver,
+        solvers: &LoadCaseSolvers,
     ) -> Result<Stabilities, TableError> {
         let chosen = self.chosen(store)?;
         let mut wanted = Vec::new();
@@ -69,7 +71,7 @@ impl StabilityWork<'_> {
             .par_iter()
             .zip(self.scenarios)
             .with_max_len(1)
-            .map(|(tuned, scenario)| unless_it_panics(|| solver.is_tuned_stable(scenario, tuned)))
+            .map(|(tuned, scenario)| unless_it_panics(|| is_tuned_stable(solvers, scenario, tuned)))
             .collect();
         let rows: Vec<Option<bool>> = wanted
             .par_iter()
@@ -78,7 +80,7 @@ impl StabilityWork<'_> {
                 let scenario = &self.scenarios[row.scenario];
                 let deviation = scenario.standard_deviation;
                 let pattern = self.patterns.pattern(row.pattern, deviation)?;
-                unless_it_panics(|| solver.is_row_stable(&pattern, scenario, row))
+                unless_it_panics(|| is_row_stable(solvers, &pattern, scenario, row))
             })
             .collect();
         let mut found = Stabilities {

@@ -225,7 +225,7 @@ impl<'a> TableWork<'a> {
         store: &RowStore,
         engine: Option<&dyn Engine>,
     ) -> Result<Stabilities, TableError> {
-        let solver = engine.and_then(Engine::row_solver);
+        let solver = engine.and_then(Engine::solvers);
         let Some(solver) = solver.filter(|_| Self::wants_engine(self.study, self.shard)) else {
             return Ok(Stabilities::default());
         };

@@ -74,6 +74,32 @@ pub struct SystemSize {
 }
 
 impl SystemSize {
+    /// Size of the equation of the rows of a scenario.
+    #[must_use]
+    pub fn of_rows(solver: &RowSolver, scenario: &Scenario) -> Self {
+        let points = solver.points(scenario);
+        let harmonics = points.harmonics();
+        let model = solver.basis().model();
+        let linear = !matches!(scenario.contact, ContactCondition::Full { .. });
+        let settings = solver.settings();
+        let law = settings.contact.map(|(law, _)| law);
+        let law = law.filter(|_| !linear);
+        Self {
+            coordinates: solver.basis().size(),
+            contact_rows: solver.basis().contact().rows(),
+            pairs: model.contact.weights.len() * model.sectors,
+            coefficients: Self::coefficients_of(harmonics),
+            law,
+            check_law: settings.in_place_of.filter(|_| !linear).or(law),
+            in_stages: solver.search(points).is_some(),
+            samples: if linear {
+                1
+            } else {
+                samples_per_period(&settings.solver, harmonics)
+            },
+        }
+    }
+
     /// Real coefficients of a harmonic set.
     #[must_use]
     pub fn coefficients_of(harmonics: &[u32]) -> usize {
@@ -280,49 +306,17 @@ pub fn time_of_eigenproblem(size: usize) -> f64 {
     SLOWER_EIGEN * eigenproblem(size)
 }
 
-impl RowSolver {
-    /// Time that a row takes, counted from its work in operations of a matrix product: the same on every machine.
-    #[must_use]
-    pub fn counted_time(&self, scenario: &Scenario, row: &ResponseRow) -> f64 {
-        let size = self.system_size(scenario);
-        let linear = size.law.is_none();
-        let solved = if linear {
-            0.0
-        } else {
-            size.search(&RowWork::of(row)) + size.check()
-        };
-        solved + EIGENPROBLEMS * time_of_eigenproblem(size.coordinates)
-    }
-
-    /// Size of the equation of the rows of a scenario.
-    #[must_use]
-    pub fn system_size(&self, scenario: &Scenario) -> SystemSize {
-        let solver = self.under(scenario);
-        let harmonics = solver
-            .points(scenario.engine_order, scenario.contact)
-            .harmonics();
-        let model = solver.basis().model();
-        let linear = !matches!(scenario.contact, ContactCondition::Full { .. });
-        let options = &solver.settings.solver;
-        let law = solver.settings.contact.map(|(law, _)| law);
-        let law = law.filter(|_| !linear);
-        SystemSize {
-            coordinates: solver.basis().size(),
-            contact_rows: solver.basis().contact().rows(),
-            pairs: model.contact.weights.len() * model.sectors,
-            coefficients: SystemSize::coefficients_of(harmonics),
-            law,
-            check_law: solver.settings.in_place_of.filter(|_| !linear).or(law),
-            in_stages: solver
-                .search(solver.points(scenario.engine_order, scenario.contact))
-                .is_some(),
-            samples: if linear {
-                1
-            } else {
-                samples_per_period(options, harmonics)
-            },
-        }
-    }
+/// Time that a row takes, counted from its work in operations of a matrix product: the same on every machine.
+#[must_use]
+pub fn counted_time(solver: &RowSolver, scenario: &Scenario, row: &ResponseRow) -> f64 {
+    let size = SystemSize::of_rows(solver, scenario);
+    let linear = size.law.is_none();
+    let solved = if linear {
+        0.0
+    } else {
+        size.search(&RowWork::of(row)) + size.check()
+    };
+    solved + EIGENPROBLEMS * time_of_eigenproblem(size.coordinates)
 }
 
 #[cfg(test)]

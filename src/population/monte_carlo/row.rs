@@ -1,6 +1,7 @@
 //! One row of `responses.parquet`: what became of one (scenario, pattern), and its amplification factor.
 
-use crate::response::forced_response::ErrorEstimate;
+use super::Scenario;
+use crate::response::forced_response::{ErrorEstimate, Peak};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::PairFactors;
 
@@ -94,6 +95,12 @@ impl ResponseRow {
     }
 }
 
+/// A peak as a row states it.
+pub(super) struct MistunedPeak {
+    pub(super) peak: Peak,
+    pub(super) errors: Option<ErrorEstimate>,
+}
+
 /// Peak of the tuned wheel of a scenario, the denominator of its amplification factors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TunedReference {
@@ -113,6 +120,28 @@ pub struct TunedReference {
     pub harmonics: String,
     /// Errors of the solution at the peak.
     pub errors: Option<ErrorEstimate>,
+}
+
+impl TunedReference {
+    /// Of a peak that was found with the set of harmonics named so, and its errors.
+    pub(super) fn of_peak(
+        scenario: &Scenario,
+        found: &Peak,
+        harmonics: String,
+        errors: Option<ErrorEstimate>,
+    ) -> Self {
+        let point = found.point.as_ref().filter(|_| found.status == Status::Ok);
+        Self {
+            scenario: scenario.index,
+            status: found.status,
+            amplitude_m: found.amplitude_m(),
+            frequency_hz: point.map(|point| point.frequency_hz),
+            separated_fraction: point.map(|point| point.shares.separated),
+            slipping_fraction: point.map(|point| point.shares.slipping),
+            harmonics,
+            errors,
+        }
+    }
 }
 
 /// Largest amplitude over blades and frequency of the mistuned wheel over that of the tuned wheel

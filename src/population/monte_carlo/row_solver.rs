@@ -1,107 +1,40 @@
-//! One (scenario, pattern) -> one row, and the tuned reference of a scenario.
+//! Rows under one force vector on one reduced model: on its basis, or on the receptances of the tuned wheel.
 
-use std::borrow::Cow;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
-use super::row_engine::RowEngine;
+use super::basis_rows::BasisRows;
+use super::receptance_rows::{ReceptanceRows, SEARCH_SAMPLES};
+use super::row::MistunedPeak;
 use super::{
-    ErrorTolerance, HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, HarmonicChoice, LoadCaseName,
-    ResponseRow, Scenario, ScenarioError, TunedReference, amplification_factor, harmonics_name,
-    stated_error,
+    CurveResult, HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, HarmonicChoice, ResponseRow,
+    RowSettings, Scenario, ScenarioError, TunedReference, WheelState, amplification_factor,
+    harmonics_name, stated_error,
 };
-use crate::linalg::Matrix;
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
-    ContactCondition, ErrorEstimate, Excited, LimitsWanted, Peak, Point, PointSettings, Screening,
-    SolverOptions, Wheel, Window, peak, screen, wheel_force,
+    ContactCondition, LimitsWanted, Peak, Point, PointSettings, ResponseTrace, Screening,
+    SearchPlan, TopBeside, Wheel,
 };
-use crate::response::friction::{ContactLaw, PairParameters, Ring};
-use crate::response::harmonic_balance::{Damping, Status, TransformError};
-use crate::response::mistuning::{
-    ContactFactors, Deviations, Pattern, Projection, StructuralModes, WheelBasis,
-};
+use crate::response::harmonic_balance::{Status, TransformError};
+use crate::response::mistuning::{Pattern, StructuralModes, WheelBasis};
+use crate::response::receptance::{EngineWheel, ReceptanceEngine};
 
-/// Tolerance of the sampling error, unless that of the peak is larger.
-const SAMPLING_TOLERANCE: f64 = 1e-3;
+/// In the column `basis`.
+pub const TUNED_RECEPTANCES: &str = "tuned_receptances";
 
-/// What a study says about the physics of a row.
-#[derive(Debug, Clone)]
-pub struct RowSettings {
-    /// Harmonic set under the contact law, ascending, with 1.
-    pub harmonics: Vec<u32>,
-    /// Contact law and its parameters per sector; none for a model without contact.
-    pub contact: Option<(ContactLaw, PairParameters)>,
-    /// What a free ring does under mean friction.
-    pub ring: Ring,
-    /// Law in whose place the simpler one of `contact` is taken, with the same springs; what that changes is in the errors.
-    pub in_place_of: Option<ContactLaw>,
-    /// Damping of the structure.
-    pub damping: Damping,
-    /// Factor on the model's force vector.
-    pub amplitude_n: f64,
-    /// How a deviation enters the reduced stiffness.
-    pub projection: Projection,
-    /// Settings of the solution.
-    pub solver: SolverOptions,
-}
-
-impl RowSettings {
-    /// What points with `harmonics` need.
-    fn points(
-        &self,
-        harmonics: &[u32],
-        model: &ReducedModel,
-    ) -> Result<PointSettings, TransformError> {
-        let geometry = model.contact.clone();
-        PointSettings::new(&self.solver, harmonics, self.contact, geometry)?
-            .with_ring(self.ring)
-            .in_place_of(self.in_place_of, &self.solver)
-    }
-
-    /// In the column `shortcut`: what the law leaves out of the one in whose place it is taken.
-    fn simpler_law(&self) -> Option<&'static str> {
-        let (own, _) = self.contact?;
-        let varies = self.in_place_of?.has_variable_load();
-        if varies && !own.has_variable_load() {
-            Some("constant_normal_load")
-        } else {
-            Some("uncoupled_tangents")
-        }
-    }
-}
-
-/// Solves rows on one reduced model; shared between threads.
+/// Solves rows under one force vector on one reduced model; shared between threads.
 #[derive(Debug)]
 pub struct RowSolver {
-    basis: WheelBasis,
-    pub(super) settings: RowSettings,
-    pub(super) full: PointSettings,
-    linear: PointSettings,
-    /// Sets that differ from scenario to scenario; the others have that of the settings.
-    pub(super) chosen: Vec<(HarmonicChoice, PointSettings)>,
-    basis_error: f64,
-    pub(super) beyond: Option<Beyond>,
+    pub(super) on_basis: BasisRows,
     /// What rows are solved on in the place of the basis.
-    pub(super) engine: Option<RowEngine>,
-    /// Solvers of the further load cases of the study.
-    pub(super) load_cases: Vec<(LoadCaseName, RowSolver)>,
+    pub(super) on_receptances: Option<ReceptanceRows>,
+    basis_error: f64,
 }
 
-/// A peak as a row states it.
-pub(super) struct MistunedPeak {
-    pub(super) peak: Peak,
-    pub(super) errors: Option<ErrorEstimate>,
-}
-
-/// What solves the rows that this solver is not good enough for.
-#[derive(Debug)]
-pub(super) struct Beyond {
-    pub(super) solver: Box<RowSolver>,
-    /// Whether rows with an error beyond its tolerance go there too, besides those that separate or, on tuned receptances,
-    /// have no peak.
-    pub(super) inexact_rows: bool,
-    /// Tuned peaks on that solver, for each of its chosen sets, found when first asked for.
-    pub(super) tuned: Vec<OnceLock<TunedReference>>,
+/// A mistuned wheel as its rows are solved on it.
+pub(super) enum MistunedWheel {
+    InModes(Box<(StructuralModes, Wheel)>),
+    OnReceptances(Box<EngineWheel>),
 }
 
 impl RowSolver {
@@ -111,15 +44,9 @@ impl RowSolver {
     /// If the samples per period cannot tell the harmonics apart.
     pub fn new(model: Arc<ReducedModel>, settings: RowSettings) -> Result<Self, TransformError> {
         Ok(Self {
-            full: settings.points(&settings.harmonics, &model)?,
-            linear: settings.points(&[1], &model)?,
-            basis: WheelBasis::new(model),
-            settings,
-            chosen: Vec::new(),
+            on_basis: BasisRows::new(model, settings)?,
+            on_receptances: None,
             basis_error: 0.0,
-            beyond: None,
-            engine: None,
-            load_cases: Vec::new(),
         })
     }
 
@@ -132,92 +59,119 @@ impl RowSolver {
         choices: Vec<HarmonicChoice>,
         basis_error: f64,
     ) -> Result<Self, TransformError> {
-        let settings = &self.settings;
-        self.chosen = choices
-            .into_iter()
-            .map(|choice| {
-                let points = settings.points(&choice.harmonics, self.basis.model())?;
-                Ok((choice, points))
-            })
-            .collect::<Result<_, TransformError>>()?;
+        let BasisRows { basis, points } = &mut self.on_basis;
+        points.choose(choices, basis.model())?;
         self.basis_error = basis_error;
+        Ok(self)
+    }
+
+    /// This solver with rows that are solved on `engine`, under the force vector of `model`.
+    ///
+    /// # Errors
+    /// If the harmonics of a search cannot be told apart.
+    pub fn with_engine(
+        mut self,
+        engine: Arc<ReceptanceEngine>,
+        model: &ReducedModel,
+        engine_orders: &[u32],
+    ) -> Result<Self, TransformError> {
+        let points = &mut self.on_basis.points;
+        points.search_with_samples(SEARCH_SAMPLES)?;
+        let amplitude_n = points.settings.amplitude_n;
+        let own = ReceptanceRows::new(engine, model, engine_orders, amplitude_n);
+        self.on_receptances = Some(own);
         Ok(self)
     }
 
     /// The wheel's coordinates.
     #[must_use]
     pub fn basis(&self) -> &WheelBasis {
-        &self.basis
+        &self.on_basis.basis
+    }
+
+    pub(super) fn settings(&self) -> &RowSettings {
+        &self.on_basis.points.settings
+    }
+
+    /// The settings of a point of the tuned wheel.
+    pub(super) fn points(&self, scenario: &Scenario) -> &PointSettings {
+        let points = &self.on_basis.points;
+        points.nominal(scenario.engine_order, scenario.contact)
+    }
+
+    /// Settings of a search with fewer harmonics on the basis, where rows with `points` have one.
+    #[must_use]
+    pub fn search<'a>(&self, points: &'a PointSettings) -> Option<&'a PointSettings> {
+        self.on_basis.search(points)
     }
 
     /// Harmonic sets chosen for single scenarios.
     pub fn choices(&self) -> impl Iterator<Item = &HarmonicChoice> {
-        self.chosen.iter().map(|(choice, _)| choice)
+        self.on_basis.points.choices()
     }
 
-    /// Peak of the tuned wheel, on one sector.
+    /// What rows are solved on: a basis, or the receptances of the tuned wheel.
+    #[must_use]
+    pub fn basis_name(&self) -> String {
+        match &self.on_receptances {
+            Some(_) => TUNED_RECEPTANCES.to_owned(),
+            None => self.basis().model().basis_name(),
+        }
+    }
+
+    /// [`Self::basis_name`], where the whole space counts as the basis that it was made by.
+    #[must_use]
+    pub fn rows_on(&self) -> String {
+        match &self.on_receptances {
+            Some(_) => TUNED_RECEPTANCES.to_owned(),
+            None => self.basis().model().basis.to_string(),
+        }
+    }
+
+    /// Peak of the tuned wheel on the basis, by one sector.
     #[must_use]
     pub fn tuned_peak(&self, engine_order: u32, contact: ContactCondition) -> Peak {
-        let excited = self.tuned_excited(engine_order, contact);
-        let window = Window {
-            resonances_hz: None,
-            band: self.settings.solver.frequency_band,
-        };
-        peak(
-            &excited,
-            contact,
-            self.points(engine_order, contact),
-            window,
-            self.settings.solver.peak_tolerance,
-        )
+        self.on_basis.tuned_peak(engine_order, contact)
     }
 
-    /// Peak of the tuned wheel with its errors and the effects of the harmonics left out; none
-    /// where there is no peak, or it cannot be corrected.
+    /// [`Self::tuned_peak`] with its errors and the effects of the harmonics left out; none where there is no peak, or it cannot
+    /// be corrected.
     #[must_use]
     pub fn tuned_screening(
         &self,
         engine_order: u32,
         contact: ContactCondition,
     ) -> (Peak, Option<Screening>) {
-        let found = self.tuned_peak(engine_order, contact);
-        let point = found.point.as_ref().filter(|_| found.status == Status::Ok);
-        let screening = point.and_then(|point| {
-            let points = self.points(engine_order, contact);
-            let nominal = ContactFactors::default();
-            let of = |set: &[u32]| self.tuned_waves(&nominal, engine_order, contact, set);
-            let enlarged = of(points.errors().harmonics());
-            screen(
-                &of(points.harmonics()),
-                contact,
-                points,
-                point,
-                &enlarged.blocks,
-            )
-        });
-        (found, screening)
+        self.on_basis.tuned_screening(engine_order, contact)
     }
 
     /// Tuned reference of a scenario.
     #[must_use]
     pub fn tuned(&self, scenario: &Scenario) -> TunedReference {
-        if let Some(tuned) = self.tuned_on_engine(scenario) {
-            return tuned;
+        let own = self.on_receptances.as_ref();
+        let tuned = own.and_then(|rows| rows.tuned(&self.on_basis, scenario));
+        tuned.unwrap_or_else(|| self.on_basis.tuned(scenario))
+    }
+
+    /// The wheel with a pattern applied, for rows under these conditions.
+    ///
+    /// # Errors
+    /// The status of a pattern that cannot be applied.
+    pub(super) fn mistuned(
+        &self,
+        pattern: &Pattern,
+        conditions: &[ContactCondition],
+    ) -> Result<MistunedWheel, Status> {
+        if !pattern.is_possible() {
+            return Err(Status::InvalidPattern);
         }
-        let solver = self.under(scenario);
-        let (found, screening) = solver.tuned_screening(scenario.engine_order, scenario.contact);
-        let points = solver.points(scenario.engine_order, scenario.contact);
-        let point = found.point.as_ref().filter(|_| found.status == Status::Ok);
-        TunedReference {
-            scenario: scenario.index,
-            status: found.status,
-            amplitude_m: found.amplitude_m(),
-            frequency_hz: point.map(|point| point.frequency_hz),
-            separated_fraction: point.map(|point| point.shares.separated),
-            slipping_fraction: point.map(|point| point.shares.slipping),
-            harmonics: harmonics_name(points.harmonics()),
-            errors: screening.map(|screening| screening.errors),
+        if let Some(rows) = &self.on_receptances {
+            let wheel = Box::new(rows.wheel(pattern));
+            return Ok(MistunedWheel::OnReceptances(wheel));
         }
+        let limits = LimitsWanted::of(conditions);
+        let wheel = self.on_basis.mistuned(pattern, limits)?;
+        Ok(MistunedWheel::InModes(Box::new(wheel)))
     }
 
     /// Rows of one pattern under several scenarios of one standard deviation, in their order. The
@@ -228,171 +182,152 @@ impl RowSolver {
         pattern: &Pattern,
         scenarios: &[(&Scenario, &TunedReference)],
     ) -> Vec<ResponseRow> {
-        if let Some(rows) = self.rows_on_engine(pattern, scenarios) {
-            return rows;
-        }
-        let conditions: Vec<ContactCondition> = scenarios
-            .iter()
-            .map(|(scenario, _)| scenario.contact)
-            .collect();
-        let wheel = self.mistuned(pattern, LimitsWanted::of(&conditions));
+        let conditions: Vec<ContactCondition> =
+            scenarios.iter().map(|(own, _)| own.contact).collect();
+        let wheel = self.mistuned(pattern, &conditions);
         scenarios
             .iter()
-            .map(|(scenario, tuned)| {
-                // The wheel is the same under every load case.
-                let solver = self.under(scenario);
-                let found = match &wheel {
-                    Ok((modes, wheel)) => {
-                        solver.mistuned_peak(modes, wheel, pattern, scenario, tuned)
-                    }
-                    Err(status) => Err(*status),
-                };
-                let row = solver.row(pattern, scenario, tuned, found);
-                let again = solver.solved_again(pattern, scenario, &row);
-                again.unwrap_or(row)
-            })
+            .map(|(scenario, tuned)| self.row(&wheel, pattern, scenario, tuned))
             .collect()
     }
 
-    pub(super) fn chosen(
+    /// The row of a wheel with a pattern applied, which is the same under every force vector.
+    pub(super) fn row(
+        &self,
+        wheel: &Result<MistunedWheel, Status>,
+        pattern: &Pattern,
+        scenario: &Scenario,
+        tuned: &TunedReference,
+    ) -> ResponseRow {
+        let found = match wheel {
+            Ok(wheel) => self.mistuned_peak(wheel, pattern, scenario, tuned),
+            Err(status) => Err(*status),
+        };
+        self.row_of(pattern, scenario, tuned, found)
+    }
+
+    fn mistuned_peak(
+        &self,
+        wheel: &MistunedWheel,
+        pattern: &Pattern,
+        scenario: &Scenario,
+        tuned: &TunedReference,
+    ) -> Result<MistunedPeak, Status> {
+        match (wheel, &self.on_receptances) {
+            (MistunedWheel::OnReceptances(wheel), Some(rows)) => {
+                rows.mistuned_peak(&self.on_basis, wheel, (pattern, scenario), tuned)
+            }
+            (MistunedWheel::InModes(wheel), _) => {
+                self.on_basis.mistuned_peak(wheel, pattern, scenario, tuned)
+            }
+            (MistunedWheel::OnReceptances(_), None) => Err(Status::NotBracketed),
+        }
+    }
+
+    /// Amplitude of every blade at each frequency, Hz; no pattern means the tuned wheel, of which
+    /// one sector stands for all.
+    ///
+    /// # Errors
+    /// The status of a pattern that cannot be applied.
+    pub fn curve(
         &self,
         engine_order: u32,
         contact: ContactCondition,
-    ) -> Option<&(HarmonicChoice, PointSettings)> {
-        self.chosen
-            .iter()
-            .find(|(choice, _)| choice.engine_order == engine_order && choice.contact == contact)
-    }
-
-    pub(super) fn points(&self, engine_order: u32, contact: ContactCondition) -> &PointSettings {
-        match (contact, self.chosen(engine_order, contact)) {
-            (ContactCondition::Full { .. }, Some((_, points))) => points,
-            (ContactCondition::Full { .. }, None) => &self.full,
-            _ => &self.linear,
+        pattern: Option<&Pattern>,
+        frequencies_hz: &[f64],
+    ) -> Result<Vec<CurveResult>, Status> {
+        if pattern.is_some_and(|pattern| !pattern.is_possible()) {
+            return Err(Status::InvalidPattern);
+        }
+        let case = (engine_order, contact);
+        let own = self.on_receptances.as_ref();
+        match own.and_then(|rows| rows.curve(&self.on_basis, case, pattern, frequencies_hz)) {
+            Some(curve) => Ok(curve),
+            None => self
+                .on_basis
+                .curve(engine_order, contact, pattern, frequencies_hz),
         }
     }
 
-    /// The settings of a point of the wheel with `pattern`; none means the tuned wheel.
-    pub(super) fn points_of<'a>(
-        &'a self,
-        pattern: impl Into<Option<&'a Pattern>>,
+    /// The curve between the first and the last frequency, followed on the basis upwards and downwards with the
+    /// frequencies, Hz, ascending, solved for exactly; no pattern means the tuned wheel.
+    ///
+    /// # Errors
+    /// The status of a pattern that cannot be applied.
+    pub fn traces(
+        &self,
         engine_order: u32,
         contact: ContactCondition,
-    ) -> Cow<'a, PointSettings> {
-        let points = self.points(engine_order, contact);
-        match pattern.into().map(|pattern| &pattern.contact) {
-            Some(factors) if !factors.is_nominal() => Cow::Owned(points.with_factors(factors)),
-            _ => Cow::Borrowed(points),
-        }
+        pattern: Option<&Pattern>,
+        frequencies_hz: &[f64],
+    ) -> Result<[ResponseTrace; 2], Status> {
+        self.on_basis
+            .traces(engine_order, contact, pattern, frequencies_hz)
+    }
+
+    /// Where the linear limits of a row say that its peak can lie; no pattern means the tuned wheel.
+    /// `tuned_hz` is the frequency of the tuned peak.
+    ///
+    /// # Errors
+    /// The pattern cannot be applied, or nothing answers the excitation.
+    pub fn search_plan(
+        &self,
+        scenario: &Scenario,
+        pattern: Option<&Pattern>,
+        tuned_hz: Option<f64>,
+    ) -> Result<SearchPlan, Status> {
+        let own = self.on_receptances.as_ref();
+        own.and_then(|rows| rows.search_plan(&self.on_basis, scenario, pattern, tuned_hz))
+            .unwrap_or_else(|| self.on_basis.search_plan(scenario, pattern, tuned_hz))
+    }
+
+    /// The wheel of a pattern at a frequency, Hz.
+    ///
+    /// # Errors
+    /// The status of a pattern that cannot be applied, or of the solution.
+    pub(super) fn wheel_state(
+        &self,
+        pattern: &Pattern,
+        scenario: &Scenario,
+        frequency_hz: f64,
+    ) -> Result<WheelState, Status> {
+        let own = self.on_receptances.as_ref();
+        own.and_then(|rows| rows.wheel_state(&self.on_basis, pattern, scenario, frequency_hz))
+            .unwrap_or_else(|| self.on_basis.wheel_state(pattern, scenario, frequency_hz))
+    }
+
+    /// The top on this solver, which has the harmonics of `coarse` among its own, beside the peak that `coarse` has at
+    /// `frequency_hz`; of the tuned wheel for no pattern. None where rows are not on receptances, or where the solutions do not
+    /// settle.
+    pub(super) fn top_beside(
+        &self,
+        coarse: &Self,
+        pattern: Option<&Pattern>,
+        scenario: &Scenario,
+        frequency_hz: f64,
+    ) -> Option<TopBeside> {
+        let finer = (self.on_receptances.as_ref()?, &self.on_basis);
+        let rows = coarse.on_receptances.as_ref()?;
+        rows.top_beside(&coarse.on_basis, finer, pattern, scenario, frequency_hz)
     }
 
     /// Errors that the rows of a scenario take over from it; a linear limit has no harmonics.
     fn scenario_error(&self, scenario: &Scenario) -> ScenarioError {
-        let choice = self.chosen(scenario.engine_order, scenario.contact);
+        let points = &self.on_basis.points;
+        let choice = points.choice(scenario.engine_order, scenario.contact);
         ScenarioError {
             basis: self.basis_error,
             // A remainder that could not be measured bounds nothing, but rows on tuned receptances are asked themselves.
-            harmonics: match choice.map(|(choice, _)| choice.remainder) {
-                Some(None) if self.engine.is_none() => f64::INFINITY,
+            harmonics: match choice.map(|choice| choice.remainder) {
+                Some(None) if self.on_receptances.is_none() => f64::INFINITY,
                 Some(remainder) => remainder.unwrap_or(0.0),
                 None => 0.0,
             },
         }
     }
 
-    fn tolerance(&self) -> ErrorTolerance {
-        ErrorTolerance {
-            sampling: self.settings.solver.peak_tolerance.max(SAMPLING_TOLERANCE),
-            harmonics: self.settings.solver.harmonic_tolerance,
-        }
-    }
-
-    pub(super) fn tuned_excited(&self, engine_order: u32, contact: ContactCondition) -> Excited {
-        let harmonics = self.points(engine_order, contact).harmonics();
-        self.tuned_waves(&ContactFactors::default(), engine_order, contact, harmonics)
-    }
-
-    /// The tuned wheel with the contact of every sector multiplied by `factors`.
-    pub(super) fn tuned_waves(
-        &self,
-        factors: &ContactFactors,
-        engine_order: u32,
-        contact: ContactCondition,
-        harmonics: &[u32],
-    ) -> Excited {
-        Excited::tuned(
-            self.basis.model(),
-            factors,
-            engine_order,
-            self.settings.amplitude_n,
-            self.settings.damping,
-            harmonics,
-            LimitsWanted::of(&[contact]),
-        )
-    }
-
-    pub(super) fn wheel_excited(
-        &self,
-        modes: &StructuralModes,
-        wheel: &Wheel,
-        engine_order: u32,
-        harmonics: &[u32],
-    ) -> Excited {
-        let force = wheel_force(&self.basis, modes, engine_order, self.settings.amplitude_n);
-        Excited::wheel(wheel, force, harmonics)
-    }
-
-    /// The wheel with the pattern applied.
-    pub(super) fn mistuned(
-        &self,
-        pattern: &Pattern,
-        wanted: LimitsWanted,
-    ) -> Result<(StructuralModes, Wheel), Status> {
-        let modes = self
-            .stiffness_change(pattern)
-            .and_then(|change| StructuralModes::of_wheel(&self.basis, &change))
-            .ok_or(Status::InvalidPattern)?;
-        let wheel = Wheel::mistuned(
-            modes.clone(),
-            self.basis.model(),
-            &pattern.contact,
-            self.settings.damping,
-            wanted,
-        );
-        Ok((modes, wheel))
-    }
-
-    /// Whether stiffnesses and contact parameters of a pattern are above zero.
-    pub(super) fn is_possible(pattern: &Pattern) -> bool {
-        let entries = pattern.entries();
-        let mut deviations = entries.iter().map(|&(_, _, deviation)| deviation);
-        let physical = deviations.all(|deviation| deviation > -1.0 && deviation.is_finite());
-        physical && pattern.contact.are_possible()
-    }
-
-    /// What the pattern adds to the stiffness of the wheel, in its coordinates; none if it cannot
-    /// be applied.
-    pub(super) fn stiffness_change(&self, pattern: &Pattern) -> Option<Matrix<f64>> {
-        if !Self::is_possible(pattern) {
-            return None;
-        }
-        match (&pattern.deviations, self.settings.projection) {
-            (Deviations::PerBlade(values), Projection::Exact) => {
-                Some(self.basis.blade_stiffness_change(values))
-            }
-            (Deviations::PerBlade(values), Projection::CantileverModes) => self
-                .basis
-                .cantilever_stiffness_change(|blade, _| values[blade]),
-            (Deviations::PerMode { modes, values }, _) => {
-                self.basis.cantilever_stiffness_change(|blade, mode| {
-                    let place = modes.iter().position(|&own| own as usize == mode);
-                    place.map_or(0.0, |place| values[blade * modes.len() + place])
-                })
-            }
-        }
-    }
-
-    pub(super) fn row(
+    /// The row of what was found of a peak.
+    fn row_of(
         &self,
         pattern: &Pattern,
         scenario: &Scenario,
@@ -421,10 +356,7 @@ impl RowSolver {
             peak_blade: good.map(|(found, _)| found.blade as u32),
             amplification_factor: amplification_factor(amplitude, tuned.amplitude_m),
             peak_bracketed: good.map(|(found, _)| found.bracketed),
-            harmonics: harmonics_name(
-                self.points(scenario.engine_order, scenario.contact)
-                    .harmonics(),
-            ),
+            harmonics: harmonics_name(self.points(scenario).harmonics()),
             nonlinear_solves: work.nonlinear_solves,
             newton_iterations: work.newton_iterations,
             factorisations: work.factorisations,
@@ -439,22 +371,22 @@ impl RowSolver {
             stated_error: errors
                 .map(|errors| {
                     let of_scenario = self.scenario_error(scenario);
-                    let safety = match &self.engine {
+                    let safety = match &self.on_receptances {
                         Some(_) => HARMONIC_SAFETY_ON_RECEPTANCES,
                         None => HARMONIC_SAFETY,
                     };
-                    let tolerance = self.settings.solver.peak_tolerance;
+                    let tolerance = self.settings().solver.peak_tolerance;
                     stated_error(&errors, &of_scenario, safety, tolerance)
                 })
                 .filter(|error| error.is_finite()),
             // An error that cannot be estimated is within no tolerance.
             error_within_tolerance: good
-                .map(|_| errors.is_some_and(|errors| self.tolerance().holds(&errors))),
+                .map(|_| errors.is_some_and(|errors| self.settings().tolerance().holds(&errors))),
             basis: self.basis_name(),
             shortcut: shortcut(
                 scenario.contact,
                 good.map(|(_, point)| point),
-                self.settings.simpler_law(),
+                self.settings().simpler_law(),
             ),
         }
     }

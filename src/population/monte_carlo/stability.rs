@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{ResponseRow, RowSolver, Scenario, TunedReference};
+use super::{LoadCaseSolvers, ResponseRow, RowSolver, Scenario, TunedReference};
 use crate::response::forced_response::{
     ContactCondition, EngineRow, PointSettings, SolverOptions, receptance_contact_motion,
 };
@@ -24,96 +24,110 @@ const BAND_MARGIN: f64 = 0.1;
 /// Deviation of a blade that such an engine is made for at least.
 const DEVIATION: f64 = 0.01;
 
-impl RowSolver {
-    /// Whether small disturbances of the motion of `row` at its peak die out; none for a linear limit and a creeping ring, and
-    /// where that is not settled.
-    #[must_use]
-    pub fn is_row_stable(
-        &self,
-        pattern: &Pattern,
-        scenario: &Scenario,
-        row: &ResponseRow,
-    ) -> Option<bool> {
-        let solver = self.under(scenario).solver_of(scenario, row);
-        solver.stays(Some(pattern), scenario, row.peak_frequency_hz?)
-    }
+/// Whether small disturbances of the motion of `row`, which `solvers` gave, at its peak die out; none for a linear limit and a
+/// creeping ring, and where that is not settled.
+#[must_use]
+pub fn is_row_stable(
+    solvers: &LoadCaseSolvers,
+    pattern: &Pattern,
+    scenario: &Scenario,
+    row: &ResponseRow,
+) -> Option<bool> {
+    let solver = solvers.under(scenario).solver_of(scenario, row);
+    stays(solver, Some(pattern), scenario, row.peak_frequency_hz?)
+}
 
-    /// [`Self::is_row_stable`] of the tuned wheel.
-    #[must_use]
-    pub fn is_tuned_stable(&self, scenario: &Scenario, tuned: &TunedReference) -> Option<bool> {
-        self.under(scenario)
-            .stays(None, scenario, tuned.frequency_hz?)
-    }
+/// [`is_row_stable`] of the tuned wheel.
+#[must_use]
+pub fn is_tuned_stable(
+    solvers: &LoadCaseSolvers,
+    scenario: &Scenario,
+    tuned: &TunedReference,
+) -> Option<bool> {
+    let solver = solvers.under(scenario).rows();
+    stays(solver, None, scenario, tuned.frequency_hz?)
+}
 
-    fn stays(&self, pattern: Option<&Pattern>, scenario: &Scenario, hz: f64) -> Option<bool> {
-        let ContactCondition::Full { normal_load_n } = scenario.contact else {
-            return None;
-        };
-        let (law, sector) = self.settings.contact?;
-        if self.settings.ring != Ring::Locked {
-            return None;
-        }
-        let of_basis;
-        let (engine, force) = if let Some(own) = &self.engine {
-            (own.receptances(), own.force(scenario.engine_order)?)
-        } else {
-            of_basis = self.engine_at(pattern, scenario.engine_order, hz)?;
-            (&of_basis.0, &of_basis.1)
-        };
-        let wheel = EngineWheel::new(pattern, engine.sectors());
-        let row = EngineRow {
-            engine,
-            wheel: &wheel,
-            force,
-            condition: scenario.contact,
-        };
-        let points = self.points_of(pattern, scenario.engine_order, scenario.contact);
-        let finer = self.finer(&points, law)?;
-        let harmonics = receptance_contact_motion(&row, &points, &finer, hz).ok()??;
-        let omega = TAU * hz;
-        let found = multipliers(
-            &engine.free_wheel(&wheel, omega)?,
-            &points.interface(law, sector, normal_load_n),
-            &ContactMotion { harmonics },
-            omega,
-            &StabilityOptions {
-                steps_per_period: STEPS,
-                ..StabilityOptions::default()
-            },
-        );
-        found?.stable
+fn stays(
+    solver: &RowSolver,
+    pattern: Option<&Pattern>,
+    scenario: &Scenario,
+    hz: f64,
+) -> Option<bool> {
+    let ContactCondition::Full { normal_load_n } = scenario.contact else {
+        return None;
+    };
+    let settings = solver.settings();
+    let (law, sector) = settings.contact?;
+    if settings.ring != Ring::Locked {
+        return None;
     }
+    let of_basis;
+    let (engine, force) = if let Some(own) = &solver.on_receptances {
+        (own.receptances(), own.force(scenario.engine_order)?)
+    } else {
+        of_basis = engine_at(solver, pattern, scenario.engine_order, hz)?;
+        (&of_basis.0, &of_basis.1)
+    };
+    let wheel = EngineWheel::new(pattern, engine.sectors());
+    let row = EngineRow {
+        engine,
+        wheel: &wheel,
+        force,
+        condition: scenario.contact,
+    };
+    let points = &solver.on_basis.points;
+    let points = points.of(pattern, scenario.engine_order, scenario.contact);
+    let finer = finer(&settings.solver, &points, law)?;
+    let harmonics = receptance_contact_motion(&row, &points, &finer, hz).ok()??;
+    let omega = TAU * hz;
+    let found = multipliers(
+        &engine.free_wheel(&wheel, omega)?,
+        &points.interface(law, sector, normal_load_n),
+        &ContactMotion { harmonics },
+        omega,
+        &StabilityOptions {
+            steps_per_period: STEPS,
+            ..StabilityOptions::default()
+        },
+    );
+    found?.stable
+}
 
-    /// The settings of a point with all harmonics up to a high one that the law excites.
-    fn finer(&self, points: &PointSettings, law: ContactLaw) -> Option<PointSettings> {
-        let odd = !law.has_variable_load() && points.harmonics().iter().all(|k| k % 2 == 1);
-        let harmonics: Vec<u32> = (0..=HIGHEST).filter(|k| !odd || k % 2 == 1).collect();
-        let solver = SolverOptions {
-            samples_per_period: SAMPLES.max(self.settings.solver.samples_per_period),
-            ..self.settings.solver.clone()
-        };
-        points.with_harmonics(&harmonics, &solver).ok()
-    }
+/// The settings of a point with all harmonics up to a high one that the law excites.
+fn finer(
+    options: &SolverOptions,
+    points: &PointSettings,
+    law: ContactLaw,
+) -> Option<PointSettings> {
+    let odd = !law.has_variable_load() && points.harmonics().iter().all(|k| k % 2 == 1);
+    let harmonics: Vec<u32> = (0..=HIGHEST).filter(|k| !odd || k % 2 == 1).collect();
+    let options = SolverOptions {
+        samples_per_period: SAMPLES.max(options.samples_per_period),
+        ..options.clone()
+    };
+    points.with_harmonics(&harmonics, &options).ok()
+}
 
-    /// An engine on the basis that rows are solved on, made for one frequency.
-    fn engine_at(
-        &self,
-        pattern: Option<&Pattern>,
-        engine_order: u32,
-        hz: f64,
-    ) -> Option<(ReceptanceEngine, WaveForce)> {
-        let model = self.basis().model();
-        let force = WaveForce::new(model, engine_order, self.settings.amplitude_n);
-        let options = EngineOptions {
-            damping: self.settings.damping,
-            projection: self.settings.projection,
-            forces: vec![force.clone()],
-            deviation: pattern
-                .map_or(0.0, Pattern::largest_deviation)
-                .max(DEVIATION),
-            band_hz: Some((hz * (1.0 - BAND_MARGIN), hz * (1.0 + BAND_MARGIN))),
-        };
-        let own = EngineModel::new(model, &options)?;
-        Some((ReceptanceEngine::new(&own, &options)?, force))
-    }
+/// An engine on the basis that rows are solved on, made for one frequency.
+fn engine_at(
+    solver: &RowSolver,
+    pattern: Option<&Pattern>,
+    engine_order: u32,
+    hz: f64,
+) -> Option<(ReceptanceEngine, WaveForce)> {
+    let model = solver.basis().model();
+    let settings = solver.settings();
+    let force = WaveForce::new(model, engine_order, settings.amplitude_n);
+    let options = EngineOptions {
+        damping: settings.damping,
+        projection: settings.projection,
+        forces: vec![force.clone()],
+        deviation: pattern
+            .map_or(0.0, Pattern::largest_deviation)
+            .max(DEVIATION),
+        band_hz: Some((hz * (1.0 - BAND_MARGIN), hz * (1.0 + BAND_MARGIN))),
+    };
+    let own = EngineModel::new(model, &options)?;
+    Some((ReceptanceEngine::new(&own, &options)?, force))
 }

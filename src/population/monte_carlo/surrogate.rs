@@ -41,11 +41,10 @@ pub struct Surrogate<'a> {
     points: PointSettings,
 }
 
-impl RowSolver {
-    /// The stand-in for the rows of `scenario`; none where the tuned wheel has no peak to linearise at.
+impl<'a> Surrogate<'a> {
+    /// For the rows of `scenario` by `solver`; none where the tuned wheel has no peak to linearise at.
     #[must_use]
-    pub fn surrogate(&self, scenario: &Scenario, tuned: &TunedReference) -> Option<Surrogate<'_>> {
-        let solver = self.under(scenario);
+    pub fn new(solver: &'a RowSolver, scenario: &Scenario, tuned: &TunedReference) -> Option<Self> {
         let tuned_hz = tuned.frequency_hz.filter(|_| tuned.status == Status::Ok)?;
         let rows = solver.basis().contact();
         let stiffness = |springs: Vec<f64>| {
@@ -54,19 +53,19 @@ impl RowSolver {
             });
             rows.adjoint_times(&scaled)
         };
-        let springs = solver.linear_springs(scenario)?;
+        let springs = linear_springs(solver, scenario)?;
         let options = SolverOptions {
             samples_per_period: SAMPLES,
             residual_tolerance: RESIDUAL_TOLERANCE,
-            ..solver.settings.solver.clone()
+            ..solver.settings().solver.clone()
         };
         let points = PointSettings::new(
             &options,
             &[1],
-            solver.settings.contact,
+            solver.settings().contact,
             solver.basis().model().contact.clone(),
         );
-        Some(Surrogate {
+        Some(Self {
             solver,
             scenario: *scenario,
             tuned_hz,
@@ -74,30 +73,28 @@ impl RowSolver {
             points: points.ok()?,
         })
     }
+}
 
-    /// Springs of a sector, N/m, whose modes the wheel vibrates in: those equivalent to the contact
-    /// of the tuned wheel at its peak, and its two limits; of a linear limit its own.
-    fn linear_springs(&self, scenario: &Scenario) -> Option<Vec<Vec<f64>>> {
-        let springs = &self.basis().model().springs;
-        match scenario.contact {
-            ContactCondition::Stuck => return Some(vec![springs.stick.clone()]),
-            ContactCondition::Slide => return Some(vec![springs.slide.clone()]),
-            ContactCondition::Free => return Some(vec![vec![0.0; springs.slide.len()]]),
-            ContactCondition::Full { .. } => {}
-        }
-        let point = self
-            .tuned_peak(scenario.engine_order, scenario.contact)
-            .point?;
-        let excited = self.tuned_excited(scenario.engine_order, scenario.contact);
-        let points = self.points(scenario.engine_order, scenario.contact);
-        let equivalent =
-            PointSolver::new(&excited, scenario.contact, points).equivalent_springs(&point)?;
-        Some(vec![
-            equivalent.iter().map(|spring| spring.re).collect(),
-            springs.stick.clone(),
-            springs.slide.clone(),
-        ])
+/// Springs of a sector, N/m, whose modes the wheel vibrates in: those equivalent to the contact
+/// of the tuned wheel at its peak, and its two limits; of a linear limit its own.
+fn linear_springs(solver: &RowSolver, scenario: &Scenario) -> Option<Vec<Vec<f64>>> {
+    let springs = &solver.basis().model().springs;
+    let (engine_order, contact) = (scenario.engine_order, scenario.contact);
+    match contact {
+        ContactCondition::Stuck => return Some(vec![springs.stick.clone()]),
+        ContactCondition::Slide => return Some(vec![springs.slide.clone()]),
+        ContactCondition::Free => return Some(vec![vec![0.0; springs.slide.len()]]),
+        ContactCondition::Full { .. } => {}
     }
+    let point = solver.tuned_peak(engine_order, contact).point?;
+    let excited = solver.on_basis.tuned_excited(engine_order, contact);
+    let mut points = PointSolver::new(&excited, contact, solver.points(scenario));
+    let equivalent = points.equivalent_springs(&point)?;
+    Some(vec![
+        equivalent.iter().map(|spring| spring.re).collect(),
+        springs.stick.clone(),
+        springs.slide.clone(),
+    ])
 }
 
 /// The stand-in of one pattern.
@@ -105,7 +102,7 @@ impl RowSolver {
 pub struct SurrogatePeak {
     /// Approximate peak amplitude, m.
     pub amplitude_m: f64,
-    /// What it took, in the unit of [`RowSolver::counted_time`].
+    /// What it took, in the unit of [`super::counted_time`].
     pub counted_time: f64,
 }
 
@@ -114,7 +111,7 @@ impl Surrogate<'_> {
     #[must_use]
     pub fn peak(&self, pattern: &Pattern) -> Option<SurrogatePeak> {
         let solver = self.solver;
-        let change = solver.stiffness_change(pattern)?;
+        let change = solver.on_basis.stiffness_change(pattern)?;
         let shapes = self.shapes(&change, pattern.largest_deviation())?;
         let modes = StructuralModes::of_subspace(solver.basis(), &change, &shapes)?;
         let Scenario {
@@ -126,14 +123,17 @@ impl Surrogate<'_> {
             modes.clone(),
             solver.basis().model(),
             &pattern.contact,
-            solver.settings.damping,
+            solver.settings().damping,
             LimitsWanted::of(&[contact]),
         );
         let window = solver
+            .on_basis
             .window(pattern, &self.scenario, Some(self.tuned_hz))
             .ok()?;
         let points = self.points.with_factors(&pattern.contact);
-        let excited = solver.wheel_excited(&modes, &wheel, engine_order, &[1]);
+        let excited = solver
+            .on_basis
+            .wheel_excited(&modes, &wheel, engine_order, &[1]);
         let found = peak(&excited, contact, &points, window, PEAK_TOLERANCE);
         let amplitude_m = found.amplitude_m().filter(|metres| metres.is_finite())?;
         let work = RowWork {
@@ -157,7 +157,7 @@ impl Surrogate<'_> {
             coefficients: 2,
             samples: SAMPLES,
             in_stages: false,
-            ..self.solver.system_size(&self.scenario)
+            ..SystemSize::of_rows(self.solver, &self.scenario)
         };
         let projection = 2.0 * n * m * (n + 2.0 * m);
         springs * time_of_eigenproblem(full)

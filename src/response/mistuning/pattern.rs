@@ -67,6 +67,14 @@ impl Pattern {
         }
     }
 
+    /// Whether stiffnesses and contact parameters are above zero.
+    #[must_use]
+    pub fn is_possible(&self) -> bool {
+        let (Deviations::PerBlade(values) | Deviations::PerMode { values, .. }) = &self.deviations;
+        let is_physical = |&deviation: &f64| deviation > -1.0 && deviation.is_finite();
+        values.iter().all(is_physical) && self.contact.are_possible()
+    }
+
     /// Largest absolute deviation.
     #[must_use]
     pub fn largest_deviation(&self) -> f64 {

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::receptance_setting::enlarged_harmonics;
 use super::{AccuracyChoice, AccuracyEvidence, ChosenSetting, ReceptanceSetting, TriedSetting};
 use crate::model::sector::SectorModel;
-use crate::population::monte_carlo::{RowSolver, Scenario};
+use crate::population::monte_carlo::{LoadCaseSolvers, Scenario};
 use crate::population::statistics::ErrorBound;
 use crate::response::forced_response::ContactCondition;
 use crate::response::mistuning::PatternSource;
@@ -96,7 +96,7 @@ impl Rows {
         let own = setting.applied_to(study);
         let solver = solver_of(&own, stored)?;
         let load_cases = own.excited_orders().into_iter().map(|case| case.0);
-        let choices = solver.of_load_cases().map(|own| own.choices().cloned());
+        let choices = solver.all().map(|own| own.rows().choices().cloned());
         let remainders: Vec<Remainders> = load_cases
             .zip(choices.map(Iterator::collect::<Vec<_>>))
             .collect();
@@ -182,7 +182,7 @@ impl Rows {
 
 /// `study` without the loads under which contacts of a tuned wheel separate, if there are others: with every harmonic such rows seldom
 /// settle, and each takes as long as all others.
-fn in_contact(study: Study, solver: &RowSolver) -> Study {
+fn in_contact(study: Study, solver: &LoadCaseSolvers) -> Study {
     let scenarios = study.scenarios();
     let excited: Vec<&Scenario> = scenarios
         .iter()

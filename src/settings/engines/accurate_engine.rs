@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::{Engine, EngineSource, SurrogateOf};
 use crate::model::sector::SectorModel;
-use crate::population::monte_carlo::{ResponseRow, RowSolver, Scenario, TunedReference};
+use crate::population::monte_carlo::{LoadCaseSolvers, ResponseRow, Scenario, TunedReference};
 use crate::population::table::CurvePoint;
 use crate::report::ModelReport;
 use crate::response::forced_response::{ResponseTrace, SearchPlan};
@@ -78,8 +78,8 @@ impl Engine for AccurateEngine {
         self.engine.surrogate(scenario, tuned)
     }
 
-    fn row_solver(&self) -> Option<&RowSolver> {
-        self.engine.row_solver()
+    fn solvers(&self) -> Option<&LoadCaseSolvers> {
+        self.engine.solvers()
     }
 
     fn search_plan(

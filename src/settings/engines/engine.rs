@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{
-    ResponseRow, RowSolver, Scenario, SurrogatePeak, TunedReference,
+    LoadCaseSolvers, ResponseRow, Scenario, SurrogatePeak, TunedReference,
 };
 use crate::population::table::CurvePoint;
 use crate::report::ModelReport;
@@ -91,8 +91,8 @@ pub trait Engine: Send + Sync {
         frequencies_hz: &[f64],
     ) -> Result<[ResponseTrace; 2], Status>;
 
-    /// The solver of the rows, for looking into single ones; none where there is no such thing.
-    fn row_solver(&self) -> Option<&RowSolver> {
+    /// The solvers of the rows, for looking into single ones; none where there is no such thing.
+    fn solvers(&self) -> Option<&LoadCaseSolvers> {
         None
     }
 

@@ -9,7 +9,8 @@ use super::{Engine, EngineSource, SurrogateOf};
 use crate::model::reduction::Basis;
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{
-    LoadCaseName, ResponseRow, RowSolver, Scenario, TunedReference,
+    LoadCaseName, LoadCaseSolver, LoadCaseSolvers, ResponseRow, RowSolver, Scenario, Surrogate,
+    TunedReference, compare_in_time,
 };
 use crate::population::table::CurvePoint;
 use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
@@ -28,7 +29,7 @@ pub struct ReducedEngineSource;
 
 /// A reduced model with the settings of a study.
 struct ReducedEngine {
-    solver: RowSolver,
+    solver: LoadCaseSolvers,
     evidence: BasisEvidence,
     fixed_interface: FixedInterface,
     /// Names of the load cases; one absent name where there are none.
@@ -82,13 +83,20 @@ impl EngineSource for ReducedEngineSource {
     }
 }
 
+impl ReducedEngine {
+    /// The solver of the first load case, whose model is that of all.
+    fn rows(&self) -> &RowSolver {
+        self.solver.first().rows()
+    }
+}
+
 impl Engine for ReducedEngine {
     fn model_report(&self) -> ModelReport {
-        let model = self.solver.basis().model();
+        let model = self.rows().basis().model();
         let basis = if self.evidence.whole_space {
             "whole space".to_owned()
         } else {
-            self.solver.rows_on()
+            self.rows().rows_on()
         };
         let taken = self.evidence.tried.last();
         let error = taken.and_then(|taken| taken.error);
@@ -108,7 +116,7 @@ impl Engine for ReducedEngine {
             contact_pairs: model.contact.weights.len(),
             observed: self.observed.clone(),
             basis,
-            reduced_coordinates: self.solver.basis().size(),
+            reduced_coordinates: self.rows().basis().size(),
             error,
             craig_bampton_modes: self.fixed_interface.modes,
             craig_bampton_error: self.fixed_interface.error,
@@ -136,9 +144,9 @@ impl Engine for ReducedEngine {
     fn reduction_facts(&self) -> Value {
         json!({
             "digest": self.digest,
-            "basis": self.solver.rows_on(),
+            "basis": self.rows().rows_on(),
             "whole_space": self.evidence.whole_space,
-            "reduced_coordinates": self.solver.basis().size(),
+            "reduced_coordinates": self.rows().basis().size(),
             "tuned_peak_errors": self.evidence.tried,
             "craig_bampton_modes": self.fixed_interface.modes,
             "craig_bampton_error": self.fixed_interface.error,
@@ -148,8 +156,8 @@ impl Engine for ReducedEngine {
     }
 
     fn chosen_settings(&self) -> Value {
-        let sets = |of: &dyn Fn(&RowSolver) -> Vec<Value>| -> Vec<Value> {
-            let solvers = self.load_cases.iter().zip(self.solver.of_load_cases());
+        let sets = |of: &dyn Fn(&LoadCaseSolver) -> Vec<Value>| -> Vec<Value> {
+            let solvers = self.load_cases.iter().zip(self.solver.all());
             let named = solvers.flat_map(|(name, solver)| {
                 let sets = of(solver).into_iter();
                 sets.map(move |mut set| {
@@ -166,11 +174,11 @@ impl Engine for ReducedEngine {
             choices.collect()
         };
         json!({
-            "basis": self.solver.rows_on(),
-            "harmonics": sets(&choices),
-            "beyond": self.solver.beyond().map(|beyond| json!({
+            "basis": self.rows().rows_on(),
+            "harmonics": sets(&|solver| choices(solver.rows())),
+            "beyond": self.solver.first().fallback().map(|beyond| json!({
                 "basis": beyond.basis().model().basis_name(),
-                "harmonics": sets(&|solver| solver.beyond().map(choices).unwrap_or_default()),
+                "harmonics": sets(&|solver| solver.fallback().map(choices).unwrap_or_default()),
             })),
         })
     }
@@ -187,7 +195,8 @@ impl Engine for ReducedEngine {
                 .map(|choice| format!("{choice:?}"))
                 .collect()
         };
-        format!("{} {:?} {:?}", self.models, of(own), own.beyond().map(of))
+        let fallback = own.fallback().map(of);
+        format!("{} {:?} {fallback:?}", self.models, of(own.rows()))
     }
 
     fn tuned(&self, scenario: &Scenario) -> TunedReference {
@@ -207,11 +216,12 @@ impl Engine for ReducedEngine {
         scenario: &Scenario,
         tuned: &TunedReference,
     ) -> Option<SurrogateOf<'a>> {
-        let surrogate = self.solver.surrogate(scenario, tuned)?;
+        let solver = self.solver.under(scenario).rows();
+        let surrogate = Surrogate::new(solver, scenario, tuned)?;
         Some(Box::new(move |pattern| surrogate.peak(pattern)))
     }
 
-    fn row_solver(&self) -> Option<&RowSolver> {
+    fn solvers(&self) -> Option<&LoadCaseSolvers> {
         Some(&self.solver)
     }
 
@@ -221,7 +231,8 @@ impl Engine for ReducedEngine {
         pattern: &Pattern,
         tuned_hz: Option<f64>,
     ) -> Result<SearchPlan, Status> {
-        self.solver.search_plan(scenario, Some(pattern), tuned_hz)
+        let solver = self.solver.under(scenario).rows();
+        solver.search_plan(scenario, Some(pattern), tuned_hz)
     }
 
     fn curve(
@@ -230,8 +241,8 @@ impl Engine for ReducedEngine {
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
     ) -> Vec<CurvePoint> {
-        let sectors = self.solver.basis().model().sectors as u32;
-        let solved = self.solver.under(scenario).curve(
+        let sectors = self.rows().basis().model().sectors as u32;
+        let solved = self.solver.under(scenario).rows().curve(
             scenario.engine_order,
             scenario.contact,
             pattern,
@@ -260,7 +271,7 @@ impl Engine for ReducedEngine {
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
     ) -> Result<[ResponseTrace; 2], Status> {
-        self.solver.under(scenario).traces(
+        self.solver.under(scenario).rows().traces(
             scenario.engine_order,
             scenario.contact,
             pattern,
@@ -275,6 +286,6 @@ impl Engine for ReducedEngine {
         row: &ResponseRow,
         options: &TimeOptions,
     ) -> Result<PointComparison, Status> {
-        self.solver.compare_in_time(pattern, scenario, row, options)
+        compare_in_time(&self.solver, pattern, scenario, row, options)
     }
 }

@@ -17,7 +17,8 @@ use crate::model::reduction::{BasisChoice, ContactStiffness, Reduction};
 use crate::model::sector::SectorModel;
 use crate::platform::thread_processor_time_s;
 use crate::population::monte_carlo::{
-    ResponseRow, RowSolver, RowWork, Scenario, SystemSize, TunedReference,
+    LoadCaseSolver, LoadCaseSolvers, ResponseRow, RowSolver, RowWork, Scenario, SystemSize,
+    TunedReference,
 };
 use crate::response::forced_response::Harmonics;
 use crate::response::friction::ContactLaw;
@@ -82,7 +83,7 @@ type ModelKey = (usize, BasisChoice, Option<usize>);
 
 /// A setting ready to be solved.
 pub struct LadderEngine<'a> {
-    solver: RowSolver,
+    solver: LoadCaseSolvers,
     scenarios: Vec<Scenario>,
     tuned: Vec<TunedReference>,
     progress: &'a dyn Progress,
@@ -193,7 +194,7 @@ impl<'a> LadderBench<'a> {
             let solver = RowSolver::new(Arc::clone(&model), settings.clone())?;
             let (HarmonicLevel::Automatic(tolerance), Some(full)) = (&setting.harmonics, &full)
             else {
-                return Ok(solver);
+                return Ok(LoadCaseSolver::from(solver));
             };
             let full = Arc::new(case.of(full));
             let sets = choose_harmonics(
@@ -205,12 +206,13 @@ impl<'a> LadderBench<'a> {
                 Some(*tolerance),
             )?;
             let solver = solver.with_choices(sets.clone(), 0.0)?;
+            let solver = LoadCaseSolver::from(solver);
             if !setting.law.has_variable_load() {
                 return Ok(solver);
             }
             let sets = with_separation(&full, &settings, sets)?;
-            let beyond = RowSolver::new(model, settings)?.with_choices(sets, 0.0)?;
-            Ok::<_, PipelineError>(solver.with_beyond(beyond, false))
+            let finer = RowSolver::new(model, settings)?.with_choices(sets, 0.0)?;
+            Ok::<_, PipelineError>(solver.with_fallback(finer, false))
         })?;
         Ok(LadderEngine::new(
             solver,
@@ -276,7 +278,7 @@ impl<'a> LadderBench<'a> {
 impl<'a> LadderEngine<'a> {
     /// A solver with the tuned wheel of every scenario solved.
     pub(in crate::settings) fn new(
-        solver: RowSolver,
+        solver: LoadCaseSolvers,
         scenarios: &[Scenario],
         progress: &'a dyn Progress,
     ) -> Self {
@@ -305,7 +307,7 @@ impl<'a> LadderEngine<'a> {
     }
 
     /// What solves the rows.
-    pub(in crate::settings) fn solver(&self) -> &RowSolver {
+    pub(in crate::settings) fn solver(&self) -> &LoadCaseSolvers {
         &self.solver
     }
 
@@ -324,7 +326,7 @@ impl<'a> LadderEngine<'a> {
     pub fn sizes(&self) -> Vec<SystemSize> {
         let scenarios = self.scenarios.iter();
         scenarios
-            .map(|scenario| self.solver.system_size(scenario))
+            .map(|scenario| SystemSize::of_rows(self.solver.under(scenario).rows(), scenario))
             .collect()
     }
 
@@ -404,10 +406,11 @@ impl<'a> LadderEngine<'a> {
                 frequency_hz: row.peak_frequency_hz,
                 amplification_factor: row.amplification_factor,
             },
-            operations: self
-                .solver
-                .system_size(&self.scenarios[place])
-                .operations(&work),
+            operations: {
+                let scenario = &self.scenarios[place];
+                let solver = self.solver.under(scenario).rows();
+                SystemSize::of_rows(solver, scenario).operations(&work)
+            },
             work,
             cpu_s,
         }

@@ -1,0 +1,218 @@
+//! The solvers of a study: one for the force vector of every load case, each with a finer one for the rows that it is not good enough
+//! for.
+
+use std::sync::OnceLock;
+
+use super::{
+    LoadCaseName, ResponseRow, RowSolver, Scenario, TunedReference, WheelState, harmonics_name,
+};
+use crate::response::forced_response::{ContactCondition, TopBeside};
+use crate::response::harmonic_balance::Status;
+use crate::response::mistuning::Pattern;
+
+/// The solver of the rows under one force vector.
+#[derive(Debug)]
+pub struct LoadCaseSolver {
+    rows: RowSolver,
+    fallback: Option<Fallback>,
+}
+
+/// What solves the rows that another solver is not good enough for.
+#[derive(Debug)]
+struct Fallback {
+    rows: RowSolver,
+    /// Whether rows with an error beyond its tolerance go there too, besides those that separate or, on tuned receptances,
+    /// have no peak.
+    inexact_rows: bool,
+    /// Tuned peaks on that solver, for each of its chosen sets, found when first asked for.
+    tuned: Vec<OnceLock<TunedReference>>,
+}
+
+/// The solvers of all load cases of a study; shared between threads.
+#[derive(Debug)]
+pub struct LoadCaseSolvers {
+    /// Of the scenarios whose load case no other solver has.
+    first: LoadCaseSolver,
+    others: Vec<(LoadCaseName, LoadCaseSolver)>,
+}
+
+impl From<RowSolver> for LoadCaseSolver {
+    fn from(rows: RowSolver) -> Self {
+        Self {
+            rows,
+            fallback: None,
+        }
+    }
+}
+
+impl LoadCaseSolver {
+    /// This solver with `finer` for the rows that it is not good enough for, each with the tuned reference of `finer`. On a
+    /// basis these are the rows whose contacts separate, on tuned receptances the rows without a peak; with `inexact_rows`, also
+    /// those whose sampling or harmonic error exceeds its tolerance. Only scenarios for which `finer` has a chosen set are
+    /// solved again.
+    #[must_use]
+    pub fn with_fallback(self, finer: RowSolver, inexact_rows: bool) -> Self {
+        let fallback = Fallback {
+            tuned: finer.choices().map(|_| OnceLock::new()).collect(),
+            rows: finer,
+            inexact_rows,
+        };
+        Self {
+            fallback: Some(fallback),
+            ..self
+        }
+    }
+
+    /// The solver that rows are solved by first.
+    #[must_use]
+    pub fn rows(&self) -> &RowSolver {
+        &self.rows
+    }
+
+    /// The solver of the rows that the first one is not good enough for.
+    #[must_use]
+    pub fn fallback(&self) -> Option<&RowSolver> {
+        self.fallback.as_ref().map(|fallback| &fallback.rows)
+    }
+
+    /// The solver that a row came from.
+    #[must_use]
+    pub fn solver_of(&self, scenario: &Scenario, row: &ResponseRow) -> &RowSolver {
+        let harmonics = harmonics_name(self.rows.points(scenario).harmonics());
+        let own = row.harmonics == harmonics && row.basis == self.rows.basis_name();
+        self.fallback().filter(|_| !own).unwrap_or(&self.rows)
+    }
+
+    /// The row by the fallback, if it has to be and can be.
+    fn solved_again(
+        &self,
+        pattern: &Pattern,
+        scenario: &Scenario,
+        row: &ResponseRow,
+    ) -> Option<ResponseRow> {
+        let fallback = self.fallback.as_ref()?;
+        let failed = row.status != Status::Ok;
+        let wanted = if self.rows.on_receptances.is_some() {
+            failed
+        } else {
+            row.separated_fraction.is_some_and(|share| share > 0.0)
+        };
+        let inexact = row.error_within_tolerance == Some(false);
+        if !(wanted || inexact && fallback.inexact_rows) {
+            return None;
+        }
+        let mut choices = fallback.rows.choices().enumerate();
+        let (place, choice) = choices.find(|(_, choice)| {
+            choice.engine_order == scenario.engine_order && choice.contact == scenario.contact
+        })?;
+        let same_set = harmonics_name(&choice.harmonics) == row.harmonics;
+        if same_set && fallback.rows.basis_name() == self.rows.basis_name() {
+            return None;
+        }
+        let tuned = fallback.tuned[place].get_or_init(|| fallback.rows.tuned(scenario));
+        let tuned = TunedReference {
+            scenario: scenario.index,
+            ..tuned.clone()
+        };
+        let again = fallback.rows.rows(pattern, &[(scenario, &tuned)]).pop()?;
+        let solved = again.status == Status::Ok && again.amplification_factor.is_some();
+        (solved || failed).then(|| ResponseRow {
+            nonlinear_solves: row.nonlinear_solves + again.nonlinear_solves,
+            newton_iterations: row.newton_iterations + again.newton_iterations,
+            factorisations: row.factorisations + again.factorisations,
+            retries: row.retries + again.retries,
+            ..again
+        })
+    }
+}
+
+impl LoadCaseSolvers {
+    /// `first`, and the solvers of the load cases with these names: the same wheel under other force vectors.
+    #[must_use]
+    pub fn new(first: LoadCaseSolver, others: Vec<(LoadCaseName, LoadCaseSolver)>) -> Self {
+        Self { first, others }
+    }
+
+    /// The solvers of all load cases, the first one first.
+    pub fn all(&self) -> impl Iterator<Item = &LoadCaseSolver> {
+        std::iter::once(&self.first).chain(self.others.iter().map(|(_, solver)| solver))
+    }
+
+    /// The solver of the first load case.
+    #[must_use]
+    pub fn first(&self) -> &LoadCaseSolver {
+        &self.first
+    }
+
+    /// The solver of the load case of a scenario.
+    #[must_use]
+    pub fn under(&self, scenario: &Scenario) -> &LoadCaseSolver {
+        self.others
+            .iter()
+            .find(|(name, _)| Some(*name) == scenario.load_case)
+            .map_or(&self.first, |(_, solver)| solver)
+    }
+
+    /// Tuned reference of a scenario.
+    #[must_use]
+    pub fn tuned(&self, scenario: &Scenario) -> TunedReference {
+        self.under(scenario).rows.tuned(scenario)
+    }
+
+    /// Rows of one pattern under several scenarios of one standard deviation, in their order.
+    #[must_use]
+    pub fn rows(
+        &self,
+        pattern: &Pattern,
+        scenarios: &[(&Scenario, &TunedReference)],
+    ) -> Vec<ResponseRow> {
+        let conditions: Vec<ContactCondition> =
+            scenarios.iter().map(|(own, _)| own.contact).collect();
+        // The wheel is the same under every load case.
+        let wheel = self.first.rows.mistuned(pattern, &conditions);
+        let row = |&(scenario, tuned): &(&Scenario, &TunedReference)| {
+            let solver = self.under(scenario);
+            let row = solver.rows.row(&wheel, pattern, scenario, tuned);
+            let again = solver.solved_again(pattern, scenario, &row);
+            again.unwrap_or(row)
+        };
+        scenarios.iter().map(row).collect()
+    }
+
+    /// The wheel of `row`, which these solvers gave, at its peak, with the model and harmonics that the row was solved with.
+    ///
+    /// # Errors
+    /// The status of a row without peak, of a pattern that cannot be applied, or of the solution.
+    pub fn wheel_state(
+        &self,
+        pattern: &Pattern,
+        scenario: &Scenario,
+        row: &ResponseRow,
+    ) -> Result<WheelState, Status> {
+        let solver = self.under(scenario).solver_of(scenario, row);
+        let frequency_hz = row.peak_frequency_hz.ok_or(row.status)?;
+        solver.wheel_state(pattern, scenario, frequency_hz)
+    }
+
+    /// The top on these solvers, which have the harmonics of `coarse` among their own, beside the peak that `coarse` found at
+    /// `frequency_hz` with the set named `harmonics`; of the tuned wheel for no pattern. None where rows are not on receptances,
+    /// or where the solutions do not settle.
+    #[must_use]
+    pub fn top_beside(
+        &self,
+        coarse: &Self,
+        pattern: Option<&Pattern>,
+        scenario: &Scenario,
+        (frequency_hz, harmonics): (f64, &str),
+    ) -> Option<TopBeside> {
+        let coarse = coarse.under(scenario);
+        let mut solvers = [Some(&coarse.rows), coarse.fallback()]
+            .into_iter()
+            .flatten();
+        let is_of_the_row =
+            |own: &&RowSolver| harmonics_name(own.points(scenario).harmonics()) == harmonics;
+        let coarse = solvers.find(is_of_the_row)?;
+        let own = &self.under(scenario).rows;
+        own.top_beside(coarse, pattern, scenario, frequency_hz)
+    }
+}

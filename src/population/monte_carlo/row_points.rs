@@ -1,0 +1,162 @@
+//! What a study says about the physics of a row, and the settings of its points: the harmonics of each scenario.
+
+use std::borrow::Cow;
+
+use super::{ErrorTolerance, HarmonicChoice};
+use crate::model::ReducedModel;
+use crate::response::forced_response::{ContactCondition, PointSettings, SolverOptions};
+use crate::response::friction::{ContactLaw, PairParameters, Ring};
+use crate::response::harmonic_balance::{Damping, TransformError};
+use crate::response::mistuning::{Pattern, Projection};
+
+/// Tolerance of the sampling error, unless that of the peak is larger.
+const SAMPLING_TOLERANCE: f64 = 1e-3;
+
+/// What a study says about the physics of a row.
+#[derive(Debug, Clone)]
+pub struct RowSettings {
+    /// Harmonic set under the contact law, ascending, with 1.
+    pub harmonics: Vec<u32>,
+    /// Contact law and its parameters per sector; none for a model without contact.
+    pub contact: Option<(ContactLaw, PairParameters)>,
+    /// What a free ring does under mean friction.
+    pub ring: Ring,
+    /// Law in whose place the simpler one of `contact` is taken, with the same springs; what that changes is in the errors.
+    pub in_place_of: Option<ContactLaw>,
+    /// Damping of the structure.
+    pub damping: Damping,
+    /// Factor on the model's force vector.
+    pub amplitude_n: f64,
+    /// How a deviation enters the reduced stiffness.
+    pub projection: Projection,
+    /// Settings of the solution.
+    pub solver: SolverOptions,
+}
+
+impl RowSettings {
+    /// What points with `harmonics` need.
+    fn points(
+        &self,
+        harmonics: &[u32],
+        model: &ReducedModel,
+    ) -> Result<PointSettings, TransformError> {
+        let geometry = model.contact.clone();
+        PointSettings::new(&self.solver, harmonics, self.contact, geometry)?
+            .with_ring(self.ring)
+            .in_place_of(self.in_place_of, &self.solver)
+    }
+
+    /// In the column `shortcut`: what the law leaves out of the one in whose place it is taken.
+    pub(super) fn simpler_law(&self) -> Option<&'static str> {
+        let (own, _) = self.contact?;
+        let varies = self.in_place_of?.has_variable_load();
+        if varies && !own.has_variable_load() {
+            Some("constant_normal_load")
+        } else {
+            Some("uncoupled_tangents")
+        }
+    }
+
+    pub(super) fn tolerance(&self) -> ErrorTolerance {
+        ErrorTolerance {
+            sampling: self.solver.peak_tolerance.max(SAMPLING_TOLERANCE),
+            harmonics: self.solver.harmonic_tolerance,
+        }
+    }
+}
+
+/// The settings of the points of all scenarios of a force vector.
+#[derive(Debug)]
+pub(super) struct RowPoints {
+    pub(super) settings: RowSettings,
+    full: PointSettings,
+    linear: PointSettings,
+    /// Sets that differ from scenario to scenario; the others have that of the settings.
+    chosen: Vec<(HarmonicChoice, PointSettings)>,
+}
+
+impl RowPoints {
+    /// With the harmonics of the settings.
+    ///
+    /// # Errors
+    /// If the samples per period cannot tell the harmonics apart.
+    pub(super) fn new(settings: RowSettings, model: &ReducedModel) -> Result<Self, TransformError> {
+        Ok(Self {
+            full: settings.points(&settings.harmonics, model)?,
+            linear: settings.points(&[1], model)?,
+            settings,
+            chosen: Vec::new(),
+        })
+    }
+
+    /// From now on with the harmonic sets chosen for single scenarios.
+    pub(super) fn choose(
+        &mut self,
+        choices: Vec<HarmonicChoice>,
+        model: &ReducedModel,
+    ) -> Result<(), TransformError> {
+        let settings = &self.settings;
+        let chosen = choices.into_iter().map(|choice| {
+            let points = settings.points(&choice.harmonics, model)?;
+            Ok((choice, points))
+        });
+        self.chosen = chosen.collect::<Result<_, TransformError>>()?;
+        Ok(())
+    }
+
+    /// From now on with so many samples per period in searches with fewer harmonics.
+    pub(super) fn search_with_samples(&mut self, samples: usize) -> Result<(), TransformError> {
+        let chosen = self.chosen.iter_mut().map(|(_, points)| points);
+        for points in std::iter::once(&mut self.full).chain(chosen) {
+            *points = points.clone().with_search_samples(samples)?;
+        }
+        Ok(())
+    }
+
+    /// Harmonic sets chosen for single scenarios.
+    pub(super) fn choices(&self) -> impl Iterator<Item = &HarmonicChoice> {
+        self.chosen.iter().map(|(choice, _)| choice)
+    }
+
+    pub(super) fn choice(
+        &self,
+        engine_order: u32,
+        contact: ContactCondition,
+    ) -> Option<&HarmonicChoice> {
+        let chosen = self.chosen(engine_order, contact);
+        chosen.map(|(choice, _)| choice)
+    }
+
+    fn chosen(
+        &self,
+        engine_order: u32,
+        contact: ContactCondition,
+    ) -> Option<&(HarmonicChoice, PointSettings)> {
+        self.chosen
+            .iter()
+            .find(|(choice, _)| choice.engine_order == engine_order && choice.contact == contact)
+    }
+
+    /// The settings of a point of a wheel with the nominal contact.
+    pub(super) fn nominal(&self, engine_order: u32, contact: ContactCondition) -> &PointSettings {
+        match (contact, self.chosen(engine_order, contact)) {
+            (ContactCondition::Full { .. }, Some((_, points))) => points,
+            (ContactCondition::Full { .. }, None) => &self.full,
+            _ => &self.linear,
+        }
+    }
+
+    /// The settings of a point of the wheel with `pattern`; none means the tuned wheel.
+    pub(super) fn of<'a>(
+        &'a self,
+        pattern: impl Into<Option<&'a Pattern>>,
+        engine_order: u32,
+        contact: ContactCondition,
+    ) -> Cow<'a, PointSettings> {
+        let points = self.nominal(engine_order, contact);
+        match pattern.into().map(|pattern| &pattern.contact) {
+            Some(factors) if !factors.is_nominal() => Cow::Owned(points.with_factors(factors)),
+            _ => Cow::Borrowed(points),
+        }
+    }
+}
