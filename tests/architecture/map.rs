@@ -28,7 +28,7 @@ asks for is not ready on receptances. Both share the search, the contact laws an
 | --- | --- | --- |
 | what solves a row? | [receptance_rows.rs](../src/population/monte_carlo/receptance_rows.rs) | [basis_rows.rs](../src/population/monte_carlo/basis_rows.rs) |
 | where is mistuning applied? | [elimination.rs](../src/response/receptance/elimination.rs) | [wheel_basis.rs](../src/response/mistuning/wheel_basis.rs) |
-| what is the equation? | [contact_iteration.rs](../src/response/receptance/contact_iteration.rs) | [system.rs](../src/response/harmonic_balance/equation/system.rs) |
+| what is the equation? | [contact_equation.rs](../src/response/receptance/contact_equation.rs) | [system.rs](../src/response/harmonic_balance/equation/system.rs) |
 | what is the preconditioner, or the Jacobian? | [preconditioner.rs](../src/response/receptance/preconditioner.rs) | [jacobian.rs](../src/response/harmonic_balance/equation/jacobian.rs) |
 | what decides that a solve has converged? | [contact_iteration.rs](../src/response/receptance/contact_iteration.rs) | [newton_verdict.rs](../src/response/harmonic_balance/solver/newton_verdict.rs) |
 | what is tried where it does not? | [contact_iteration.rs](../src/response/receptance/contact_iteration.rs), then [load_case_solvers.rs](../src/population/monte_carlo/load_case_solvers.rs) | [attempts_on_basis.rs](../src/response/forced_response/attempts_on_basis.rs) |

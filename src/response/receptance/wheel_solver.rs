@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use crate::linalg::Complex64;
 use crate::response::harmonic_balance::{ContactShares, PairContact, Status, WheelContact};
 
+use super::contact_equation::{Buffers, ContactEquation, angular, damped};
 use super::contact_forces::ContactForces;
-use super::contact_iteration::{Buffers, ContactEquation, angular, damped};
 use super::engine::{EngineWheel, Limit, ReceptanceEngine};
 use super::fields::Field;
 use super::wave_force::WaveForce;

@@ -1,0 +1,230 @@
+//! The equation of the motions at the contact of a mistuned wheel at one frequency.
+//!
+//! In every harmonic k of the set
+//!
+//! ```text
+//! r_k(u) = u_k - u_lin,k + A_k G_k(u)
+//! ```
+//!
+//! with the answer A of the wheel to contact forces ([`super::wheel_harmonic`]) and the correction G of the contact forces to
+//! those of stuck springs, all harmonics together.
+
+use std::f64::consts::TAU;
+
+use crate::linalg::Complex64;
+use crate::response::harmonic_balance::{ContactShares, WheelContact};
+
+use super::acceleration::Acceleration;
+use super::contact_forces::ContactForces;
+use super::contact_places::Places;
+use super::fields::{Field, SectorTransform, flatten, norm_squared, padded, unflatten};
+use super::preconditioner::Preconditioner;
+use super::wheel_harmonic::WheelHarmonic;
+
+/// Blade shapes that a preconditioner takes in.
+#[derive(Clone, Copy)]
+pub(super) enum PreconditionedShapes {
+    /// The shapes of every harmonic that are not nearly static.
+    Resonant,
+    /// The first shape, of harmonic 1.
+    FirstOfFundamental,
+}
+
+/// The equation of one wheel at one frequency.
+pub(super) struct ContactEquation<'a> {
+    pub(super) transform: &'a SectorTransform,
+    pub(super) contact: &'a mut WheelContact,
+    /// The contact with fewer samples, from which tangents are taken; none: they are taken from `contact`.
+    pub(super) tangents: Option<&'a mut WheelContact>,
+    /// A harmonic of the set each, in its order.
+    pub(super) harmonics: &'a mut [WheelHarmonic],
+    /// `u_lin` of harmonic 1, at this place of the set.
+    pub(super) linear: &'a Field,
+    /// Forces on the contact besides its own, a field per harmonic.
+    pub(super) load: Option<&'a ContactForces>,
+    pub(super) fundamental: usize,
+    pub(super) buffers: &'a mut Buffers,
+}
+
+/// Vectors of the iteration.
+#[derive(Default)]
+pub(super) struct Buffers {
+    pub(super) motions: Vec<Field>,
+    pub(super) residual: Vec<Field>,
+    /// Correction of the contact forces at the motions last evaluated, waves.
+    pub(super) forces: Vec<Field>,
+    sectors: Field,
+    pub(super) acceleration: Acceleration,
+    pub(super) flat: [Vec<f64>; 3],
+}
+
+impl Buffers {
+    /// Makes room for so many harmonics and contact rows of a sector.
+    pub(super) fn resize(&mut self, harmonics: usize, rows: usize, sectors: usize) {
+        let entries = rows * padded(sectors);
+        let fits = |fields: &Vec<Field>| {
+            fields.len() == harmonics && fields.iter().all(|own| own.re.len() == entries)
+        };
+        if !fits(&self.motions) {
+            let fields = || vec![Field::zeros(rows, sectors); harmonics];
+            (self.motions, self.residual, self.forces) = (fields(), fields(), fields());
+            self.sectors = Field::zeros(rows, sectors);
+            self.acceleration.resize(2 * harmonics * entries);
+        }
+    }
+}
+
+impl ContactEquation<'_> {
+    /// The motions of the linear response.
+    pub(super) fn linear_start(&self) -> Vec<Field> {
+        let mut start = vec![Field::default(); self.harmonics.len()];
+        for (place, own) in start.iter_mut().enumerate() {
+            own.clone_from(self.linear);
+            if place != self.fundamental {
+                own.fill(0.0);
+            }
+        }
+        start
+    }
+
+    /// Gives the contact the motions, which may be those of an earlier solution.
+    pub(super) fn place(&mut self, motions: &[f64]) {
+        unflatten(motions, &mut self.buffers.motions);
+        self.give_motions();
+    }
+
+    /// Evaluates the contact's own forces at the motions of a solution; they are left in the buffers.
+    pub(super) fn evaluate_forces(&mut self, motions: &[f64]) {
+        self.place(motions);
+        self.contact.evaluate(false);
+        let places = Places::of(self.contact);
+        for place in 0..places.harmonics.len() {
+            self.correct_forces(&places, place);
+        }
+    }
+
+    /// The correction last evaluated in one harmonic, over the waves; left in the buffers.
+    fn correct_forces(&mut self, places: &Places, place: usize) {
+        let Buffers {
+            forces, sectors, ..
+        } = &mut *self.buffers;
+        let correction = self.contact.correction();
+        places.to_waves(
+            self.transform,
+            place,
+            correction,
+            sectors,
+            &mut forces[place],
+        );
+    }
+
+    /// Gives the contact the motions of every sector.
+    fn give_motions(&mut self) {
+        let places = Places::of(self.contact);
+        let Buffers {
+            motions, sectors, ..
+        } = &mut *self.buffers;
+        let to = self.contact.motion_mut();
+        places.to_sectors(self.transform, motions, sectors, to);
+    }
+
+    /// Residual at the motions, relative to them, with the derivative of the contact where that is wanted.
+    pub(super) fn residual(&mut self, derivative: bool) -> (f64, ContactShares) {
+        let places = Places::of(self.contact);
+        self.give_motions();
+        let shares = self.contact.evaluate(derivative);
+        let mut square = 0.0;
+        let motion: f64 = self.buffers.motions.iter().map(norm_squared).sum();
+        for place in 0..places.harmonics.len() {
+            self.correct_forces(&places, place);
+            let Buffers {
+                motions,
+                residual,
+                forces,
+                ..
+            } = &mut *self.buffers;
+            if let Some(load) = self.load {
+                forces[place].add(1.0, &load.fields[place]);
+            }
+            residual[place].clone_from(&motions[place]);
+            if place == self.fundamental {
+                residual[place].add(-1.0, self.linear);
+            }
+            self.harmonics[place].add_answer(self.transform, &forces[place], &mut residual[place]);
+            square += norm_squared(&residual[place]);
+        }
+        ((square / motion).sqrt(), shares)
+    }
+
+    /// Takes the mean tangent of the contact at the motions last evaluated into the preconditioner of every harmonic.
+    pub(super) fn preconditioners(&self, shapes: PreconditionedShapes) -> Vec<Preconditioner> {
+        let pairs = self.contact.pair_rows();
+        let harmonics = self.harmonics.iter().enumerate();
+        let contact: &WheelContact = self.tangents.as_deref().unwrap_or(self.contact);
+        harmonics
+            .map(|(place, harmonic)| {
+                let tangent = contact.mean_tangent(place);
+                let shapes = match shapes {
+                    PreconditionedShapes::Resonant => harmonic.resonant_shapes(),
+                    PreconditionedShapes::FirstOfFundamental => {
+                        harmonic.first_shapes(usize::from(place == self.fundamental))
+                    }
+                };
+                Preconditioner::new(harmonic, self.transform, &tangent, pairs, &shapes)
+            })
+            .collect()
+    }
+
+    /// The residual turned into a step by the preconditioners, but for its sign.
+    pub(super) fn precondition(&mut self, preconditioners: &mut [Preconditioner]) {
+        let residual = self.buffers.residual.iter_mut();
+        for (own, residual) in preconditioners.iter_mut().zip(residual) {
+            own.apply(self.transform, residual);
+        }
+    }
+
+    /// [`Self::residual`]; the derivative is that of the contact with fewer samples, if there is one.
+    pub(super) fn residual_with_tangent(&mut self, wanted: bool) -> (f64, ContactShares) {
+        let apart = wanted && self.tangents.is_some();
+        let found = self.residual(wanted && !apart);
+        if let Some(tangents) = self.tangents.as_mut().filter(|_| apart) {
+            tangents.motion_mut().copy_from_slice(self.contact.motion());
+            tangents.evaluate(true);
+        }
+        found
+    }
+
+    /// `J v` at the motions last evaluated with derivative: `v + A G' v`.
+    pub(super) fn derivative(&mut self, direction: &[f64]) -> Vec<f64> {
+        let places = Places::of(self.contact);
+        let mut fields = self.buffers.motions.clone();
+        unflatten(direction, &mut fields);
+        let mut change = vec![0.0; self.contact.motion().len()];
+        let sectors = &mut self.buffers.sectors;
+        places.to_sectors(self.transform, &fields, sectors, &mut change);
+        let mut force = vec![0.0; change.len()];
+        self.contact.add_derivative(&change, &mut force);
+        for (place, field) in fields.iter_mut().enumerate() {
+            let Buffers {
+                forces, sectors, ..
+            } = &mut *self.buffers;
+            places.to_waves(self.transform, place, &force, sectors, &mut forces[place]);
+            self.harmonics[place].add_answer(self.transform, &forces[place], field);
+        }
+        let mut flat = Vec::new();
+        flatten(&fields, 1.0, &mut flat);
+        flat
+    }
+}
+
+/// Angular frequency of a harmonic.
+pub(super) fn angular(harmonic: u32, frequency_hz: f64) -> f64 {
+    f64::from(harmonic) * TAU * frequency_hz
+}
+
+/// A deviation as it enters the dynamic stiffness of a harmonic: with the structural loss factor, of which the static
+/// harmonic 0 has none.
+pub(super) fn damped(deviation: f64, loss_factor: f64, harmonic: u32) -> Complex64 {
+    let loss = if harmonic == 0 { 0.0 } else { loss_factor };
+    Complex64::new(deviation, deviation * loss)
+}
