@@ -1,35 +1,36 @@
 //! The command line as clap sees it.
 
-use std::path::PathBuf;
-
 use clap::{Parser, Subcommand};
 
 use super::campbell::CampbellArguments;
+use super::check::CheckArguments;
 use super::compare::CompareArguments;
 use super::estimate::EstimateArguments;
 use super::explain::{CompletionsArguments, ExplainArguments, SchemaArguments};
-use super::fidelity::FidelityArguments;
 use super::import::ImportArguments;
 use super::init::InitArguments;
 use super::interrupt::Kept;
 use super::man::ManArguments;
 use super::merge::MergeArguments;
+use super::model::ModelArguments;
 use super::optimum::OptimumArguments;
 use super::plan::PlanArguments;
 use super::replay::ReplayArguments;
 use super::report::{PlotArguments, ReportArguments};
-use super::response::{FrequencyGrid, LoadArgument, PatternArgument};
+use super::response::ResponseArguments;
 use super::run::RunArguments;
 use super::slurm::SlurmArguments;
 use super::stats::StatsArguments;
 use super::status::StatusArguments;
 use super::tradeoff::TradeoffArguments;
+use super::verify::VerifyArguments;
 use crate::identity;
 
 /// Forced response of randomly mistuned bladed disks with friction dampers.
 #[derive(Debug, Parser)]
 #[command(name = "blisk", version = identity::VERSION, long_version = identity::IN_WORDS)]
 #[command(about, disable_help_subcommand = true, max_term_width = 100)]
+#[command(help_template = help_template())]
 #[command(
     after_help = "Exit codes: 0 done, 1 internal error, 2 usage, 3 study invalid, 4 model invalid,\n5 failures leave a statistic without a value,\n6 all patterns are solved and the target of [stop] is not reached, 7 input/output, 8 store damaged,\n9 different study, 10 locked by another process,\n11 a verification failed, 130/143 interrupted, what is solved is stored."
 )]
@@ -45,24 +46,9 @@ pub enum Command {
     /// Write a commented study file to start from.
     Init(InitArguments),
     /// Check a study, its model and its patterns without solving anything.
-    Check {
-        /// The study file.
-        study: PathBuf,
-        /// Print the resolved study as JSON.
-        #[arg(long)]
-        json: bool,
-    },
+    Check(CheckArguments),
     /// Build the reduced model and show sizes, frequencies, rank and condition.
-    Model {
-        /// The study file.
-        study: PathBuf,
-        /// Write the sector model as a bundle into this folder.
-        #[arg(long, value_name = "DIR")]
-        export: Option<PathBuf>,
-        /// Print JSON.
-        #[arg(long)]
-        json: bool,
-    },
+    Model(ModelArguments),
     /// Natural frequencies per nodal diameter, and the speeds at which engine orders cross them.
     #[command(
         after_help = "Examples:\n  blisk campbell study.toml --engine-orders 1:12 --speed-rpm 0:12000\n  blisk campbell study.toml --at 0=bundle_rest --at 6000=bundle_speed"
@@ -86,89 +72,13 @@ pub enum Command {
     /// Show how far a results folder is, without touching it.
     Status(StatusArguments),
     /// Amplitude of every blade over frequency, for one pattern and one contact condition.
-    Response {
-        /// The study file.
-        study: PathBuf,
-        /// `tuned`, or the id of a pattern of the study.
-        #[arg(long, value_name = "tuned|ID")]
-        pattern: PatternArgument,
-        /// Normal load per sector in N, or a linear limit.
-        #[arg(long, value_name = "N|stuck|slide|free")]
-        load: LoadArgument,
-        /// First and last frequency in Hz, both included, and the number of frequencies.
-        #[arg(long, value_name = "START:STOP:COUNT")]
-        frequencies: FrequencyGrid,
-        /// The file to write: .csv or .parquet.
-        #[arg(long, value_name = "FILE")]
-        out: PathBuf,
-        /// Load case, where the study has several.
-        #[arg(long, value_name = "NAME")]
-        load_case: Option<String>,
-        /// Engine order, where the study lists several.
-        #[arg(long, value_name = "EO")]
-        engine_order: Option<u32>,
-        /// Standard deviation, where the study lists several.
-        #[arg(long, value_name = "S")]
-        standard_deviation: Option<f64>,
-        /// Which model is solved, and how finely.
-        #[command(flatten)]
-        fidelity: FidelityArguments,
-        /// Follow the curve through its folds, upwards and downwards.
-        #[arg(long)]
-        continuation: bool,
-        /// Print what was written as JSON.
-        #[arg(long)]
-        json: bool,
-    },
+    Response(ResponseArguments),
     /// Solve one delivered row again and say whether it is the same bit for bit.
     Replay(ReplayArguments),
     /// Solve a random sample of delivered rows again, on the same path and on the full-contact model.
     ///
     /// Writes verification.parquet into the results folder.
-    Verify {
-        /// The study file of results/NAME, or a results folder.
-        #[arg(value_name = "STUDY|DIR")]
-        target: PathBuf,
-        /// Number of rows to draw.
-        #[arg(long, value_name = "N", default_value = "10", value_parser = clap::value_parser!(u32).range(1..))]
-        sample: u32,
-        /// Seed of the sample [default: that of the study].
-        #[arg(long, value_name = "S")]
-        seed: Option<u64>,
-        /// Sweep the drawn rows densely instead, and count the peaks that the search missed.
-        ///
-        /// Writes `peak_audit.parquet` into the results folder.
-        #[arg(long)]
-        dense_sweep: bool,
-        /// Integrate one row in time instead, and compare it with harmonic balance.
-        ///
-        /// The row of --scenario and --pattern at its peak frequency, or the first one of the
-        /// sample under friction. Writes no table.
-        #[arg(long, conflicts_with = "dense_sweep")]
-        time_domain: bool,
-        /// Scenario of that row, counted from 0.
-        #[arg(long, value_name = "I", requires_all = ["time_domain", "pattern"])]
-        scenario: Option<usize>,
-        /// Pattern of that row.
-        #[arg(long, value_name = "ID", requires_all = ["time_domain", "scenario"])]
-        pattern: Option<u32>,
-        /// Set damaged files aside, into `damaged/`, and solve again what they held; draws no rows.
-        #[arg(long, conflicts_with_all = ["dense_sweep", "time_domain"])]
-        repair: bool,
-        /// Read all files and compare them with their checksums; draws no rows and changes nothing.
-        #[arg(long, conflicts_with_all = ["dense_sweep", "time_domain", "repair"])]
-        integrity: bool,
-        /// Where the inputs lie now: beside this study file [default: that of the last run].
-        #[arg(long, value_name = "FILE")]
-        study: Option<PathBuf>,
-        /// Number of threads [default: those of the scheduler's allocation, else all cores]; results
-        /// do not depend on it.
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-        threads: Option<u16>,
-        /// Print JSON.
-        #[arg(long)]
-        json: bool,
-    },
+    Verify(VerifyArguments),
     /// Compare a percentile between scenarios, on common patterns where there are any.
     ///
     /// Within one results folder each scenario is compared with the best of its load case, engine order
@@ -217,6 +127,9 @@ pub enum Command {
     Man(ManArguments),
 }
 
+/// What a command leaves that writes a bundle.
+const BUNDLE: &str = "the sector bundle is not complete; the same command writes it";
+
 impl Command {
     /// What it leaves when a signal ends it.
     pub(super) fn kept(&self) -> Kept {
@@ -224,29 +137,27 @@ impl Command {
             Self::Run(_) | Self::Estimate(_) | Self::Optimum(_) => {
                 Kept::Rows("what was solved is stored; the same command continues")
             }
-            Self::Verify { repair: true, .. } => {
+            Self::Verify(arguments) if arguments.repair => {
                 Kept::Rows("what was solved is stored; `blisk run` continues")
             }
             Self::Merge(_) => {
                 Kept::Else("the shards are as they were; the same command merges them")
             }
-            Self::Import(_)
-            | Self::Model {
-                export: Some(_), ..
-            } => Kept::Else("the sector bundle is not complete; the same command writes it"),
+            Self::Import(_) => Kept::Else(BUNDLE),
+            Self::Model(arguments) if arguments.export.is_some() => Kept::Else(BUNDLE),
             Self::Tradeoff(_) => Kept::Else(
                 "no table was written, and what was measured so far is not kept; the same command begins again",
             ),
             Self::Init(_)
-            | Self::Check { .. }
-            | Self::Model { .. }
+            | Self::Check(_)
+            | Self::Model(_)
             | Self::Campbell(_)
             | Self::Plan(_)
             | Self::Slurm(_)
             | Self::Status(_)
-            | Self::Response { .. }
+            | Self::Response(_)
             | Self::Replay(_)
-            | Self::Verify { .. }
+            | Self::Verify(_)
             | Self::Compare(_)
             | Self::Stats(_)
             | Self::Report(_)
@@ -259,4 +170,64 @@ impl Command {
             }
         }
     }
+}
+
+/// The commands in the order and under the headings of the help and of docs/commands.md.
+pub const GROUPS: [(&str, &[&str]); 7] = [
+    ("Begin", &["init", "check", "plan", "explain"]),
+    ("Model", &["model", "campbell", "import"]),
+    ("Solve", &["run", "optimum", "estimate", "response"]),
+    ("Read and decide", &["stats", "report", "plot", "compare"]),
+    ("Trust", &["tradeoff", "replay", "verify"]),
+    ("Several machines", &["status", "merge", "slurm"]),
+    ("Set-up", &["schema", "completions", "man"]),
+];
+
+/// Width of the text of a command in the help, and of its name.
+const TEXT_WIDTH: usize = 84;
+const NAME_WIDTH: usize = 13;
+
+/// The help of the program, with the commands under their headings.
+fn help_template() -> String {
+    let commands = Command::augment_subcommands(clap::Command::new("blisk"));
+    let about = |name: &str| {
+        let command = commands.find_subcommand(name);
+        let about = command.and_then(clap::Command::get_about);
+        about.map(ToString::to_string).unwrap_or_default()
+    };
+    let command = |name: &&str| {
+        let lines = wrapped(&about(name), TEXT_WIDTH).into_iter().enumerate();
+        let named = lines.map(|(at, line)| {
+            let name = if at == 0 { name } else { "" };
+            format!("  {name:NAME_WIDTH$}{line}\n")
+        });
+        named.collect::<String>()
+    };
+    let group = |(heading, names): (&str, &[&str])| {
+        let commands: String = names.iter().map(command).collect();
+        format!("{heading}:\n{commands}\n")
+    };
+    let groups: String = GROUPS.into_iter().map(group).collect();
+    format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{groups}Options:\n{{options}}{{after-help}}"
+    )
+}
+
+/// The words of a text in lines of at most so many characters.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines.last_mut().filter(|line| {
+            line.is_empty() || line.chars().count() + 1 + word.chars().count() <= width
+        });
+        match line {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }

@@ -1,8 +1,9 @@
 //! `blisk check`: everything about a study that can be wrong before a solve.
 
 use std::fmt;
-use std::path::Path;
+use std::path::PathBuf;
 
+use clap::Args;
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
@@ -13,9 +14,19 @@ use crate::study::{
     PipelineError, RotationLoad, Study, StudyDigest, echo, load_sector_model, pattern_source,
 };
 
-pub(super) fn command(study: &Path, json: bool) -> Result<ExitStatus, Failure> {
-    let study = Study::read(study)?;
-    output::result(json, &CheckAnswer::of(&study)?)?;
+/// Arguments of `blisk check`.
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    /// The study file.
+    study: PathBuf,
+    /// Print the resolved study as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn command(arguments: &CheckArguments) -> Result<ExitStatus, Failure> {
+    let study = Study::read(&arguments.study)?;
+    output::result(arguments.json, &CheckAnswer::of(&study)?)?;
     Ok(ExitStatus::Done)
 }
 

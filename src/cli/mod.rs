@@ -29,7 +29,7 @@ mod status;
 mod tradeoff;
 mod verify;
 
-pub use arguments::{Arguments, Command};
+pub use arguments::{Arguments, Command, GROUPS};
 pub use check::CheckAnswer;
 pub use exit::{ExitStatus, Failure};
 pub use explain::Explanations;

@@ -1,6 +1,8 @@
 //! `blisk model`: the reduced model of a study, and the export of its sector as a bundle.
 
-use std::path::Path;
+use std::path::PathBuf;
+
+use clap::Args;
 
 use super::exit::Failure;
 use super::{ExitStatus, output};
@@ -8,14 +10,23 @@ use crate::model::sector::bundle;
 use crate::settings::{EngineSource, ReducedEngineSource};
 use crate::study::{PipelineError, RotationLoad, Study, load_sector_model};
 
-pub(super) fn command(
-    study: &Path,
-    export: Option<&Path>,
+/// Arguments of `blisk model`.
+#[derive(Debug, Args)]
+pub struct ModelArguments {
+    /// The study file.
+    study: PathBuf,
+    /// Write the sector model as a bundle into this folder.
+    #[arg(long, value_name = "DIR")]
+    pub(super) export: Option<PathBuf>,
+    /// Print JSON.
+    #[arg(long)]
     json: bool,
-) -> Result<ExitStatus, Failure> {
-    let study = Study::read(study)?;
+}
+
+pub(super) fn command(arguments: &ModelArguments) -> Result<ExitStatus, Failure> {
+    let study = Study::read(&arguments.study)?;
     let model = load_sector_model(&study)?;
-    if let Some(folder) = export {
+    if let Some(folder) = &arguments.export {
         bundle::write(&model, folder).map_err(PipelineError::from)?;
         output::message(&format!("wrote the sector bundle {}", folder.display()));
         let shares = model
@@ -37,6 +48,6 @@ pub(super) fn command(
     let engine = ReducedEngineSource.build(&study, &model, None)?;
     let mut report = engine.model_report();
     report.rotation = study.rotation.as_ref().map(RotationLoad::facts);
-    output::result(json, &report)?;
+    output::result(arguments.json, &report)?;
     Ok(ExitStatus::Done)
 }

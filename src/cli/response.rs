@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::Args;
 use serde_json::json;
 
 use super::exit::Failure;
@@ -121,20 +122,41 @@ impl FrequencyGrid {
     }
 }
 
-/// Arguments of the command.
-#[derive(Debug)]
-pub(super) struct ResponseArguments {
-    pub(super) study: PathBuf,
-    pub(super) pattern: PatternArgument,
-    pub(super) load: LoadArgument,
-    pub(super) frequencies: FrequencyGrid,
-    pub(super) out: PathBuf,
-    pub(super) load_case: Option<String>,
-    pub(super) engine_order: Option<u32>,
-    pub(super) standard_deviation: Option<f64>,
-    pub(super) fidelity: FidelityArguments,
-    pub(super) continuation: bool,
-    pub(super) json: bool,
+/// Arguments of `blisk response`.
+#[derive(Debug, Args)]
+pub struct ResponseArguments {
+    /// The study file.
+    study: PathBuf,
+    /// `tuned`, or the id of a pattern of the study.
+    #[arg(long, value_name = "tuned|ID")]
+    pattern: PatternArgument,
+    /// Normal load per sector in N, or a linear limit.
+    #[arg(long, value_name = "N|stuck|slide|free")]
+    load: LoadArgument,
+    /// First and last frequency in Hz, both included, and the number of frequencies.
+    #[arg(long, value_name = "START:STOP:COUNT")]
+    frequencies: FrequencyGrid,
+    /// The file to write: .csv or .parquet.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Load case, where the study has several.
+    #[arg(long, value_name = "NAME")]
+    load_case: Option<String>,
+    /// Engine order, where the study lists several.
+    #[arg(long, value_name = "EO")]
+    engine_order: Option<u32>,
+    /// Standard deviation, where the study lists several.
+    #[arg(long, value_name = "S")]
+    standard_deviation: Option<f64>,
+    /// Which model is solved, and how finely.
+    #[command(flatten)]
+    fidelity: FidelityArguments,
+    /// Follow the curve through its folds, upwards and downwards.
+    #[arg(long)]
+    continuation: bool,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 pub(super) fn command(arguments: &ResponseArguments) -> Result<ExitStatus, Failure> {

@@ -3,6 +3,7 @@
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
@@ -18,21 +19,57 @@ use crate::identity;
 use crate::settings::ReducedEngineSource;
 use crate::study::{PipelineError, Study};
 
-/// Arguments of the command.
-#[derive(Debug)]
-pub(super) struct VerifyArguments {
-    pub(super) target: PathBuf,
-    pub(super) sample: u32,
-    pub(super) seed: Option<u64>,
-    pub(super) question: Question,
-    pub(super) study: Option<PathBuf>,
-    pub(super) threads: Option<u16>,
-    pub(super) json: bool,
+/// Arguments of `blisk verify`.
+#[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
+pub struct VerifyArguments {
+    /// The study file of results/NAME, or a results folder.
+    #[arg(value_name = "STUDY|DIR")]
+    target: PathBuf,
+    /// Number of rows to draw.
+    #[arg(long, value_name = "N", default_value = "10", value_parser = clap::value_parser!(u32).range(1..))]
+    sample: u32,
+    /// Seed of the sample [default: that of the study].
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// Sweep the drawn rows densely instead, and count the peaks that the search missed.
+    ///
+    /// Writes `peak_audit.parquet` into the results folder.
+    #[arg(long)]
+    dense_sweep: bool,
+    /// Integrate one row in time instead, and compare it with harmonic balance.
+    ///
+    /// The row of --scenario and --pattern at its peak frequency, or the first one of the
+    /// sample under friction. Writes no table.
+    #[arg(long, conflicts_with = "dense_sweep")]
+    time_domain: bool,
+    /// Scenario of that row, counted from 0.
+    #[arg(long, value_name = "I", requires_all = ["time_domain", "pattern"])]
+    scenario: Option<usize>,
+    /// Pattern of that row.
+    #[arg(long, value_name = "ID", requires_all = ["time_domain", "scenario"])]
+    pattern: Option<u32>,
+    /// Set damaged files aside, into `damaged/`, and solve again what they held; draws no rows.
+    #[arg(long, conflicts_with_all = ["dense_sweep", "time_domain"])]
+    pub(super) repair: bool,
+    /// Read all files and compare them with their checksums; draws no rows and changes nothing.
+    #[arg(long, conflicts_with_all = ["dense_sweep", "time_domain", "repair"])]
+    integrity: bool,
+    /// Where the inputs lie now: beside this study file [default: that of the last run].
+    #[arg(long, value_name = "FILE")]
+    study: Option<PathBuf>,
+    /// Number of threads [default: those of the scheduler's allocation, else all cores]; results
+    /// do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 /// What is asked of the rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Question {
+enum Question {
     /// Is the peak the same on the full-contact model?
     FullModel,
     /// A higher peak elsewhere?
@@ -46,13 +83,18 @@ pub(super) enum Question {
     Integrity,
 }
 
-impl Question {
-    /// By the flags, of which at most one is set, and the row.
-    pub(super) fn of(dense_sweep: bool, time_domain: bool, row: Option<(usize, u32)>) -> Self {
-        match (dense_sweep, time_domain) {
-            (true, _) => Self::DenseSweep,
-            (_, true) => Self::TimeDomain(row),
-            _ => Self::FullModel,
+impl VerifyArguments {
+    fn question(&self) -> Question {
+        if self.repair {
+            Question::Files
+        } else if self.integrity {
+            Question::Integrity
+        } else if self.dense_sweep {
+            Question::DenseSweep
+        } else if self.time_domain {
+            Question::TimeDomain(self.scenario.zip(self.pattern))
+        } else {
+            Question::FullModel
         }
     }
 }
@@ -65,7 +107,7 @@ pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure
         threads: threads(arguments.threads),
     };
     let progress = RunProgress::new();
-    match arguments.question {
+    match arguments.question() {
         Question::FullModel => {
             let stored = stored()?;
             let report = verify(&stored, &ReducedEngineSource, request, &progress);

@@ -135,14 +135,61 @@ fn page_of_commands() -> String {
     found.expect("docs/commands.md").1
 }
 
+/// The commands under every heading of a text, each once and in its order: of lines that `name` finds a command in.
+fn under_headings(
+    text: &str,
+    heading: impl Fn(&str) -> Option<String>,
+    name: impl Fn(&str) -> Option<String>,
+) -> Vec<(String, Vec<String>)> {
+    let mut groups: Vec<(String, Vec<String>)> = Vec::new();
+    for line in text.lines() {
+        if let Some(heading) = heading(line) {
+            groups.push((heading, Vec::new()));
+        } else if let (Some(name), Some((_, names))) = (name(line), groups.last_mut())
+            && !names.contains(&name)
+        {
+            names.push(name);
+        }
+    }
+    groups.retain(|(_, names)| !names.is_empty());
+    groups
+}
+
 #[test]
-fn the_page_of_commands_has_every_command() {
-    let page = page_of_commands();
+fn the_help_and_the_page_of_commands_have_every_command_under_one_heading() {
+    let groups: Vec<(String, Vec<String>)> = blisk::cli::GROUPS
+        .iter()
+        .map(|(heading, names)| {
+            let names = names.iter().map(|&name| name.to_owned());
+            ((*heading).to_owned(), names.collect())
+        })
+        .collect();
     let known = blisk::cli::Arguments::command();
-    let names = known.get_subcommands().map(clap::Command::get_name);
-    let lacks = |name: &&str| *name != "help" && !page.contains(&format!("\n| `blisk {name}"));
-    let missing: Vec<&str> = names.filter(lacks).collect();
-    assert!(missing.is_empty(), "docs/commands.md lacks {missing:?}");
+    let known = known.get_subcommands().map(clap::Command::get_name);
+    let known: std::collections::BTreeSet<&str> = known.collect();
+    let grouped: Vec<&str> = groups
+        .iter()
+        .flat_map(|(_, names)| names)
+        .map(String::as_str)
+        .collect();
+    assert_eq!(grouped.len(), known.len());
+    assert_eq!(known, grouped.into_iter().collect());
+    let word = |text: &str| text.split([' ', '`']).next().map(str::to_owned);
+    let of_page = under_headings(
+        &page_of_commands(),
+        |line| line.strip_prefix("## ").map(str::to_owned),
+        |line| word(line.strip_prefix("| `blisk ")?),
+    );
+    assert_eq!(of_page, groups);
+    let help = Place::new().run(&["--help"]).stdout;
+    let of_help = under_headings(
+        &help,
+        |line| line.strip_suffix(':').map(str::to_owned),
+        |line| word(line.strip_prefix("  ")?).filter(|name| known.contains(name.as_str())),
+    );
+    assert_eq!(of_help, groups, "{help}");
+    let widest = help.lines().map(|line| line.chars().count()).max();
+    assert!(widest <= Some(100), "{widest:?}");
 }
 
 #[test]
