@@ -59,6 +59,69 @@ const TERMS: &[Term] = &[
         "pattern",
         "one random wheel: the deviations of all its blades; the same in every scenario",
     ),
+    term(
+        "tuned",
+        "the wheel whose blades are all alike, under the same load and excitation",
+    ),
+    term(
+        "at Hz (summary)",
+        "frequency of the peak of the tuned wheel",
+    ),
+    term(
+        "peak amplitude",
+        "the largest amplitude of any blade at any frequency near the resonance, at the first observed node",
+    ),
+    term(
+        "P50, P95, P99",
+        "percentile: 50, 95, 99 % of such wheels have a lower value",
+    ),
+    term(
+        "95 % interval, bounds",
+        "the percentile of all such wheels lies in it with 95 % confidence, whatever its law; failed rows are taken \
+         as infinitely low and high. The summary has it in brackets",
+    ),
+    term(
+        "ok, failed (summary)",
+        "rows with a result, and rows without one; a failed row is counted and never dropped, and its column status \
+         says how its solution ended",
+    ),
+    term(
+        "separated (summary)",
+        "share of the wheels of which at least one contact pair has no normal load at some instant, at the peak",
+    ),
+    term(
+        "not estimable, not settled, -",
+        "not estimable: too few patterns for an interval of this percentile; not settled: neither stability nor \
+         instability was shown; -: no number",
+    ),
+    term(
+        "numerical error, stated error",
+        "bound on the relative error of a row by its harmonics, samples, basis and peak search; not of the model that \
+         was given",
+    ),
+    term(
+        "warning (summary)",
+        "what a reader of the numbers must know, and what can be done about it; the page docs/results.md has a table \
+         of all warnings",
+    ),
+    term(
+        "optimum, lowest P95 amplitude (summary)",
+        "the normal load with the lowest percentile among those studied; enclosed if a lower and a higher load were \
+         studied. The command optimum searches between them",
+    ),
+    term(
+        "bar (validation report)",
+        "limit, fixed beforehand, that a figure must keep",
+    ),
+    term(
+        "verdict (validation report, optimum, stats --tails)",
+        "outcome of a figure against its bar or a claim: met or not, confirmed, refuted or open; of optimum: which \
+         loads could be the best; of a tail fit: whether the sample speaks against it",
+    ),
+    term(
+        "crossing",
+        "the speed 60 f / EO at which the engine order EO meets the frequency f",
+    ),
 ];
 
 /// The terms that every one of `words` occurs in, in any case of letters; all for no words.
