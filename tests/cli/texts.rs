@@ -240,6 +240,24 @@ fn explain_finds_keys_and_terms_by_words_of_their_names_and_meanings() {
     // One word with two meanings.
     let full = output(&place, &["explain", "full"]);
     assert!(full.contains("full (column contact)") && full.contains("full (option --fidelity"));
+    // Words of the headings of a summary, and of the pages about it.
+    for (word, term) in [
+        ("tuned", "\ntuned\n"),
+        ("at Hz", "at Hz (summary)"),
+        ("P95", "P50, P95, P99"),
+        ("failed", "ok, failed (summary)"),
+        ("separated", "separated (summary)"),
+        ("bounds", "95 % interval, bounds"),
+        ("optimum", "optimum, lowest P95 amplitude (summary)"),
+        ("bar", "bar (validation report)"),
+        ("verdict", "verdict (validation report"),
+        ("stated error", "numerical error, stated error"),
+        ("not estimable", "not estimable, not settled"),
+        ("warning", "warning (summary)"),
+    ] {
+        let found = format!("\n{}", output(&place, &["explain", word]));
+        assert!(found.contains(term), "{word}: {found}");
+    }
     assert_eq!(place.run(&["explain", "no-such-word"]).code, 2);
 }
 

@@ -439,9 +439,9 @@ fn caption(
     );
     let mut limits: Vec<&str> = Vec::new();
     for (name, meaning) in [
-        ("slide", "slide: friction gone"),
-        ("stuck", "stuck: contact welded"),
-        ("free", "free: no contact springs"),
+        ("slide", "slide (friction gone)"),
+        ("stuck", "stuck (contact welded)"),
+        ("free", "free (no contact springs)"),
     ] {
         if loads.iter().any(|load| load.contact == name) {
             limits.push(meaning);
