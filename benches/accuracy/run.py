@@ -46,7 +46,7 @@ def errors(folder):
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--patterns", type=int, default=12)
-    arguments.add_argument("--repeats", type=int, default=3)
+    arguments.add_argument("--repeats", type=int, default=2)
     options = arguments.parse_args()
     blisk = os.environ.get("BLISK", ROOT / "target" / "release" / "blisk")
     text = (ROOT / "studies" / "quickstart.toml").read_text()

@@ -70,10 +70,8 @@ def main():
     blisk = os.environ.get("BLISK", ROOT / "target" / "release" / "blisk")
     base = {"sectors": 24, "model": {}, "harmonics": ()}
     cases = [("as in quickstart", {})]
-    cases += [(f"{n} sectors", {"sectors": n}) for n in (8, 12, 48, 92)]
-    cases += [
-        (f"{n} elements along the flange", {"model": {"flange_axial_elements": n}}) for n in (2, 3)
-    ]
+    cases += [(f"{n} sectors", {"sectors": n}) for n in (8, 12, 48)]
+    cases += [("3 elements along the flange", {"model": {"flange_axial_elements": 3}})]
     cases += [
         ("harmonic 1", {"harmonics": (1,)}),
         ("harmonics 1, 3", {"harmonics": (1, 3)}),

@@ -60,11 +60,11 @@ const TERMS: &[Term] = &[
         "one random wheel: the deviations of all its blades; the same in every scenario",
     ),
     term(
-        "tuned",
+        "tuned wheel",
         "the wheel whose blades are all alike, under the same load and excitation",
     ),
     term(
-        "at Hz (summary)",
+        "peak, at Hz (summary)",
         "frequency of the peak of the tuned wheel",
     ),
     term(
@@ -72,21 +72,21 @@ const TERMS: &[Term] = &[
         "the largest amplitude of any blade at any frequency near the resonance, at the first observed node",
     ),
     term(
-        "P50, P95, P99",
-        "percentile: 50, 95, 99 % of such wheels have a lower value",
+        "percentile P50, P95, P99",
+        "50, 95, 99 % of such wheels have a lower value",
     ),
     term(
-        "95 % interval, bounds",
+        "bounds, 95 % interval",
         "the percentile of all such wheels lies in it with 95 % confidence, whatever its law; failed rows are taken \
          as infinitely low and high. The summary has it in brackets",
     ),
     term(
-        "ok, failed (summary)",
+        "status: ok, failed (summary)",
         "rows with a result, and rows without one; a failed row is counted and never dropped, and its column status \
          says how its solution ended",
     ),
     term(
-        "separated (summary)",
+        "separation: separated (summary)",
         "share of the wheels of which at least one contact pair has no normal load at some instant, at the peak",
     ),
     term(
@@ -95,7 +95,7 @@ const TERMS: &[Term] = &[
          instability was shown; -: no number",
     ),
     term(
-        "numerical error, stated error",
+        "stated error, numerical error",
         "bound on the relative error of a row by its harmonics, samples, basis and peak search; not of the model that \
          was given",
     ),
@@ -114,9 +114,9 @@ const TERMS: &[Term] = &[
         "limit, fixed beforehand, that a figure must keep",
     ),
     term(
-        "verdict (validation report, optimum, stats --tails)",
-        "outcome of a figure against its bar or a claim: met or not, confirmed, refuted or open; of optimum: which \
-         loads could be the best; of a tail fit: whether the sample speaks against it",
+        "verdict (validation report)",
+        "outcome of setting a figure against a bar (met or not), or against a claim about dampers (confirmed, refuted or \
+         open)",
     ),
     term(
         "crossing",
@@ -124,14 +124,17 @@ const TERMS: &[Term] = &[
     ),
 ];
 
-/// The terms that every one of `words` occurs in, in any case of letters; all for no words.
+/// The terms that every one of `words` occurs in, in any case of letters; all for no words. Those that are named by
+/// them come before those that mention them.
 #[must_use]
 pub fn terms_about(words: &str) -> Vec<Term> {
-    TERMS
+    let mut found: Vec<Term> = TERMS
         .iter()
         .filter(|term| mentions(&[term.word, term.meaning], words))
         .copied()
-        .collect()
+        .collect();
+    found.sort_by_key(|term| !mentions(&[term.word], words));
+    found
 }
 
 /// The term of this word.

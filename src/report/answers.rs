@@ -1,8 +1,8 @@
 //! The answers that a report opens with: which normal load, how sure, and how much of it is numerical error.
 
-use super::scenario_words::loads_and_limits;
 use super::words::{
-    LengthUnit, four_digits, load_per_sector, load_with_unit, percent_words, share_words,
+    LengthUnit, four_digits, load_per_sector, load_with_unit, loads_and_limits, percent_words,
+    share_words,
 };
 use super::{
     BestLoads, CommonErrors, GroupReport, LoadChoice, MeasuredPeak, NumericalError,

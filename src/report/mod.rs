@@ -17,7 +17,6 @@ mod peak_audit;
 mod plan;
 mod plot;
 mod rotation;
-mod scenario_words;
 mod stated_errors;
 mod statistics_csv;
 mod study_echo;

@@ -1,9 +1,9 @@
 //! What the first screen says: three numbers and whether anything is wrong.
 
 use crate::population::statistics::CONFIDENCE;
-use crate::report::scenario_words::loads_and_limits;
 use crate::report::words::{
-    LengthUnit, force, four_digits, load_with_unit, percent_words, share_words,
+    LengthUnit, force, four_digits, load_with_unit, loads_and_limits, percent_words,
+    scenarios_in_words, share_words,
 };
 use crate::report::{
     GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, Warning, setting,
@@ -276,7 +276,7 @@ pub(super) fn health(report: &StudyReport) -> Health {
     let (costly, others): (Vec<&Warning>, Vec<&Warning>) =
         { summary.warnings.iter() }.partition(|warning| warning.costs_a_statistic());
     let ordered: Vec<&Warning> = costly.into_iter().chain(others).collect();
-    let mut findings = Warning::headlines(&ordered, &|own| summary.scenarios_in_words(own));
+    let mut findings = Warning::headlines(&ordered, &|own| scenarios_in_words(summary, own));
     if summary.misses_its_target() {
         findings.insert(
             0,

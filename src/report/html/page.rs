@@ -9,7 +9,7 @@ use super::tables;
 use crate::input::term_of;
 use crate::report::figures::friction_words;
 use crate::report::plot::{escaped, page_style};
-use crate::report::words::tied;
+use crate::report::words::{scenarios_in_words, tied};
 use crate::report::{FIGURES, FigureName, GroupReport, StudyReport, Wheels, figure, setting};
 
 /// Style of everything but the plots.
@@ -86,7 +86,7 @@ fn warnings(report: &StudyReport) -> String {
         return String::new();
     }
     let mut items = String::new();
-    let named = |own: &[usize]| report.summary.scenarios_in_words(own);
+    let named = |own: &[usize]| scenarios_in_words(&report.summary, own);
     for warning in &report.summary.warnings {
         let _ = writeln!(
             items,
@@ -107,11 +107,11 @@ const TERMS: [&str; 12] = [
     "free (contact, load)",
     "pattern",
     "amplification factor",
-    "tuned",
+    "tuned wheel",
     "peak amplitude",
-    "P50, P95, P99",
-    "95 % interval, bounds",
-    "numerical error, stated error",
+    "percentile P50, P95, P99",
+    "bounds, 95 % interval",
+    "stated error, numerical error",
     "crossing",
 ];
 
