@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures what a row of the built-in wheel costs against sectors, contact pairs, modes, harmonics, patterns and threads.
+"""Measures what a row of the built-in wheel costs against sectors, contact pairs, harmonics, patterns and threads.
 
 A row is a peak with its error columns under one normal load. Every study is `studies/quickstart.toml` with two loads and
 one thing changed; its model is reduced by a first run. The cost of a row is the difference in processor time of two runs
