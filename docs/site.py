@@ -150,4 +150,7 @@ def main(folder, mdbook="mdbook"):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) not in (2, 3) or sys.argv[1].startswith("-"):
+        # A folder named like an option would be made in the repository.
+        sys.exit(__doc__)
     sys.exit(main(*sys.argv[1:]))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures what a row of the built-in wheel costs against sectors, contact pairs, modes, harmonics, patterns and threads.
+"""Measures what a row of the built-in wheel costs against sectors, contact pairs, harmonics, patterns and threads.
 
 A row is a peak with its error columns under one normal load. Every study is `studies/quickstart.toml` with two loads and
 one thing changed; its model is reduced by a first run. The cost of a row is the difference in processor time of two runs
@@ -35,7 +35,7 @@ def study(sectors, model, harmonics, patterns):
     for pattern, replacement in changes:
         text, count = re.subn(pattern, replacement, text, count=1)
         assert count == 1, pattern
-    return f"{text}\n[solver]\nharmonics = {list(harmonics)}\n"
+    return f"{text}\n[solver]\nharmonics = {list(harmonics)}\n" if harmonics else text
 
 
 def run(blisk, text, scratch, model=None, threads=1):
@@ -68,16 +68,14 @@ def main():
     arguments.add_argument("--patterns", type=int, default=10, help="of the longer run")
     options = arguments.parse_args()
     blisk = os.environ.get("BLISK", ROOT / "target" / "release" / "blisk")
-    base = {"sectors": 24, "model": {}, "harmonics": (1, 3, 5, 7, 9)}
+    base = {"sectors": 24, "model": {}, "harmonics": ()}
     cases = [("as in quickstart", {})]
-    cases += [(f"{n} sectors", {"sectors": n}) for n in (8, 12, 48, 92)]
-    cases += [
-        (f"{n} elements along the flange", {"model": {"flange_axial_elements": n}}) for n in (2, 3)
-    ]
+    cases += [(f"{n} sectors", {"sectors": n}) for n in (8, 12, 48)]
+    cases += [("3 elements along the flange", {"model": {"flange_axial_elements": 3}})]
     cases += [
         ("harmonic 1", {"harmonics": (1,)}),
         ("harmonics 1, 3", {"harmonics": (1, 3)}),
-        ("harmonics 1 to 10", {"harmonics": range(1, 11)}),
+        ("harmonics 1, 3, 5, 7, 9", {"harmonics": (1, 3, 5, 7, 9)}),
     ]
     print("| study | model, s | row, ms |\n| --- | ---: | ---: |")
     with tempfile.TemporaryDirectory() as scratch:
@@ -86,7 +84,7 @@ def main():
             print(f"| {name} | {model:.1f} | {row:.0f} |", flush=True)
         print("\n| patterns, threads | processor time, s | elapsed, s |\n| --- | ---: | ---: |")
         _, _, model = run(blisk, study(patterns=FEW, **base), scratch)
-        for patterns, threads in ((10, 1), (40, 1), (160, 1), (160, 2)):
+        for patterns, threads in ((10, 1), (40, 1), (40, 2)):
             used, elapsed, _ = run(blisk, study(patterns=patterns, **base), scratch, model, threads)
             print(f"| {patterns}, {threads} | {used:.1f} | {elapsed:.1f} |", flush=True)
 

@@ -59,16 +59,82 @@ const TERMS: &[Term] = &[
         "pattern",
         "one random wheel: the deviations of all its blades; the same in every scenario",
     ),
+    term(
+        "tuned wheel",
+        "the wheel whose blades are all alike, under the same load and excitation",
+    ),
+    term(
+        "peak, at Hz (summary)",
+        "frequency of the peak of the tuned wheel",
+    ),
+    term(
+        "peak amplitude",
+        "the largest amplitude of any blade at any frequency near the resonance, at the first observed node",
+    ),
+    term(
+        "percentile P50, P95, P99",
+        "50, 95, 99 % of such wheels have a lower value",
+    ),
+    term(
+        "bounds, 95 % interval",
+        "the percentile of all such wheels lies in it with 95 % confidence, whatever its law; failed rows are taken \
+         as infinitely low and high. The summary has it in brackets",
+    ),
+    term(
+        "status: ok, failed (summary)",
+        "rows with a result, and rows without one; a failed row is counted and never dropped, and its column status \
+         says how its solution ended",
+    ),
+    term(
+        "separation: separated (summary)",
+        "share of the wheels of which at least one contact pair has no normal load at some instant, at the peak",
+    ),
+    term(
+        "not estimable, not settled, -",
+        "not estimable: too few patterns for an interval of this percentile; not settled: neither stability nor \
+         instability was shown; -: no number",
+    ),
+    term(
+        "stated error, numerical error",
+        "bound on the relative error of a row by its harmonics, samples, basis and peak search; not of the model that \
+         was given",
+    ),
+    term(
+        "warning (summary)",
+        "what a reader of the numbers must know, and what can be done about it; the page docs/results.md has a table \
+         of all warnings",
+    ),
+    term(
+        "optimum, lowest P95 amplitude (summary)",
+        "the normal load with the lowest percentile among those studied; enclosed if a lower and a higher load were \
+         studied. The command optimum searches between them",
+    ),
+    term(
+        "bar (validation report)",
+        "limit, fixed beforehand, that a figure must keep",
+    ),
+    term(
+        "verdict (validation report)",
+        "outcome of setting a figure against a bar (met or not), or against a claim about dampers (confirmed, refuted or \
+         open)",
+    ),
+    term(
+        "crossing",
+        "the speed 60 f / EO at which the engine order EO meets the frequency f",
+    ),
 ];
 
-/// The terms that every one of `words` occurs in, in any case of letters; all for no words.
+/// The terms that every one of `words` occurs in, in any case of letters; all for no words. Those that are named by
+/// them come before those that mention them.
 #[must_use]
 pub fn terms_about(words: &str) -> Vec<Term> {
-    TERMS
+    let mut found: Vec<Term> = TERMS
         .iter()
         .filter(|term| mentions(&[term.word, term.meaning], words))
         .copied()
-        .collect()
+        .collect();
+    found.sort_by_key(|term| !mentions(&[term.word], words));
+    found
 }
 
 /// The term of this word.

@@ -1,7 +1,8 @@
 //! The answers that a report opens with: which normal load, how sure, and how much of it is numerical error.
 
 use super::words::{
-    LengthUnit, four_digits, load_per_sector, load_with_unit, percent_words, share_words,
+    LengthUnit, four_digits, load_per_sector, load_with_unit, loads_and_limits, percent_words,
+    share_words,
 };
 use super::{
     BestLoads, CommonErrors, GroupReport, LoadChoice, MeasuredPeak, NumericalError,
@@ -254,15 +255,17 @@ impl Writer<'_> {
                 format!("{}{of_sample}", self.load_of(load.scenario.scenario))
             })
             .collect();
-        let count = best.loads.len();
+        let compared_loads =
+            { best.loads.iter() }.map(|load| self.scenario(load.scenario.scenario));
+        let count = loads_and_limits(compared_loads);
         let compared = "all were compared on the same patterns";
         let mut reasons = vec![if others.is_empty() {
             format!(
-                "With 95 % confidence none of the {count} loads studied has a lower P{percent}; {compared}."
+                "With 95 % confidence none of the {count} studied has a lower P{percent}; {compared}."
             )
         } else {
             format!(
-                "The P{percent} at {} is not significantly higher: with 95 % confidence the best of the {count} loads \
+                "The P{percent} at {} is not significantly higher: with 95 % confidence the best of the {count} \
                  studied is among these; {compared}.",
                 listed(&others)
             )

@@ -37,7 +37,7 @@ pub struct StudyPlan {
     /// Time of the patterns after which the rule is expected to stop; null without one, or where the
     /// pilot does not say.
     pub expected_time: Option<PlannedTime>,
-    /// Largest memory, bytes: that of the pilot and the statistics of all rows; null where the system
+    /// Largest memory, bytes: that of the pilot and what a run grows by with all rows; null where the system
     /// does not say.
     pub memory_bytes: Option<u64>,
     /// Space on disk.

@@ -160,9 +160,14 @@ pub enum Wheels {
 /// Load case, engine order and standard deviation of a group, in words.
 #[must_use]
 pub fn setting(group: &GroupReport) -> String {
-    excitation_and_deviation(
+    let words = excitation_and_deviation(
         group.load_case,
         group.engine_order,
         group.standard_deviation,
+    );
+    // What deviates: a page is read without the study beside it.
+    words.replace(
+        "standard deviation",
+        "standard deviation of blade stiffness",
     )
 }

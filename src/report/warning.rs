@@ -9,6 +9,9 @@ use super::NumericalFinding;
 /// Largest number of wheels of a file that a report names one by one.
 pub const MOST_WHEELS_NAMED: u64 = 12;
 
+/// Says scenarios, of which it gets the indices, in the words of a reader.
+pub(super) type Named<'a> = &'a dyn Fn(&[usize]) -> String;
+
 /// A warning about the results of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "warning", rename_all = "snake_case")]
@@ -107,14 +110,63 @@ impl Warning {
         )
     }
 
-    /// What is wrong in a few words; [`fmt::Display`] adds what to do about it.
+    /// What is wrong in a few words, a line each; [`Warning::in_words`] adds what to do about it. Neighbouring
+    /// percentiles that have no value for one reason share a line.
+    pub(super) fn headlines(warnings: &[&Self], named: Named<'_>) -> Vec<String> {
+        let alike = |a: &&Self, b: &&Self| match (a, b) {
+            (
+                Self::TooManyFailures { scenarios: a, .. },
+                Self::TooManyFailures { scenarios: b, .. },
+            ) => a == b,
+            (Self::TooFewPatterns { needed: a, .. }, Self::TooFewPatterns { needed: b, .. }) => {
+                a == b
+            }
+            _ => false,
+        };
+        let lines = warnings.chunk_by(alike);
+        lines
+            .map(|line| {
+                let percentiles = line.iter().filter_map(|own| own.percentile());
+                let percentiles: Vec<String> =
+                    percentiles.map(|percent| format!("P{percent}")).collect();
+                line[0].headline(&percentiles, named)
+            })
+            .collect()
+    }
+
+    /// Scenarios of which failures leave a percentile or a tuned reference without value.
     #[must_use]
-    pub fn headline(&self) -> String {
+    pub(super) fn costly_scenarios(&self) -> &[usize] {
+        match self {
+            Self::TooManyFailures { scenarios, .. } | Self::TunedFailures { scenarios } => {
+                scenarios
+            }
+            _ => &[],
+        }
+    }
+
+    /// The percentile that has no value.
+    fn percentile(&self) -> Option<u32> {
+        match self {
+            Self::TooFewPatterns { percent, .. } | Self::TooManyFailures { percent, .. } => {
+                Some(*percent)
+            }
+            _ => None,
+        }
+    }
+
+    /// What is wrong in a few words; of warnings about a percentile, those of all `percentiles`.
+    fn headline(&self, percentiles: &[String], named: Named<'_>) -> String {
+        let (have, need) = match percentiles.len() {
+            1 => ("has", "it needs"),
+            _ => ("have", "they need"),
+        };
+        let percentiles = percentiles.join(", ");
         let share = |ratio: f64| format!("{:.2} %", 100.0 * ratio);
         match self {
             Self::SeparationWithFewHarmonics { scenarios, .. } => format!(
-                "contacts separate in scenarios {}, which the harmonics cannot show",
-                list(scenarios)
+                "contacts separate under {}, which the harmonics cannot show",
+                named(scenarios)
             ),
             Self::BeyondTolerance { rows, planned, .. } => {
                 format!("{rows} of {planned} rows state a numerical error beyond their tolerance")
@@ -148,49 +200,48 @@ impl Warning {
                 format!("{failed} of {planned} rows have no result")
             }
             Self::TunedFailures { scenarios } => {
-                format!("no tuned peak in scenarios {}", list(scenarios))
+                format!("no tuned peak under {}", named(scenarios))
             }
-            Self::TooFewPatterns {
-                percent, needed, ..
-            } => {
-                format!("P{percent} has no value: it needs {needed} patterns")
+            Self::TooFewPatterns { needed, .. } => {
+                format!("{percentiles} {have} no value: {need} {needed} patterns")
             }
-            Self::TooManyFailures { percent, scenarios } => format!(
-                "P{percent} has no value in scenarios {}: too many rows failed",
-                list(scenarios)
+            Self::TooManyFailures { scenarios, .. } => format!(
+                "{percentiles} {have} no value under {}: too many rows failed",
+                named(scenarios)
             ),
         }
     }
-}
 
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    /// What is wrong and what to do about it, with the scenarios of the study by load and setting.
+    pub(super) fn in_words(&self, named: Named<'_>) -> String {
+        self.text(&|_, scenarios| format!("under {}", named(scenarios)))
+    }
+
+    /// What is wrong and what to do about it; `under` says a preposition and scenarios.
+    fn text(&self, under: &dyn Fn(&str, &[usize]) -> String) -> String {
         match self {
             Self::SeparationWithFewHarmonics {
                 scenarios,
                 largest_fraction,
-            } => write!(
-                f,
-                "contacts separate in scenarios {} (up to {:.0} % of the pairs of a wheel): \
+            } => format!(
+                "contacts separate {} (up to {:.0} % of the pairs of a wheel): \
                  harmonic 1 or odd harmonics alone cannot represent that; raise the normal load, or \
                  set solver.harmonics = [0, 1, 2, 3]",
-                list(scenarios),
+                under("in", scenarios),
                 100.0 * largest_fraction
             ),
             Self::BeyondTolerance {
                 rows,
                 planned,
                 largest_stated_error,
-            } => write!(
-                f,
+            } => format!(
                 "{rows} of {planned} rows state a sampling or harmonic error beyond its tolerance \
                  (stated errors up to {:.1} %); take solver.harmonics = \"auto\" with \
                  solver.rows_beyond_tolerance = \"resolve\", a larger set, or accept it by a larger \
                  solver.harmonic_tolerance",
                 100.0 * largest_stated_error
             ),
-            Self::ReplacedBasis { taken } => write!(
-                f,
+            Self::ReplacedBasis { taken } => format!(
                 "basis = \"stick_attachment\" is replaced: rows are on {taken}, which has no modes to choose; take \
                  basis = \"auto\", or leave it out"
             ),
@@ -198,48 +249,42 @@ impl fmt::Display for Warning {
                 looked_at,
                 rows,
                 tuned,
-            } => f.write_str(&unstable_motions(*looked_at, *rows, tuned)),
+            } => unstable_motions(*looked_at, *rows, tuned, under),
             Self::BasisError {
                 basis,
                 error,
                 wanted,
-            } => write!(
-                f,
+            } => format!(
                 "basis {basis} misses the tuned peak by {:.2} %, more than reduction.error = {wanted}; \
                  take more modes or basis = \"auto\", or accept it by a larger reduction.error",
                 100.0 * error
             ),
-            Self::CraigBamptonModes { reach } => write!(
-                f,
+            Self::CraigBamptonModes { reach } => format!(
                 "the fixed-interface modes reach only {reach:.2} times the frequency that they should \
                  (6 times that of the tuned peak, 1.5 times that of its harmonics); raise \
                  reduction.craig_bampton_modes"
             ),
-            Self::CraigBamptonError { error, wanted } => write!(
-                f,
+            Self::CraigBamptonError { error, wanted } => format!(
                 "more fixed-interface modes change the tuned peak by {:.2} %, more than \
                  reduction.error = {wanted}; leave reduction.craig_bampton_modes out or raise it, or \
                  accept it by a larger reduction.error",
                 100.0 * error
             ),
-            Self::NumericalError(finding) => finding.fmt(f),
-            Self::Failures { failed, planned } => write!(
-                f,
+            Self::NumericalError(finding) => finding.to_string(),
+            Self::Failures { failed, planned } => format!(
                 "{failed} of {planned} rows have no result; the bounds take them as infinitely low \
                  and infinitely high; manifest.json counts them by status"
             ),
-            Self::TunedFailures { scenarios } => write!(
-                f,
-                "the tuned wheel of scenarios {} has no peak, so these have no amplification factor; \
+            Self::TunedFailures { scenarios } => format!(
+                "the tuned wheel {} has no peak, so these have no amplification factor; \
                  widen solver.frequency_band_hz or raise solver.samples_per_period",
-                list(scenarios)
+                under("of", scenarios)
             ),
             Self::TooFewPatterns {
                 percent,
                 needed,
                 wheels_in_file: None,
-            } => write!(
-                f,
+            } => format!(
                 "P{percent} is not estimable: a 95 % interval needs at least {needed} patterns; raise \
                  study.patterns and run again, only the new ones are solved"
             ),
@@ -247,30 +292,40 @@ impl fmt::Display for Warning {
                 percent,
                 needed,
                 wheels_in_file: Some(wheels),
-            } => write!(
-                f,
+            } => format!(
                 "P{percent} is not estimable: a 95 % interval needs at least {needed} wheels, mistuning.file holds \
                  {wheels}; {}, or put more wheels into the file",
                 read_each_wheel(*wheels)
             ),
-            Self::TooManyFailures { percent, scenarios } => write!(
-                f,
-                "P{percent} of scenarios {} has no value: too many rows failed; see their status in \
+            Self::TooManyFailures { percent, scenarios } => format!(
+                "P{percent} {} has no value: too many rows failed; see their status in \
                  responses.parquet",
-                list(scenarios)
+                under("of", scenarios)
             ),
         }
     }
 }
 
+/// With the scenarios by their numbers, as tables have them.
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text(&|of, scenarios| format!("{of} scenarios {}", list(scenarios))))
+    }
+}
+
 /// Which motions are unstable, and what follows from it.
-fn unstable_motions(looked_at: u64, rows: u64, tuned: &[usize]) -> String {
+fn unstable_motions(
+    looked_at: u64,
+    rows: u64,
+    tuned: &[usize],
+    under: &dyn Fn(&str, &[usize]) -> String,
+) -> String {
     let mut motions = Vec::new();
     if rows > 0 {
         motions.push(format!("of {rows} of the {looked_at} rows looked at"));
     }
     if !tuned.is_empty() {
-        motions.push(format!("of the tuned wheel of scenarios {}", list(tuned)));
+        motions.push(format!("of the tuned wheel {}", under("of", tuned)));
     }
     format!(
         "the motions {} are unstable: the wheel does not stay on them, and its amplitude in time differs, by a few per cent \

@@ -29,7 +29,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 26] = [
+const NOT_RUN: [(&str, &str); 27] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -70,6 +70,10 @@ const NOT_RUN: [(&str, &str); 26] = [
         "needs the other programs that it measures",
     ),
     ("python3 benches/scaling/run.py", "measures for minutes"),
+    (
+        "python3 benches/accuracy/run.py",
+        "measures for minutes, and needs pyarrow",
+    ),
     (
         "python3 docs/site.py",
         "needs mdBook; the stage site of .ci/run runs it",

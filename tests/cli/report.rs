@@ -424,7 +424,7 @@ fn several_engine_orders_are_sections_of_their_own_and_failures_are_accounted_fo
     let page = read(&place, "results/small/report.html");
     assert_well_formed(&page);
     assert!(page.contains("invalid_pattern"));
-    assert!(page.contains("engine order 1, standard deviation 50 %"));
+    assert!(page.contains("engine order 1, standard deviation of blade stiffness 50 %"));
     assert!(page.contains("Too many rows failed"));
     let ended = place.run(&["plot", "results/small", "amplitude"]);
     assert_eq!(ended.code, 2);

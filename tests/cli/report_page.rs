@@ -239,6 +239,13 @@ fn the_first_screen_says_whether_anything_is_wrong() {
     // What costs a percentile comes first.
     let first = health.split("<li>").nth(1).expect("a finding");
     assert!(first.contains("too many rows failed"), "{health}");
+    // The failures are of the second deviation, and a reader knows no scenario by its number.
+    assert!(health.contains("in another setting"), "{health}");
+    assert!(
+        first.contains("under all loads (standard deviation 50"),
+        "{health}"
+    );
+    assert!(!page.contains("scenarios 2, 3"), "a scenario by its number");
     let all = between(&page, "<section id=\"warnings\">", "</section>");
     assert!(all.contains(&failed), "{all}");
 }

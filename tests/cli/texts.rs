@@ -240,6 +240,29 @@ fn explain_finds_keys_and_terms_by_words_of_their_names_and_meanings() {
     // One word with two meanings.
     let full = output(&place, &["explain", "full"]);
     assert!(full.contains("full (column contact)") && full.contains("full (option --fidelity"));
+    // Words of the headings of a summary, and of the pages about it.
+    for (word, term) in [
+        ("tuned", "\ntuned wheel\n"),
+        ("at Hz", "peak, at Hz (summary)"),
+        ("P95", "percentile P50, P95, P99"),
+        ("failed", "status: ok, failed (summary)"),
+        ("separated", "separation: separated (summary)"),
+        ("bounds", "bounds, 95 % interval"),
+        ("optimum", "optimum, lowest P95 amplitude (summary)"),
+        ("bar", "bar (validation report)"),
+        ("verdict", "verdict (validation report)"),
+        ("stated error", "stated error, numerical error"),
+        ("not estimable", "not estimable, not settled"),
+        ("warning", "warning (summary)"),
+    ] {
+        let found = format!("\n{}", output(&place, &["explain", word]));
+        // What has the word in its name comes before what mentions it.
+        let first = found.split("  meaning").next();
+        assert!(
+            first.is_some_and(|first| first.contains(term)),
+            "{word}: {found}"
+        );
+    }
     assert_eq!(place.run(&["explain", "no-such-word"]).code, 2);
 }
 

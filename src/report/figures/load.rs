@@ -20,6 +20,8 @@ const SLOT: f64 = 48.0;
 const LOGARITHMIC_FROM: f64 = 4.0;
 /// Share of the largest value below which the smallest one makes an axis begin at zero.
 const FROM_ZERO: f64 = 0.4;
+/// Distance between the marks of a load, and the share of the distance of two loads that it is at most.
+const ASIDE: (f64, f64) = (8.0, 0.22);
 /// Percentiles drawn: in percent, class, mark.
 const DRAWN: [(u32, &str, Mark); 3] = [
     (99, "extreme", Mark::Diamond),
@@ -33,6 +35,8 @@ pub(super) struct LoadAxis {
     axis: Axis,
     /// Whether there is one load alone, which then stands in the middle.
     alone: bool,
+    /// Distance between the marks of a load, which would hide each other at one place.
+    aside: f64,
 }
 
 impl LoadAxis {
@@ -48,25 +52,34 @@ impl LoadAxis {
         let has = |names: &[&str]| loads.iter().any(|load| names.contains(&load.contact));
         let left = SIDES.0
             + if has(&["slide", "free"]) {
-                1.4 * SLOT
+                1.6 * SLOT
             } else {
                 0.5 * SLOT
             };
         let right = SIDES.1
             - if has(&["stuck"]) {
-                1.4 * SLOT
+                1.6 * SLOT
             } else {
                 0.5 * SLOT
             };
-        Self {
+        let mut places = Self {
             alone: loads.len() == 1,
+            aside: ASIDE.0,
             axis: Axis {
                 scale,
                 low,
                 high,
                 ends: (left, right),
             },
-        }
+        };
+        let mut taken: Vec<f64> = loads.iter().map(|load| places.at(load)).collect();
+        taken.sort_unstable_by(f64::total_cmp);
+        let distances = taken.windows(2).map(|two| two[1] - two[0]);
+        let closest = distances.filter(|distance| *distance > 0.0);
+        places.aside = closest.fold(places.aside, |aside, distance| {
+            aside.min(ASIDE.1 * distance)
+        });
+        places
     }
 
     pub(super) fn title(&self) -> &'static str {
@@ -88,15 +101,21 @@ impl LoadAxis {
 
     /// A tick per load; the names of those that would touch are left out.
     pub(super) fn ticks(&self, svg: &mut Svg, frame: &Frame<'_>, loads: &[&ScenarioSummary]) {
+        // Limits first, since no scale tells what they are.
         let mut ordered: Vec<&&ScenarioSummary> = loads.iter().collect();
-        ordered.sort_by(|a, b| self.at(a).total_cmp(&self.at(b)));
-        let mut free_from = f64::NEG_INFINITY;
+        ordered.sort_by(|a, b| {
+            let newtons = |load: &ScenarioSummary| load.normal_load_n.is_some();
+            let limits_first = newtons(a).cmp(&newtons(b));
+            limits_first.then(self.at(a).total_cmp(&self.at(b)))
+        });
+        let mut taken: Vec<(f64, f64)> = Vec::new();
         for load in ordered {
             let (x, name) = (self.at(load), load_words(load.contact, load.normal_load_n));
-            let half = 4.6 * name.chars().count() as f64;
-            let name = if x - half < free_from { "" } else { &name };
+            let half = 4.8 * name.chars().count() as f64;
+            let touches = |&(left, right): &(f64, f64)| x - half < right && left < x + half;
+            let name = if taken.iter().any(touches) { "" } else { &name };
             if !name.is_empty() {
-                free_from = x + half;
+                taken.push((x - half, x + half));
             }
             frame.x_tick(svg, x, name);
         }
@@ -205,7 +224,16 @@ pub(super) fn by_load(
     }
     curves(&mut svg, &frame, &x, &drawn);
     points(&mut svg, &frame, &x, &drawn);
-    legend(&mut svg, &entries(&drawn));
+    let mut entries = entries(&drawn);
+    let percent = choice.map(|choice| percent_words(choice.percent));
+    let lowest = percent.map(|percent| format!("lowest P{percent}"));
+    if let (Some(lowest), true) = (&lowest, amplitude) {
+        entries.push(LegendEntry::Area("chosen", lowest));
+        if choice.is_some_and(|choice| choice.best.is_some()) {
+            entries.push(LegendEntry::Area("could", "could be lowest"));
+        }
+    }
+    legend(&mut svg, &entries);
     let what = if amplitude {
         "Peak amplitude"
     } else {
@@ -215,7 +243,7 @@ pub(super) fn by_load(
         name,
         title: format!("{what} against damper normal load"),
         setting: setting(group),
-        caption: caption(amplitude, choice, report.summary.patterns),
+        caption: caption(amplitude, choice, report.summary.patterns, &loads),
         height: HEIGHT,
         body: svg.into_body(),
     })
@@ -255,6 +283,17 @@ impl Load<'_> {
     }
 }
 
+/// How far the mark of a percentile stands from the place of its load: those that are drawn are centred on it, the
+/// highest last.
+fn aside(x: &LoadAxis, drawn: &[Load<'_>], percent: u32) -> f64 {
+    let shown = DRAWN.iter().rev().map(|&(percent, ..)| percent);
+    let shown: Vec<u32> = shown
+        .filter(|&percent| drawn.iter().any(|load| load.value(percent).is_some()))
+        .collect();
+    let place = shown.iter().take_while(|&&own| own < percent).count();
+    x.aside * (place as f64 - 0.5 * (shown.len().max(1) - 1) as f64)
+}
+
 fn scaled(found: &Percentile, scale: f64) -> Percentile {
     let of = |value: Option<f64>| value.map(|value| value / scale);
     Percentile {
@@ -277,7 +316,7 @@ fn point_at(
     for load in loads {
         let at = x.at(load);
         if choice.lowest == Some(load.scenario) {
-            svg.rectangle("chosen", (at - 11.0, top), (at + 11.0, bottom), "");
+            svg.rectangle("chosen", (at - 14.0, top), (at + 14.0, bottom), "");
         }
         let could = choice.best.iter().flat_map(|best| &best.loads);
         if could
@@ -287,8 +326,8 @@ fn point_at(
             let words = format!("could be the best for P{}", percent_words(choice.percent));
             svg.rectangle(
                 "could",
-                (at - 11.0, bottom - 5.0),
-                (at + 11.0, bottom),
+                (at - 14.0, bottom - 5.0),
+                (at + 14.0, bottom),
                 &words,
             );
         }
@@ -330,7 +369,10 @@ fn curves(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
     }
     svg.polyline("curve tuned", &line(&|load| load.tuned));
     for (percent, class, _) in DRAWN.iter().rev() {
-        let points = line(&|load| load.value(*percent));
+        let points: Vec<(f64, f64)> = line(&|load| load.value(*percent))
+            .into_iter()
+            .map(|(at, y)| (at + aside(x, drawn, *percent), y))
+            .collect();
         svg.polyline(&format!("curve {class}"), &points);
     }
 }
@@ -349,6 +391,7 @@ fn points(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
                 continue;
             };
             let Some(value) = found.value else { continue };
+            let at = at + aside(x, drawn, *percent);
             let bounds = found.lower.zip(found.upper);
             if let Some(bounds) = bounds {
                 frame.bound(svg, class, at, bounds);
@@ -376,27 +419,57 @@ fn entries(drawn: &[Load<'_>]) -> Vec<LegendEntry<'static>> {
     if any(&|load| load.tuned) {
         entries.push(LegendEntry::Line("tuned", Some(Mark::Triangle), "tuned"));
     }
+    if any(&|load| {
+        let limit = load.scenario.normal_load_n.is_none();
+        load.tuned.filter(|_| limit)
+    }) {
+        entries.push(LegendEntry::Line("limit", None, "tuned limits"));
+    }
     entries
 }
 
-fn caption(amplitude: bool, choice: Option<&LoadChoice>, patterns: u64) -> String {
+fn caption(
+    amplitude: bool,
+    choice: Option<&LoadChoice>,
+    patterns: u64,
+    loads: &[&ScenarioSummary],
+) -> String {
     let mut words = format!(
-        "Percentiles over {patterns} patterns with distribution-free 95 % bounds. slide, stuck and free are linear \
-         limits: friction gone, contact welded, no contact springs."
+        "Percentiles over {patterns} patterns with distribution-free 95 % bounds, side by side at each load."
     );
+    let mut limits: Vec<&str> = Vec::new();
+    for (name, meaning) in [
+        ("slide", "slide (friction gone)"),
+        ("stuck", "stuck (contact welded)"),
+        ("free", "free (no contact springs)"),
+    ] {
+        if loads.iter().any(|load| load.contact == name) {
+            limits.push(meaning);
+        }
+    }
+    // Writing to a String cannot fail.
+    if !limits.is_empty() {
+        let _ = write!(words, " Linear limits: {}.", limits.join(", "));
+    }
     if !amplitude {
         words.push_str(
             " The factor refers to the tuned wheel of the same load, so that a lower factor over a higher tuned peak \
              is no improvement.",
         );
-    } else if let Some(choice) = choice {
+        return words;
+    }
+    if let Some(choice) = choice {
         let percent = percent_words(choice.percent);
-        // Writing to a String cannot fail.
-        let _ = write!(
-            words,
-            " Shaded: the lowest P{percent}; bars on the axis: loads that could have the lowest P{percent} with 95 % \
-             confidence. Dotted: tuned linear limits."
-        );
+        let _ = write!(words, " Grey band: the lowest P{percent}.");
+        if choice.best.is_some() {
+            let _ = write!(
+                words,
+                " Bars on the axis: loads that could have the lowest P{percent} with 95 % confidence."
+            );
+        }
+    }
+    if !limits.is_empty() {
+        words.push_str(" Dotted: tuned wheel under the linear limits.");
     }
     words
 }

@@ -2,7 +2,8 @@
 
 use crate::population::statistics::CONFIDENCE;
 use crate::report::words::{
-    LengthUnit, force, four_digits, load_with_unit, percent_words, share_words,
+    LengthUnit, force, four_digits, load_with_unit, loads_and_limits, percent_words,
+    scenarios_in_words, share_words,
 };
 use crate::report::{
     GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, Warning, setting,
@@ -151,8 +152,13 @@ fn notes_of_load(
     let percent = percent_words(choice.percent);
     notes.push(if others.is_empty() {
         format!(
-            "lowest P{percent} of {} loads (95 % confidence)",
-            group.scenarios.len()
+            "lowest P{percent} of {} (95 % confidence)",
+            loads_and_limits(
+                group
+                    .scenarios
+                    .iter()
+                    .map(|&own| &report.summary.scenarios[own])
+            )
         )
     } else {
         format!("could be as good: {}", others.join(", "))
@@ -269,9 +275,8 @@ pub(super) fn health(report: &StudyReport) -> Health {
     // What costs a result comes first.
     let (costly, others): (Vec<&Warning>, Vec<&Warning>) =
         { summary.warnings.iter() }.partition(|warning| warning.costs_a_statistic());
-    let mut findings: Vec<String> = { costly.into_iter().chain(others) }
-        .map(Warning::headline)
-        .collect();
+    let ordered: Vec<&Warning> = costly.into_iter().chain(others).collect();
+    let mut findings = Warning::headlines(&ordered, &|own| scenarios_in_words(summary, own));
     if summary.misses_its_target() {
         findings.insert(
             0,
@@ -279,7 +284,14 @@ pub(super) fn health(report: &StudyReport) -> Health {
         );
     }
     let (class, verdict) = if summary.failures_cost_a_statistic() {
-        ("bad", "Something is wrong: results are missing.".to_owned())
+        let shown = { report.groups.first() }.map_or(&[][..], |group| &group.scenarios);
+        let mut costly = { summary.warnings.iter() }.flat_map(Warning::costly_scenarios);
+        let verdict = if costly.any(|scenario| shown.contains(scenario)) {
+            "Something is wrong: results are missing."
+        } else {
+            "Something is wrong in another setting: results are missing."
+        };
+        ("bad", verdict.to_owned())
     } else if findings.is_empty() {
         (
             "good",

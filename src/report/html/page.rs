@@ -9,7 +9,7 @@ use super::tables;
 use crate::input::term_of;
 use crate::report::figures::friction_words;
 use crate::report::plot::{escaped, page_style};
-use crate::report::words::tied;
+use crate::report::words::{scenarios_in_words, tied};
 use crate::report::{FIGURES, FigureName, GroupReport, StudyReport, Wheels, figure, setting};
 
 /// Style of everything but the plots.
@@ -70,7 +70,7 @@ fn header(report: &StudyReport) -> String {
         )
     });
     format!(
-        "<header>\n<h1>{}</h1>\n<p class=\"quiet\">Forced response of randomly mistuned bladed disks with {}: \
+        "<header>\n<h1>Study “{}”</h1>\n<p class=\"quiet\">Forced response of randomly mistuned bladed disks with {}: \
          {} patterns, {} scenarios, {} rows with a result, {} failed.{stop}</p>\n</header>\n",
         escaped(&summary.name),
         friction_words(report),
@@ -86,58 +86,39 @@ fn warnings(report: &StudyReport) -> String {
         return String::new();
     }
     let mut items = String::new();
+    let named = |own: &[usize]| scenarios_in_words(&report.summary, own);
     for warning in &report.summary.warnings {
-        let _ = writeln!(items, "<li>{}</li>", escaped(&tied(&warning.to_string())));
+        let _ = writeln!(
+            items,
+            "<li>{}</li>",
+            escaped(&tied(&warning.in_words(&named)))
+        );
     }
     format!(
         "<section id=\"warnings\">\n<h2>Warnings</h2>\n<ul class=\"warnings\">\n{items}</ul>\n</section>\n"
     )
 }
 
-/// Words of the page that `blisk explain` knows.
-const TERMS: [&str; 6] = [
+/// Words of the page, which `blisk explain` knows too.
+const TERMS: [&str; 12] = [
     "normal load N",
     "stuck (contact, load)",
     "slide (contact, load)",
     "free (contact, load)",
     "pattern",
     "amplification factor",
-];
-/// Words of the page alone.
-const WORDS: [(&str, &str); 6] = [
-    (
-        "tuned",
-        "the wheel whose blades are all alike, under the same load and excitation",
-    ),
-    (
-        "peak amplitude",
-        "the largest amplitude of any blade at any frequency near the resonance, at the first observed node",
-    ),
-    (
-        "P50, P95, P99",
-        "percentile: 50, 95, 99 % of such wheels have a lower value",
-    ),
-    (
-        "95 % interval, bounds",
-        "the percentile of all such wheels lies in it with 95 % confidence, whatever its law; failed rows are taken as infinitely low and high",
-    ),
-    (
-        "numerical error, stated error",
-        "bound on the relative error of a row by its harmonics, samples, basis and peak search; not of the model that was given",
-    ),
-    (
-        "crossing",
-        "the speed 60 f / EO at which the engine order EO meets the frequency f",
-    ),
+    "tuned wheel",
+    "peak amplitude",
+    "percentile P50, P95, P99",
+    "bounds, 95 % interval",
+    "stated error, numerical error",
+    "crossing",
 ];
 
 fn words() -> String {
     let mut table = Table::of_facts();
     for term in TERMS.into_iter().filter_map(term_of) {
         table.fact(term.word, term.meaning);
-    }
-    for (word, meaning) in WORDS {
-        table.fact(word, meaning);
     }
     format!(
         "<section id=\"words\">\n<h2>Words</h2>\n<details><summary>What the words of this page mean</summary>\n{}</details>\n</section>\n",

@@ -10,8 +10,10 @@ pub(in crate::report) const SIDES: (f64, f64) = (70.0, 546.0);
 pub(in crate::report) const TOP: f64 = 44.0;
 /// Length of a tick.
 const TICK: f64 = 4.0;
-/// Space between entries of a legend and the width of a letter, about.
-const LEGEND: (f64, f64) = (40.0, 8.0);
+/// Space between entries of a legend and the width of a letter on a narrow page, about.
+const LEGEND: (f64, f64) = (40.0, 10.0);
+/// Height of a line of a legend, and its distance from the plot.
+const LEGEND_LINE: (f64, f64) = (19.0, 12.0);
 
 /// What stands at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,33 +112,50 @@ impl Frame<'_> {
     }
 }
 
-/// Entries from left to right above the plot.
+/// Entries from left to right in lines above the plot, the last of which is next to it.
 pub(in crate::report) fn legend(svg: &mut Svg, entries: &[LegendEntry<'_>]) {
-    let mut at = (SIDES.0, 14.0);
+    let mut lines: Vec<Vec<(f64, &LegendEntry<'_>)>> = vec![Vec::new()];
+    let mut x = SIDES.0;
     for entry in entries {
         let (LegendEntry::Line(_, _, words)
         | LegendEntry::Point(_, _, words)
         | LegendEntry::Area(_, words)) = entry;
         let width = LEGEND.0 + LEGEND.1 * words.chars().count() as f64;
-        if at.0 + width > WIDTH + 10.0 && at.0 > SIDES.0 {
-            at = (SIDES.0, at.1 + 19.0);
+        if x + width > WIDTH + 10.0 && x > SIDES.0 {
+            x = SIDES.0;
+            lines.push(Vec::new());
         }
-        let (x, y) = at;
-        match entry {
-            LegendEntry::Line(class, mark, _) => {
-                svg.line(&format!("curve {class}"), (x, y - 4.0), (x + 24.0, y - 4.0));
-                if let Some(mark) = mark {
-                    mark.draw(svg, class, (x + 12.0, y - 4.0), "");
-                }
-            }
-            LegendEntry::Point(class, mark, _) => {
+        if let Some(line) = lines.last_mut() {
+            line.push((x, entry));
+        }
+        x += width;
+    }
+    let (height, distance) = LEGEND_LINE;
+    for (place, line) in lines.iter().rev().enumerate() {
+        let y = TOP - distance - height * place as f64;
+        for &(x, entry) in line {
+            legend_entry(svg, (x, y), entry);
+        }
+    }
+}
+
+fn legend_entry(svg: &mut Svg, (x, y): (f64, f64), entry: &LegendEntry<'_>) {
+    let words = match entry {
+        LegendEntry::Line(class, mark, words) => {
+            svg.line(&format!("curve {class}"), (x, y - 4.0), (x + 24.0, y - 4.0));
+            if let Some(mark) = mark {
                 mark.draw(svg, class, (x + 12.0, y - 4.0), "");
             }
-            LegendEntry::Area(class, _) => {
-                svg.rectangle(class, (x, y - 9.0), (x + 24.0, y + 1.0), "");
-            }
+            words
         }
-        svg.text("small", (x + 30.0, y), Anchor::Start, words);
-        at.0 += width;
-    }
+        LegendEntry::Point(class, mark, words) => {
+            mark.draw(svg, class, (x + 12.0, y - 4.0), "");
+            words
+        }
+        LegendEntry::Area(class, words) => {
+            svg.rectangle(class, (x, y - 9.0), (x + 24.0, y + 1.0), "");
+            words
+        }
+    };
+    svg.text("small", (x + 30.0, y), Anchor::Start, words);
 }

@@ -6,7 +6,7 @@
 use std::fmt::Write;
 
 /// Colours: name, in light, in dark.
-const COLOURS: [(&str, &str, &str); 13] = [
+const COLOURS: [(&str, &str, &str); 15] = [
     ("paper", "#ffffff", "#15191f"),
     ("panel", "#f6f8fa", "#1c222a"),
     ("ink", "#1b2733", "#e8ecf1"),
@@ -20,6 +20,8 @@ const COLOURS: [(&str, &str, &str); 13] = [
     ("slip", "#e69f00", "#f0b429"),
     ("open", "#8f2d6b", "#d979b4"),
     ("good", "#1a7f4b", "#4cc38a"),
+    ("look", "#a08600", "#e3c341"),
+    ("bad", "#a4161a", "#ff6b6b"),
 ];
 
 /// Rules of the classes of a plot; `$name` stands for a colour.
@@ -54,11 +56,11 @@ const RULES: &[(&str, &str)] = &[
     ),
     (
         ".curve.slide",
-        "stroke:$quiet;stroke-width:1.6;stroke-dasharray:1.5 4",
+        "stroke:$quiet;stroke-width:2;stroke-dasharray:.1 4.5",
     ),
     (
         ".curve.limit",
-        "stroke:$quiet;stroke-width:1;stroke-dasharray:3 4",
+        "stroke:$quiet;stroke-width:2;stroke-dasharray:.1 4.5",
     ),
     (".curve.touch", "stroke:$slip;stroke-width:3"),
     (".bound", "fill:none;stroke-width:1.4"),
@@ -73,8 +75,8 @@ const RULES: &[(&str, &str)] = &[
     (".mark.high", "fill:$high"),
     (".mark.extreme", "fill:$extreme"),
     (".mark.tuned", "fill:$paper;stroke:$tuned;stroke-width:1.5"),
-    (".chosen", "fill:$slip;fill-opacity:.16;stroke:none"),
-    (".could", "fill:$slip;stroke:none"),
+    (".chosen", "fill:$ink;fill-opacity:.12;stroke:none"),
+    (".could", "fill:$ink;stroke:none"),
     (".bar", "fill:$median;fill-opacity:.75;stroke:none"),
     (".bar.peak", "fill:$high;fill-opacity:1"),
     (".bar.up", "fill:$quiet;fill-opacity:.65"),
@@ -97,8 +99,7 @@ const RULES: &[(&str, &str)] = &[
 ];
 
 /// Rules for narrow pages, where a drawing is scaled down.
-const NARROW: &str =
-    "@media (max-width:600px){svg.plot text{font-size:17px}svg.plot text.small{font-size:15px}}";
+const NARROW: &str = "@media (max-width:600px){svg.plot text,svg.plot text.small{font-size:18px}svg.plot text.quiet{font-size:16px}}";
 
 /// Style sheet of the page: colours as variables for light, dark and print, and the classes of the plots.
 pub(in crate::report) fn page_style() -> String {
@@ -190,6 +191,8 @@ mod tests {
             ("high", 3.0),
             ("extreme", 3.0),
             ("good", 3.0),
+            ("look", 3.0),
+            ("bad", 3.0),
         ] {
             let (_, own_light, own_dark) = of(name);
             // Answers, figures and tables of code stand on panels.

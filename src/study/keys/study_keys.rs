@@ -53,7 +53,7 @@ pub(super) const REDUCTION_KEYS: &[Entry] = &[
             "tuned_receptances",
         ]),
         "`\"auto\"`",
-        "family of the basis ([formulation.md](formulation.md)). `auto` is `tuned_receptances`, which has none, where the contact has pairs, the ring is locked, and either the sector has more than 12 dofs or harmonics are automatic without `[accuracy]`; else a basis is chosen by `error`. `stick_attachment` is `auto` by an earlier name, with a warning where that leaves its modes out",
+        "family of the basis ([formulation.md](formulation.md)). `auto` is `tuned_receptances`, which has none, where the contact has pairs, the ring is locked, and either the sector has more than 12 dofs or harmonics are automatic without `[accuracy]`; else a basis is chosen by `error`. `stick_attachment` means `auto`, and warns where the basis taken has no modes to choose",
     ),
     entry(
         "reduction.error",
@@ -278,7 +278,7 @@ pub(super) const STUDY_KEYS: &[Entry] = &[
         "solver.search_harmonics",
         Either(&[Name(&["auto", "all"]), Ascending(&Whole(0, 100), None)]),
         "`\"auto\"`",
-        "tops are sought with these, then solved with `harmonics` ([formulation.md](formulation.md)); `auto`: where contact rows are few, 1 at points far below the peak; else 1 where the equation is large; `all`: sought with `harmonics`",
+        "local maxima of the response are located with these, then solved with `harmonics` ([formulation.md](formulation.md)); `auto`: where contact rows are few, 1 at points far below the peak; else 1 where the equation is large; `all`: located with `harmonics`",
     ),
     entry(
         "solver.harmonic_tolerance",

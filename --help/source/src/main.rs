@@ -1,7 +1,0 @@
-//! The command `blisk`.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    blisk::cli::main(std::env::args_os()).into()
-}
