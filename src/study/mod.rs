@@ -2,7 +2,6 @@
 
 mod accuracy;
 pub(crate) mod checks;
-mod digest;
 mod echo;
 mod error;
 mod examples;
@@ -21,13 +20,14 @@ mod sector_model;
 mod template;
 
 pub use accuracy::AccuracyOptions;
-pub use digest::StudyDigest;
 pub use echo::echo;
 pub use error::StudyError;
 pub use examples::{EXAMPLES, example_beside_its_data};
 pub(crate) use excitation::{Excitation, excitations, solver_under};
 pub(crate) use given::Given;
-pub use keys::{KeySpec, Range, Value, keys, keys_about, keys_below, nearest_keys, study_schema};
+pub use keys::{
+    KeySpec, Range, StudyDigest, Value, keys, keys_about, keys_below, nearest_keys, study_schema,
+};
 pub use load_cases::{ForceSource, LoadCase};
 pub use mistuning::{Mistuning, MistuningSource};
 pub use nodal_diameter_damping::NodalDiameterTable;

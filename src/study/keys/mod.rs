@@ -2,6 +2,7 @@
 //! docs/study-file.md say of it.
 
 pub(super) mod contact;
+mod digest;
 pub(super) mod excitation;
 mod key;
 pub(super) mod mistuning;
@@ -17,6 +18,7 @@ pub(super) mod study_file;
 pub(super) mod written;
 
 pub use crate::input::{KeySpec, Range, Value};
+pub use digest::StudyDigest;
 pub(super) use key::study_key;
 pub use key::{keys, keys_about, keys_below, nearest_keys};
 pub(super) use model::{BundleTable, ModelKind, ModelTable};

@@ -5,12 +5,12 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::keys::study_key;
-use super::{ForceSource, MistuningSource, ModelSource, Study, StudyError};
+use super::study_key;
 use crate::identity;
 use crate::input::Effect;
 use crate::population::monte_carlo::Scenario;
 use crate::population::table::digest_file;
+use crate::study::{ForceSource, MistuningSource, ModelSource, Study, StudyError};
 
 /// What the digest of a study is made from, and the digest.
 #[derive(Debug, Clone, PartialEq, Eq)]
