@@ -324,43 +324,35 @@ fn model(check: &mut Check, study_file: &Path, table: ModelTable) -> Option<Mode
 fn reduction(check: &mut Check, table: Option<ReductionTable>) -> ReductionOptions {
     let mut options = ReductionOptions::default();
     check.put("reduction", table, &mut options, &[]);
-    let modes = [
-        ("reduction.stick_modes", options.stick_modes.is_some()),
-        ("reduction.slide_modes", options.slide_modes.is_some()),
-    ];
-    let refused = match options.basis {
-        Basis::TunedReceptances => {
-            "basis = \"tuned_receptances\" has no modes to choose; accepted: neither stick_modes nor slide_modes"
+    let stick = ("reduction.stick_modes", options.stick_modes.is_some());
+    let slide = ("reduction.slide_modes", options.slide_modes.is_some());
+    let mut refuse = |keys: &[(&str, bool)], reason: &str| {
+        for (key, _) in keys.iter().filter(|(_, is_given)| *is_given) {
+            check.conflict(key, reason);
         }
-        Basis::Auto => {
-            "basis = \"auto\" chooses the number of modes; accepted: reduction.error, or \
-             basis = \"stick_slide\" with fixed numbers"
-        }
-        Basis::StickAttachment => "basis = \"stick_attachment\" has none; accepted: stick_modes",
-        Basis::StickSlide => "",
     };
     match options.basis {
+        Basis::TunedReceptances => refuse(
+            &[stick, slide],
+            "basis = \"tuned_receptances\" has no modes to choose; accepted: neither stick_modes nor \
+             slide_modes",
+        ),
+        Basis::Auto => refuse(
+            &[stick, slide],
+            "basis = \"auto\" chooses the number of modes; accepted: reduction.error, or \
+             basis = \"stick_slide\" with fixed numbers",
+        ),
+        Basis::StickAttachment => refuse(
+            &[slide],
+            "basis = \"stick_attachment\" has none; accepted: stick_modes",
+        ),
         Basis::StickSlide => {
-            for (place, (key, is_given)) in modes.into_iter().enumerate() {
-                let other = modes[1 - place];
-                if !is_given && other.1 {
-                    let beside = other.0.trim_start_matches("reduction.");
-                    check.missing_for(
-                        key,
-                        &format!("a whole number from 1 to 1000, beside {beside}"),
-                    );
-                }
+            let accepted = "a whole number from 1 to 1000, beside";
+            if stick.1 && !slide.1 {
+                check.missing_for(slide.0, &format!("{accepted} stick_modes"));
             }
-        }
-        basis => {
-            // Attachment vectors take the place of the slide modes alone.
-            let first = usize::from(basis == Basis::StickAttachment);
-            for (key, _) in modes
-                .into_iter()
-                .skip(first)
-                .filter(|(_, is_given)| *is_given)
-            {
-                check.conflict(key, refused);
+            if slide.1 && !stick.1 {
+                check.missing_for(stick.0, &format!("{accepted} slide_modes"));
             }
         }
     }

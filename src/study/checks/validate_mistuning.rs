@@ -116,8 +116,12 @@ fn read_patterns(path: &Path) -> Result<PatternRecords, StudyError> {
 }
 
 fn pattern_count(check: &mut Check, patterns: Option<u64>) -> u32 {
-    let patterns = patterns.map(|patterns| patterns as f64);
-    check.given("study.patterns", patterns).unwrap_or(0.0) as u32
+    let Some(patterns) = patterns else {
+        check.missing("study.patterns");
+        return 0;
+    };
+    check.judged("study.patterns", patterns as f64);
+    patterns as u32
 }
 
 fn cantilever_modes(
