@@ -1,4 +1,4 @@
-//! One key of a TOML file, and how a key is found by a name that is near to it.
+//! One key of a TOML file, how it is declared, and how it is found by a name that is near to it.
 
 use strsim::damerau_levenshtein;
 
@@ -17,33 +17,165 @@ pub struct KeySpec {
     pub required: bool,
     /// What it means, with its unit, in Markdown.
     pub meaning: &'static str,
+    /// How a message names what it accepts.
+    pub(crate) words: Words,
+    /// What depends on it.
+    pub(crate) effect: Effect,
+    /// Whether the program chooses it under `[accuracy]`, unless the study states it.
+    pub(crate) is_of_accuracy: bool,
+    /// Whether a resolved study has it as null where it has no value, and does not leave it out.
+    pub(crate) is_or_null: bool,
 }
 
-/// A key as it stands in a table of the program.
+/// How a message names what a key accepts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Words {
+    /// The words of the value.
+    OfValue,
+    /// The words of the value, and then these.
+    With(&'static str),
+    /// These alone.
+    Instead(&'static str),
+}
+
+/// What of a study depends on a key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Effect {
+    /// Every number.
+    Numbers,
+    /// Which scenarios there are; a row depends on those of its own alone.
+    Scenarios,
+    /// No number: names, places, how much is computed and written.
+    None,
+}
+
+/// A key as it is declared in the table that it is in.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Entry {
     pub(crate) key: &'static str,
     pub(crate) value: Value,
     pub(crate) default: &'static str,
     pub(crate) meaning: &'static str,
+    words: Words,
+    below: &'static [Entry],
+    effect: Effect,
+    is_of_accuracy: bool,
+    is_or_null: bool,
 }
 
 /// Default of a key that must be there.
 pub(crate) const REQUIRED: &str = "required";
 
-/// A key with its value, default and meaning.
+/// A key with its value, default and meaning; [`toml_table`](super::toml_table) gives it the name of its field.
+pub(crate) const fn key(value: Value, default: &'static str, meaning: &'static str) -> Entry {
+    Entry {
+        key: "",
+        value,
+        default,
+        meaning,
+        words: Words::OfValue,
+        below: &[],
+        effect: Effect::Numbers,
+        is_of_accuracy: false,
+        is_or_null: false,
+    }
+}
+
+/// A table that may be left out, with the keys `below` it.
+pub(crate) const fn table(meaning: &'static str, below: &'static [Entry]) -> Entry {
+    key(Value::Table, "", meaning).with(below)
+}
+
+/// A key under its name.
 pub(crate) const fn entry(
-    key: &'static str,
+    name: &'static str,
     value: Value,
     default: &'static str,
     meaning: &'static str,
 ) -> Entry {
-    Entry {
-        key,
-        value,
-        default,
-        meaning,
+    key(value, default, meaning).named(name)
+}
+
+impl Entry {
+    pub(crate) const fn named(self, key: &'static str) -> Self {
+        Self { key, ..self }
     }
+
+    /// With the keys of the table or tables that it is.
+    pub(crate) const fn with(self, below: &'static [Entry]) -> Self {
+        Self { below, ..self }
+    }
+
+    /// Messages say this after what the value accepts.
+    pub(crate) const fn and(self, words: &'static str) -> Self {
+        let words = Words::With(words);
+        Self { words, ..self }
+    }
+
+    /// Messages say this in the place of what the value accepts.
+    pub(crate) const fn told(self, words: &'static str) -> Self {
+        let words = Words::Instead(words);
+        Self { words, ..self }
+    }
+
+    /// Neither it nor a key below it changes a number.
+    pub(crate) const fn neutral(self) -> Self {
+        let effect = Effect::None;
+        Self { effect, ..self }
+    }
+
+    /// It, or every key below it, lists scenarios.
+    pub(crate) const fn of_scenarios(self) -> Self {
+        let effect = Effect::Scenarios;
+        Self { effect, ..self }
+    }
+
+    /// The program chooses it under `[accuracy]`.
+    pub(crate) const fn of_accuracy(self) -> Self {
+        let is_of_accuracy = true;
+        Self {
+            is_of_accuracy,
+            ..self
+        }
+    }
+
+    /// Null in a resolved study where it has no value.
+    pub(crate) const fn or_null(self) -> Self {
+        let is_or_null = true;
+        Self { is_or_null, ..self }
+    }
+
+    /// Adds itself, its name after `table`, and all keys below it.
+    fn add_to(&self, table: &str, effect: Effect, keys: &mut Vec<KeySpec>) {
+        let key = if table.is_empty() {
+            self.key.to_owned()
+        } else {
+            format!("{table}.{}", self.key)
+        };
+        // What a table changes is what its keys change.
+        let effect = if effect == Effect::Numbers {
+            self.effect
+        } else {
+            effect
+        };
+        let spec = KeySpec {
+            effect,
+            ..KeySpec::new(self, key.clone())
+        };
+        keys.push(spec);
+        for below in self.below {
+            below.add_to(&key, effect, keys);
+        }
+    }
+}
+
+/// All keys of a file that has `entries`, each table before what is below it.
+pub(crate) fn all_keys(entries: &[Entry]) -> Vec<KeySpec> {
+    let mut keys = Vec::new();
+    for entry in entries {
+        entry.add_to("", Effect::Numbers, &mut keys);
+    }
+    keys
 }
 
 impl KeySpec {
@@ -55,6 +187,19 @@ impl KeySpec {
             default: entry.default,
             required: entry.default == REQUIRED,
             meaning: entry.meaning,
+            words: entry.words,
+            effect: entry.effect,
+            is_of_accuracy: entry.is_of_accuracy,
+            is_or_null: entry.is_or_null,
+        }
+    }
+
+    /// What it accepts, as a message says it.
+    pub(crate) fn accepted(&self) -> String {
+        match self.words {
+            Words::OfValue => self.value.in_words(),
+            Words::With(words) => self.value.in_words() + words,
+            Words::Instead(words) => words.to_owned(),
         }
     }
 }

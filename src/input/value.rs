@@ -166,6 +166,54 @@ impl fmt::Display for Value {
 }
 
 impl Value {
+    /// What is accepted, as a message about a refused value says it.
+    #[must_use]
+    pub(crate) fn in_words(&self) -> String {
+        match self {
+            Self::Number(Range {
+                low: Some((low, from)),
+                high: Some((high, to)),
+            }) => {
+                let (low, high) = (said(*low), said(*high));
+                match (from, to) {
+                    (true, true) => format!("a number from {low} to {high}"),
+                    (true, false) => format!("a number of at least {low} and below {high}"),
+                    (false, true) => format!("a number above {low} and at most {high}"),
+                    (false, false) => format!("a number above {low} and below {high}"),
+                }
+            }
+            Self::Number(
+                range @ Range {
+                    low: Some((_, false)),
+                    high: None,
+                },
+            ) => {
+                format!("a finite number {range}")
+            }
+            Self::Number(range) => format!("a finite number of {range}"),
+            Self::Whole(low, high) => format!("a whole number from {low} to {high}"),
+            Self::Name(names) => {
+                let names: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+                match names.as_slice() {
+                    [before @ .., last] if !before.is_empty() => {
+                        format!("{} or {last}", before.join(", "))
+                    }
+                    names => names.concat(),
+                }
+            }
+            other => other.to_string().replace('`', ""),
+        }
+    }
+
+    /// Whether it accepts a number.
+    pub(crate) fn holds(&self, number: f64) -> bool {
+        match self {
+            Self::Number(range) => range.holds(number),
+            Self::Whole(low, high) => (*low as f64..=*high as f64).contains(&number),
+            _ => true,
+        }
+    }
+
     /// The value in JSON Schema.
     #[must_use]
     pub fn schema(&self) -> Json {

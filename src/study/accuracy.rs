@@ -4,20 +4,7 @@ use std::fmt::Write;
 
 use serde::{Deserialize, Serialize};
 
-/// Keys that the program sets itself under `[accuracy]`, unless the study says them.
-pub(super) const KEYS_OF_ACCURACY: [&str; 11] = [
-    "reduction.basis",
-    "reduction.error",
-    "reduction.stick_modes",
-    "reduction.slide_modes",
-    "solver.harmonics",
-    "solver.search_harmonics",
-    "solver.harmonic_tolerance",
-    "solver.rows_beyond_tolerance",
-    "solver.samples_per_period",
-    "solver.residual_tolerance",
-    "solver.peak_tolerance",
-];
+use crate::input::Range;
 
 /// What a user says of the accuracy instead of the settings that make it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -33,8 +20,8 @@ pub struct AccuracyOptions {
 impl AccuracyOptions {
     /// Accepted where nothing is said. The settings of a study without `[accuracy]` are those for it on tuned receptances, unchecked.
     pub const DEFAULT: f64 = 0.01;
-    /// Errors that can be asked for, in words.
-    pub const ACCEPTED: &str = "a number from 0.001 to 0.2, relative error of the peak amplitude";
+    /// Errors that can be asked for.
+    pub const ACCEPTED: Range = Range::from_to(1e-3, 0.2);
 
     /// An accepted error with everything else as it is if nothing is said.
     #[must_use]
@@ -48,7 +35,7 @@ impl AccuracyOptions {
     /// Whether an error can be asked for.
     #[must_use]
     pub fn accepts(amplitude_error: f64) -> bool {
-        (1e-3..=0.2).contains(&amplitude_error)
+        Self::ACCEPTED.holds(amplitude_error)
     }
 
     /// The text of a study file with these at its end.

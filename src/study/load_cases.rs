@@ -2,8 +2,6 @@
 
 use std::path::PathBuf;
 
-use serde_json::{Value, json};
-
 use crate::population::monte_carlo::LoadCaseName;
 
 /// Where the force vector of a load case comes from.
@@ -40,33 +38,4 @@ pub struct LoadCase {
     pub amplitude_n: f64,
     /// Factors of the engine orders in their order, each besides `amplitude_n`; empty: all alike.
     pub amplitudes_n: Vec<f64>,
-}
-
-impl LoadCase {
-    /// As the study file has it.
-    pub(super) fn resolved(&self) -> Value {
-        let mut case = json!({
-            "name": self.name,
-            "engine_orders": self.engine_orders,
-            "amplitude_n": amplitude_value(self.amplitude_n, &self.amplitudes_n),
-        });
-        match &self.force {
-            ForceSource::Model => {}
-            ForceSource::File { written, .. } => case["force"] = json!(written),
-            ForceSource::Node { node, direction } => {
-                case["node"] = json!(node);
-                case["direction"] = json!(direction);
-            }
-        }
-        case
-    }
-}
-
-/// A factor on the force vector as the study file has it.
-pub(super) fn amplitude_value(amplitude_n: f64, amplitudes_n: &[f64]) -> Value {
-    if amplitudes_n.is_empty() {
-        json!(amplitude_n)
-    } else {
-        json!(amplitudes_n)
-    }
 }

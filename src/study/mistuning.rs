@@ -2,8 +2,6 @@
 
 use std::path::PathBuf;
 
-use serde_json::{Value, json};
-
 use crate::response::mistuning::{Distribution, PatternRecords, Projection};
 
 /// Where the patterns come from.
@@ -31,25 +29,4 @@ pub struct Mistuning {
     pub cantilever_mode_count: Option<usize>,
     /// Source of the patterns.
     pub source: MistuningSource,
-}
-
-impl Mistuning {
-    pub(super) fn resolved(&self) -> Value {
-        let mut value = json!({ "quantity": "blade_stiffness", "projection": self.projection });
-        if let Some(count) = self.cantilever_mode_count {
-            value["cantilever_mode_count"] = json!(count);
-        }
-        match &self.source {
-            MistuningSource::Law(law) => {
-                value["distribution"] = match law {
-                    Distribution::TruncatedNormal { truncation } => {
-                        json!({ "kind": law.name(), "truncation": truncation })
-                    }
-                    _ => json!({ "kind": law.name() }),
-                };
-            }
-            MistuningSource::File { written, .. } => value["file"] = json!(written),
-        }
-        value
-    }
 }

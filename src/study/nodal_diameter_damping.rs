@@ -1,7 +1,5 @@
 //! `[nodal_diameter_damping]`: damping ratios by nodal diameter, for instance aerodynamic ones.
 
-use serde_json::{Value, json};
-
 use crate::model::reduction::{DampedModes, NodalDiameterDamping};
 
 /// Damping ratios by nodal diameter as a study has them.
@@ -14,11 +12,6 @@ pub struct NodalDiameterTable {
 }
 
 impl NodalDiameterTable {
-    /// As the study file has it.
-    pub(super) fn resolved(&self) -> Value {
-        json!({ "damping_ratios": self.ratios, "modes": self.modes })
-    }
-
     /// What it damps of each nodal diameter.
     pub(super) fn damping(&self) -> NodalDiameterDamping {
         let last = self.ratios.iter().map(|&(h, _)| h as usize).max();

@@ -1,7 +1,6 @@
 //! Normal loads by rotation as a study has them: its speeds, and the newtons that they came to.
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 
 use crate::linalg::SymmetricSparse;
 use crate::model::cyclic::{CentrifugalContact, Hoop};
@@ -50,30 +49,7 @@ pub struct RotationLoad {
     pub is_damper_body: bool,
 }
 
-impl RotationOptions {
-    /// As the study file has it.
-    fn resolved(&self) -> Value {
-        let mut value = json!({
-            "from": "rotation",
-            "speed_rpm": self.speeds_rpm,
-            "ring_mass_factor": self.ring_mass_factor,
-        });
-        if let Some(radius_m) = self.ring_radius_m {
-            value["ring_radius_m"] = json!(radius_m);
-        } else {
-            value["hoop"] = json!(self.hoop);
-            value["share"] = json!(self.share);
-        }
-        value
-    }
-}
-
 impl RotationLoad {
-    /// As the study file has it.
-    pub(super) fn resolved(&self) -> Value {
-        self.options.resolved()
-    }
-
     /// Speed that gives this load, revolutions per minute; none for a load in newtons.
     #[must_use]
     pub fn speed_rpm(&self, contact: ContactCondition) -> Option<f64> {

@@ -1,6 +1,6 @@
-//! The one table of keys against the parser, the examples, the documentation and the JSON Schema.
+//! The declarations of the keys against the parser, the examples, the documentation and the JSON Schema.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use blisk::study::{
@@ -635,31 +635,9 @@ fn the_schema_accepts_every_example_and_refuses_what_the_parser_refuses() {
     }
 }
 
-/// Rows of the tables of docs/study-file.md under the heading of each table of a study file.
-fn documented() -> Vec<(String, String)> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/study-file.md");
-    let text = std::fs::read_to_string(path).expect("the documentation");
-    let mut table = String::new();
-    let mut rows = Vec::new();
-    for line in text.lines() {
-        if let Some(heading) = line.strip_prefix('#') {
-            let name = heading
-                .trim_start_matches('#')
-                .trim()
-                .trim_matches(['`', '[', ']']);
-            name.trim_end_matches("]`").clone_into(&mut table);
-        }
-        if line.starts_with("| `") {
-            rows.push((table.clone(), line.to_owned()));
-        }
-    }
-    rows
-}
-
-#[test]
-fn the_documentation_says_what_the_table_of_keys_says() {
-    let documented = documented();
-    let mut expected = Vec::new();
+/// The tables of keys that docs/study-file.md has, each with its rows, as the declarations of the keys say them.
+fn declared() -> BTreeMap<String, Vec<String>> {
+    let mut tables: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for key in keys() {
         if key.value == Value::Table {
             continue;
@@ -678,24 +656,52 @@ fn the_documentation_says_what_the_table_of_keys_says() {
             "| `{name}` | {} | {} | {} |",
             key.default, key.value, key.meaning
         );
-        expected.push((table.to_owned(), row.replace("  |", " |")));
+        let rows = tables.entry(table.to_owned()).or_default();
+        rows.push(row.replace("  |", " |"));
     }
-    for row in &expected {
-        assert!(
-            documented.contains(row),
-            "docs/study-file.md lacks in [{}]:\n{}",
-            row.0,
-            row.1
-        );
+    tables
+}
+
+/// `page` with the rows of `tables` under their headings, in the place of those that are there.
+fn with_rows(page: &str, mut tables: BTreeMap<String, Vec<String>>) -> String {
+    let mut table = String::new();
+    let mut lines: Vec<String> = Vec::new();
+    for line in page.lines() {
+        if let Some(heading) = line.strip_prefix('#') {
+            let name = heading.trim_start_matches('#').trim();
+            let name = name.trim_matches(['`', '[', ']']);
+            name.trim_end_matches("]`").clone_into(&mut table);
+        }
+        if line.starts_with("| `") {
+            lines.extend(tables.remove(&table).unwrap_or_default());
+        } else {
+            lines.push(line.to_owned());
+        }
     }
-    for row in &documented {
-        assert!(
-            expected.contains(row),
-            "docs/study-file.md has in [{}] what no key says:\n{}",
-            row.0,
-            row.1
-        );
+    assert!(
+        tables.is_empty(),
+        "docs/study-file.md has no table under the headings of {:?}",
+        tables.keys()
+    );
+    lines.join("\n") + "\n"
+}
+
+#[test]
+fn the_documentation_says_what_the_declarations_of_the_keys_say() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/study-file.md");
+    let page = std::fs::read_to_string(&path).expect("the documentation");
+    let expected = with_rows(&page, declared());
+    if std::env::var_os("BLISK_WRITE_KEYS").is_some() {
+        std::fs::write(&path, &expected).expect("the documentation is written");
+        return;
     }
+    let missing = expected.lines().zip(page.lines());
+    let missing = missing.filter(|(expected, written)| expected != written);
+    let first = missing.map(|(expected, _)| expected).next();
+    assert!(
+        expected == page,
+        "docs/study-file.md is not what the keys say, first at: {first:?}; BLISK_WRITE_KEYS=1 writes it"
+    );
 }
 
 #[test]

@@ -1,7 +1,8 @@
-//! From the study file as written to a [`Study`](super::Study): one file for the checks of each table.
+//! From the study file as written to a [`Study`](super::Study) and back: one file for what each table needs beside its keys.
 
 mod check;
 mod replaced;
+mod resolved;
 mod validate;
 mod validate_accuracy;
 mod validate_contact;

@@ -2,8 +2,11 @@
 
 use std::path::Path;
 
+use serde_json::Value;
+
 use super::check::Check;
 use super::replaced::replaced;
+use super::resolved::resolved;
 use super::validate_accuracy::{accuracy, with_accuracy};
 use super::validate_contact::contact_variations;
 use super::validate_damping::{damping, nodal_diameter_damping};
@@ -18,7 +21,9 @@ use crate::model::sector::{Damper, DamperBody, DamperShape, ParametricOptions};
 use crate::response::forced_response::{Harmonics, SolverOptions};
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
 use crate::response::receptance::HIGHEST_HARMONIC;
-use crate::study::raw::{RawContact, RawHead, RawModel, RawModelKind, RawOutput, RawStudy, SCHEMA};
+use crate::study::keys::contact::ContactTable;
+use crate::study::keys::study_file::{HeadTable, SCHEMA, StudyFile};
+use crate::study::keys::{ModelKind, ModelTable, ReductionTable};
 use crate::study::rotation::pressed_by;
 use crate::study::{
     AccuracyOptions, Given, MistuningSource, ModelSource, OutputOptions, RotationOptions, Study,
@@ -76,6 +81,12 @@ impl Study {
         Self::parse_with(path, text, Given::default())
     }
 
+    /// The study with every default filled in, key by key as in a study file.
+    #[must_use]
+    pub fn resolved(&self) -> Value {
+        resolved(self)
+    }
+
     /// Checks a text that leaves out what is `given` in memory.
     ///
     /// # Errors
@@ -90,13 +101,13 @@ impl Study {
         if !replaced.is_empty() {
             return Err(invalid(replaced));
         }
-        let raw: RawStudy =
+        let file: StudyFile =
             toml::from_str(text).map_err(|error| invalid(vec![map.describe(&error)]))?;
         let mut check = Check {
             map: &map,
             findings: Vec::new(),
         };
-        let study = resolve(&mut check, path, raw, given)?;
+        let study = resolve(&mut check, path, file, given)?;
         match study {
             Some((study, rotation)) if check.findings.is_empty() => {
                 let map = map.clone();
@@ -114,37 +125,39 @@ impl Study {
 fn resolve(
     check: &mut Check,
     path: &Path,
-    mut raw: RawStudy,
+    file: StudyFile,
     given: Given,
 ) -> Result<Option<(Study, Option<RotationOptions>)>, StudyError> {
-    match raw.schema {
+    match file.schema {
         Some(SCHEMA) => {}
-        Some(_) => check.refuse("schema", "1"),
-        None => check.missing("schema", "1"),
+        Some(_) => check.refuse("schema"),
+        None => check.missing("schema"),
     }
-    let head = raw.study.unwrap_or_default();
+    let head = file.study.unwrap_or_default();
     let (name, seed) = identity(check, &head);
     let model = match given.model {
         Some(sector) => Some(ModelSource::Given(sector)),
-        None => model(check, path, raw.model.unwrap_or_default()),
+        None => model(check, path, file.model.unwrap_or_default()),
     };
-    reduction(check, &raw.reduction);
-    let damping = damping(check, raw.damping);
-    let nodal_diameter_damping = raw
+    let reduction = reduction(check, file.reduction);
+    let damping = damping(check, file.damping);
+    let nodal_diameter_damping = file
         .nodal_diameter_damping
-        .and_then(|raw| nodal_diameter_damping(check, raw));
-    let excited = excitation(check, path, raw.excitation.unwrap_or_default());
+        .and_then(|table| nodal_diameter_damping(check, table));
+    let excited = excitation(check, path, file.excitation.unwrap_or_default());
     let (amplitude_n, amplitudes_n) = excited.amplitudes;
-    let sweep = raw.sweep.unwrap_or_default();
-    let normal_load = raw.contact.as_mut().and_then(|raw| raw.normal_load.take());
-    let contacts = contacts(check, &sweep, normal_load.is_some());
-    let rotation = normal_load.and_then(|raw| rotation(check, &raw));
-    let solver = solver(check, raw.solver);
-    let variation = raw
+    let sweep = file.sweep.unwrap_or_default();
+    let normal_load = file
         .contact
-        .as_mut()
-        .map(|raw| std::mem::take(&mut raw.variation));
-    let contact = raw.contact.map(|raw| contact_options(check, &raw));
+        .as_ref()
+        .and_then(|table| table.normal_load.as_ref());
+    let contacts = contacts(check, &sweep, normal_load.is_some());
+    let rotation = normal_load.and_then(|table| rotation(check, table));
+    let solver = solver(check, file.solver);
+    let contact = file
+        .contact
+        .as_ref()
+        .map(|table| contact_options(check, table));
     if let Some(contact) = &contact {
         normal_stiffness(check, contact);
         if contact.law == ContactLaw::Coulomb3d && contact.ring == Ring::Creeping {
@@ -154,28 +167,34 @@ fn resolve(
             );
         }
     }
-    let contact_variations = match (&variation, &contact) {
-        (Some(raw), Some(contact)) => contact_variations(check, raw, contact),
+    let variation = file
+        .contact
+        .as_ref()
+        .and_then(|table| table.variation.as_ref());
+    let contact_variations = match (variation, &contact) {
+        (Some(table), Some(contact)) => contact_variations(check, table, contact),
         _ => Vec::new(),
     };
-    if raw.reduction.basis == Basis::TunedReceptances {
+    if reduction.basis == Basis::TunedReceptances {
         let ring = contact.as_ref().map(|own| own.ring);
         for (key, reason) in against_receptances(ring, &solver) {
             check.conflict(key, &format!("basis = \"tuned_receptances\" {reason}"));
         }
     }
     let patterns = (head.patterns, given.records);
-    let mistuning = mistuning(check, path, raw.mistuning, &sweep, patterns)?;
+    let mistuning = mistuning(check, path, file.mistuning, &sweep, patterns)?;
     let (Some(model), Some(damping), Some(mistuning)) = (model, damping, mistuning) else {
         return Ok(None);
     };
     let is_of_file = matches!(mistuning.mistuning.source, MistuningSource::File { .. });
-    let stop = raw
+    let stop = file
         .stop
-        .and_then(|raw| stop(check, &raw, mistuning.patterns, is_of_file));
-    let accuracy = raw
+        .and_then(|table| stop(check, &table, mistuning.patterns, is_of_file));
+    let accuracy = file
         .accuracy
-        .and_then(|own| accuracy(check, &own, raw.reduction.basis));
+        .map(|table| accuracy(check, table, reduction.basis));
+    let mut output = OutputOptions::default();
+    check.put("output", file.output, &mut output, &[]);
     let study = Study {
         path: path.to_owned(),
         map: SourceMap::default(),
@@ -183,7 +202,7 @@ fn resolve(
         seed,
         patterns: mistuning.patterns,
         model,
-        reduction: raw.reduction,
+        reduction,
         contact,
         contact_variations,
         damping,
@@ -199,47 +218,25 @@ fn resolve(
         solver,
         accuracy: None,
         stop,
-        output: output(check, &raw.output),
+        output,
     };
     let study = with_accuracy(study, accuracy, |key| check.is_written(key));
     Ok(Some((study, rotation)))
 }
 
-fn output(check: &mut Check, raw: &RawOutput) -> OutputOptions {
-    OutputOptions {
-        patterns: raw.patterns,
-        compression: raw.compression.unwrap_or_default(),
-        stress_pa_per_m: raw.stress_pa_per_m.map(|scale| {
-            check.within(
-                "output.stress_pa_per_m",
-                scale,
-                scale.is_finite() && scale > 0.0,
-                "a finite number above 0, in Pa/m",
-            )
-        }),
-        stability: raw.stability.map_or(0, |rows| {
-            let accepted = "a whole number from 0 to 1000";
-            check.within("output.stability", rows, rows <= 1000, accepted) as u32
-        }),
-    }
-}
-
-fn identity(check: &mut Check, head: &RawHead) -> (String, u64) {
-    let accepted = "a name of letters, digits, - and _, beginning with a letter or digit";
+fn identity(check: &mut Check, head: &HeadTable) -> (String, u64) {
     let name = head.name.clone().unwrap_or_default();
     let well_formed = name
         .chars()
         .all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_')
         && name.starts_with(|c: char| c.is_ascii_alphanumeric());
     if head.name.is_none() {
-        check.missing("study.name", accepted);
+        check.missing("study.name");
     } else if !well_formed || name.len() > 100 {
-        check.refuse("study.name", accepted);
+        check.refuse("study.name");
     }
     if head.seed.is_none() {
-        let accepted = "a whole number from 0 to 9223372036854775807; there is no default, so that \
-                        every study says which patterns it has";
-        check.missing("study.seed", accepted);
+        check.missing("study.seed");
     }
     (name, head.seed.unwrap_or_default())
 }
@@ -270,19 +267,19 @@ fn check_damper(check: &mut Check, options: &ParametricOptions) {
     }
 }
 
-fn model(check: &mut Check, study_file: &Path, raw: RawModel) -> Option<ModelSource> {
-    let Some(kind) = raw.source else {
-        check.missing("model.source", "\"parametric\", \"lumped\" or \"bundle\"");
+fn model(check: &mut Check, study_file: &Path, table: ModelTable) -> Option<ModelSource> {
+    let Some(kind) = table.source else {
+        check.missing("model.source");
         return None;
     };
     let tables = [
         (
             "parametric",
-            RawModelKind::Parametric,
-            raw.parametric.is_some(),
+            ModelKind::Parametric,
+            table.parametric.is_some(),
         ),
-        ("lumped", RawModelKind::Lumped, raw.lumped.is_some()),
-        ("bundle", RawModelKind::Bundle, raw.bundle.is_some()),
+        ("lumped", ModelKind::Lumped, table.lumped.is_some()),
+        ("bundle", ModelKind::Bundle, table.bundle.is_some()),
     ];
     for (name, of_kind, given) in tables {
         if given && of_kind != kind {
@@ -294,24 +291,24 @@ fn model(check: &mut Check, study_file: &Path, raw: RawModel) -> Option<ModelSou
         }
     }
     match kind {
-        RawModelKind::Parametric => {
-            let options = raw.parametric.unwrap_or_default();
+        ModelKind::Parametric => {
+            let options = table.parametric.unwrap_or_default();
             check_damper(check, &options);
             Some(ModelSource::Parametric(options))
         }
-        RawModelKind::Lumped => {
-            if raw.lumped.is_none() {
-                check.missing(
+        ModelKind::Lumped => {
+            if table.lumped.is_none() {
+                check.missing_for(
                     "model.lumped",
                     "a table with sectors, blade_mass_kg, blade_stiffness_n_per_m",
                 );
             }
-            raw.lumped.map(ModelSource::Lumped)
+            table.lumped.map(ModelSource::Lumped)
         }
-        RawModelKind::Bundle => {
-            let path = raw.bundle.and_then(|bundle| bundle.path);
+        ModelKind::Bundle => {
+            let path = table.bundle.and_then(|bundle| bundle.path);
             if path.is_none() {
-                check.missing(
+                check.missing_for(
                     "model.bundle.path",
                     "the folder of a sector bundle, relative to the study file",
                 );
@@ -324,85 +321,42 @@ fn model(check: &mut Check, study_file: &Path, raw: RawModel) -> Option<ModelSou
     }
 }
 
-fn reduction(check: &mut Check, options: &ReductionOptions) {
-    let error = options.error;
-    check.within(
-        "reduction.error",
-        error,
-        error > 0.0 && error <= 0.5,
-        "a number above 0 and at most 0.5",
-    );
-    let counts = [
-        ("reduction.stick_modes", options.stick_modes, 1),
-        ("reduction.slide_modes", options.slide_modes, 1),
-        (
-            "reduction.craig_bampton_modes",
-            options.craig_bampton_modes,
-            1,
-        ),
-        (
-            "reduction.sensitivity_vectors",
-            options.sensitivity_vectors,
-            0,
-        ),
-    ];
-    for (key, count, least) in counts {
-        if count.is_some_and(|count| !(least..=1000).contains(&count)) {
-            check.refuse(key, &format!("a whole number from {least} to 1000"));
+fn reduction(check: &mut Check, table: Option<ReductionTable>) -> ReductionOptions {
+    let mut options = ReductionOptions::default();
+    check.put("reduction", table, &mut options, &[]);
+    let stick = ("reduction.stick_modes", options.stick_modes.is_some());
+    let slide = ("reduction.slide_modes", options.slide_modes.is_some());
+    let mut refuse = |keys: &[(&str, bool)], reason: &str| {
+        for (key, _) in keys.iter().filter(|(_, is_given)| *is_given) {
+            check.conflict(key, reason);
         }
-    }
+    };
     match options.basis {
-        Basis::TunedReceptances => {
-            for (key, given) in [
-                ("reduction.stick_modes", options.stick_modes.is_some()),
-                ("reduction.slide_modes", options.slide_modes.is_some()),
-            ] {
-                if given {
-                    check.conflict(
-                        key,
-                        "basis = \"tuned_receptances\" has no modes to choose; accepted: neither stick_modes nor \
-                         slide_modes",
-                    );
-                }
-            }
-        }
-        Basis::Auto => {
-            for (key, given) in [
-                ("reduction.stick_modes", options.stick_modes.is_some()),
-                ("reduction.slide_modes", options.slide_modes.is_some()),
-            ] {
-                if given {
-                    check.conflict(
-                        key,
-                        "basis = \"auto\" chooses the number of modes; accepted: reduction.error, or \
-                         basis = \"stick_slide\" with fixed numbers",
-                    );
-                }
-            }
-        }
+        Basis::TunedReceptances => refuse(
+            &[stick, slide],
+            "basis = \"tuned_receptances\" has no modes to choose; accepted: neither stick_modes nor \
+             slide_modes",
+        ),
+        Basis::Auto => refuse(
+            &[stick, slide],
+            "basis = \"auto\" chooses the number of modes; accepted: reduction.error, or \
+             basis = \"stick_slide\" with fixed numbers",
+        ),
+        Basis::StickAttachment => refuse(
+            &[slide],
+            "basis = \"stick_attachment\" has none; accepted: stick_modes",
+        ),
         Basis::StickSlide => {
-            if options.stick_modes.is_some() && options.slide_modes.is_none() {
-                check.missing(
-                    "reduction.slide_modes",
-                    "a whole number from 1 to 1000, beside stick_modes",
-                );
+            let accepted = "a whole number from 1 to 1000, beside";
+            if stick.1 && !slide.1 {
+                check.missing_for(slide.0, &format!("{accepted} stick_modes"));
             }
-            if options.slide_modes.is_some() && options.stick_modes.is_none() {
-                check.missing(
-                    "reduction.stick_modes",
-                    "a whole number from 1 to 1000, beside slide_modes",
-                );
-            }
-        }
-        Basis::StickAttachment => {
-            if options.slide_modes.is_some() {
-                check.conflict(
-                    "reduction.slide_modes",
-                    "basis = \"stick_attachment\" has none; accepted: stick_modes",
-                );
+            if slide.1 && !stick.1 {
+                check.missing_for(stick.0, &format!("{accepted} slide_modes"));
             }
         }
     }
+    options
 }
 
 /// Keys by which a study cannot be solved on tuned receptances, each with what would be accepted.
@@ -425,23 +379,17 @@ pub(crate) fn against_receptances(
     found
 }
 
-fn contact_options(check: &mut Check, raw: &RawContact) -> ContactOptions {
+fn contact_options(check: &mut Check, table: &ContactTable) -> ContactOptions {
     ContactOptions {
-        law: raw.law.unwrap_or(ContactLaw::Simplified3d),
-        friction_coefficient: check.required(
-            "contact.friction_coefficient",
-            raw.friction_coefficient,
-            |value| (0.0..=10.0).contains(&value),
-            "a number from 0 to 10",
-        ),
+        law: table.law.unwrap_or(ContactLaw::Simplified3d),
+        friction_coefficient: check
+            .required("contact.friction_coefficient", table.friction_coefficient),
         tangential_stiffness_n_per_m: check.required(
             "contact.tangential_stiffness_n_per_m",
-            raw.tangential_stiffness_n_per_m,
-            |value| value.is_finite() && value > 0.0,
-            "a finite number above 0, in N/m",
+            table.tangential_stiffness_n_per_m,
         ),
-        normal_stiffness_n_per_m: raw.normal_stiffness_n_per_m,
-        ring: raw.ring.unwrap_or_default(),
+        normal_stiffness_n_per_m: table.normal_stiffness_n_per_m,
+        ring: table.ring.unwrap_or_default(),
         in_place_of: None,
     }
 }
@@ -450,10 +398,10 @@ fn normal_stiffness(check: &mut Check, contact: &ContactOptions) {
     let key = "contact.normal_stiffness_n_per_m";
     match (contact.law, contact.normal_stiffness_n_per_m) {
         (ContactLaw::Simplified3d | ContactLaw::Coulomb3d, None) => {
-            check.missing(key, "a finite number above 0, in N/m");
+            check.missing(key);
         }
-        (_, Some(value)) if !(value.is_finite() && value > 0.0) => {
-            check.refuse(key, "a finite number above 0, in N/m");
+        (_, Some(value)) => {
+            check.judged(key, value);
         }
         _ => {}
     }

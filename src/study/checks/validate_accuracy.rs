@@ -2,19 +2,15 @@
 
 use super::check::Check;
 use crate::model::reduction::Basis;
-use crate::study::raw::RawAccuracy;
+use crate::study::keys::solver::AccuracyTable;
 use crate::study::{AccuracyOptions, Study};
 
 /// Keys of a basis, which conflict with an accepted error: the ladder is one of bases, and none of its
 /// settings is left where the study says one.
 const KEYS_OF_A_BASIS: [&str; 2] = ["reduction.stick_modes", "reduction.slide_modes"];
 
-/// The accepted error; none where the number is refused.
-pub(super) fn accuracy(
-    check: &mut Check,
-    raw: &RawAccuracy,
-    basis: Basis,
-) -> Option<AccuracyOptions> {
+/// The accepted error.
+pub(super) fn accuracy(check: &mut Check, table: AccuracyTable, basis: Basis) -> AccuracyOptions {
     const KEY: &str = "accuracy.amplitude_error";
     let basis =
         (!matches!(basis, Basis::Auto | Basis::TunedReceptances)).then_some("reduction.basis");
@@ -24,19 +20,9 @@ pub(super) fn accuracy(
             check.conflict(key, &reason);
         }
     }
-    let amplitude_error = check.given(
-        KEY,
-        Some(raw.amplitude_error.unwrap_or(AccuracyOptions::DEFAULT)),
-        AccuracyOptions::accepts,
-        AccuracyOptions::ACCEPTED,
-    )?;
-    let default = AccuracyOptions::within(amplitude_error);
-    Some(AccuracyOptions {
-        simpler_contact_law: raw
-            .simpler_contact_law
-            .unwrap_or(default.simpler_contact_law),
-        ..default
-    })
+    let mut options = AccuracyOptions::within(AccuracyOptions::DEFAULT);
+    check.put("accuracy", Some(table), &mut options, &[]);
+    options
 }
 
 /// `study` with the accepted error in the place of those of its own tolerances that it does not say.

@@ -1,12 +1,12 @@
-//! The checks of `[excitation]`: engine orders, amplitudes, load cases.
+//! The table `[excitation]`, engine orders, amplitudes and load cases: from the file, and back.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::check::Check;
 use crate::population::monte_carlo::LoadCaseName;
-use crate::study::keys::EXCITATION_N;
-use crate::study::raw::{RawExcitation, RawLoadCase, RawNumbers};
+use crate::study::keys::excitation::{EXCITATION_N, ExcitationTable, LoadCaseTable};
+use crate::study::keys::written::OneOrMore;
 use crate::study::{ForceSource, LoadCase, Study};
 
 /// What `[excitation]` came to.
@@ -22,18 +22,22 @@ pub(super) struct Excited {
 /// One factor for all engine orders, or one each.
 type Amplitudes = (f64, Vec<f64>);
 
-pub(super) fn excitation(check: &mut Check, study_file: &Path, raw: RawExcitation) -> Excited {
-    let Some(cases) = raw.load_case else {
-        let engine_orders = engine_orders(check, "excitation", raw.engine_orders.as_deref());
+pub(super) fn excitation(
+    check: &mut Check,
+    study_file: &Path,
+    excitation: ExcitationTable,
+) -> Excited {
+    let Some(cases) = excitation.load_case else {
+        let engine_orders = engine_orders(check, "excitation", excitation.engine_orders.as_deref());
         let orders = engine_orders.len();
         return Excited {
-            amplitudes: amplitudes(check, "excitation", raw.amplitude_n.as_ref(), orders),
+            amplitudes: amplitudes(check, "excitation", excitation.amplitude_n.as_ref(), orders),
             engine_orders,
             load_cases: Vec::new(),
         };
     };
     if cases.is_empty() {
-        check.refuse(
+        check.refuse_for(
             "excitation.load_case",
             "at least one [[excitation.load_case]], or none of them and engine_orders",
         );
@@ -63,12 +67,12 @@ pub(super) fn excitation(check: &mut Check, study_file: &Path, raw: RawExcitatio
         let name = name(check, &table, case.name.as_deref(), &mut names);
         let force = force(check, study_file, &table, &case);
         let (own, orders) = match case.engine_orders {
-            None if raw.engine_orders.is_some() => ("excitation", &raw.engine_orders),
+            None if excitation.engine_orders.is_some() => ("excitation", &excitation.engine_orders),
             _ => (table.as_str(), &case.engine_orders),
         };
         let engine_orders = engine_orders(check, own, orders.as_deref());
         let (own, amplitude_n) = match case.amplitude_n {
-            None => ("excitation", &raw.amplitude_n),
+            None => ("excitation", &excitation.amplitude_n),
             Some(_) => (table.as_str(), &case.amplitude_n),
         };
         let (amplitude_n, amplitudes_n) =
@@ -102,20 +106,18 @@ fn name(
     before: &mut BTreeSet<String>,
 ) -> Option<LoadCaseName> {
     let key = format!("{table}.name");
-    let accepted =
-        "a name of its own of 1 to 40 letters, digits, - and _, beginning with a letter or digit";
     let Some(written) = written else {
-        check.missing(&key, accepted);
+        check.missing(&key);
         return None;
     };
     let name = LoadCaseName::new(written).filter(|_| before.insert(written.to_owned()));
     if name.is_none() {
-        check.refuse(&key, accepted);
+        check.refuse(&key);
     }
     name
 }
 
-fn force(check: &mut Check, study_file: &Path, table: &str, case: &RawLoadCase) -> ForceSource {
+fn force(check: &mut Check, study_file: &Path, table: &str, case: &LoadCaseTable) -> ForceSource {
     let direction_key = format!("{table}.direction");
     match (&case.force, &case.node) {
         (Some(_), Some(_)) => {
@@ -132,8 +134,6 @@ fn force(check: &mut Check, study_file: &Path, table: &str, case: &RawLoadCase) 
             };
         }
         (None, Some(node)) => {
-            let accepted =
-                "three numbers [r, theta, z], not all 0: where 1 N points to at the node";
             let direction = case.direction.as_deref();
             match direction.map(<[f64; 3]>::try_from) {
                 Some(Ok(direction))
@@ -145,8 +145,8 @@ fn force(check: &mut Check, study_file: &Path, table: &str, case: &RawLoadCase) 
                         direction,
                     };
                 }
-                Some(_) => check.refuse(&direction_key, accepted),
-                None => check.missing(&direction_key, accepted),
+                Some(_) => check.refuse(&direction_key),
+                None => check.missing(&direction_key),
             }
         }
         (None, None) if case.direction.is_some() => {
@@ -160,15 +160,14 @@ fn force(check: &mut Check, study_file: &Path, table: &str, case: &RawLoadCase) 
 /// Engine orders of the table `table`; empty, and a finding, where they are missing or refused.
 fn engine_orders(check: &mut Check, table: &str, raw: Option<&[u32]>) -> Vec<u32> {
     let key = format!("{table}.engine_orders");
-    let accepted = "a list of different whole numbers from 0 to 10000, at least one";
     let orders = raw.unwrap_or_default().to_vec();
     let mut sorted = orders.clone();
     sorted.sort_unstable();
     sorted.dedup();
     if raw.is_none() {
-        check.missing(&key, accepted);
+        check.missing(&key);
     } else if orders.is_empty() || sorted.len() < orders.len() || sorted.last() > Some(&10_000) {
-        check.refuse(&key, accepted);
+        check.refuse(&key);
     }
     orders
 }
@@ -177,26 +176,69 @@ fn engine_orders(check: &mut Check, table: &str, raw: Option<&[u32]>) -> Vec<u32
 fn amplitudes(
     check: &mut Check,
     table: &str,
-    raw: Option<&RawNumbers>,
+    raw: Option<&OneOrMore>,
     orders: usize,
 ) -> Amplitudes {
     let key = format!("{table}.amplitude_n");
     let possible = |amplitude: &f64| EXCITATION_N.holds(*amplitude);
     match raw {
         None => (1.0, Vec::new()),
-        Some(RawNumbers::One(amplitude)) => {
-            let accepted = "a number from 1e-30 to 1e30, in N, or a list of one per engine order";
-            let amplitude = check.within(&key, *amplitude, possible(amplitude), accepted);
-            (amplitude, Vec::new())
+        Some(OneOrMore::One(amplitude)) => {
+            if !possible(amplitude) {
+                check.refuse(&key);
+            }
+            (*amplitude, Vec::new())
         }
-        Some(RawNumbers::List(amplitudes)) => {
+        Some(OneOrMore::List(amplitudes)) => {
             if amplitudes.len() != orders || !amplitudes.iter().all(possible) {
                 let accepted = format!(
                     "a number from 1e-30 to 1e30, in N, or a list of {orders}, one per engine order"
                 );
-                check.refuse(&key, &accepted);
+                check.refuse_for(&key, &accepted);
             }
             (1.0, amplitudes.clone())
         }
+    }
+}
+
+/// `[excitation]` as a study file has it.
+pub(super) fn excitation_table(study: &Study) -> ExcitationTable {
+    if study.load_cases.is_empty() {
+        return ExcitationTable {
+            engine_orders: Some(study.engine_orders.clone()),
+            amplitude_n: Some(written(study.amplitude_n, &study.amplitudes_n)),
+            load_case: None,
+        };
+    }
+    let cases = study.load_cases.iter();
+    let cases = cases.map(|case| {
+        let mut table = LoadCaseTable {
+            name: Some(case.name.to_string()),
+            engine_orders: Some(case.engine_orders.clone()),
+            amplitude_n: Some(written(case.amplitude_n, &case.amplitudes_n)),
+            ..LoadCaseTable::default()
+        };
+        match &case.force {
+            ForceSource::Model => {}
+            ForceSource::File { written, .. } => table.force = Some(written.clone()),
+            ForceSource::Node { node, direction } => {
+                table.node = Some(node.clone());
+                table.direction = Some(direction.to_vec());
+            }
+        }
+        table
+    });
+    ExcitationTable {
+        load_case: Some(cases.collect()),
+        ..ExcitationTable::default()
+    }
+}
+
+/// A factor on the force vector as a study file has it.
+fn written(amplitude_n: f64, amplitudes_n: &[f64]) -> OneOrMore {
+    if amplitudes_n.is_empty() {
+        OneOrMore::One(amplitude_n)
+    } else {
+        OneOrMore::List(amplitudes_n.to_vec())
     }
 }

@@ -1,21 +1,18 @@
-//! The checks that tie mistuning, patterns and standard deviation together.
+//! Mistuning, patterns and standard deviation, which are tied together: from the file, and back.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::check::Check;
 use crate::population::table::read_pattern_parquet;
-use crate::response::mistuning::{
-    Distribution, PatternRecords, Projection, TRUNCATION_RANGE, read_pattern_csv,
+use crate::response::mistuning::{Distribution, PatternRecords, Projection, read_pattern_csv};
+use crate::study::keys::mistuning::{
+    DEVIATION, DistributionKind, DistributionTable, MistunedQuantity, MistuningTable, SweepTable,
 };
-use crate::study::raw::{RawDistribution, RawDistributionKind, RawMistuning, RawSweep};
 use crate::study::{Mistuning, MistuningSource, Study, StudyError};
 
 /// Cantilevered-blade modes of the classical projection unless the study says otherwise.
 const DEFAULT_CANTILEVER_MODES: usize = 10;
-
-/// Largest number of patterns: ids are Int32 in the tables.
-const MAX_PATTERNS: u64 = i32::MAX as u64;
 
 /// What the tables `[mistuning]`, `[sweep]` and `[study]` say about the patterns.
 pub(super) struct ResolvedMistuning {
@@ -32,20 +29,20 @@ pub(super) struct ResolvedMistuning {
 pub(super) fn mistuning(
     check: &mut Check,
     study_file: &Path,
-    raw: Option<RawMistuning>,
-    sweep: &RawSweep,
+    table: Option<MistuningTable>,
+    sweep: &SweepTable,
     (patterns, given): (Option<u64>, Option<PatternRecords>),
 ) -> Result<Option<ResolvedMistuning>, StudyError> {
     let accepted = "distribution = { kind = \"normal\" }, or file = \"...\"";
-    let Some(raw) = raw else {
-        check.missing("mistuning.distribution", accepted);
+    let Some(table) = table else {
+        check.missing_for("mistuning.distribution", accepted);
         return Ok(None);
     };
-    let projection = raw.projection.unwrap_or(Projection::Exact);
-    let cantilever_mode_count = cantilever_modes(check, projection, raw.cantilever_mode_count);
-    let resolved = match (raw.file, raw.distribution) {
+    let projection = table.projection.unwrap_or(Projection::Exact);
+    let cantilever_mode_count = cantilever_modes(check, projection, table.cantilever_mode_count);
+    let resolved = match (table.file, table.distribution) {
         (None, None) => {
-            check.missing("mistuning.distribution", accepted);
+            check.missing_for("mistuning.distribution", accepted);
             None
         }
         (Some(_), Some(_)) => {
@@ -84,7 +81,7 @@ pub(super) fn mistuning(
             }
             let in_file = records.ids().len();
             if patterns.is_some_and(|patterns| patterns != in_file as u64) {
-                check.refuse(
+                check.refuse_for(
                     "study.patterns",
                     &format!("absent, or {in_file}, the number of patterns in {written}"),
                 );
@@ -119,14 +116,12 @@ fn read_patterns(path: &Path) -> Result<PatternRecords, StudyError> {
 }
 
 fn pattern_count(check: &mut Check, patterns: Option<u64>) -> u32 {
-    let accepted = "a whole number from 1 to 2147483647";
-    if let Some(patterns) = patterns {
-        let fits = (1..=MAX_PATTERNS).contains(&patterns);
-        check.within("study.patterns", patterns, fits, accepted) as u32
-    } else {
-        check.missing("study.patterns", accepted);
-        0
-    }
+    let Some(patterns) = patterns else {
+        check.missing("study.patterns");
+        return 0;
+    };
+    check.judged("study.patterns", patterns as f64);
+    patterns as u32
 }
 
 fn cantilever_modes(
@@ -138,8 +133,8 @@ fn cantilever_modes(
     match projection {
         Projection::CantileverModes => {
             let count = count.unwrap_or(DEFAULT_CANTILEVER_MODES);
-            let fits = (1..=1000).contains(&count);
-            Some(check.within(key, count, fits, "a whole number from 1 to 1000"))
+            check.judged(key, count as f64);
+            Some(count)
         }
         Projection::Exact => {
             if count.is_some() {
@@ -153,35 +148,25 @@ fn cantilever_modes(
     }
 }
 
-fn law(check: &mut Check, raw: &RawDistribution) -> Option<Distribution> {
+fn law(check: &mut Check, table: &DistributionTable) -> Option<Distribution> {
     let key = "mistuning.distribution.truncation";
-    let accepted = format!(
-        "a number from {} to {}, in standard deviations of the normal law",
-        TRUNCATION_RANGE[0], TRUNCATION_RANGE[1]
-    );
-    let Some(kind) = raw.kind else {
-        check.missing(
-            "mistuning.distribution.kind",
-            "\"normal\", \"uniform\" or \"truncated_normal\"",
-        );
+    let Some(kind) = table.kind else {
+        check.missing("mistuning.distribution.kind");
         return None;
     };
-    let law = match (kind, raw.truncation) {
-        (RawDistributionKind::TruncatedNormal, Some(truncation)) => {
-            let law = Distribution::TruncatedNormal { truncation };
-            if law.validate().is_err() {
-                check.refuse(key, &accepted);
+    let law = match kind {
+        DistributionKind::TruncatedNormal => {
+            let truncation = table.truncation;
+            if truncation.is_none() {
+                check.missing(key);
             }
-            return Some(law);
+            let truncation = check.judged(key, truncation?);
+            return Some(Distribution::TruncatedNormal { truncation });
         }
-        (RawDistributionKind::TruncatedNormal, None) => {
-            check.missing(key, &accepted);
-            return None;
-        }
-        (RawDistributionKind::Normal, _) => Distribution::Normal,
-        (RawDistributionKind::Uniform, _) => Distribution::Uniform,
+        DistributionKind::Normal => Distribution::Normal,
+        DistributionKind::Uniform => Distribution::Uniform,
     };
-    if raw.truncation.is_some() {
+    if table.truncation.is_some() {
         check.conflict(
             key,
             "this law is not cut off; accepted: kind = \"truncated_normal\"",
@@ -193,12 +178,11 @@ fn law(check: &mut Check, raw: &RawDistribution) -> Option<Distribution> {
 /// The standard deviation stands once: in `[sweep]` as a list, or in the distribution as a number.
 fn standard_deviations(
     check: &mut Check,
-    distribution: &RawDistribution,
-    sweep: &RawSweep,
+    distribution: &DistributionTable,
+    sweep: &SweepTable,
 ) -> Vec<Option<f64>> {
     let in_law = "mistuning.distribution.standard_deviation";
     let in_sweep = "sweep.standard_deviation";
-    let fits = |value: f64| (0.0..=0.5).contains(&value);
     match (distribution.standard_deviation, &sweep.standard_deviation) {
         (Some(_), Some(_)) => {
             check.conflict(
@@ -208,33 +192,51 @@ fn standard_deviations(
             Vec::new()
         }
         (None, None) => {
-            check.missing(
-                in_sweep,
-                "a list of different numbers from 0 to 0.5, at least one",
-            );
+            check.missing(in_sweep);
             Vec::new()
         }
-        (Some(value), None) => {
-            vec![Some(check.within(
-                in_law,
-                value,
-                fits(value),
-                "a number from 0 to 0.5",
-            ))]
-        }
+        (Some(value), None) => vec![Some(check.judged(in_law, value))],
         (None, Some(values)) => {
-            let accepted = "a list of different numbers from 0 to 0.5, at least one";
             if values.is_empty() {
-                check.refuse(in_sweep, accepted);
+                check.refuse(in_sweep);
             }
             let mut seen = BTreeSet::new();
             for (place, &value) in values.iter().enumerate() {
                 // The sum turns -0.0 into 0.0.
-                if !fits(value) || !seen.insert((value + 0.0).to_bits()) {
-                    check.refuse(&format!("{in_sweep}[{place}]"), accepted);
+                if !DEVIATION.holds(value) || !seen.insert((value + 0.0).to_bits()) {
+                    check.refuse(&format!("{in_sweep}[{place}]"));
                 }
             }
             values.iter().map(|value| Some(value + 0.0)).collect()
         }
+    }
+}
+
+/// `[mistuning]` as a study file has it; the standard deviations are those of the sweep.
+pub(super) fn mistuning_table(mistuning: &Mistuning) -> MistuningTable {
+    let (distribution, file) = match &mistuning.source {
+        MistuningSource::Law(law) => {
+            let (kind, truncation) = match *law {
+                Distribution::Normal => (DistributionKind::Normal, None),
+                Distribution::Uniform => (DistributionKind::Uniform, None),
+                Distribution::TruncatedNormal { truncation } => {
+                    (DistributionKind::TruncatedNormal, Some(truncation))
+                }
+            };
+            let law = DistributionTable {
+                kind: Some(kind),
+                truncation,
+                standard_deviation: None,
+            };
+            (Some(law), None)
+        }
+        MistuningSource::File { written, .. } => (None, Some(written.clone())),
+    };
+    MistuningTable {
+        quantity: Some(MistunedQuantity::BladeStiffness),
+        projection: Some(mistuning.projection),
+        cantilever_mode_count: mistuning.cantilever_mode_count,
+        distribution,
+        file,
     }
 }

@@ -2,27 +2,17 @@
 
 use super::check::Check;
 use crate::population::statistics::{CONFIDENCE, Quantity, StopOptions, smallest_sample};
-use crate::study::raw::RawStop;
+use crate::study::keys::solver::StopTable;
 
 /// The stopping rule of a study of at most `patterns`, drawn or of a file; none where a number is missing.
 pub(super) fn stop(
     check: &mut Check,
-    raw: &RawStop,
+    stop: &StopTable,
     patterns: u32,
     is_of_file: bool,
 ) -> Option<StopOptions> {
-    let percentile = check.given(
-        "stop.percentile",
-        raw.percentile,
-        |percent| percent > 0.0 && percent < 100.0,
-        "a number above 0 and below 100, in percent",
-    )?;
-    let relative_width = check.given(
-        "stop.relative_width",
-        raw.relative_width,
-        |width| width > 0.0 && width <= 1.0,
-        "a number above 0 and at most 1: width of the interval over the percentile",
-    )?;
+    let percentile = check.given("stop.percentile", stop.percentile)?;
+    let relative_width = check.given("stop.relative_width", stop.relative_width)?;
     let needed = smallest_sample(percentile / 100.0, CONFIDENCE);
     if u64::from(patterns) < needed {
         let accepted = if is_of_file {
@@ -38,6 +28,15 @@ pub(super) fn stop(
     Some(StopOptions {
         percentile,
         relative_width,
-        quantity: raw.quantity.unwrap_or(Quantity::PeakAmplitudeM),
+        quantity: stop.quantity.unwrap_or(Quantity::PeakAmplitudeM),
     })
+}
+
+/// The stopping rule as a study file has it.
+pub(super) fn stop_table(stop: &StopOptions) -> StopTable {
+    StopTable {
+        percentile: Some(stop.percentile),
+        relative_width: Some(stop.relative_width),
+        quantity: Some(stop.quantity),
+    }
 }

@@ -1,46 +1,26 @@
 //! The keys of a study file, and how they are found.
 
-use super::contact_keys::CONTACT_KEYS;
-use super::model_keys::MODEL_KEYS;
-use super::study_keys::{LEADING_KEYS, REDUCTION_KEYS, STUDY_KEYS};
-use crate::input::mentions;
-use crate::input::{KeySpec, nearest_key_names};
+use std::sync::LazyLock;
 
-/// Parameters that `[contact.variation]` can let vary.
-const CONTACT_PARAMETERS: [&str; 4] = [
-    "friction_coefficient",
-    "tangential_stiffness",
-    "normal_stiffness",
-    "normal_load",
-];
+use super::study_file::StudyFile;
+use crate::input::{KeySpec, all_keys, mentions, nearest_key_names};
+
+static KEYS: LazyLock<Vec<KeySpec>> = LazyLock::new(|| all_keys(StudyFile::KEYS));
 
 /// Every key in the order of docs/study-file.md.
 #[must_use]
 pub fn keys() -> Vec<KeySpec> {
-    let entries = [
-        LEADING_KEYS,
-        MODEL_KEYS,
-        REDUCTION_KEYS,
-        CONTACT_KEYS,
-        STUDY_KEYS,
-    ]
-    .concat();
-    let stretches = entries.chunk_by(|a, b| a.key.contains('*') == b.key.contains('*'));
-    let mut keys = Vec::new();
-    for stretch in stretches {
-        let names: &[&str] = if stretch[0].key.contains('*') {
-            &CONTACT_PARAMETERS
-        } else {
-            &[""]
-        };
-        for name in names {
-            let named = stretch
-                .iter()
-                .map(|entry| KeySpec::new(entry, entry.key.replace('*', name)));
-            keys.extend(named);
-        }
-    }
-    keys
+    KEYS.clone()
+}
+
+/// The key of a study file at `place`, which may be in a list of tables: `excitation.load_case[1].name`.
+pub(in crate::study) fn study_key(place: &str) -> Option<&'static KeySpec> {
+    let steps = place.split('.');
+    let names: Vec<&str> = steps
+        .map(|step| step.split('[').next().unwrap_or(step))
+        .collect();
+    let name = names.join(".");
+    KEYS.iter().find(|key| key.key == name)
 }
 
 /// The key `name` and all below it; all keys for an empty name.
@@ -65,5 +45,5 @@ pub fn keys_about(words: &str) -> Vec<KeySpec> {
 /// The keys that `name` may be meant for: those that end in it, or else the nearest in spelling.
 #[must_use]
 pub fn nearest_keys(name: &str) -> Vec<String> {
-    nearest_key_names(&keys(), name)
+    nearest_key_names(&KEYS, name)
 }

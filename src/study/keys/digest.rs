@@ -5,10 +5,12 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{ForceSource, MistuningSource, ModelSource, Study, StudyError};
+use super::study_key;
 use crate::identity;
+use crate::input::Effect;
 use crate::population::monte_carlo::Scenario;
 use crate::population::table::digest_file;
+use crate::study::{ForceSource, MistuningSource, ModelSource, Study, StudyError};
 
 /// What the digest of a study is made from, and the digest.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,22 +21,11 @@ pub struct StudyDigest {
     pub inputs: BTreeMap<String, String>,
 }
 
-/// Keys that leave every number as it is: names, places, how much is computed and written.
-const NEUTRAL: [&str; 6] = [
-    "study.name",
-    "study.patterns",
-    "model.bundle.path",
-    "mistuning.file",
-    "stop.",
-    "output.",
-];
-
-/// Keys that list the scenarios; a row depends on those of its own alone.
-const OF_SCENARIOS: [&str; 3] = [
-    "sweep.",
-    "excitation.engine_orders",
-    "contact.normal_load.speed_rpm",
-];
+/// Whether `key` of a resolved study, or a table that it is in, is declared to have this effect. What is no key, like the version of the
+/// program, changes every number.
+fn has_effect(key: &str, effect: Effect) -> bool {
+    study_key(key).is_some_and(|spec| spec.effect == effect)
+}
 
 impl StudyDigest {
     /// The digest of `study`, its input files included.
@@ -47,7 +38,7 @@ impl StudyDigest {
         let mut resolved = study.resolved();
         without_places(&mut resolved);
         flatten("", &resolved, &mut number_keys);
-        number_keys.retain(|key, _| !NEUTRAL.iter().any(|neutral| key.starts_with(neutral)));
+        number_keys.retain(|key, _| !has_effect(key, Effect::None));
         number_keys.insert("version".to_owned(), identity::VERSION.to_owned());
         // The content of an input and its role count, not where it lies.
         for (name, digest) in &inputs {
@@ -92,7 +83,7 @@ impl StudyDigest {
     pub fn of_rows(&self, scenario: &Scenario, engine: &str) -> String {
         let mut hasher = blake3::Hasher::new();
         for (key, value) in &self.number_keys {
-            if !OF_SCENARIOS.iter().any(|list| key.starts_with(list)) {
+            if !has_effect(key, Effect::Scenarios) {
                 hasher.update(format!("{key} = {value}\n").as_bytes());
             }
         }
