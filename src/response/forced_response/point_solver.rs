@@ -14,7 +14,7 @@ use crate::linalg::{Complex64, LuWorkspace};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{
     ContactInterface, ContactShares, HarmonicBlock, HarmonicSystem, NewtonWorkspace, PairContact,
-    Status, linear_response, solve, solve_creeping,
+    Status, linear_response, response_slope, solve, solve_creeping,
 };
 
 /// Solver of the points of one row; keeps the converged points as starts for others.
@@ -400,7 +400,7 @@ impl<'a> PointSolver<'a> {
         let slope = match &mut self.nonlinear {
             Some((system, workspace)) if self.sloped && other.is_none() => {
                 self.work.factorisations += 1;
-                workspace.response_slope(system, omega, &x)
+                response_slope(system, omega, &x, workspace)
             }
             _ => None,
         };
