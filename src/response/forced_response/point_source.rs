@@ -59,7 +59,7 @@ impl PointSource for PointSolver<'_> {
     }
 
     fn set_precision(&mut self, share: f64) {
-        self.precision = Some(share);
+        Self::set_precision(self, share);
     }
 
     fn mean_friction_n(&mut self, point: &Point) -> Option<[f64; 2]> {

@@ -91,7 +91,7 @@ pub fn refined(
     let mut coarse = PointSolver::new(search.excited, condition, search.settings);
     let tops = tops_of_few(&plan, &mut coarse, peak_tolerance, MADE_UP)?;
     let mut solver = PointSolver::new(excited, condition, settings).refining(&coarse);
-    solver.precision = Some(REFINED_PRECISION * peak_tolerance);
+    solver.set_precision(REFINED_PRECISION * peak_tolerance);
     let refined = highest(solver, &tops, plan.envelope, peak_tolerance)
         .map_err(|wasted| coarse.work().plus(wasted))?;
     inside_of_band(&plan, with_work(refined, coarse.work()))
