@@ -8,10 +8,10 @@
 use std::ops::ControlFlow;
 
 use super::branch::BranchPlace;
-use super::peak_search::Envelope;
 use super::point::Point;
 use super::row_equation::RowEquation;
-use super::samples::Sample;
+use super::search::Envelope;
+use super::search::Sample;
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{ContinuationBounds, Status};
 

@@ -5,13 +5,12 @@ use super::branch::ResponseTrace;
 use super::excited::Excited;
 use super::folded_peak::over_folds;
 use super::homotopy::{lower_normal_load, stiffen_contact};
-use super::initial_guess::{KnownPoints, beside};
+use super::initial_guess::{KnownPoints, beside, between};
 use super::observed_amplitude::ObservedBlock;
 use super::options::ContactCondition;
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::row_equation::{RowEquation, real_parts};
-use super::starts::between;
 use crate::linalg::{Complex64, LuWorkspace};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{
