@@ -240,7 +240,7 @@ pub(in crate::response::harmonic_balance) mod tests {
     use super::*;
     use crate::linalg::{Complex64, Matrix};
     use crate::model::cyclic::ContactGeometry;
-    use crate::response::friction::PairParameters;
+    use crate::response::friction::{ContactLaw, PairParameters};
     use crate::response::harmonic_balance::equation::HarmonicBlock;
     use crate::response::harmonic_balance::pairs::{ContactInterface, ContactShares};
     use crate::response::harmonic_balance::{Damping, HarmonicTransform};

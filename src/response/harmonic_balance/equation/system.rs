@@ -271,7 +271,8 @@ impl HarmonicSystem {
     }
 
     /// The linear response with every pair stuck, harmonic 1 and nothing else; none if it has none.
-    pub(in crate::response) fn stuck_response(&self, omega: f64) -> Option<Vec<f64>> {
+    #[must_use]
+    pub fn stuck_response(&self, omega: f64) -> Option<Vec<f64>> {
         self.linear.stuck_response(omega)
     }
 
