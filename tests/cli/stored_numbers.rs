@@ -347,7 +347,7 @@ fn rebuilt() -> PathBuf {
         let target = copy.join("target/release").join(folder);
         copy_all(&compiled.join(folder), &target, &of_dependency);
     }
-    let source = copy.join("src/response/forced_response/peak_search.rs");
+    let source = copy.join("src/response/forced_response/search/envelope.rs");
     let text = std::fs::read_to_string(&source).expect("read");
     let (old, new) = CHANGED;
     assert!(text.contains(old), "{old}");

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use super::point::Point;
-use super::point_solver::PointSolver;
+use super::row_equation::RowEquation;
 use crate::response::harmonic_balance::{Continuation, ContinuationBounds, PathPoint, Status};
 
 /// Frequency scale where no linear resonance tells it, over the frequency.
@@ -55,6 +55,32 @@ pub struct ResponseTrace {
 }
 
 impl ResponseTrace {
+    /// A trace without points that ended with `status`.
+    pub(super) fn without_points(status: Status) -> Self {
+        Self {
+            points: Vec::new(),
+            status,
+        }
+    }
+
+    /// A trace of nothing but its first point, which may be one of `grid_hz`.
+    pub(super) fn beginning_at(first: Point, grid_hz: &[f64]) -> Self {
+        let place = if grid_hz.contains(&first.frequency_hz) {
+            BranchPlace::Grid
+        } else {
+            BranchPlace::Step
+        };
+        let first = BranchPoint {
+            place,
+            point: first,
+            branch: 0,
+        };
+        Self {
+            points: vec![first],
+            status: Status::Ok,
+        }
+    }
+
     /// The folds, in their order along the curve.
     pub fn folds(&self) -> impl Iterator<Item = &BranchPoint> {
         self.points
@@ -103,50 +129,27 @@ impl ResponseTrace {
     }
 }
 
-impl PointSolver<'_> {
-    /// Follows the curve from `start_hz` to `stop_hz`; `grid_hz` are frequencies between them that
-    /// are solved for exactly, at each passage. Linear limits have no curve to follow: their trace
-    /// is `singular_jacobian` and empty.
-    pub fn trace(&mut self, start_hz: f64, stop_hz: f64, grid_hz: &[f64]) -> ResponseTrace {
-        let mut trace = ResponseTrace {
-            points: Vec::new(),
-            status: Status::Ok,
-        };
-        let first = match self.solve(start_hz) {
-            Ok(point) => point.clone(),
-            Err(status) => return ResponseTrace { status, ..trace },
-        };
-        trace.points.push(BranchPoint {
-            place: if grid_hz.contains(&start_hz) {
-                BranchPlace::Grid
-            } else {
-                BranchPlace::Step
-            },
-            point: first.clone(),
-            branch: 0,
-        });
-        if start_hz.total_cmp(&stop_hz).is_eq() {
-            return trace;
-        }
+impl RowEquation<'_> {
+    /// Follows the curve from the point that `trace` begins with to `stop_hz`; `grid_hz` are frequencies between them
+    /// that are solved for exactly, at each passage.
+    pub(super) fn trace(&mut self, trace: &mut ResponseTrace, stop_hz: f64, grid_hz: &[f64]) {
+        let first = trace.points[0].point.clone();
+        let start_hz = first.frequency_hz;
         let bounds = self.continuation_bounds(start_hz);
         let scales = TAU * (stop_hz - start_hz).abs() / bounds.frequency_scale;
         let bounds = ContinuationBounds {
             correctors: CORRECTORS + (CORRECTORS_PER_SCALE * scales).min(MOST_CORRECTORS) as u64,
             ..bounds
         };
-        let status = self.follow(&first, (stop_hz, start_hz), bounds, grid_hz, |point| {
-            trace.points.push(point);
+        let points = &mut trace.points;
+        trace.status = self.follow(&first, (stop_hz, start_hz), bounds, grid_hz, |point| {
+            points.push(point);
             ControlFlow::Continue(())
         });
-        trace.status = status;
-        trace
     }
 
-    /// Continuation from the nearest converged point to `frequency_hz`.
-    pub(super) fn continue_to(&mut self, frequency_hz: f64) -> Result<Point, Status> {
-        let Some(from) = self.nearest(frequency_hz).cloned() else {
-            return Err(Status::StepTooSmall);
-        };
+    /// Continuation from the converged point `from` to `frequency_hz`.
+    pub(super) fn continue_to(&mut self, from: &Point, frequency_hz: f64) -> Result<Point, Status> {
         let bounds = ContinuationBounds {
             correctors: CORRECTORS_TO_ONE_FREQUENCY,
             ..self.continuation_bounds(from.frequency_hz)
@@ -154,7 +157,7 @@ impl PointSolver<'_> {
         let mut found = None;
         let ends = (frequency_hz, 2.0 * from.frequency_hz - frequency_hz);
         let grid = [frequency_hz];
-        let status = self.follow(&from, ends, bounds, &grid, |point| {
+        let status = self.follow(from, ends, bounds, &grid, |point| {
             if point.place == BranchPlace::Grid {
                 found = Some(point.point);
                 return ControlFlow::Break(());
@@ -179,9 +182,7 @@ impl PointSolver<'_> {
         grid_hz: &[f64],
         mut visit: impl FnMut(BranchPoint) -> ControlFlow<()>,
     ) -> Status {
-        let Some((system, _)) = &self.nonlinear else {
-            return Status::SingularJacobian;
-        };
+        let system = &self.system;
         let (stop_hz, back_hz) = ends_hz;
         let rising = stop_hz > from.frequency_hz;
         let omega = TAU * from.frequency_hz;

@@ -15,8 +15,8 @@
 //! leave beyond it is one more force, that takes three or four solutions with all of them to know.
 
 use super::climb::{Climb, Known};
+use super::initial_guess::between;
 use super::peak::{Peak, SearchPlan};
-use super::peak_search::{Envelope, SearchSettings, VERTEX_SHARE, find_peak};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::point_source::PointSource;
@@ -25,7 +25,8 @@ use super::refined_peak::{
     EXTENSIONS, HUMP, MADE_UP, NEIGHBOURS, POINTS_OF_TOP, Top, inside_of_band, summit_of,
     tops_of_few,
 };
-use super::starts::between;
+use super::search::find_peak;
+use super::search::{Envelope, SearchSettings, VERTEX_SHARE};
 use crate::response::harmonic_balance::Status;
 use crate::response::receptance::{ContactForces, embedded, overlay};
 

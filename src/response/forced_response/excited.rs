@@ -1,14 +1,15 @@
 //! A structure under one excitation: a mistuned wheel, or the travelling waves of the tuned wheel.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::linear_peaks::{LinearModes, LinearPeak};
 use super::options::ContactCondition;
-use crate::linalg::Complex64;
+use crate::linalg::{Complex64, LuWorkspace};
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::response::harmonic_balance::{
-    ContactStiffnessMatrix, Damping, HarmonicBlock, Structure,
+    ContactStiffnessMatrix, Damping, HarmonicBlock, Structure, linear_response,
 };
 use crate::response::mistuning::{ContactFactors, StructuralModes, WheelBasis};
 
@@ -270,6 +271,23 @@ impl Excited {
     pub fn linear_peaks(&self, condition: ContactCondition) -> Vec<Vec<LinearPeak>> {
         self.modes
             .peaks(condition, &self.linear.structure, &self.force)
+    }
+
+    /// Linear response at a frequency, Hz, with the springs of `condition`, stuck ones for the full law; `factors` are of
+    /// the size of the structure. None if the matrix is singular.
+    pub(super) fn linear_response(
+        &self,
+        condition: ContactCondition,
+        frequency_hz: f64,
+        factors: &mut LuWorkspace<Complex64>,
+    ) -> Option<Vec<Complex64>> {
+        linear_response(
+            &self.linear.structure,
+            self.linear.contact(condition),
+            TAU * frequency_hz,
+            &self.force,
+            factors,
+        )
     }
 }
 

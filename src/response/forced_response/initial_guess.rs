@@ -1,167 +1,168 @@
-//! Where the solution of a point begins: the initial guess with the smallest residual, or the solution of an easier problem, under a higher
-//! normal load or with softer contact.
+//! Initial guesses of a row: what the points solved so far, and points with fewer harmonics, lead one to expect at a frequency.
 
-use std::f64::consts::TAU;
+use super::excited::Excited;
+use super::point::{Point, Slope};
+use crate::response::harmonic_balance::HarmonicBlock;
 
-use super::point::Point;
-use super::point_solver::PointSolver;
-use super::starts::{NEAR, between, nearest};
-use crate::response::friction::PairParameters;
-use crate::response::harmonic_balance::{HarmonicSystem, Status, linear_response};
+/// Share of the frequency within which a point at which most pairs slip tells more than the stuck solution.
+pub(super) const NEAR: f64 = 0.002;
 
-/// Softest contact of the homotopy in stiffness: this power of [`STIFFNESS_RATIO`] below the wanted one.
-const STIFFNESS_STAGES: f64 = 6.0;
-const STIFFNESS_RATIO: f64 = 4.0;
-/// Smallest step of its exponent.
-const SMALLEST_STIFFNESS_STEP: f64 = 1.0 / 8.0;
+/// The points that tell where to start.
+#[derive(Default)]
+pub(super) struct KnownPoints {
+    /// Converged points, in the order in which they were solved.
+    pub(super) solved: Vec<Point>,
+    /// Points with fewer harmonics, in the unknowns of the solved ones; none unless these refine them.
+    pub(super) coarse: Vec<Point>,
+}
 
-impl PointSolver<'_> {
-    /// The start with the smallest residual: what the converged points beside the frequency lead one to expect,
-    /// or the stuck solution, which is the answer itself where nothing slips.
-    pub(super) fn expected(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
+impl KnownPoints {
+    /// The solved point nearest to a frequency, Hz.
+    pub(super) fn nearest(&self, frequency_hz: f64) -> Option<&Point> {
+        nearest(&self.solved, frequency_hz)
+    }
+
+    /// What the points beside the frequency, Hz, lead one to expect, and whether the stuck solution, which is the
+    /// answer itself where nothing slips, may be as good.
+    pub(super) fn expected(&self, frequency_hz: f64) -> (Vec<Vec<f64>>, bool) {
         let nearest = self.nearest(frequency_hz).map(|point| {
             let distance = (point.frequency_hz - frequency_hz).abs();
             (distance <= NEAR * frequency_hz, point.shares)
         });
-        let mut starts = between(&self.points, frequency_hz);
+        let mut starts = between(&self.solved, frequency_hz);
         match nearest {
             // Contact that opens folds the curve: the straight line stays on its branch most often.
-            Some((_, shares)) if shares.separated > 0.0 => starts.truncate(1),
-            Some((true, shares)) if shares.slipping > 0.5 => {}
-            _ => starts.push(self.stuck_start(frequency_hz)?),
+            Some((_, shares)) if shares.separated > 0.0 => {
+                starts.truncate(1);
+                (starts, false)
+            }
+            Some((true, shares)) if shares.slipping > 0.5 => (starts, false),
+            _ => (starts, true),
         }
-        self.of_least_residual(starts, frequency_hz)
     }
 
-    /// The start with the smallest residual among the curve with fewer harmonics, moved to the nearest converged point,
-    /// and the polynomials through converged points on either side.
-    pub(super) fn expected_from_coarse(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
+    /// The curve with fewer harmonics, moved to the nearest solved point, and the polynomials through solved points on
+    /// either side; none without such a curve.
+    pub(super) fn expected_from_coarse(&self, frequency_hz: f64) -> Option<Vec<Vec<f64>>> {
         let coarse = |frequency_hz: f64| between(&self.coarse, frequency_hz).into_iter().next();
-        let mut start = coarse(frequency_hz).ok_or(Status::SingularJacobian)?;
+        let mut start = coarse(frequency_hz)?;
         let mut starts = Vec::new();
-        if let Some(near) = nearest(&self.points, frequency_hz) {
-            let there = coarse(near.frequency_hz).ok_or(Status::SingularJacobian)?;
+        if let Some(near) = self.nearest(frequency_hz) {
+            let there = coarse(near.frequency_hz)?;
             for ((x, fine), coarse) in start.iter_mut().zip(&near.solution).zip(&there) {
                 *x += fine - coarse;
             }
-            starts = between(&self.points, frequency_hz);
+            starts = between(&self.solved, frequency_hz);
         }
         starts.push(start);
-        self.of_least_residual(starts, frequency_hz)
-    }
-
-    fn of_least_residual(
-        &mut self,
-        starts: Vec<Vec<f64>>,
-        frequency_hz: f64,
-    ) -> Result<Vec<f64>, Status> {
-        let Some((system, workspace)) = &mut self.nonlinear else {
-            return Err(Status::SingularJacobian);
-        };
-        let best = workspace.of_least_residual(system, TAU * frequency_hz, starts);
-        best.ok_or(Status::NonFinite)
-    }
-
-    pub(super) fn nearest(&self, frequency_hz: f64) -> Option<&Point> {
-        nearest(&self.points, frequency_hz)
-    }
-
-    /// Homotopy in normal load: from a load at which every pair sticks down to that of the
-    /// scenario, the step (in the logarithm of the load) halved on failure.
-    pub(super) fn lower_normal_load(&mut self, frequency_hz: f64) -> Result<Point, Status> {
-        const FIRST_FACTOR: f64 = 64.0;
-        const SMALLEST_STEP: f64 = 1.0 / 64.0;
-        let mut current = self.stuck_start(frequency_hz)?;
-        let (mut exponent, mut step) = (1.0, 0.25);
-        loop {
-            let next = f64::max(exponent - step, 0.0);
-            let factor = FIRST_FACTOR.powf(next);
-            let other = (next > 0.0).then(|| self.under_load(factor)).flatten();
-            match self.newton(frequency_hz, current.clone(), other.as_ref()) {
-                Ok(point) if next <= 0.0 => return Ok(point),
-                Ok(point) => {
-                    current = point.solution;
-                    exponent = next;
-                }
-                Err(_) if step > SMALLEST_STEP => step *= 0.5,
-                Err(_) => return Err(Status::StepTooSmall),
-            }
-        }
-    }
-
-    /// Homotopy in tangential contact stiffness, from soft contact, which slips little, to that of
-    /// the study. Over `1 / kt` the solution tends to that of rigid contact along a line, so each
-    /// stage starts from the extrapolation of the two before it in `1 / kt`. Newton's method
-    /// alone fails in stiff contact: what sticks or slips changes within `mu N0 / kt`.
-    pub(super) fn stiffen_contact(&mut self, frequency_hz: f64) -> Result<Point, Status> {
-        let (mut exponent, mut step) = (STIFFNESS_STAGES, 1.0);
-        let first = self.softened(exponent).ok_or(Status::SingularJacobian)?;
-        let start = self.stuck_start_of(&first, frequency_hz)?;
-        let compliance = |exponent: f64| STIFFNESS_RATIO.powf(exponent);
-        let mut current = self.newton(frequency_hz, start, Some(&first))?.solution;
-        let mut previous: Option<(f64, Vec<f64>)> = None;
-        loop {
-            let next = f64::max(exponent - step, 0.0);
-            let start = match &previous {
-                None => current.clone(),
-                Some((before, solution)) => {
-                    let share = (compliance(next) - compliance(exponent))
-                        / (compliance(exponent) - compliance(*before));
-                    let pairs = current.iter().zip(solution);
-                    pairs.map(|(now, old)| now + share * (now - old)).collect()
-                }
-            };
-            let other = (next > 0.0).then(|| self.softened(next)).flatten();
-            match self.newton(frequency_hz, start, other.as_ref()) {
-                Ok(point) if next <= 0.0 => return Ok(point),
-                Ok(point) => {
-                    previous = Some((exponent, std::mem::replace(&mut current, point.solution)));
-                    exponent = next;
-                    step = f64::min(2.0 * step, 1.0);
-                }
-                Err(_) if step > SMALLEST_STIFFNESS_STEP => step *= 0.5,
-                Err(_) => return Err(Status::StepTooSmall),
-            }
-        }
-    }
-
-    /// The system of the row under its normal load times `factor`.
-    fn under_load(&self, factor: f64) -> Option<HarmonicSystem> {
-        let (system, _) = self.nonlinear.as_ref()?;
-        let pairs = system.pairs().iter().map(|pair| PairParameters {
-            normal_load_n: factor * pair.normal_load_n,
-            ..*pair
-        });
-        Some(locked(system.with_pairs(pairs.collect())))
-    }
-
-    /// The system of the row with a tangential stiffness [`STIFFNESS_RATIO`] to the power `exponent` smaller.
-    fn softened(&self, exponent: f64) -> Option<HarmonicSystem> {
-        let (system, _) = self.nonlinear.as_ref()?;
-        let softer = system.with_tangential_stiffness(STIFFNESS_RATIO.powf(-exponent));
-        Some(locked(softer))
-    }
-
-    /// Linear response on the stuck springs of another system.
-    fn stuck_start_of(
-        &mut self,
-        system: &HarmonicSystem,
-        frequency_hz: f64,
-    ) -> Result<Vec<f64>, Status> {
-        let block = &system.blocks()[system.fundamental()];
-        let stuck = linear_response(
-            &block.structure,
-            Some(&block.stuck),
-            TAU * frequency_hz,
-            system.force(),
-            &mut self.linear,
-        );
-        self.start_from(&stuck.ok_or(Status::SingularJacobian)?)
+        Some(starts)
     }
 }
 
-/// The system with the ring at rest, as it is on the way of a homotopy.
-fn locked(mut system: HarmonicSystem) -> HarmonicSystem {
-    system.set_ring_drift([0.0; 2]);
-    system
+/// A point of `from` in the unknowns of `to`, which has its harmonics among others.
+pub(super) fn beside(from: &Excited, to: &Excited, point: Point) -> Point {
+    Point {
+        solution: embedded(from, to, &point.solution),
+        slope: point.slope.map(|slope| Slope {
+            solution: embedded(from, to, &slope.solution),
+            ..slope
+        }),
+        ..point
+    }
+}
+
+/// A solution of `from` in the unknowns of `to`.
+fn embedded(from: &Excited, to: &Excited, solution: &[f64]) -> Vec<f64> {
+    let size = |block: &HarmonicBlock| block.size() * if block.harmonic == 0 { 1 } else { 2 };
+    let mut all = Vec::new();
+    for block in &to.blocks {
+        let mut at = 0;
+        let mut found = None;
+        for own in &from.blocks {
+            if own.harmonic == block.harmonic {
+                found = Some(at..at + size(own));
+            }
+            at += size(own);
+        }
+        match found {
+            Some(place) => all.extend_from_slice(&solution[place]),
+            None => all.resize(all.len() + size(block), 0.0),
+        }
+    }
+    all
+}
+
+/// The point nearest to a frequency, Hz.
+pub(super) fn nearest(points: &[Point], frequency_hz: f64) -> Option<&Point> {
+    points.iter().min_by(|a, b| {
+        let distance = |point: &Point| (point.frequency_hz - frequency_hz).abs();
+        distance(a).total_cmp(&distance(b))
+    })
+}
+
+/// The solution of the nearest point, and the polynomials through the two and three nearest with points on
+/// either side.
+pub(super) fn between(points: &[Point], frequency_hz: f64) -> Vec<Vec<f64>> {
+    let distance = |point: &Point| (point.frequency_hz - frequency_hz).abs();
+    let mut near: Vec<&Point> = points.iter().collect();
+    near.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let Some(&first) = near.first() else {
+        return Vec::new();
+    };
+    let below = first.frequency_hz <= frequency_hz;
+    let other = near[1..]
+        .iter()
+        .find(|point| (point.frequency_hz <= frequency_hz) != below);
+    let Some(&second) = other else {
+        let ahead = first.slope.as_ref().map(|slope| {
+            let step = frequency_hz - first.frequency_hz;
+            let tangent = first.solution.iter().zip(&slope.solution);
+            tangent.map(|(x, slope)| x + step * slope).collect()
+        });
+        return ahead.into_iter().chain([first.solution.clone()]).collect();
+    };
+    if let Some(start) = hermite(first, second, frequency_hz) {
+        return vec![start];
+    }
+    let mut starts = vec![interpolated(&[first, second], frequency_hz)];
+    let third = near[1..].iter().find(|point| {
+        let differs = |other: &Point| point.frequency_hz.total_cmp(&other.frequency_hz).is_ne();
+        differs(first) && differs(second)
+    });
+    if let Some(&third) = third {
+        starts.push(interpolated(&[first, second, third], frequency_hz));
+    }
+    starts
+}
+
+/// The cubic through two solutions with their slopes at `frequency_hz`; none where a slope is not known.
+fn hermite(first: &Point, second: &Point, frequency_hz: f64) -> Option<Vec<f64>> {
+    let (first_slope, second_slope) = (first.slope.as_ref()?, second.slope.as_ref()?);
+    let width = second.frequency_hz - first.frequency_hz;
+    let t = (frequency_hz - first.frequency_hz) / width;
+    let values = [(1.0 + 2.0 * t) * (1.0 - t).powi(2), t * t * (3.0 - 2.0 * t)];
+    let slopes = [width * t * (1.0 - t).powi(2), width * t * t * (t - 1.0)];
+    let ends = first.solution.iter().zip(&second.solution);
+    let rates = first_slope.solution.iter().zip(&second_slope.solution);
+    let sum = ends.zip(rates).map(|((x0, x1), (s0, s1))| {
+        values[0] * x0 + values[1] * x1 + slopes[0] * s0 + slopes[1] * s1
+    });
+    Some(sum.collect())
+}
+
+/// The polynomial through the solutions of `points`, of different frequencies, at `frequency_hz`.
+fn interpolated(points: &[&Point], frequency_hz: f64) -> Vec<f64> {
+    let mut sum = vec![0.0; points[0].solution.len()];
+    for (at, point) in points.iter().enumerate() {
+        let others = points.iter().enumerate().filter(|(other, _)| *other != at);
+        let share: f64 = others
+            .map(|(_, other)| {
+                (frequency_hz - other.frequency_hz) / (point.frequency_hz - other.frequency_hz)
+            })
+            .product();
+        for (sum, x) in sum.iter_mut().zip(&point.solution) {
+            *sum += share * x;
+        }
+    }
+    sum
 }

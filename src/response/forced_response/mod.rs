@@ -9,12 +9,12 @@ mod dense_sweep;
 mod error_settings;
 mod excited;
 mod folded_peak;
+mod homotopy;
 mod initial_guess;
 mod linear_peaks;
 mod observed_amplitude;
 mod options;
 mod peak;
-mod peak_search;
 mod point;
 mod point_settings;
 mod point_solver;
@@ -23,12 +23,9 @@ mod receptance_errors;
 mod receptance_peak;
 mod receptance_points;
 mod refined_peak;
-mod rivals;
-mod samples;
+mod row_equation;
 mod screened;
-mod sloped;
-mod starts;
-mod summit;
+mod search;
 
 pub use a_posteriori::{ErrorEstimate, Screening, estimate_errors, screen};
 pub use branch::{BranchPlace, BranchPoint, ResponseTrace};
@@ -45,7 +42,6 @@ pub use peak::{
     Peak, SearchPlan, Window, mistuned_window, peak, search_plan, slopes_lead, tuned_span,
     tuned_span_of,
 };
-pub use peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
 pub use point::{Point, Slope, Work};
 pub use point_settings::PointSettings;
 pub use point_solver::PointSolver;
@@ -58,3 +54,4 @@ pub use receptance_points::{
     receptance_plan, receptance_state,
 };
 pub use refined_peak::{Search, refined, refined_peak};
+pub use search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};

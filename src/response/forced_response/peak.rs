@@ -4,13 +4,14 @@ use super::excited::Excited;
 use super::folded_peak::falls_off;
 use super::linear_peaks::LinearPeak;
 use super::options::{ContactCondition, FrequencyBand};
-use super::peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::point_solver::PointSolver;
 use super::point_source::{PointSource, Watched};
-use super::samples::Sample;
 use super::screened::Screened;
+use super::search::Sample;
+use super::search::{Envelope, SearchSettings};
+use super::search::{SearchEnd, SearchResult, find_peak};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{Status, condensing_pays};
 

@@ -1,6 +1,6 @@
 //! A solution at one frequency, and the work that solutions took.
 
-use super::samples::Reading;
+use super::search::Reading;
 use crate::response::harmonic_balance::ContactShares;
 
 /// Work done for a row.

@@ -4,7 +4,7 @@
 use super::linear_peaks::LinearPeak;
 use super::point::{Point, Work};
 use super::point_solver::PointSolver;
-use super::samples::{Curve, Reading, Sample};
+use super::search::{Curve, Reading, Sample};
 use crate::response::harmonic_balance::Status;
 
 /// Share of pairs that slip beside a resonance that may be one with stuck contact.
@@ -59,7 +59,7 @@ impl PointSource for PointSolver<'_> {
     }
 
     fn set_precision(&mut self, share: f64) {
-        self.precision = Some(share);
+        Self::set_precision(self, share);
     }
 
     fn mean_friction_n(&mut self, point: &Point) -> Option<[f64; 2]> {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::initial_guess::between;
 use super::linear_peaks::LinearPeak;
 use super::observed_amplitude::{ObservedAmplitude, ObservedHarmonic};
 use super::options::ContactCondition;
@@ -9,7 +10,6 @@ use super::peak::{SearchPlan, Window, search_plan_of};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::point_source::PointSource;
-use super::starts::between;
 use crate::linalg::Complex64;
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{HarmonicTransform, PairContact, Status, WheelContact};

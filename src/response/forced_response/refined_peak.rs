@@ -10,13 +10,14 @@
 use super::excited::Excited;
 use super::options::ContactCondition;
 use super::peak::{EVALUATIONS, Peak, SEARCH_PRECISION, SearchPlan, Window, peak, search_plan};
-use super::peak_search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::point_solver::PointSolver;
 use super::point_source::{PointSource, Watched};
-use super::samples::{Reading, Sample, Samples};
-use super::summit;
+use super::search::summit;
+use super::search::{Envelope, SearchSettings};
+use super::search::{Reading, Sample, Samples};
+use super::search::{SearchEnd, SearchResult, find_peak};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::Status;
 
@@ -91,7 +92,7 @@ pub fn refined(
     let mut coarse = PointSolver::new(search.excited, condition, search.settings);
     let tops = tops_of_few(&plan, &mut coarse, peak_tolerance, MADE_UP)?;
     let mut solver = PointSolver::new(excited, condition, settings).refining(&coarse);
-    solver.precision = Some(REFINED_PRECISION * peak_tolerance);
+    solver.set_precision(REFINED_PRECISION * peak_tolerance);
     let refined = highest(solver, &tops, plan.envelope, peak_tolerance)
         .map_err(|wasted| coarse.work().plus(wasted))?;
     inside_of_band(&plan, with_work(refined, coarse.work()))

@@ -4,12 +4,12 @@
 //! fraction of the cost; where it comes near the highest point so far all harmonics are solved, beside it.
 
 use super::excited::Excited;
+use super::initial_guess::NEAR;
 use super::linear_peaks::LinearPeak;
 use super::point::{Point, Work};
 use super::point_solver::PointSolver;
 use super::point_source::{point_at, sticks, unseen};
-use super::samples::{Curve, Reading, Sample};
-use super::starts::NEAR;
+use super::search::{Curve, Reading, Sample};
 
 /// Share of its height that a point may gain by the harmonics left out. Harmonic 3 raised the highest blade of a lumped wheel
 /// by 6 %, and lowered that of another by a fifth, which is why the highest place of few harmonics is solved with all at

@@ -10,16 +10,19 @@ mod solver;
 mod status;
 mod transform;
 
-pub use condensed::condensing_pays;
 pub use damping::Damping;
 pub use equation::{
-    ContactStiffnessMatrix, HarmonicBlock, HarmonicSystem, LARGEST_WHOLE_JACOBIAN, MeanTangent,
-    PairContact, Structure, SystemWorkspace, WheelContact, linear_response,
+    ContactStiffnessMatrix, HarmonicBlock, HarmonicSystem, LARGEST_WHOLE_JACOBIAN, Structure,
+    SystemWorkspace, condensing_pays, linear_response,
 };
 pub use follow::{
-    Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint, solve_creeping,
+    Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint, response_slope,
+    solve_creeping,
 };
-pub use pairs::{ContactInterface, ContactShares, PairHarmonics, PairJacobian};
+pub use pairs::{
+    ContactInterface, ContactShares, MeanTangent, PairContact, PairHarmonics, PairJacobian,
+    WheelContact,
+};
 pub use solver::{
     Effects, Enlarged, EnlargedSet, NewtonBounds, NewtonOutcome, NewtonWorkspace, Settled, Steps,
     enlarge, solve,

@@ -7,7 +7,7 @@
 
 use super::linear_factors::LinearFactors;
 use crate::linalg::{Loops, vectorized};
-use crate::response::harmonic_balance::equation::{HarmonicSystem, SystemWorkspace};
+use crate::response::harmonic_balance::pairs::{InterfaceForces, InterfaceWorkspace};
 
 /// The derivative G' of the corrections. Corrections are ordered coefficient after coefficient, in each row after row of
 /// those that have one.
@@ -42,13 +42,13 @@ impl Couplings {
 
 impl ContactCouplings {
     /// The rows that have a correction, and the derivatives of the corrections.
-    pub(super) fn gather(&mut self, system: &HarmonicSystem, workspace: &SystemWorkspace) {
-        let geometry = &system.interface.geometry;
-        let count = system.transform.n_coefficients();
+    pub(super) fn gather(&mut self, contact: &InterfaceForces, workspace: &InterfaceWorkspace) {
+        let geometry = &contact.interface.geometry;
+        let count = contact.transform.n_coefficients();
         self.count = count;
         self.rows.clear();
         let first = usize::from(!workspace.separated);
-        let variable_load = system.interface.law.has_variable_load();
+        let variable_load = contact.interface.law.has_variable_load();
         let active = || (0..workspace.active.len()).filter(|&pair| workspace.active[pair]);
         let places = |pair: usize| &geometry.rows[pair % geometry.rows.len()];
         let base = |pair: usize| pair / geometry.rows.len() * geometry.row_count();

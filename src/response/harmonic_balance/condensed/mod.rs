@@ -6,4 +6,3 @@ pub(super) mod newton_step;
 mod pivoted_factors;
 
 pub(super) use newton_step::CondensedJacobian;
-pub use newton_step::condensing_pays;

@@ -17,53 +17,9 @@ use std::sync::Arc;
 use super::contact_couplings::ContactCouplings;
 use super::linear_factors::LinearFactors;
 use crate::linalg::{LuWorkspace, add_times};
-use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::equation::{
-    ContactStiffnessMatrix, HarmonicSystem, LARGEST_WHOLE_JACOBIAN, Structure, SystemWorkspace,
+    ContactStiffnessMatrix, HarmonicSystem, Structure, SystemWorkspace,
 };
-
-/// Whether the step by contact forces is the cheaper one, by the operations that either takes, for a wheel of `modes`
-/// coordinates and `contact_rows` with so many real `coefficients` each. Under a constant normal load only, and only where the
-/// matrix of all contact rows is so small that it costs next to nothing.
-#[must_use]
-pub fn condensing_pays(
-    law: ContactLaw,
-    coefficients: usize,
-    modes: usize,
-    contact_rows: usize,
-) -> bool {
-    let condensed = coefficients * contact_rows;
-    if contact_rows == 0 || condensed > LARGEST_WHOLE_JACOBIAN {
-        return false;
-    }
-    // Where contact may open a renewed step can lead to another branch than damped ones.
-    if law.has_variable_load() {
-        return false;
-    }
-    let factored = |n: f64| 2.0 / 3.0 * n.powi(3);
-    let (m, n) = (contact_rows as f64, modes as f64);
-    let unknowns = coefficients as f64 * n;
-    let whole = factored(unknowns) + 2.0 * unknowns.powi(2) * m;
-    let of_harmonic = 4.0 * factored(n) + 8.0 * n * n * m + 4.0 * n * m * m;
-    let harmonics = coefficients.div_ceil(2) as f64;
-    harmonics * of_harmonic + factored(condensed as f64) < whole
-}
-
-impl HarmonicSystem {
-    /// Whether the step by contact forces is the cheaper one, see [`condensing_pays`].
-    #[must_use]
-    pub fn condenses(&self) -> bool {
-        let modes = self.blocks()[0].structure.size();
-        let coefficients = self.transform.n_coefficients();
-        self.is_shared()
-            && condensing_pays(
-                self.interface.law,
-                coefficients,
-                modes,
-                self.contact_row_count(),
-            )
-    }
-}
 
 /// Factors of J by contact forces.
 #[derive(Default)]
@@ -92,8 +48,8 @@ impl CondensedJacobian {
         if !self.factor_linear(system, omega) {
             return false;
         }
-        self.couplings.gather(system, workspace);
-        let count = system.transform.n_coefficients();
+        self.couplings.gather(&system.contact, &workspace.contact);
+        let count = system.contact.transform.n_coefficients();
         let size = count * self.couplings.rows.len();
         if size == 0 {
             self.factors = None;
@@ -128,7 +84,10 @@ impl CondensedJacobian {
                 .contact_coordinates()
                 .stuck(&block.stuck.springs);
             let stuck = Arc::new(stuck);
-            let places = system.blocks().iter().zip(&system.coefficient);
+            let places = system
+                .blocks()
+                .iter()
+                .zip(system.linear.blocks.coefficients());
             self.linear = places
                 .map(|(block, &at)| LinearFactors::new(block, Arc::clone(&stuck), at))
                 .collect();
@@ -281,7 +240,7 @@ pub(in crate::response::harmonic_balance) mod tests {
     use super::*;
     use crate::linalg::{Complex64, Matrix};
     use crate::model::cyclic::ContactGeometry;
-    use crate::response::friction::PairParameters;
+    use crate::response::friction::{ContactLaw, PairParameters};
     use crate::response::harmonic_balance::equation::HarmonicBlock;
     use crate::response::harmonic_balance::pairs::{ContactInterface, ContactShares};
     use crate::response::harmonic_balance::{Damping, HarmonicTransform};

@@ -6,4 +6,5 @@ mod response_slope;
 mod ring_drift;
 
 pub use continuation::{Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint};
+pub use response_slope::response_slope;
 pub use ring_drift::solve_creeping;

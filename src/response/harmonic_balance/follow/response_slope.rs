@@ -7,26 +7,25 @@
 use crate::response::harmonic_balance::equation::HarmonicSystem;
 use crate::response::harmonic_balance::solver::NewtonWorkspace;
 
-impl NewtonWorkspace {
-    /// `dx/domega` at the solution `x`, per rad/s, by the Jacobian there, which is kept; none where it is singular.
-    pub fn response_slope(
-        &mut self,
-        system: &HarmonicSystem,
-        omega: f64,
-        x: &[f64],
-    ) -> Option<Vec<f64>> {
-        HarmonicSystem::couple_all(&mut self.system);
-        if !self.factor_at(system, omega, x) {
-            return None;
-        }
-        let mut slope = vec![0.0; system.unknowns()];
-        system.frequency_derivative(omega, x, &mut slope);
-        self.solve_linear(&mut slope);
-        for entry in &mut slope {
-            *entry = -*entry;
-        }
-        Some(slope)
+/// `dx/domega` of `system` at its solution `x`, per rad/s, by the Jacobian there, which is kept in `workspace`; none
+/// where it is singular.
+pub fn response_slope(
+    system: &HarmonicSystem,
+    omega: f64,
+    x: &[f64],
+    workspace: &mut NewtonWorkspace,
+) -> Option<Vec<f64>> {
+    workspace.system_mut().couple_all();
+    if !workspace.factor_at(system, omega, x) {
+        return None;
     }
+    let mut slope = vec![0.0; system.unknowns()];
+    system.frequency_derivative(omega, x, &mut slope);
+    workspace.solve_linear(&mut slope);
+    for entry in &mut slope {
+        *entry = -*entry;
+    }
+    Some(slope)
 }
 
 #[cfg(test)]
@@ -53,7 +52,7 @@ mod tests {
             };
             let x = solution(OMEGA);
             let mut workspace = NewtonWorkspace::new(&system);
-            let slope = workspace.response_slope(&system, OMEGA, &x);
+            let slope = response_slope(&system, OMEGA, &x, &mut workspace);
             let slope = slope.expect("a regular Jacobian");
             let (above, below) = (solution(OMEGA + change), solution(OMEGA - change));
             let largest = slope.iter().fold(0.0, |a: f64, s| a.max(s.abs()));

@@ -325,35 +325,38 @@ mod tests {
         {
             let system = system(law, harmonics, samples);
             let mut workspace = system.workspace();
-            workspace.pairs.couple_first(coupled);
+            workspace.contact.pairs.couple_first(coupled);
             let x = state(&system);
             let mut residual = vec![0.0; x.len()];
             let (_, shares) = system.residual(OMEGA, &x, &mut residual, true, &mut workspace);
-            let mut one = PairHarmonics::new(law, Arc::clone(&system.transform));
+            let mut one = PairHarmonics::new(law, Arc::clone(&system.contact.transform));
             one.couple_first(coupled);
-            let count = system.transform.n_coefficients();
+            let count = system.contact.transform.n_coefficients();
             let mut slipping = 0;
-            for pair in 0..workspace.active.len() {
-                system.gather_pair(pair, &mut workspace);
+            for pair in 0..workspace.contact.active.len() {
+                system.contact.gather_pair(pair, &mut workspace.contact);
                 let mut correction = vec![0.0; 3 * count];
                 let mut jacobian = PairJacobian::new(count);
                 let state = one.evaluate(
-                    system.interface.pair(pair),
-                    &workspace.pair_input,
+                    system.contact.interface.pair(pair),
+                    &workspace.contact.pair_input,
                     &mut correction,
                     Some(&mut jacobian),
                 );
                 slipping += usize::from(state.slipping);
-                assert_eq!(workspace.active[pair], state.slipping || state.separated);
-                let rows = workspace.correction.len() / count;
+                assert_eq!(
+                    workspace.contact.active[pair],
+                    state.slipping || state.separated
+                );
+                let rows = workspace.contact.correction.len() / count;
                 for tangent in 0..2 {
-                    let row = system.interface.rows_of(pair)[1 + tangent].expect("a row");
+                    let row = system.contact.interface.rows_of(pair)[1 + tangent].expect("a row");
                     let expected = correction[(1 + tangent) * count..].iter().take(count);
                     for (c, expected) in expected.enumerate() {
-                        let found = workspace.correction[c * rows + row];
+                        let found = workspace.contact.correction[c * rows + row];
                         assert!((found - expected).abs() < 1e-14, "{harmonics:?} {pair} {c}");
                     }
-                    let found = &workspace.jacobians[pair].tangential_tangential[tangent];
+                    let found = &workspace.contact.jacobians[pair].tangential_tangential[tangent];
                     let expected = &jacobian.tangential_tangential[tangent];
                     for (found, expected) in found.iter().zip(expected) {
                         assert!((found - expected).abs() < 1e-13, "{harmonics:?} {pair}");

@@ -429,42 +429,46 @@ mod tests {
         for ((harmonics, samples), coupled) in sets.into_iter().zip([0, 99, 2, 99, 0]) {
             let system = system(law, harmonics, samples);
             let mut workspace = system.workspace();
-            workspace.pairs.couple_first(coupled);
+            workspace.contact.pairs.couple_first(coupled);
             // Small motions, too: then pairs stick.
             for scale in [1.0, 0.4, 0.02] {
                 let x: Vec<f64> = state(&system).iter().map(|x| scale * x).collect();
                 let mut residual = vec![0.0; x.len()];
                 let (_, shares) = system.residual(OMEGA, &x, &mut residual, true, &mut workspace);
-                let mut one = PairHarmonics::new(law, Arc::clone(&system.transform));
+                let mut one = PairHarmonics::new(law, Arc::clone(&system.contact.transform));
                 one.couple_first(coupled);
-                let count = system.transform.n_coefficients();
+                let count = system.contact.transform.n_coefficients();
                 let (mut slipping, mut separated) = (0, 0);
-                let pairs = workspace.active.len();
+                let pairs = workspace.contact.active.len();
                 for pair in 0..pairs {
-                    system.gather_pair(pair, &mut workspace);
+                    system.contact.gather_pair(pair, &mut workspace.contact);
                     let mut correction = vec![0.0; 3 * count];
                     let mut jacobian = PairJacobian::new(count);
                     let state = one.evaluate(
-                        system.interface.pair(pair),
-                        &workspace.pair_input,
+                        system.contact.interface.pair(pair),
+                        &workspace.contact.pair_input,
                         &mut correction,
                         Some(&mut jacobian),
                     );
                     slipping += usize::from(state.slipping);
                     separated += usize::from(state.separated);
-                    assert_eq!(workspace.active[pair], state.slipping || state.separated);
-                    let per_sector = system.interface.per_sector();
-                    let base = pair / per_sector * system.interface.geometry.row_count();
-                    let places = system.interface.geometry.rows[pair % per_sector];
+                    assert_eq!(
+                        workspace.contact.active[pair],
+                        state.slipping || state.separated
+                    );
+                    let per_sector = system.contact.interface.per_sector();
+                    let base = pair / per_sector * system.contact.interface.geometry.row_count();
+                    let places = system.contact.interface.geometry.rows[pair % per_sector];
                     for (direction, place) in places.iter().enumerate() {
                         let Some(row) = place else { continue };
                         let expected = &correction[direction * count..][..count];
                         for (c, expected) in expected.iter().enumerate() {
-                            let found = workspace.correction[c * system.rows + base + row];
+                            let found =
+                                workspace.contact.correction[c * system.contact.rows + base + row];
                             assert!((found - expected).abs() < 1e-13, "{harmonics:?} {pair} {c}");
                         }
                     }
-                    let found = &workspace.jacobians[pair];
+                    let found = &workspace.contact.jacobians[pair];
                     let blocks = |of: &PairJacobian| {
                         let tangential = of.tangential_tangential.clone();
                         let normal = of.tangential_normal.clone();

@@ -13,8 +13,7 @@
 
 use super::kept_jacobian::KeptJacobian;
 use super::newton_iteration::{DEPTH, Equation, NewtonBuffers, iterate, norm_of};
-use super::newton_workspace::MotionStart;
-use super::{NewtonBounds, NewtonOutcome, NewtonWorkspace, Settled, Steps};
+use super::{NewtonBounds, NewtonOutcome, Settled, Steps};
 use crate::response::harmonic_balance::Status;
 use crate::response::harmonic_balance::equation::{HarmonicSystem, SystemWorkspace};
 use crate::response::harmonic_balance::pairs::ContactShares;
@@ -23,12 +22,12 @@ use crate::response::harmonic_balance::pairs::ContactShares;
 const FAR_FROM_SETTLED: f64 = 0.02;
 
 /// F at one frequency, whose linear part is at hand.
-struct ContactMotions<'a> {
+pub(super) struct ContactMotions<'a> {
     system: &'a HarmonicSystem,
     omega: f64,
     workspace: &'a mut SystemWorkspace,
     jacobian: &'a mut KeptJacobian,
-    settled: Option<Settled<'a>>,
+    pub(super) settled: Option<Settled<'a>>,
     start: Option<MotionStart>,
     /// Contact forces `G - y` that the last step leads to, and those of the step before.
     forces: [Vec<f64>; 2],
@@ -37,13 +36,17 @@ struct ContactMotions<'a> {
 }
 
 impl<'a> ContactMotions<'a> {
-    fn new(
+    /// The equation at `omega`; none if the linear part is singular.
+    pub(super) fn new(
         system: &'a HarmonicSystem,
         omega: f64,
         workspace: &'a mut SystemWorkspace,
         jacobian: &'a mut KeptJacobian,
-    ) -> Self {
-        Self {
+    ) -> Option<Self> {
+        if !jacobian.condensed().factor_linear(system, omega) {
+            return None;
+        }
+        Some(Self {
             system,
             omega,
             workspace,
@@ -52,15 +55,35 @@ impl<'a> ContactMotions<'a> {
             start: None,
             forces: [Vec::new(), Vec::new()],
             responses: [None, None],
+        })
+    }
+
+    /// What starting at `x`, in the unknowns of the whole equation, would leave.
+    fn start_at(&mut self, x: Vec<f64>) -> MotionStart {
+        let mut motion = vec![0.0; self.workspace.contact.displacement.len()];
+        self.system.contact_displacement(&x, &mut motion);
+        let mut left = vec![0.0; motion.len()];
+        let (norm, shares) = self.left(&motion, &mut left, false);
+        MotionStart {
+            omega: self.omega,
+            x,
+            motion,
+            correction: self.workspace.contact.correction.clone(),
+            left,
+            norm,
+            shares,
         }
     }
 
     /// F into `left`.
     fn left(&mut self, motion: &[f64], left: &mut [f64], derivative: bool) -> (f64, ContactShares) {
-        self.workspace.displacement.copy_from_slice(motion);
-        let shares = self.system.contact_correction(derivative, self.workspace);
+        self.workspace.contact.displacement.copy_from_slice(motion);
+        let shares = self
+            .system
+            .contact
+            .correct(derivative, &mut self.workspace.contact);
         let condensed = self.jacobian.condensed();
-        condensed.motion_left(motion, &self.workspace.correction, left);
+        condensed.motion_left(motion, &self.workspace.contact.correction, left);
         (condensed.force_of(left), shares)
     }
 
@@ -69,7 +92,7 @@ impl<'a> ContactMotions<'a> {
     fn delivered(&mut self) -> Vec<f64> {
         let [last, _] = &self.forces;
         let forces = if last.is_empty() {
-            &self.workspace.correction
+            &self.workspace.contact.correction
         } else {
             last
         };
@@ -91,14 +114,17 @@ impl Equation for ContactMotions<'_> {
     fn residual(&mut self, motion: &[f64], left: &mut [f64]) -> (f64, ContactShares) {
         if let Some(start) = self.start.take() {
             left.copy_from_slice(&start.left);
-            self.workspace.correction.clone_from(&start.correction);
+            self.workspace
+                .contact
+                .correction
+                .clone_from(&start.correction);
             return (start.norm, start.shares);
         }
         self.left(motion, left, false)
     }
 
     fn linearise(&mut self, motion: &[f64], left: &mut [f64]) -> bool {
-        HarmonicSystem::couple_all(self.workspace);
+        self.workspace.couple_all();
         self.left(motion, left, true);
         let (system, omega) = (self.system, self.omega);
         self.jacobian
@@ -116,7 +142,7 @@ impl Equation for ContactMotions<'_> {
         self.responses = [None, self.responses[0].take()];
         let forces = &mut self.forces[0];
         forces.clear();
-        forces.extend_from_slice(&self.workspace.correction);
+        forces.extend_from_slice(&self.workspace.contact.correction);
         condensed.subtract_answer(forces);
     }
 
@@ -140,102 +166,83 @@ impl Equation for ContactMotions<'_> {
     }
 }
 
-impl NewtonWorkspace {
-    /// Whether the motions at the contact rows are what is solved for.
-    pub(super) fn moves_contact(&self, system: &HarmonicSystem) -> bool {
-        self.steps() == Steps::Renewed && system.condenses()
+/// A start in motions at the contact rows, with what its choice has found.
+struct MotionStart {
+    omega: f64,
+    /// In the unknowns of the whole equation.
+    x: Vec<f64>,
+    motion: Vec<f64>,
+    correction: Vec<f64>,
+    left: Vec<f64>,
+    norm: f64,
+    shares: ContactShares,
+}
+
+/// Solver for the motions at the contact rows, with its buffers.
+#[derive(Default)]
+pub(super) struct MotionSolver {
+    /// The start of the solve that follows, where starts were compared.
+    start: Option<MotionStart>,
+    buffers: Option<NewtonBuffers>,
+    /// Residual of the whole equation.
+    residual: Vec<f64>,
+}
+
+impl MotionSolver {
+    /// Lets go of the start that was chosen.
+    pub(super) fn forget_start(&mut self) {
+        self.start = None;
     }
 
-    /// The response with every pair stuck, where what it takes is needed anyway; none where it is not, or is singular.
-    pub fn stuck_response(&mut self, system: &HarmonicSystem, omega: f64) -> Option<Vec<f64>> {
-        if !self.moves_contact(system) {
-            return None;
-        }
-        let condensed = self.jacobian.condensed();
-        condensed.factor_linear(system, omega).then(|| {
-            let forces = vec![0.0; self.system.displacement.len()];
-            condensed.response_of(system, &forces)
-        })
-    }
-
-    /// The one of `starts` that leaves the least at `omega`; none if none is finite or the linear part is singular.
+    /// The one of `starts` that leaves the least; none if none is finite.
     pub(super) fn of_least_motion(
         &mut self,
-        system: &HarmonicSystem,
-        omega: f64,
+        equation: &mut ContactMotions<'_>,
         starts: Vec<Vec<f64>>,
     ) -> Option<Vec<f64>> {
-        if !self.jacobian.condensed().factor_linear(system, omega) {
-            return None;
-        }
         let mut best: Option<MotionStart> = None;
         for x in starts {
-            let start = self.motion_start(system, omega, x);
+            let start = equation.start_at(x);
             if best.as_ref().is_none_or(|best| start.norm < best.norm) {
                 best = Some(start);
             }
         }
         let x = best.as_ref().map(|best| best.x.clone());
-        self.motion_start = best;
+        self.start = best;
         x
-    }
-
-    fn motion_start(&mut self, system: &HarmonicSystem, omega: f64, x: Vec<f64>) -> MotionStart {
-        let mut motion = vec![0.0; self.system.displacement.len()];
-        system.contact_displacement(&x, &mut motion);
-        let mut left = vec![0.0; motion.len()];
-        let (workspace, jacobian) = (&mut self.system, &mut self.jacobian);
-        let mut equation = ContactMotions::new(system, omega, workspace, jacobian);
-        let (norm, shares) = equation.left(&motion, &mut left, false);
-        MotionStart {
-            omega,
-            x,
-            motion,
-            correction: equation.workspace.correction.clone(),
-            left,
-            norm,
-            shares,
-        }
     }
 
     /// [`super::solve`] for the motions; x stays as it is unless they are found. The second is whether x is what was asked
     /// for then: the residual of the whole equation may be above what it was taken for.
-    pub(super) fn solve_motions(
+    pub(super) fn solve(
         &mut self,
-        system: &HarmonicSystem,
-        omega: f64,
+        mut equation: ContactMotions<'_>,
         x: &mut Vec<f64>,
         bounds: NewtonBounds,
-        settled: Option<Settled<'_>>,
     ) -> (NewtonOutcome, bool) {
-        if !self.jacobian.condensed().factor_linear(system, omega) {
-            return (NewtonOutcome::failed(Status::SingularJacobian), false);
-        }
+        let omega = equation.omega;
         let same = |start: &MotionStart| start.omega.total_cmp(&omega).is_eq() && start.x == *x;
-        let start = match self.motion_start.take().filter(same) {
+        let start = match self.start.take().filter(same) {
             Some(start) => start,
-            None => self.motion_start(system, omega, x.clone()),
+            None => equation.start_at(x.clone()),
         };
         let mut motion = start.motion.clone();
-        let buffers = self.motions.get_or_insert_with(|| {
+        let buffers = self.buffers.get_or_insert_with(|| {
             let mut buffers = NewtonBuffers::accelerated(motion.len(), DEPTH);
             buffers.steps = Steps::Renewed;
             buffers
         });
-        let (workspace, jacobian) = (&mut self.system, &mut self.jacobian);
-        let mut equation = ContactMotions {
-            settled,
-            start: Some(start),
-            ..ContactMotions::new(system, omega, workspace, jacobian)
-        };
+        equation.start = Some(start);
         let mut outcome = iterate(&mut equation, &mut motion, bounds, buffers);
         if outcome.status != Status::Ok {
             return (outcome, false);
         }
         *x = equation.delivered();
         let ended_early = outcome.residual > bounds.residual_tolerance;
-        let residual = &mut self.buffers.residual;
-        let (norm, shares) = system.residual(omega, x, residual, false, &mut self.system);
+        let residual = &mut self.residual;
+        residual.resize(x.len(), 0.0);
+        let system = equation.system;
+        let (norm, shares) = system.residual(omega, x, residual, false, equation.workspace);
         (outcome.residual, outcome.shares) = (norm, shares);
         let proven = ended_early || norm <= bounds.residual_tolerance;
         (outcome, proven && shares.unclosed == 0.0)
@@ -244,12 +251,26 @@ impl NewtonWorkspace {
 
 #[cfg(test)]
 mod tests {
-    use super::super::solve;
+    use super::super::{NewtonWorkspace, solve};
     use super::*;
     use crate::response::friction::ContactLaw;
     use crate::response::harmonic_balance::condensed::newton_step::tests::{OMEGA, state, system};
 
     const TOLERANCE: f64 = 1e-10;
+
+    /// Solves for the motions from `x` at [`OMEGA`].
+    fn solved(
+        system: &HarmonicSystem,
+        x: &mut Vec<f64>,
+        bounds: NewtonBounds,
+        settled: Option<Settled<'_>>,
+    ) -> (NewtonOutcome, bool) {
+        let (mut workspace, mut jacobian) = (system.workspace(), KeptJacobian::new());
+        let equation = ContactMotions::new(system, OMEGA, &mut workspace, &mut jacobian);
+        let mut equation = equation.expect("a regular linear part");
+        equation.settled = settled;
+        MotionSolver::default().solve(equation, x, bounds)
+    }
 
     #[test]
     fn motions_and_whole_unknowns_have_the_same_solution() {
@@ -266,9 +287,8 @@ mod tests {
                 (0.2..1.0).contains(&expected.shares.slipping),
                 "{expected:?}"
             );
-            let mut workspace = NewtonWorkspace::new(&system);
             let mut x = start;
-            let (found, done) = workspace.solve_motions(&system, OMEGA, &mut x, bounds, None);
+            let (found, done) = solved(&system, &mut x, bounds, None);
             assert!(done && found.status == Status::Ok, "{found:?}");
             assert!(found.iterations > 0 && found.residual <= TOLERANCE);
             assert_eq!(found.shares, expected.shares);
@@ -283,12 +303,10 @@ mod tests {
     fn a_step_of_the_motions_undoes_a_small_one_and_the_residual_is_no_larger_than_it_is_taken_for()
     {
         let system = system(ContactLaw::MacroSlip1d, &[1, 3], 64);
-        let mut workspace = NewtonWorkspace::new(&system);
-        let condensed = workspace.jacobian.condensed();
-        assert!(condensed.factor_linear(&system, OMEGA));
-        let start = workspace.motion_start(&system, OMEGA, state(&system));
-        let (own, jacobian) = (&mut workspace.system, &mut workspace.jacobian);
-        let mut equation = ContactMotions::new(&system, OMEGA, own, jacobian);
+        let (mut workspace, mut jacobian) = (system.workspace(), KeptJacobian::new());
+        let equation = ContactMotions::new(&system, OMEGA, &mut workspace, &mut jacobian);
+        let mut equation = equation.expect("a regular linear part");
+        let start = equation.start_at(state(&system));
         let mut motion = start.motion;
         let mut left = vec![0.0; motion.len()];
         assert!(equation.linearise(&motion, &mut left));
@@ -328,16 +346,13 @@ mod tests {
         let system = system(ContactLaw::MacroSlip1d, &[1, 3], 64);
         let bounds = NewtonBounds::with_tolerance(1e-12);
         let mut exact = vec![0.0; system.unknowns()];
-        let mut workspace = NewtonWorkspace::new(&system);
-        let (outcome, _) = workspace.solve_motions(&system, OMEGA, &mut exact, bounds, None);
+        let (outcome, _) = solved(&system, &mut exact, bounds, None);
         assert_eq!(outcome.status, Status::Ok);
         let length = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         for share in [1e-1, 1e-3, 1e-5] {
             let settled = |x: &[f64], step: &[f64]| length(step) <= share * length(x);
             let mut x = vec![0.0; system.unknowns()];
-            let mut workspace = NewtonWorkspace::new(&system);
-            let (outcome, done) =
-                workspace.solve_motions(&system, OMEGA, &mut x, bounds, Some(&settled));
+            let (outcome, done) = solved(&system, &mut x, bounds, Some(&settled));
             assert!(done && outcome.status == Status::Ok);
             let missed: Vec<f64> = x.iter().zip(&exact).map(|(x, e)| x - e).collect();
             assert!(

@@ -184,7 +184,7 @@ pub fn enlarge(
         let mut enlarged = HarmonicSystem::new(
             blocks.to_vec(),
             system.force().to_vec(),
-            system.interface.clone(),
+            system.contact.interface.clone(),
             Arc::clone(transform),
         );
         enlarged.set_ring_drift(system.ring_drift_m());
@@ -383,7 +383,7 @@ impl Enlargement<'_> {
                 .for_each(|(r, all)| *r -= all);
             let step = self.set_step(&residual);
             let corrected = after.iter().zip(step).map(|(x, s)| x - s).collect();
-            changed.push((self.enlarged.blocks[index].harmonic, corrected));
+            changed.push((self.enlarged.blocks()[index].harmonic, corrected));
         }
         changed
     }
@@ -404,7 +404,7 @@ impl Enlargement<'_> {
 }
 
 fn range(system: &HarmonicSystem, block: usize) -> std::ops::Range<usize> {
-    system.start[block]..system.start[block + 1]
+    system.block_start(block)..system.block_start(block + 1)
 }
 
 /// `x` in the enlarged unknowns.
@@ -427,7 +427,7 @@ impl Factors {
     /// Factors of every harmonic of `system` by itself at `x`, its leading ones together; none if one is singular.
     fn by_harmonic(system: &HarmonicSystem, omega: f64, x: &[f64]) -> Option<Self> {
         let mut buffers = system.workspace();
-        system.couple_leading(&mut buffers);
+        buffers.couple_first(system.leading_coefficients());
         let mut residual = vec![0.0; system.unknowns()];
         system.residual(omega, x, &mut residual, true, &mut buffers);
         let mut factors = KeptJacobian::new();
@@ -443,13 +443,12 @@ impl Factors {
         omega: f64,
         x: &[f64],
     ) -> Option<Self> {
-        let one_sector = system.blocks[0].structure.sectors() == 1;
+        let one_sector = system.blocks()[0].structure.sectors() == 1;
         let whole = one_sector || system.unknowns() <= SMALL_WHEEL;
-        let mut buffers = if whole {
-            system.workspace()
-        } else {
-            system.decoupled_workspace()
-        };
+        let mut buffers = system.workspace();
+        if !whole {
+            buffers.couple_first(0);
+        }
         let mut residual = vec![0.0; system.unknowns()];
         system.residual(omega, x, &mut residual, true, &mut buffers);
         if whole {
@@ -463,7 +462,7 @@ impl Factors {
                 blocks.push(None);
                 continue;
             }
-            let mut factors = LuWorkspace::new(system.blocks[index].structure.size());
+            let mut factors = LuWorkspace::new(system.blocks()[index].structure.size());
             system.complex_jacobian_of(index, omega, &mut buffers, factors.matrix_mut());
             blocks.push(factors.factor().then_some(Some(factors))?);
         }

@@ -21,27 +21,6 @@ use crate::linalg::{Complex64, LuWorkspace, add_times};
 use crate::response::harmonic_balance::condensed::CondensedJacobian;
 use crate::response::harmonic_balance::equation::{HarmonicSystem, SystemWorkspace};
 
-impl HarmonicSystem {
-    /// Number of the leading harmonics, 0 and 1: those that the others are small beside.
-    pub(super) fn leading(&self) -> usize {
-        self.fundamental() + 1
-    }
-
-    /// From now on derivatives of pairs are those of the leading harmonics, and of every other one by itself.
-    pub(super) fn couple_leading(&self, workspace: &mut SystemWorkspace) {
-        let coefficients = self.coefficient.get(self.leading());
-        let all = self.transform.n_coefficients();
-        workspace
-            .pairs
-            .couple_first(coefficients.copied().unwrap_or(all));
-    }
-
-    /// From now on derivatives of pairs are those of all harmonics again.
-    pub(in crate::response::harmonic_balance) fn couple_all(workspace: &mut SystemWorkspace) {
-        workspace.pairs.couple_first(usize::MAX);
-    }
-}
-
 /// Which factors are at hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Held {
@@ -163,7 +142,7 @@ impl KeptJacobian {
         omega: f64,
         workspace: &mut SystemWorkspace,
     ) -> bool {
-        let count = system.blocks.len();
+        let count = system.blocks().len();
         if self.triangle.is_empty() {
             self.triangle = (0..count).map(|at| BlockColumn::new(system, at)).collect();
             let widest = self.triangle.iter().map(|c| c.diagonal.dimension()).max();
@@ -173,7 +152,7 @@ impl KeptJacobian {
         let mut regular = true;
         for (at, column) in self.triangle.iter_mut().enumerate() {
             let size = column.diagonal.dimension();
-            let height = system.unknowns() - system.start[at];
+            let height = system.unknowns() - system.block_start(at);
             let assembled = &mut self.assembled[..height * size];
             system.jacobian_of(at..count, at..at + 1, omega, workspace, assembled);
             let diagonal = column.diagonal.matrix_mut().chunks_exact_mut(size);
@@ -192,17 +171,17 @@ impl KeptJacobian {
     }
 
     /// Factors the leading harmonics and every other one by itself, see [`self`], at the same point, for which the
-    /// derivatives of pairs are those of [`HarmonicSystem::couple_leading`]; false if a block is singular.
+    /// derivatives of pairs are those of [`HarmonicSystem::leading_coefficients`]; false if a block is singular.
     pub(super) fn factor_by_harmonic(
         &mut self,
         system: &HarmonicSystem,
         omega: f64,
         workspace: &mut SystemWorkspace,
     ) -> bool {
-        let (count, leading) = (system.blocks.len(), system.leading());
+        let (count, leading) = (system.blocks().len(), system.leading());
         let factors = self
             .leading
-            .get_or_insert_with(|| LuWorkspace::new(system.start[leading]));
+            .get_or_insert_with(|| LuWorkspace::new(system.block_start(leading)));
         system.jacobian_of(
             0..leading,
             0..leading,
@@ -212,7 +191,7 @@ impl KeptJacobian {
         );
         let mut regular = factors.factor();
         if self.beyond.is_empty() {
-            let size = |index: usize| system.blocks[index].structure.size();
+            let size = |index: usize| system.blocks()[index].structure.size();
             self.beyond = (leading..count)
                 .map(|index| LuWorkspace::new(size(index)))
                 .collect();
@@ -267,8 +246,8 @@ impl KeptJacobian {
 
 impl BlockColumn {
     fn new(system: &HarmonicSystem, at: usize) -> Self {
-        let size = system.start[at + 1] - system.start[at];
-        let below = system.unknowns() - system.start[at + 1];
+        let size = system.block_start(at + 1) - system.block_start(at);
+        let below = system.unknowns() - system.block_start(at + 1);
         Self {
             diagonal: LuWorkspace::new(size),
             below: vec![0.0; below * size],
@@ -421,7 +400,7 @@ mod tests {
             }
         }
         let mut workspace = system.workspace();
-        system.couple_leading(&mut workspace);
+        workspace.couple_first(system.leading_coefficients());
         let mut residual = vec![0.0; 12];
         system.residual(OMEGA, &displacement(), &mut residual, true, &mut workspace);
         let right = displacement();

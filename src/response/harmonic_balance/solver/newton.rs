@@ -1,9 +1,11 @@
 //! Newton's method for the harmonic balance equation at one frequency.
 
+use super::contact_motions::ContactMotions;
 use super::kept_jacobian::KeptJacobian;
 use super::newton_iteration::{Equation, iterate};
 use super::newton_workspace::Start;
 use super::{NewtonBounds, NewtonOutcome, NewtonWorkspace, Settled, Steps};
+use crate::response::harmonic_balance::Status;
 use crate::response::harmonic_balance::equation::{
     HarmonicSystem, LARGEST_WHOLE_JACOBIAN, SystemWorkspace,
 };
@@ -34,9 +36,10 @@ impl Equation for FixedFrequency<'_> {
         let small = self.system.unknowns() <= LARGEST_WHOLE_JACOBIAN || !self.system.is_shared();
         let by_harmonic = self.steps == Steps::ByHarmonic && !small;
         if by_harmonic {
-            self.system.couple_leading(self.workspace);
+            let leading = self.system.leading_coefficients();
+            self.workspace.couple_first(leading);
         } else {
-            HarmonicSystem::couple_all(self.workspace);
+            self.workspace.couple_all();
         }
         let (_, shares) = self
             .system
@@ -44,7 +47,7 @@ impl Equation for FixedFrequency<'_> {
         let (system, omega) = (self.system, self.omega);
         // Contact that opens couples the harmonics closely.
         if by_harmonic && shares.separated > 0.0 {
-            HarmonicSystem::couple_all(self.workspace);
+            self.workspace.couple_all();
             system.residual(omega, x, residual, true, self.workspace);
         }
         let whole = small || shares.separated > 0.0;
@@ -86,7 +89,14 @@ pub fn solve(
 ) -> NewtonOutcome {
     let mut before = None;
     if workspace.moves_contact(system) {
-        let (outcome, done) = workspace.solve_motions(system, omega, x, bounds, settled);
+        let (buffers, jacobian) = (&mut workspace.system, &mut workspace.jacobian);
+        let (outcome, done) = match ContactMotions::new(system, omega, buffers, jacobian) {
+            Some(mut equation) => {
+                equation.settled = settled;
+                workspace.motions.solve(equation, x, bounds)
+            }
+            None => (NewtonOutcome::failed(Status::SingularJacobian), false),
+        };
         if done {
             return outcome;
         }

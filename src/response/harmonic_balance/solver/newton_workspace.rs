@@ -1,6 +1,7 @@
 //! Buffers of Newton's method for one system, and the choice of where it starts.
 
 use super::Steps;
+use super::contact_motions::{ContactMotions, MotionSolver};
 use super::kept_jacobian::KeptJacobian;
 use super::newton_iteration::{DEPTH, DEPTH_OF_ONCE, NewtonBuffers};
 use crate::response::harmonic_balance::equation::{HarmonicSystem, SystemWorkspace};
@@ -8,16 +9,14 @@ use crate::response::harmonic_balance::pairs::ContactShares;
 
 /// Buffers of Newton's method for one system.
 pub struct NewtonWorkspace {
-    pub(in crate::response::harmonic_balance) system: SystemWorkspace,
+    pub(super) system: SystemWorkspace,
     /// Factors of the Jacobian, of the last point at which it was factored.
     pub(super) jacobian: KeptJacobian,
     pub(super) buffers: NewtonBuffers,
     /// The start of the solve that follows, where several were compared.
     pub(super) start: Option<Start>,
-    /// The start of the solve that follows in motions at the contact rows, where starts were compared.
-    pub(super) motion_start: Option<MotionStart>,
-    /// Buffers of steps in motions at the contact rows.
-    pub(super) motions: Option<NewtonBuffers>,
+    /// Solver for the motions at the contact rows.
+    pub(super) motions: MotionSolver,
 }
 
 /// A start with what its choice has found.
@@ -25,18 +24,6 @@ pub(super) struct Start {
     pub(super) omega: f64,
     pub(super) x: Vec<f64>,
     pub(super) residual: Vec<f64>,
-    pub(super) norm: f64,
-    pub(super) shares: ContactShares,
-}
-
-/// A start in motions at the contact rows, with what its choice has found.
-pub(super) struct MotionStart {
-    pub(super) omega: f64,
-    /// In the unknowns of the whole equation.
-    pub(super) x: Vec<f64>,
-    pub(super) motion: Vec<f64>,
-    pub(super) correction: Vec<f64>,
-    pub(super) left: Vec<f64>,
     pub(super) norm: f64,
     pub(super) shares: ContactShares,
 }
@@ -51,8 +38,7 @@ impl NewtonWorkspace {
             jacobian: KeptJacobian::new(),
             buffers: NewtonBuffers::accelerated(n, DEPTH),
             start: None,
-            motion_start: None,
-            motions: None,
+            motions: MotionSolver::default(),
         }
     }
 
@@ -64,9 +50,12 @@ impl NewtonWorkspace {
         omega: f64,
         mut starts: Vec<Vec<f64>>,
     ) -> Option<Vec<f64>> {
-        (self.start, self.motion_start) = (None, None);
+        self.start = None;
+        self.motions.forget_start();
         if self.moves_contact(system) {
-            return self.of_least_motion(system, omega, starts);
+            let (workspace, jacobian) = (&mut self.system, &mut self.jacobian);
+            let mut equation = ContactMotions::new(system, omega, workspace, jacobian)?;
+            return self.motions.of_least_motion(&mut equation, starts);
         }
         if let [_] = starts[..] {
             return starts.pop();
@@ -85,6 +74,23 @@ impl NewtonWorkspace {
             }
         }
         self.start.as_ref().map(|best| best.x.clone())
+    }
+
+    /// Whether the motions at the contact rows are what is solved for.
+    pub(super) fn moves_contact(&self, system: &HarmonicSystem) -> bool {
+        self.steps() == Steps::Renewed && system.condenses()
+    }
+
+    /// The response with every pair stuck, where what it takes is needed anyway; none where it is not, or is singular.
+    pub fn stuck_response(&mut self, system: &HarmonicSystem, omega: f64) -> Option<Vec<f64>> {
+        if !self.moves_contact(system) {
+            return None;
+        }
+        let condensed = self.jacobian.condensed();
+        condensed.factor_linear(system, omega).then(|| {
+            let forces = vec![0.0; self.system.contact.displacement.len()];
+            condensed.response_of(system, &forces)
+        })
     }
 
     /// Buffers of the system itself, whose residual was last taken anywhere.
@@ -120,8 +126,7 @@ impl NewtonWorkspace {
     pub fn factor_at(&mut self, system: &HarmonicSystem, omega: f64, x: &[f64]) -> bool {
         if system.condenses() {
             // Factors need the derivatives of the contact alone, not the residual.
-            system.contact_displacement(x, &mut self.system.displacement);
-            system.contact_correction(true, &mut self.system);
+            system.contact_at(x, true, &mut self.system);
         } else {
             system.residual(omega, x, &mut self.buffers.residual, true, &mut self.system);
         }

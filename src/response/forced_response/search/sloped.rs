@@ -4,7 +4,8 @@
 //! lead to a top, and that of no blade is passed over between two of them. What settles a top are the values of three
 //! samples all the same: contact that begins to slip at one more sample of the period makes slopes jump.
 
-use super::peak_search::{Search, VERTEX_SHARE};
+use super::envelope::VERTEX_SHARE;
+use super::peak_search::Search;
 use super::samples::{Sample, Samples};
 use super::summit::{self, SlopedPoint, Summit};
 
@@ -128,8 +129,9 @@ impl Search {
 
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::{Envelope, SearchSettings};
+    use super::super::peak_search::find_peak;
     use super::super::peak_search::tests::evaluations_of_flat_tops;
-    use super::super::peak_search::{Envelope, SearchSettings, find_peak};
     use super::super::samples::Reading;
     use crate::linalg::Complex64;
 

@@ -20,6 +20,17 @@ pub struct Summit {
     pub half_bandwidth_hz: f64,
 }
 
+impl Summit {
+    /// The higher one of two.
+    pub fn higher(self, other: Self) -> Self {
+        if other.amplitude > self.amplitude {
+            other
+        } else {
+            self
+        }
+    }
+}
+
 /// `y = y1 + slope t + curvature t^2`, `t` from the middle point: the parabola through three points,
 /// ascending in frequency.
 #[derive(Debug, Clone, Copy)]

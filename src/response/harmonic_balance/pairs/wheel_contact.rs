@@ -2,19 +2,17 @@
 
 use std::sync::Arc;
 
-use super::{HarmonicBlock, HarmonicSystem, PairContact, Structure, SystemWorkspace};
-use crate::linalg::{Complex64, Matrix};
-use crate::response::harmonic_balance::pairs::{ContactInterface, ContactShares};
-use crate::response::harmonic_balance::{Damping, HarmonicTransform};
-use crate::response::mistuning::{ModalRows, StructuralModes};
+use super::{ContactInterface, ContactShares, InterfaceForces, InterfaceWorkspace, PairContact};
+use crate::linalg::Complex64;
+use crate::response::harmonic_balance::HarmonicTransform;
 
 /// The correction `G(u) = F(u) - k_c u` of the contact forces to those of the tuned wheel's stuck springs.
 ///
 /// Vectors have one real number per coefficient, sector and contact row: coefficient after coefficient of the transform
 /// (one for harmonic 0, real and imaginary part for every other), in it sector after sector, in it row after row.
 pub struct WheelContact {
-    system: HarmonicSystem,
-    workspace: SystemWorkspace,
+    contact: InterfaceForces,
+    workspace: InterfaceWorkspace,
     sectors: usize,
     /// Springs of the wheel's own contact rows less those of the tuned wheel, N/m; empty where they are the same.
     springs: Vec<f64>,
@@ -36,41 +34,23 @@ impl WheelContact {
         transform: Arc<HarmonicTransform>,
     ) -> Self {
         let rows = sectors * interface.geometry.row_count();
-        let none = |rows| ModalRows {
-            real: Matrix::zeros(rows, 0),
-            imaginary: None,
-        };
-        let nothing = StructuralModes {
-            eigenvalues: Vec::new(),
-            tuned_eigenvalues: Vec::new(),
-            added_damping_per_s: Vec::new(),
-            rotation: None,
-            contact: none(rows),
-            observed: none(3 * sectors),
-            sectors,
-        };
-        let structure = Arc::new(Structure::new(nothing, Damping::StructuralLossFactor(0.0)));
-        let stuck = Arc::new(structure.contact_stiffness(springs));
-        let blocks = transform.harmonics().iter().map(|&harmonic| HarmonicBlock {
-            harmonic: harmonic as u32,
-            structure: Arc::clone(&structure),
-            stuck: Arc::clone(&stuck),
-        });
         let own = interface.stuck_springs(1.0);
         let varied = own
             .iter()
             .zip(springs.iter().cycle())
             .map(|(own, tuned)| own - tuned);
         let varied: Vec<f64> = varied.collect();
-        let system = HarmonicSystem::new(blocks.collect(), Vec::new(), interface, transform);
+        let contact = InterfaceForces::new(interface, transform, rows);
+        let mut workspace = contact.workspace();
+        workspace.pairs.couple_first(0);
         Self {
-            workspace: system.decoupled_workspace(),
+            workspace,
             springs: if own.len() > springs.len() {
                 varied
             } else {
                 Vec::new()
             },
-            system,
+            contact,
             sectors,
             linear: false,
         }
@@ -110,8 +90,7 @@ impl WheelContact {
             self.workspace.correction.fill(0.0);
             ContactShares::default()
         } else {
-            self.system
-                .contact_correction(derivative, &mut self.workspace)
+            self.contact.correct(derivative, &mut self.workspace)
         };
         if !self.springs.is_empty() {
             let rows = self.springs.len();
@@ -129,11 +108,13 @@ impl WheelContact {
     /// The mean tangent of the harmonic at place `at` of the set, after an evaluation with derivative.
     #[must_use]
     pub fn mean_tangent(&self, at: usize) -> MeanTangent {
-        let interface = &self.system.interface;
+        let interface = &self.contact.interface;
         let pairs = interface.per_sector();
-        let coefficients = self.system.transform.n_coefficients();
-        let first = self.system.coefficient[at];
-        let is_mean = self.system.blocks[at].harmonic == 0;
+        let coefficients = self.contact.transform.n_coefficients();
+        let parts = |harmonic: &usize| if *harmonic == 0 { 1 } else { 2 };
+        let (before, from) = self.contact.transform.harmonics().split_at(at);
+        let first: usize = before.iter().map(parts).sum();
+        let is_mean = from[0] == 0;
         let mut tangent = vec![[Complex64::default(); 9]; pairs];
         let share = 1.0 / self.sectors as f64;
         for (pair, jacobian) in self.workspace.jacobians.iter().enumerate() {
@@ -159,7 +140,7 @@ impl WheelContact {
 
     /// Adds the mean difference of the springs to those of the tuned wheel.
     fn add_mean_springs(&self, tangent: &mut MeanTangent) {
-        let geometry = &self.system.interface.geometry;
+        let geometry = &self.contact.interface.geometry;
         let per_sector = geometry.row_count();
         for (pair, rows) in geometry.rows.iter().enumerate() {
             for (direction, row) in rows.iter().enumerate() {
@@ -175,11 +156,11 @@ impl WheelContact {
     /// What the correction changes by where the motions change by `change`, at the motions last evaluated with derivative, all
     /// harmonics coupled as far as [`Self::couple`] says; added to `correction`, both in the order of the motions.
     pub fn add_derivative(&self, change: &[f64], correction: &mut [f64]) {
-        let interface = &self.system.interface;
+        let interface = &self.contact.interface;
         let geometry = &interface.geometry;
         let (pairs, per_sector) = (interface.per_sector(), geometry.row_count());
-        let coefficients = self.system.transform.n_coefficients();
-        let rows = self.system.rows;
+        let coefficients = self.contact.transform.n_coefficients();
+        let rows = self.contact.rows;
         for (pair, jacobian) in self.workspace.jacobians.iter().enumerate() {
             if !self.workspace.active[pair] {
                 continue;
@@ -221,7 +202,7 @@ impl WheelContact {
     /// The harmonic transform.
     #[must_use]
     pub fn transform(&self) -> &HarmonicTransform {
-        &self.system.transform
+        &self.contact.transform
     }
 
     /// Number of sectors.
@@ -233,22 +214,22 @@ impl WheelContact {
     /// Contact rows of a sector.
     #[must_use]
     pub fn sector_rows(&self) -> usize {
-        self.system.interface.geometry.row_count()
+        self.contact.interface.geometry.row_count()
     }
 
     /// Rows of every pair of a sector, see [`crate::model::cyclic::ContactGeometry::rows`].
     #[must_use]
     pub fn pair_rows(&self) -> &[[Option<usize>; 3]] {
-        &self.system.interface.geometry.rows
+        &self.contact.interface.geometry.rows
     }
 
-    /// Mean friction force on the ring at the motions last given, N per sector, see [`HarmonicSystem::mean_friction_n`].
+    /// Mean friction force on the ring at the motions last given, N per sector, see [`crate::response::harmonic_balance::HarmonicSystem::mean_friction_n`].
     pub fn mean_friction_n(&mut self) -> [f64; 2] {
-        self.system.mean_friction_at(&mut self.workspace)
+        self.contact.mean_friction_n(&mut self.workspace)
     }
 
-    /// State of every contact pair at the motions last given, see [`HarmonicSystem::contact_states`].
+    /// State of every contact pair at the motions last given, see [`PairContact`].
     pub fn contact_states(&mut self) -> Vec<PairContact> {
-        self.system.contact_states_at(&mut self.workspace)
+        self.contact.states(&mut self.workspace)
     }
 }

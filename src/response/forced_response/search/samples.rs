@@ -1,5 +1,6 @@
-//! The samples of a search in order of frequency, and what neighbours say of each.
+//! The samples of a search in order of frequency, and what neighbours say of each and of local maxima beside the best.
 
+use super::envelope::{NEAR, RESOLVED, SearchSettings, VERTEX_SHARE};
 use super::summit::{self, CurvePoint, Summit};
 
 /// Curves over frequency, one per blade, that a search reads.
@@ -165,6 +166,45 @@ impl Samples {
         summits.fold(self.0[best].largest, |height, summit| {
             height.max(summit.amplitude)
         })
+    }
+
+    /// The summit of another local maximum that may be higher than the best.
+    pub(super) fn rival(&self, best: usize, settings: SearchSettings) -> Option<f64> {
+        let top = (1.0 + VERTEX_SHARE * settings.tolerance) * self.0[best].largest;
+        let height = settings.rivals_from * top;
+        let mut highest: Option<(f64, f64)> = None;
+        for at in (0..self.0.len()).filter(|&at| at != best) {
+            let Some((left, right)) = self.neighbours(at).filter(|_| self.bracketed(at)) else {
+                continue;
+            };
+            let points = self.points([left, at, right], self.0[at].blade);
+            let summits = || {
+                self.skewed_summits(at)
+                    .into_iter()
+                    .chain(summit::of_parabola(points))
+                    .filter(|summit| summit.amplitude.is_finite())
+            };
+            let Some(summit) = summits().reduce(Summit::higher) else {
+                continue;
+            };
+            let trusted = settings.trusted_hz(summit.half_bandwidth_hz);
+            let gap = (points[2].0 - points[1].0).max(points[1].0 - points[0].0);
+            // Where parabola and cubics differ, the truth may lie as far on the other side.
+            let lowest = summits().fold(f64::INFINITY, |low, other| low.min(other.amplitude));
+            let reach = 2.0 * summit.amplitude - lowest;
+            let resolved = (points[2].0 - points[0].0) * RESOLVED;
+            let away = (summit.frequency_hz - points[1].0).abs();
+            // What cannot be the best need not be known better than by a parabola.
+            let near = if reach > top { NEAR } else { 1.0 };
+            if reach > height
+                && away > resolved
+                && gap > near * trusted
+                && highest.is_none_or(|(_, known)| reach > known)
+            {
+                highest = Some((summit.frequency_hz, reach));
+            }
+        }
+        highest.map(|(frequency, _)| frequency)
     }
 
     pub fn points(&self, at: [usize; 3], blade: usize) -> [CurvePoint; 3] {

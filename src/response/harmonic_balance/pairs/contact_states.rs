@@ -1,6 +1,6 @@
 //! What every contact pair does over the period of a solution: stick, slip, separate, how long, and its mean friction.
 
-use super::{HarmonicSystem, SystemWorkspace};
+use super::{InterfaceForces, InterfaceWorkspace};
 
 /// One contact pair over a period.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,18 +15,14 @@ pub struct PairContact {
     pub separated_share: f64,
 }
 
-impl HarmonicSystem {
-    /// State of every pair at the unknowns `x`, sector by sector, in each the pairs in the order of the
+impl InterfaceForces {
+    /// State of every pair at the motions of the workspace, sector by sector, in each the pairs in the order of the
     /// model.
-    #[must_use]
-    pub fn contact_states(&self, x: &[f64], workspace: &mut SystemWorkspace) -> Vec<PairContact> {
-        self.contact_displacement(x, &mut workspace.displacement);
-        self.contact_states_at(workspace)
-    }
-
-    /// [`Self::contact_states`] at the motions of the workspace.
-    pub(super) fn contact_states_at(&self, workspace: &mut SystemWorkspace) -> Vec<PairContact> {
-        let drifts = self.ring_drift_m().iter().any(|drift| drift.abs() > 0.0);
+    pub(in crate::response::harmonic_balance) fn states(
+        &self,
+        workspace: &mut InterfaceWorkspace,
+    ) -> Vec<PairContact> {
+        let drifts = self.ring_drift_m.iter().any(|drift| drift.abs() > 0.0);
         (0..workspace.active.len())
             .map(|pair| {
                 self.gather_pair(pair, workspace);
@@ -58,23 +54,12 @@ impl HarmonicSystem {
             .collect()
     }
 
-    /// Mean friction force on the ring at `x` per sector, N, averaged over the sectors: along theta
-    /// (the torque over the mean contact radius) and along z, see
-    /// [`crate::model::cyclic::ContactGeometry::ring_motion`].
-    ///
-    /// It is caused by the displacements without their tangential means; a ring that is locked
-    /// against rotation and axial motion hands it on to what locks it.
-    #[must_use]
-    pub fn mean_friction_n(&self, x: &[f64], workspace: &mut SystemWorkspace) -> [f64; 2] {
-        if workspace.active.is_empty() {
-            return [0.0; 2];
-        }
-        self.contact_displacement(x, &mut workspace.displacement);
-        self.mean_friction_at(workspace)
-    }
-
-    /// [`Self::mean_friction_n`] at the motions of the workspace.
-    pub(super) fn mean_friction_at(&self, workspace: &mut SystemWorkspace) -> [f64; 2] {
+    /// Mean friction force on the ring at the motions of the workspace, N per sector, averaged over the sectors: along
+    /// theta and along z, see [`crate::model::cyclic::ContactGeometry::ring_motion`]. Not a number without pairs.
+    pub(in crate::response::harmonic_balance) fn mean_friction_n(
+        &self,
+        workspace: &mut InterfaceWorkspace,
+    ) -> [f64; 2] {
         let per_sector = self.interface.per_sector();
         let count = workspace.active.len();
         let mut sum = [0.0; 2];

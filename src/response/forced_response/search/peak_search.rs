@@ -10,50 +10,9 @@
 //! seen is at least as wide as [`Envelope::half_bandwidth`] says. The search ends when no interval can
 //! hide a higher peak and the vertex of the best is found.
 
+use super::envelope::{Envelope, NEAR, SearchSettings, VERTEX_SHARE};
 use super::samples::{Curve, Sample, Samples};
 use super::summit::{self, Summit};
-
-/// What is known beforehand of the width of peaks.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Envelope {
-    /// Height times half-bandwidth of the strongest linear resonance, m Hz.
-    pub strength: f64,
-    /// Smallest half-bandwidth of a linear resonance in the band, Hz.
-    pub linear_half_bandwidth_hz: f64,
-}
-
-impl Envelope {
-    /// Share of the strongest resonance that a competing mode is assumed to have at least.
-    const COMPETITOR: f64 = 0.7;
-
-    /// Half-bandwidth assumed of a hidden peak at most, over that of a linear resonance: where
-    /// friction holds the best peak far below the linear ones, a competitor need not be as broad.
-    const BROADEST: f64 = 5.0;
-
-    /// Distance, Hz, of first points that are told apart.
-    pub(super) fn resolution_hz(&self) -> f64 {
-        0.05 * self.linear_half_bandwidth_hz
-    }
-
-    /// Half-bandwidth, Hz, assumed of a hidden peak of height `amplitude`.
-    fn half_bandwidth(&self, amplitude: f64) -> f64 {
-        let linear = self.linear_half_bandwidth_hz;
-        Self::COMPETITOR * (self.strength / amplitude).clamp(linear, Self::BROADEST * linear)
-    }
-}
-
-/// Settings of one search.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SearchSettings {
-    /// Relative tolerance of the peak amplitude.
-    pub tolerance: f64,
-    /// Largest number of evaluations.
-    pub evaluations: usize,
-    /// Largest number of times that the band is widened while the largest value lies at its end.
-    pub extensions: usize,
-    /// Share of the best that other tops are found from: 1, unless what they are worth is decided elsewhere.
-    pub rivals_from: f64,
-}
 
 /// Why a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -161,14 +120,6 @@ pub fn find_peak(
     }
 }
 
-/// Share of the tolerance that the summit may lie above the best: what a polynomial predicts is an
-/// estimate, no bound, and must leave room within the tolerance.
-pub(super) const VERTEX_SHARE: f64 = 0.125;
-/// Share of the trusted distance below which cubics tell nothing but rounding errors.
-pub(super) const NEAR: f64 = 0.1;
-/// A summit nearer to its sample than this share of the samples' span is the sample.
-pub(super) const RESOLVED: f64 = 1e-3;
-
 pub(super) struct Search {
     pub(super) samples: Samples,
     pub(super) envelope: Envelope,
@@ -213,7 +164,7 @@ impl Search {
         if let Some(vertex) = unsettled.and_then(|vertex| self.not_known(best, vertex)) {
             return self.short_of_failures(best, vertex);
         }
-        match self.rival(best) {
+        match self.samples.rival(best, self.settings) {
             Some(frequency) => Next::Evaluate(frequency),
             None => self.hidden(best),
         }
@@ -317,7 +268,7 @@ impl Search {
         let (vertex, gamma) = (summit.frequency_hz, summit.half_bandwidth_hz);
         let gain = summit.amplitude / self.samples.0[best].largest - 1.0;
         let tolerance = VERTEX_SHARE * self.settings.tolerance;
-        let trusted = self.trusted(gamma);
+        let trusted = self.settings.trusted_hz(gamma);
         let (left_gap, right_gap) = (x1 - x0, x2 - x1);
         let between = |frequency: f64| frequency.clamp(x0 + 0.1 * left_gap, x2 - 0.1 * right_gap);
         if gain <= tolerance && left_gap.max(right_gap) <= trusted {
@@ -332,7 +283,7 @@ impl Search {
                     x0 - left_gap
                 });
             }
-            let skewed = skewed.into_iter().reduce(higher)?;
+            let skewed = skewed.into_iter().reduce(Summit::higher)?;
             return (told && skewed.amplitude > (1.0 + tolerance) * self.samples.0[best].largest)
                 .then(|| between(skewed.frequency_hz));
         }
@@ -361,16 +312,6 @@ impl Search {
             x1 - f64::min(0.5 * left_gap, 0.9 * trusted)
         })
     }
-
-    /// Distance d of neighbours within which their parabola is trusted: the cubic term it neglects,
-    /// about `0.1 (d/gamma)^3`, is below the tolerance.
-    pub(super) fn trusted(&self, gamma: f64) -> f64 {
-        gamma * (10.0 * self.settings.tolerance).cbrt()
-    }
-}
-
-pub(super) fn higher(a: Summit, b: Summit) -> Summit {
-    if b.amplitude > a.amplitude { b } else { a }
 }
 
 #[cfg(test)]

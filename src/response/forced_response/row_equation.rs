@@ -1,0 +1,203 @@
+//! The harmonic balance equation of one row at any frequency, solved by Newton's method from a start that is given.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use super::excited::Excited;
+use super::observed_amplitude::ObservedBlock;
+use super::options::ContactCondition;
+use super::point::{Point, Slope, Work};
+use super::point_settings::PointSettings;
+use crate::linalg::{Complex64, LuWorkspace};
+use crate::response::friction::Ring;
+use crate::response::harmonic_balance::{
+    ContactInterface, HarmonicSystem, NewtonWorkspace, Status, Steps, response_slope, solve,
+    solve_creeping,
+};
+
+/// The equation of one row, with the buffers of its solver.
+pub(super) struct RowEquation<'a> {
+    pub(super) excited: &'a Excited,
+    pub(super) condition: ContactCondition,
+    pub(super) settings: &'a PointSettings,
+    pub(super) system: HarmonicSystem,
+    workspace: NewtonWorkspace,
+    /// Factors of the stuck limit.
+    stuck: LuWorkspace<Complex64>,
+    /// Relative precision of the amplitudes at which a point may end before its residual is met.
+    pub(super) precision: Option<f64>,
+    /// Whether the slopes of points are asked for.
+    pub(super) sloped: bool,
+    pub(super) work: Work,
+}
+
+impl<'a> RowEquation<'a> {
+    /// The equation of `condition`; none for a linear limit.
+    pub(super) fn new(
+        excited: &'a Excited,
+        condition: ContactCondition,
+        settings: &'a PointSettings,
+    ) -> Option<Self> {
+        let ContactCondition::Full { normal_load_n } = condition else {
+            return None;
+        };
+        let (law, sector) = settings.contact?;
+        let interface = ContactInterface {
+            law,
+            geometry: settings.geometry.clone(),
+            pairs: sector.pairs_under(normal_load_n, &settings.geometry, &settings.factors),
+        };
+        let system = HarmonicSystem::new(
+            excited.blocks.clone(),
+            excited.force.clone(),
+            interface,
+            Arc::clone(&settings.transform),
+        );
+        Some(Self {
+            excited,
+            condition,
+            settings,
+            workspace: NewtonWorkspace::new(&system),
+            system,
+            stuck: LuWorkspace::new(excited.linear.structure.size()),
+            precision: None,
+            sloped: false,
+            work: Work::default(),
+        })
+    }
+
+    /// The equation that `point` solves, with its buffers.
+    pub(super) fn at(&mut self, point: &Point) -> (&HarmonicSystem, &mut NewtonWorkspace) {
+        self.system.set_ring_drift(point.ring_drift_m);
+        (&self.system, &mut self.workspace)
+    }
+
+    /// How steps are made from now on.
+    pub(super) fn set_steps(&mut self, steps: Steps) {
+        self.workspace.set_steps(steps);
+    }
+
+    /// The response with every pair stuck, as a start.
+    pub(super) fn stuck_start(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
+        let omega = TAU * frequency_hz;
+        if let Some(stuck) = self.workspace.stuck_response(&self.system, omega) {
+            return Ok(stuck);
+        }
+        let stuck = self
+            .excited
+            .linear_response(self.condition, frequency_hz, &mut self.stuck)
+            .ok_or(Status::SingularJacobian)?;
+        // The fundamental and nothing else.
+        let mut start = vec![0.0; self.system.unknowns()];
+        let at = self.system.block_start(self.system.fundamental());
+        start[at..at + 2 * stuck.len()].copy_from_slice(&real_parts(&stuck));
+        Ok(start)
+    }
+
+    /// The one of `starts` with the smallest residual.
+    pub(super) fn of_least_residual(
+        &mut self,
+        starts: Vec<Vec<f64>>,
+        frequency_hz: f64,
+    ) -> Result<Vec<f64>, Status> {
+        let omega = TAU * frequency_hz;
+        let best = self
+            .workspace
+            .of_least_residual(&self.system, omega, starts);
+        best.ok_or(Status::NonFinite)
+    }
+
+    /// Newton's method from `start`; on another system than that of the row where one is given.
+    pub(super) fn newton(
+        &mut self,
+        frequency_hz: f64,
+        start: Vec<f64>,
+        other: Option<&HarmonicSystem>,
+    ) -> Result<Point, Status> {
+        let (system, workspace) = (&mut self.system, &mut self.workspace);
+        let mut x = start;
+        let omega = TAU * frequency_hz;
+        let bounds = self.settings.bounds;
+        let bounds = workspace.steps().bounds(bounds);
+        let (outcome, ring_drift_m) = if let Some(other) = other {
+            // On the way the ring is locked.
+            let outcome = solve(other, omega, &mut x, bounds, None, workspace);
+            (outcome, [0.0; 2])
+        } else {
+            let blocks = ObservedBlock::all(&self.excited.blocks);
+            let amplitude = &self.settings.amplitude;
+            let precision = self.precision;
+            let steady = |x: &[f64], step: &[f64]| {
+                precision.is_some_and(|share| {
+                    // Cheap to ask, and nearly always the answer.
+                    let small = norm(step) <= WHOLE_STEP * share * norm(x);
+                    small && amplitude.is_steady(&blocks, x, step, share)
+                })
+            };
+            let outcome = match self.settings.ring {
+                Ring::Locked => solve(system, omega, &mut x, bounds, Some(&steady), workspace),
+                Ring::Creeping => solve_creeping(system, omega, &mut x, bounds, workspace),
+            };
+            (outcome, system.ring_drift_m())
+        };
+        self.work.newton_iterations += outcome.iterations;
+        self.work.factorisations += outcome.factorisations;
+        if outcome.status != Status::Ok {
+            return Err(outcome.status);
+        }
+        let slope = if self.sloped && other.is_none() {
+            self.work.factorisations += 1;
+            response_slope(&self.system, omega, &x, &mut self.workspace)
+        } else {
+            None
+        };
+        let (amplitudes_m, slope) = match slope {
+            Some(per_rad_per_s) => {
+                let solution: Vec<f64> = per_rad_per_s.iter().map(|rate| TAU * rate).collect();
+                let (amplitudes_m, amplitudes_m_per_hz) = self.amplitudes_with_rates(&x, &solution);
+                let slope = Slope {
+                    solution,
+                    amplitudes_m_per_hz,
+                };
+                (amplitudes_m, Some(slope))
+            }
+            None => (self.amplitudes_of(&x), None),
+        };
+        Ok(Point {
+            frequency_hz,
+            amplitudes_m,
+            solution: x,
+            residual: outcome.residual,
+            shares: outcome.shares,
+            ring_drift_m,
+            slope,
+        })
+    }
+
+    /// Amplitude of every blade, m, of a nonlinear solution.
+    pub(super) fn amplitudes_of(&self, solution: &[f64]) -> Vec<f64> {
+        let blocks = ObservedBlock::all(&self.excited.blocks);
+        self.settings.amplitude.of(&blocks, solution)
+    }
+
+    /// [`Self::amplitudes_of`], and what they change by where the solution changes by `slope`.
+    fn amplitudes_with_rates(&self, solution: &[f64], slope: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let blocks = ObservedBlock::all(&self.excited.blocks);
+        self.settings.amplitude.with_rates(&blocks, solution, slope)
+    }
+}
+
+/// A step that changes the amplitudes by a share is no longer than this many times the share of the solution.
+const WHOLE_STEP: f64 = 10.0;
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Real parts, then imaginary parts.
+pub(super) fn real_parts(x: &[Complex64]) -> Vec<f64> {
+    x.iter()
+        .map(|x| x.re)
+        .chain(x.iter().map(|x| x.im))
+        .collect()
+}
