@@ -87,7 +87,7 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
     let group = &report["groups"][0];
     let lowest = group["choices"][1]["lowest"].as_u64().expect("a scenario") as usize;
     let scenario = &report["summary"]["scenarios"][lowest];
-    assert_eq!(load[0], "Normal load per sector");
+    assert_eq!(load[0], "Load per sector with the lowest P95");
     assert_eq!(
         load[1],
         format!("{} N", scenario["normal_load_n"].as_f64().expect("a load"))
@@ -144,11 +144,14 @@ fn a_load_by_the_median_alone_is_none_to_design_for() {
         panic!("three numbers: {page}");
     };
     assert_eq!(percentile[0], "P50 of the peak amplitude");
-    let words = "by the P50 alone, not a load to design for: no P95 is known";
-    assert!(load[2].contains(words), "{}", load[2]);
+    assert_eq!(load[0], "No load to design for; the lowest P50 is at");
+    assert!(load[2].contains("no P95 is known"), "{}", load[2]);
+    let health = between(&page, "<div class=\"health look\">", "</div>");
+    let words = "Too few patterns to choose a load by a high percentile.";
+    assert!(health.contains(words), "{health}");
     // A P95 has no such word.
     let (_place, page, _) = reported(&study(), 0);
-    assert!(!page.contains("not a load to design for"));
+    assert!(!page.contains("No load to design for") && !page.contains(words));
 }
 
 #[test]
@@ -240,7 +243,10 @@ fn the_first_screen_says_whether_anything_is_wrong() {
     let first = health.split("<li>").nth(1).expect("a finding");
     assert!(first.contains("too many rows failed"), "{health}");
     // The failures are of the second deviation, and a reader knows no scenario by its number.
-    assert!(health.contains("in another setting"), "{health}");
+    assert!(
+        health.contains("in another setting, not in this one"),
+        "{health}"
+    );
     assert!(
         first.contains("under all loads (standard deviation 50"),
         "{health}"

@@ -111,7 +111,7 @@ impl LoadAxis {
         let mut taken: Vec<(f64, f64)> = Vec::new();
         for load in ordered {
             let (x, name) = (self.at(load), load_words(load.contact, load.normal_load_n));
-            let half = 4.8 * name.chars().count() as f64;
+            let half = 6.2 * name.chars().count() as f64;
             let touches = |&(left, right): &(f64, f64)| x - half < right && left < x + half;
             let name = if taken.iter().any(touches) { "" } else { &name };
             if !name.is_empty() {

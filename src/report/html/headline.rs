@@ -57,7 +57,11 @@ pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumb
     let error = error_of(group, lowest, choice.percent);
     [
         BigNumber {
-            label: "Normal load per sector".to_owned(),
+            label: if is_of_a_design(choice) {
+                format!("Load per sector with the lowest P{percent}")
+            } else {
+                format!("No load to design for; the lowest P{percent} is at")
+            },
             value: short_load(scenario),
             notes: notes_of_load(report, group, choice, scenario),
         },
@@ -68,8 +72,13 @@ pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumb
                 .map_or_else(|| "not known".to_owned(), |value| units.length(value)),
             notes: notes_of_percentile(report, group, choice, error),
         },
-        number_of_error(group, lowest, &percent, error),
+        number_of_error(units, group, lowest, (&percent, error)),
     ]
+}
+
+/// Whether the percentile of a choice says enough of the highest blades to design for.
+fn is_of_a_design(choice: &LoadChoice) -> bool {
+    choice.percent >= LEAST_OF_A_DESIGN
 }
 
 /// The load that a group is answered by and its percentile, in one line.
@@ -149,10 +158,9 @@ fn notes_of_load(
             short_load(other)
         })
         .collect();
-    let percent = percent_words(choice.percent);
     notes.push(if others.is_empty() {
         format!(
-            "lowest P{percent} of {} (95 % confidence)",
+            "of {} on the same patterns (95 % confidence)",
             loads_and_limits(
                 group
                     .scenarios
@@ -167,11 +175,8 @@ fn notes_of_load(
     let higher = higher.next_back();
     notes.extend(
         higher
-            .filter(|_| choice.percent < LEAST_OF_A_DESIGN)
-            .map(|higher| {
-                let higher = percent_words(higher.percent);
-                format!("by the P{percent} alone, not a load to design for: no P{higher} is known")
-            }),
+            .filter(|_| !is_of_a_design(choice))
+            .map(|higher| format!("no P{} is known", percent_words(higher.percent))),
     );
     if report.groups.len() > 1 {
         let others = report.groups.len() - 1;
@@ -230,10 +235,10 @@ fn notes_of_percentile(
 
 /// Numerical error of the percentile: the larger side of its bounds.
 fn number_of_error(
+    units: LengthUnit,
     group: &GroupReport,
     lowest: usize,
-    percent: &str,
-    error: Option<&PercentileError>,
+    (percent, error): (&str, Option<&PercentileError>),
 ) -> BigNumber {
     let label = format!("Numerical error of P{percent}, at most");
     let bounds = error.and_then(|own| Some((own.lowest?, own.highest?, own.percentile.value?)));
@@ -256,17 +261,25 @@ fn number_of_error(
     let largest = (1.0 - low / value).max(high / value - 1.0);
     let widths = error.and_then(|own| Some((own.numerical_width()?, own.statistical_width()?)));
     let beside = widths.map(|(numerical, statistical)| {
-        if numerical > statistical {
-            format!("more than the interval of P{percent}: refine first")
+        let interval = units.length(statistical * value);
+        let first = if numerical > statistical {
+            "refine first"
         } else {
-            format!("less than the interval of P{percent}: add patterns first")
-        }
+            "add patterns first"
+        };
+        let own = units.length(largest * value);
+        format!("{own}; the interval is {interval} wide: {first}")
     });
     BigNumber {
         label,
         value: share_words(largest),
         notes: beside.into_iter().collect(),
     }
+}
+
+/// Whether a group has percentiles, none of which says enough of the highest blades to design for.
+fn is_without_a_design(group: &GroupReport) -> bool {
+    known_choice(group).is_some_and(|(choice, _)| !is_of_a_design(choice))
 }
 
 /// Whether anything is wrong with the study.
@@ -289,7 +302,7 @@ pub(super) fn health(report: &StudyReport) -> Health {
         let verdict = if costly.any(|scenario| shown.contains(scenario)) {
             "Something is wrong: results are missing."
         } else {
-            "Something is wrong in another setting: results are missing."
+            "Something is wrong in another setting, not in this one: results are missing."
         };
         ("bad", verdict.to_owned())
     } else if findings.is_empty() {
@@ -300,6 +313,9 @@ pub(super) fn health(report: &StudyReport) -> Health {
                 summary.rows.ok()
             ),
         )
+    } else if report.groups.first().is_some_and(is_without_a_design) {
+        let verdict = "Too few patterns to choose a load by a high percentile.";
+        ("look", verdict.to_owned())
     } else {
         let count = findings.len();
         let warnings = if count == 1 { "warning" } else { "warnings" };
