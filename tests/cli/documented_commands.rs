@@ -29,7 +29,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 27] = [
+const NOT_RUN: [(&str, &str); 29] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -37,6 +37,8 @@ const NOT_RUN: [(&str, &str); 27] = [
         "is a run of tests for an hour",
     ),
     ("BLISK_WRITE_MAP=", "writes a page of the clone"),
+    ("BLISK_WRITE_KEYS=", "writes a page of the clone"),
+    ("cargo build --timings", "compiles everything from nothing"),
     ("cargo check", "compiles everything from nothing"),
     (
         "cargo doc",
