@@ -144,14 +144,14 @@ fn a_load_by_the_median_alone_is_none_to_design_for() {
         panic!("three numbers: {page}");
     };
     assert_eq!(percentile[0], "P50 of the peak amplitude");
-    assert_eq!(load[0], "No load to design for; the lowest P50 is at");
+    assert_eq!(load[0], "No design load; the lowest P50 is at");
     assert!(load[2].contains("no P95 is known"), "{}", load[2]);
     let health = between(&page, "<div class=\"health look\">", "</div>");
-    let words = "Too few patterns to choose a load by a high percentile.";
+    let words = "Too few patterns for a design load.";
     assert!(health.contains(words), "{health}");
     // A P95 has no such word.
     let (_place, page, _) = reported(&study(), 0);
-    assert!(!page.contains("No load to design for") && !page.contains(words));
+    assert!(!page.contains("No design load") && !page.contains(words));
 }
 
 #[test]

@@ -60,7 +60,7 @@ pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumb
             label: if is_of_a_design(choice) {
                 format!("Load per sector with the lowest P{percent}")
             } else {
-                format!("No load to design for; the lowest P{percent} is at")
+                format!("No design load; the lowest P{percent} is at")
             },
             value: short_load(scenario),
             notes: notes_of_load(report, group, choice, scenario),
@@ -268,7 +268,7 @@ fn number_of_error(
             "add patterns first"
         };
         let own = units.length(largest * value);
-        format!("{own}; the interval is {interval} wide: {first}")
+        format!("{own}; interval {interval} wide: {first}")
     });
     BigNumber {
         label,
@@ -314,7 +314,7 @@ pub(super) fn health(report: &StudyReport) -> Health {
             ),
         )
     } else if report.groups.first().is_some_and(is_without_a_design) {
-        let verdict = "Too few patterns to choose a load by a high percentile.";
+        let verdict = "Too few patterns for a design load.";
         ("look", verdict.to_owned())
     } else {
         let count = findings.len();
