@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use super::{
     LoadCaseName, ResponseRow, RowSolver, Scenario, TunedReference, WheelState, harmonics_name,
 };
-use crate::response::forced_response::{ContactCondition, TopBeside};
+use crate::response::forced_response::TopBeside;
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
 
@@ -166,10 +166,8 @@ impl LoadCaseSolvers {
         pattern: &Pattern,
         scenarios: &[(&Scenario, &TunedReference)],
     ) -> Vec<ResponseRow> {
-        let conditions: Vec<ContactCondition> =
-            scenarios.iter().map(|(own, _)| own.contact).collect();
         // The wheel is the same under every load case.
-        let wheel = self.first.rows.mistuned(pattern, &conditions);
+        let wheel = self.first.rows.mistuned(pattern, scenarios);
         let row = |&(scenario, tuned): &(&Scenario, &TunedReference)| {
             let solver = self.under(scenario);
             let row = solver.rows.row(&wheel, pattern, scenario, tuned);

@@ -153,14 +153,14 @@ impl RowSolver {
         tuned.unwrap_or_else(|| self.on_basis.tuned(scenario))
     }
 
-    /// The wheel with a pattern applied, for rows under these conditions.
+    /// The wheel with a pattern applied, for the rows of these scenarios.
     ///
     /// # Errors
     /// The status of a pattern that cannot be applied.
     pub(super) fn mistuned(
         &self,
         pattern: &Pattern,
-        conditions: &[ContactCondition],
+        scenarios: &[(&Scenario, &TunedReference)],
     ) -> Result<MistunedWheel, Status> {
         if !pattern.is_possible() {
             return Err(Status::InvalidPattern);
@@ -169,7 +169,9 @@ impl RowSolver {
             let wheel = Box::new(rows.wheel(pattern));
             return Ok(MistunedWheel::OnReceptances(wheel));
         }
-        let limits = LimitsWanted::of(conditions);
+        let conditions: Vec<ContactCondition> =
+            scenarios.iter().map(|(own, _)| own.contact).collect();
+        let limits = LimitsWanted::of(&conditions);
         let wheel = self.on_basis.mistuned(pattern, limits)?;
         Ok(MistunedWheel::InModes(Box::new(wheel)))
     }
@@ -182,9 +184,7 @@ impl RowSolver {
         pattern: &Pattern,
         scenarios: &[(&Scenario, &TunedReference)],
     ) -> Vec<ResponseRow> {
-        let conditions: Vec<ContactCondition> =
-            scenarios.iter().map(|(own, _)| own.contact).collect();
-        let wheel = self.mistuned(pattern, &conditions);
+        let wheel = self.mistuned(pattern, scenarios);
         scenarios
             .iter()
             .map(|(scenario, tuned)| self.row(&wheel, pattern, scenario, tuned))
@@ -220,6 +220,7 @@ impl RowSolver {
             (MistunedWheel::InModes(wheel), _) => {
                 self.on_basis.mistuned_peak(wheel, pattern, scenario, tuned)
             }
+            // The solvers of a study are all on receptances, or none of them is.
             (MistunedWheel::OnReceptances(_), None) => Err(Status::NotBracketed),
         }
     }

@@ -2,7 +2,7 @@
 
 mod check;
 mod replaced;
-mod resolved;
+mod to_study_file;
 mod validate;
 mod validate_accuracy;
 mod validate_contact;

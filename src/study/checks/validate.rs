@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::check::Check;
 use super::replaced::replaced;
-use super::resolved::resolved;
+use super::to_study_file::resolved;
 use super::validate_accuracy::{accuracy, with_accuracy};
 use super::validate_contact::contact_variations;
 use super::validate_damping::{damping, nodal_diameter_damping};
