@@ -29,7 +29,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 29] = [
+const NOT_RUN: [(&str, &str); 30] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -91,6 +91,10 @@ const NOT_RUN: [(&str, &str); 29] = [
     (
         "python studies/ansys/",
         "needs ansys-mapdl-reader; tests/readers/ansys_files.py runs it",
+    ),
+    (
+        "python python/examples/ansys_files.py",
+        "needs the Python package; python/tests/test_examples.py runs it",
     ),
 ];
 
