@@ -415,9 +415,10 @@ fn the_main_figure_points_at_the_lowest_load_and_at_those_that_may_be_as_low() {
     }
     // A line of no width goes down to the lowest, between the breaks beside both linear limits.
     let at = |class: &str, name: &str| -> Vec<f64> {
-        let elements = figure.split(&format!("class=\"{class}\"")).skip(1);
-        let value = |rest: &str| between(rest, &format!(" {name}=\""), "\"").parse();
-        elements.map(|rest| value(rest).expect("a number")).collect()
+        let (class, name) = (format!("class=\"{class}\""), format!(" {name}=\""));
+        let elements = figure.split(&class).skip(1);
+        let values = elements.map(|rest| between(rest, &name, "\"").parse());
+        values.map(|value| value.expect("a number")).collect()
     };
     let (from, to, gaps) = (at("aim", "x1"), at("aim", "x2"), at("gap", "x"));
     assert_eq!((from.len(), gaps.len()), (1, 2));

@@ -277,12 +277,12 @@ fn curves(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
         }
     }
     svg.polyline("curve tuned", &line(&|load| load.tuned));
+    // Through the places of the loads, not of the marks beside them: lines set aside would cross on a slope.
     for (percent, class, _) in DRAWN.iter().rev() {
-        let points: Vec<(f64, f64)> = line(&|load| load.value(*percent))
-            .into_iter()
-            .map(|(at, y)| (at + aside(x, drawn, *percent), y))
-            .collect();
-        svg.polyline(&format!("curve {class}"), &points);
+        svg.polyline(
+            &format!("curve {class}"),
+            &line(&|load| load.value(*percent)),
+        );
     }
 }
 

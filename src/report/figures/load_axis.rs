@@ -12,7 +12,7 @@ const GAP_AT: f64 = 1.25;
 /// Half the width of a break of the axis.
 const GAP: f64 = 4.5;
 /// Distance between the marks of a load, and the share of the distance of two loads that it is at most.
-const ASIDE: (f64, f64) = (11.0, 0.25);
+const ASIDE: (f64, f64) = (9.0, 0.25);
 
 /// Places of the loads of a group: `slide` and `free` on the left, `stuck` on the right, the loads in
 /// newtons between them.
