@@ -135,7 +135,7 @@ pub(super) fn by_load(
     let mut entries = entries(&drawn);
     let lowest = pointed.map(|choice| format!("lowest P{}", percent_words(choice.percent)));
     if let Some(lowest) = &lowest {
-        entries.push(LegendEntry::Point("pick", Mark::Pointer, lowest));
+        entries.push(LegendEntry::Point("lowest", Mark::Pointer, lowest));
     }
     if pointed.is_some_and(|choice| loads.iter().any(|load| could_be_as_low(choice, load))) {
         entries.push(LegendEntry::Point("could", Mark::Pointer, "may be as low"));
@@ -235,7 +235,7 @@ fn point_at(
         if choice.lowest == Some(load.scenario) {
             svg.line("aim", (at, top), (at, bottom));
             let words = format!("lowest P{percent}: {name}");
-            Mark::Pointer.draw(svg, "pick", (at, top - 7.0), &words);
+            Mark::Pointer.draw(svg, "lowest", (at, top - 7.0), &words);
         } else if could_be_as_low(choice, load) {
             let words = format!("P{percent} may be as low: {name}");
             Mark::Pointer.draw(svg, "could", (at, top - 7.0), &words);
@@ -359,11 +359,14 @@ fn caption(
     }
     // Writing to a String cannot fail.
     if !limits.is_empty() {
-        let _ = write!(
-            words,
-            " Beside the breaks, linear limits: {}",
-            limits.join(", ")
-        );
+        // Linear limits alone need no break.
+        let newtons = loads.iter().any(|load| load.normal_load_n.is_some());
+        let head = if newtons {
+            "Beside the breaks, linear limits"
+        } else {
+            "Linear limits"
+        };
+        let _ = write!(words, " {head}: {}", limits.join(", "));
         words.push_str(if amplitude {
             "; dotted: their tuned peaks."
         } else {

@@ -79,6 +79,8 @@ const RULES: &[(&str, &str)] = &[
     (".mark.tuned", "fill:$paper;stroke:$tuned;stroke-width:1.5"),
     (".mark.pick", "fill:$ink"),
     (".mark.quiet", "fill:$quiet"),
+    // Both pointers are of one size: an outline of the paper would make the filled one smaller.
+    (".mark.lowest", "fill:$ink;stroke:$ink;stroke-width:1.5"),
     (".mark.could", "fill:$paper;stroke:$ink;stroke-width:1.5"),
     (".aim", "stroke:$ink;stroke-width:1;stroke-opacity:.55"),
     (".gap", "fill:$paper;stroke:none"),
