@@ -24,8 +24,8 @@ pub struct Answer {
     pub reasons: Vec<String>,
 }
 
-/// The answers for one group: the peak of each measured wheel, where they are few; for P99 and P95 which load to choose, those that are known before those that are
-/// not, and how much is numerical error.
+/// The answers for one group: the peak of each measured wheel, where they are few; for P99 and P95 which load to choose, and
+/// how much is numerical error. Percentiles that are known come first, of the others the one that needs the fewest patterns.
 #[must_use]
 pub fn answers(report: &StudyReport, group: &GroupReport) -> Vec<Answer> {
     let writer = Writer {
@@ -36,7 +36,7 @@ pub fn answers(report: &StudyReport, group: &GroupReport) -> Vec<Answer> {
     let asked = || group.choices.iter().filter(|choice| choice.percent > 90.0);
     let (known, unknown): (Vec<&LoadChoice>, Vec<&LoadChoice>) =
         asked().partition(|choice| choice.lowest.is_some());
-    let loads = known.into_iter().chain(unknown);
+    let loads = known.into_iter().chain(unknown.into_iter().rev());
     let mut answers: Vec<Answer> = writer.measured_wheels().into_iter().collect();
     answers.extend(loads.map(|choice| writer.load(choice)));
     answers.extend(asked().find_map(|choice| writer.error(choice)));

@@ -123,6 +123,18 @@ pub(super) fn load_words(contact: &str, normal_load_n: Option<f64>) -> String {
     normal_load_n.map_or_else(|| contact.to_owned(), |load| load.to_string())
 }
 
+/// Letters of a load that is shown as it is written.
+const LONGEST_LOAD: usize = 6;
+
+/// A load as written, or with four digits where more are written: those of a rotation have many.
+pub(super) fn short_load_words(contact: &str, normal_load_n: Option<f64>) -> String {
+    let written = load_words(contact, normal_load_n);
+    match normal_load_n {
+        Some(newtons) if written.len() > LONGEST_LOAD => trimmed_digits(newtons),
+        _ => written,
+    }
+}
+
 /// A load with its unit: a number of newtons, or the name of a linear limit.
 pub(super) fn load_with_unit(contact: &str, normal_load_n: Option<f64>) -> String {
     let words = load_words(contact, normal_load_n);
@@ -181,7 +193,12 @@ fn told_apart(summary: &StudySummary, own: &ScenarioSummary) -> String {
     let deviation = own
         .standard_deviation
         .filter(|_| deviations)
-        .map(|deviation| format!("standard deviation {} %", trimmed(100.0 * deviation)));
+        .map(|deviation| {
+            format!(
+                "standard deviation {} % of blade stiffness",
+                trimmed(100.0 * deviation)
+            )
+        });
     let excitation = excitations.then(|| excitation(own.load_case, own.engine_order));
     let told: Vec<String> = excitation.into_iter().chain(deviation).collect();
     told.join(", ")
@@ -260,13 +277,20 @@ pub(super) fn force(newtons: f64) -> String {
     } else {
         (1e-6, "MN")
     };
-    let digits = four_digits(scale * newtons);
-    let digits = if digits.contains('.') {
-        digits.trim_end_matches('0').trim_end_matches('.')
+    format!("{} {unit}", trimmed_digits(scale * newtons))
+}
+
+/// `value` with four significant digits, or as a whole number, without trailing zeros.
+fn trimmed_digits(value: f64) -> String {
+    let digits = four_digits(value);
+    if digits.contains('.') {
+        digits
+            .trim_end_matches('0')
+            .trim_end_matches('.')
+            .to_owned()
     } else {
-        &digits
-    };
-    format!("{digits} {unit}")
+        digits
+    }
 }
 
 /// A time in the unit that suits it.

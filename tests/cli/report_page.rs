@@ -107,6 +107,29 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
         "{}",
         load[2]
     );
+    // The choice is as coarse as the loads that were calculated: the next ones in newtons are named.
+    let loads = report["summary"]["scenarios"].as_array().expect("a list");
+    let newtons = || loads.iter().filter_map(|own| own["normal_load_n"].as_f64());
+    let own = scenario["normal_load_n"].as_f64().expect("a load");
+    let lower = newtons().filter(|load| *load < own).reduce(f64::max);
+    let higher = newtons().filter(|load| *load > own).reduce(f64::min);
+    let next = match (lower, higher) {
+        (Some(lower), Some(higher)) => format!("next loads calculated: {lower} N and {higher} N"),
+        (Some(lower), None) => format!("next load calculated: {lower} N; none higher"),
+        (None, higher) => format!(
+            "next load calculated: {} N; none lower",
+            higher.expect("another load")
+        ),
+    };
+    assert!(load[2].contains(&next), "{next}: {}", load[2]);
+    let is_enclosed = lower.is_some() && higher.is_some();
+    assert_eq!(group["choices"][1]["enclosed"], is_enclosed);
+    assert_eq!(
+        load[2].contains("the optimum may lie beyond"),
+        !is_enclosed,
+        "{}",
+        load[2]
+    );
     // 80 patterns give no P99: the page says so, and how many do.
     assert_eq!(percentile[0], "P95 of the peak amplitude");
     assert!(
@@ -146,6 +169,9 @@ fn a_load_by_the_median_alone_is_none_to_design_for() {
     assert_eq!(percentile[0], "P50 of the peak amplitude");
     assert_eq!(load[0], "No design load; the lowest P50 is at");
     assert!(load[2].contains("no P95 is known"), "{}", load[2]);
+    // The question that fewer patterns answer comes first.
+    let [p95, p99] = ["(P95)", "(P99)"].map(|own| page.find(own).expect("a question"));
+    assert!(p95 < p99);
     let health = between(&page, "<div class=\"health look\">", "</div>");
     let words = "Too few patterns for a design load.";
     assert!(health.contains(words), "{health}");
@@ -166,7 +192,7 @@ fn the_first_screen_says_that_other_settings_have_loads_of_their_own() {
         panic!("three numbers: {page}");
     };
     assert!(
-        load[2].contains("for the other setting see below"),
+        load[2].contains("<a href=\"#answer-1\">for the other setting see below</a>"),
         "{}",
         load[2]
     );
@@ -363,6 +389,40 @@ fn the_model_on_the_page_is_that_of_the_study() {
             .len(),
         1
     );
+}
+
+/// Where the lowest load and those that may be as low are shown: marks without width, since areas looked like an
+/// interval of the load.
+#[test]
+fn the_main_figure_points_at_the_lowest_load_and_at_those_that_may_be_as_low() {
+    let (_place, page, report) = reported(&study(), 0);
+    let figure = between(&page, "<figure id=\"amplitude-0\">", "</figure>");
+    let choice = &report["groups"][0]["choices"][1];
+    let lowest = choice["lowest"].as_u64().expect("a scenario");
+    let scenarios = report["summary"]["scenarios"].as_array().expect("a list");
+    for (index, scenario) in scenarios.iter().enumerate() {
+        let load = match scenario["normal_load_n"].as_f64() {
+            Some(newtons) => newtons.to_string(),
+            None => scenario["contact"].as_str().expect("a name").to_owned(),
+        };
+        let is_lowest = index as u64 == lowest;
+        let could = choice["best"]["loads"].as_array().expect("a list").iter();
+        let mut could = could.filter(|own| own["could_be_best"] == true);
+        let could = could.any(|own| own["scenario"]["scenario"] == index);
+        let shown = |words: &str| figure.contains(&format!("<title>{words}: {load}</title>"));
+        assert_eq!(shown("lowest P95"), is_lowest, "{load}");
+        assert_eq!(shown("P95 may be as low"), could && !is_lowest, "{load}");
+    }
+    // A line of no width goes down to the lowest, between the breaks beside both linear limits.
+    let at = |class: &str, name: &str| -> Vec<f64> {
+        let (class, name) = (format!("class=\"{class}\""), format!(" {name}=\""));
+        let elements = figure.split(&class).skip(1);
+        let values = elements.map(|rest| between(rest, &name, "\"").parse());
+        values.map(|value| value.expect("a number")).collect()
+    };
+    let (from, to, gaps) = (at("aim", "x1"), at("aim", "x2"), at("gap", "x"));
+    assert_eq!((from.len(), gaps.len()), (1, 2));
+    assert!((from[0] - to[0]).abs() < 1e-9 && gaps[0] < from[0] && from[0] < gaps[1]);
 }
 
 /// Ends of the drawn lines of a class, `[x, y]` each.

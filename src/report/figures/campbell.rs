@@ -86,7 +86,7 @@ pub(super) fn over_speed(report: &StudyReport) -> Option<Figure> {
             load_with_unit(scenario.contact, scenario.normal_load_n),
             scenario.engine_order
         );
-        Mark::Diamond.draw(&mut svg, "high", frame.at(*speed_rpm, *hz), &words);
+        Mark::Diamond.draw(&mut svg, "pick", frame.at(*speed_rpm, *hz), &words);
     }
     let mut entries = contact_entries(model, false);
     entries.push(LegendEntry::Line("median", None, "engine order"));
@@ -154,7 +154,7 @@ pub(super) fn over_nodal_diameter(report: &StudyReport) -> Option<Figure> {
         let hz = f64::from(*order) * speed_rpm / 60.0;
         let (x, y) = frame.at(at, hz);
         let words = format!("engine order {order} at {speed_rpm:.0} rpm: {hz:.2} Hz");
-        Mark::Diamond.draw(&mut svg, "high", (x, y), &words);
+        Mark::Diamond.draw(&mut svg, "pick", (x, y), &words);
         // The line comes from the lower left, so that there is room above it on that side.
         let (x, anchor) = if at < 0.2 * half {
             (x + 12.0, Anchor::Start)

@@ -82,7 +82,7 @@ pub(super) fn of_load(
     let mut entries = vec![
         LegendEntry::Line("median", None, "wheels"),
         LegendEntry::Area("band", "95 % band"),
-        LegendEntry::Line("high", Some(Mark::Square), "percentiles, 95 % bounds"),
+        LegendEntry::Line("pick", Some(Mark::Square), "percentiles, 95 % bounds"),
     ];
     if !law.is_empty() {
         entries.push(LegendEntry::Line("tuned", None, "extreme value fit"));
@@ -141,13 +141,13 @@ fn percentiles(svg: &mut Svg, frame: &Frame<'_>, found: &DistributionReport, sca
         let (x, y) = frame.at(value / scale, percentile.percent / 100.0);
         if let Some((low, high)) = percentile.lower.zip(percentile.upper) {
             let (low, high) = (frame.x.at(low / scale), frame.x.at(high / scale));
-            svg.line("bound high", (low, y), (high, y));
+            svg.line("bound pick", (low, y), (high, y));
             for end in [low, high] {
-                svg.line("bound high", (end, y - 4.0), (end, y + 4.0));
+                svg.line("bound pick", (end, y - 4.0), (end, y + 4.0));
             }
         }
         let words = format!("P{}: {:.4}", percentile.percent, value / scale);
-        Mark::Square.draw(svg, "high", (x, y), &words);
+        Mark::Square.draw(svg, "pick", (x, y), &words);
     }
 }
 

@@ -44,7 +44,7 @@ fn of_ladder(report: &StudyReport, ladder: &AccuracyLadder) -> Option<Figure> {
         .map(|&(operations, error, _)| at(operations, error))
         .collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
-    svg.polyline("curve high", &front);
+    svg.polyline("curve pick", &front);
     // Those that matter most are drawn last, over the others.
     let rank = |setting: &MeasuredSetting| (setting.on_front, setting.role == "base");
     let mut drawn: Vec<_> = placed.iter().collect();
@@ -52,7 +52,7 @@ fn of_ladder(report: &StudyReport, ladder: &AccuracyLadder) -> Option<Figure> {
     let mut numbers: Vec<((f64, f64), String)> = Vec::new();
     for &&(operations, error, setting) in &drawn {
         let (mark, class) = match rank(setting) {
-            (true, _) => (Mark::Square, "high"),
+            (true, _) => (Mark::Square, "pick"),
             (false, true) => (Mark::Diamond, "extreme"),
             (false, false) => (Mark::Circle, "median"),
         };
@@ -73,7 +73,7 @@ fn of_ladder(report: &StudyReport, ladder: &AccuracyLadder) -> Option<Figure> {
     }
     draw_numbers(&mut svg, &numbers);
     let mut entries = vec![
-        LegendEntry::Line("high", Some(Mark::Square), "nothing cheaper is as accurate"),
+        LegendEntry::Line("pick", Some(Mark::Square), "nothing cheaper is as accurate"),
         LegendEntry::Line("median", Some(Mark::Circle), "other settings"),
     ];
     if placed
@@ -127,7 +127,7 @@ fn of_trials(trials: &AccuracyTrials) -> Option<Figure> {
     let mut numbers = Vec::new();
     for (place, worst, own) in placed {
         let (mark, class) = if own.taken {
-            (Mark::Square, "high")
+            (Mark::Square, "pick")
         } else {
             (Mark::Circle, "median")
         };
@@ -146,7 +146,7 @@ fn of_trials(trials: &AccuracyTrials) -> Option<Figure> {
     legend(
         &mut svg,
         &[
-            LegendEntry::Line("high", Some(Mark::Square), "taken"),
+            LegendEntry::Line("pick", Some(Mark::Square), "taken"),
             LegendEntry::Line("median", Some(Mark::Circle), "tried"),
             LegendEntry::Line("tuned", None, "accepted error"),
         ],

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::load_axis::LoadAxis;
 use super::{Figure, FigureName};
 use crate::population::statistics::{Percentile, SampleStatistics};
 use crate::report::plot::{
@@ -14,14 +15,12 @@ use crate::report::{GroupReport, LoadChoice, ScenarioSummary, StudyReport, setti
 const BOTTOM: f64 = 330.0;
 /// Height of the drawing.
 const HEIGHT: f64 = 382.0;
-/// Width of the place of a linear limit beside the axis of loads.
-const SLOT: f64 = 48.0;
+/// Height of the strip above the plot whose pointers name the lowest load.
+const STRIP: f64 = 15.0;
 /// Ratio of the largest to the smallest value from which on an axis is logarithmic.
 const LOGARITHMIC_FROM: f64 = 4.0;
 /// Share of the largest value below which the smallest one makes an axis begin at zero.
 const FROM_ZERO: f64 = 0.4;
-/// Distance between the marks of a load, and the share of the distance of two loads that it is at most.
-const ASIDE: (f64, f64) = (8.0, 0.22);
 /// Percentiles drawn: in percent, class, mark.
 const DRAWN: [(u32, &str, Mark); 3] = [
     (99, "extreme", Mark::Diamond),
@@ -29,101 +28,8 @@ const DRAWN: [(u32, &str, Mark); 3] = [
     (50, "median", Mark::Circle),
 ];
 
-/// Places of the loads of a group: `slide` and `free` on the left, `stuck` on the right, the loads in
-/// newtons between them.
-pub(super) struct LoadAxis {
-    axis: Axis,
-    /// Whether there is one load alone, which then stands in the middle.
-    alone: bool,
-    /// Distance between the marks of a load, which would hide each other at one place.
-    aside: f64,
-}
-
-impl LoadAxis {
-    pub(super) fn new(loads: &[&ScenarioSummary]) -> Self {
-        let newtons: Vec<f64> = loads.iter().filter_map(|load| load.normal_load_n).collect();
-        let low = newtons.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = newtons.iter().copied().fold(0.0, f64::max);
-        let scale = if low > 0.0 && low < high {
-            Scale::Logarithmic
-        } else {
-            Scale::Linear
-        };
-        let has = |names: &[&str]| loads.iter().any(|load| names.contains(&load.contact));
-        let left = SIDES.0
-            + if has(&["slide", "free"]) {
-                1.6 * SLOT
-            } else {
-                0.5 * SLOT
-            };
-        let right = SIDES.1
-            - if has(&["stuck"]) {
-                1.6 * SLOT
-            } else {
-                0.5 * SLOT
-            };
-        let mut places = Self {
-            alone: loads.len() == 1,
-            aside: ASIDE.0,
-            axis: Axis {
-                scale,
-                low,
-                high,
-                ends: (left, right),
-            },
-        };
-        let mut taken: Vec<f64> = loads.iter().map(|load| places.at(load)).collect();
-        taken.sort_unstable_by(f64::total_cmp);
-        let distances = taken.windows(2).map(|two| two[1] - two[0]);
-        let closest = distances.filter(|distance| *distance > 0.0);
-        places.aside = closest.fold(places.aside, |aside, distance| {
-            aside.min(ASIDE.1 * distance)
-        });
-        places
-    }
-
-    pub(super) fn title(&self) -> &'static str {
-        match self.axis.scale {
-            Scale::Logarithmic => "damper normal load per sector, N (logarithmic)",
-            _ => "damper normal load per sector, N",
-        }
-    }
-
-    /// Place of a load.
-    pub(super) fn at(&self, load: &ScenarioSummary) -> f64 {
-        match (load.contact, load.normal_load_n) {
-            _ if self.alone => f64::midpoint(SIDES.0, SIDES.1),
-            ("stuck", _) => SIDES.1 - 0.5 * SLOT,
-            ("free", _) | (_, None) => SIDES.0 + 0.5 * SLOT,
-            (_, Some(newtons)) => self.axis.at(newtons),
-        }
-    }
-
-    /// A tick per load; the names of those that would touch are left out.
-    pub(super) fn ticks(&self, svg: &mut Svg, frame: &Frame<'_>, loads: &[&ScenarioSummary]) {
-        // Limits first, since no scale tells what they are.
-        let mut ordered: Vec<&&ScenarioSummary> = loads.iter().collect();
-        ordered.sort_by(|a, b| {
-            let newtons = |load: &ScenarioSummary| load.normal_load_n.is_some();
-            let limits_first = newtons(a).cmp(&newtons(b));
-            limits_first.then(self.at(a).total_cmp(&self.at(b)))
-        });
-        let mut taken: Vec<(f64, f64)> = Vec::new();
-        for load in ordered {
-            let (x, name) = (self.at(load), load_words(load.contact, load.normal_load_n));
-            let half = 6.2 * name.chars().count() as f64;
-            let touches = |&(left, right): &(f64, f64)| x - half < right && left < x + half;
-            let name = if taken.iter().any(touches) { "" } else { &name };
-            if !name.is_empty() {
-                taken.push((x - half, x + half));
-            }
-            frame.x_tick(svg, x, name);
-        }
-    }
-}
-
 /// An axis from `bottom` to `top` that shows `values`, all positive.
-pub(super) fn value_axis(values: &[f64], bottom: f64, top: f64) -> Axis {
+fn value_axis(values: &[f64], bottom: f64, top: f64) -> Axis {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(0.0, f64::max);
     let ends = (bottom, top);
@@ -198,7 +104,11 @@ pub(super) fn by_load(
     } else {
         "amplification factor".to_owned()
     };
-    let y = value_axis(&values, BOTTOM, TOP);
+    // Without a choice by the amplitude there is nothing to point at.
+    let choice = { group.choices.iter() }.find(|choice| choice.lowest.is_some());
+    let pointed = choice.filter(|_| amplitude);
+    let strip = if pointed.is_some() { STRIP } else { 0.0 };
+    let y = value_axis(&values, BOTTOM + strip, TOP + strip);
     let y_title = match y.scale {
         Scale::Logarithmic => format!("{y_title} (log.)"),
         _ => y_title,
@@ -217,21 +127,18 @@ pub(super) fn by_load(
     let mut svg = Svg::default();
     frame.draw(&mut svg);
     x.ticks(&mut svg, &frame, &loads);
-    // Without a choice by the amplitude there is nothing to point at.
-    let choice = group.choices.iter().find(|choice| choice.lowest.is_some());
-    if let (Some(choice), true) = (choice, amplitude) {
+    if let Some(choice) = pointed {
         point_at(&mut svg, &frame, &x, &loads, choice);
     }
     curves(&mut svg, &frame, &x, &drawn);
     points(&mut svg, &frame, &x, &drawn);
     let mut entries = entries(&drawn);
-    let percent = choice.map(|choice| percent_words(choice.percent));
-    let lowest = percent.map(|percent| format!("lowest P{percent}"));
-    if let (Some(lowest), true) = (&lowest, amplitude) {
-        entries.push(LegendEntry::Area("chosen", lowest));
-        if choice.is_some_and(|choice| choice.best.is_some()) {
-            entries.push(LegendEntry::Area("could", "could be lowest"));
-        }
+    let lowest = pointed.map(|choice| format!("lowest P{}", percent_words(choice.percent)));
+    if let Some(lowest) = &lowest {
+        entries.push(LegendEntry::Point("lowest", Mark::Pointer, lowest));
+    }
+    if pointed.is_some_and(|choice| loads.iter().any(|load| could_be_as_low(choice, load))) {
+        entries.push(LegendEntry::Point("could", Mark::Pointer, "may be as low"));
     }
     legend(&mut svg, &entries);
     let what = if amplitude {
@@ -243,8 +150,8 @@ pub(super) fn by_load(
         name,
         title: format!("{what} against damper normal load"),
         setting: setting(group),
-        caption: caption(amplitude, choice, report.summary.patterns, &loads),
-        height: HEIGHT,
+        caption: caption(amplitude, pointed, report.summary.patterns, &loads),
+        height: HEIGHT + strip,
         body: svg.into_body(),
     })
 }
@@ -304,7 +211,15 @@ fn scaled(found: &Percentile, scale: f64) -> Percentile {
     }
 }
 
-/// The loads that could be the best, and the one that is in this sample.
+/// Whether a load that has not the lowest percentile of the sample could be as low.
+fn could_be_as_low(choice: &LoadChoice, load: &ScenarioSummary) -> bool {
+    let compared = choice.best.iter().flat_map(|best| &best.loads);
+    let mut same = compared.filter(|other| other.scenario.scenario == load.scenario);
+    choice.lowest != Some(load.scenario) && same.any(|other| other.could_be_best)
+}
+
+/// Pointers above the plot at the load that is the lowest in this sample, and at those that could be: they have no
+/// width, which would look like an interval of the load.
 fn point_at(
     svg: &mut Svg,
     frame: &Frame<'_>,
@@ -313,23 +228,17 @@ fn point_at(
     choice: &LoadChoice,
 ) {
     let (bottom, top) = frame.y.ends;
+    let percent = percent_words(choice.percent);
     for load in loads {
         let at = x.at(load);
+        let name = load_words(load.contact, load.normal_load_n);
         if choice.lowest == Some(load.scenario) {
-            svg.rectangle("chosen", (at - 14.0, top), (at + 14.0, bottom), "");
-        }
-        let could = choice.best.iter().flat_map(|best| &best.loads);
-        if could
-            .filter(|other| other.scenario.scenario == load.scenario)
-            .any(|other| other.could_be_best)
-        {
-            let words = format!("could be the best for P{}", percent_words(choice.percent));
-            svg.rectangle(
-                "could",
-                (at - 14.0, bottom - 5.0),
-                (at + 14.0, bottom),
-                &words,
-            );
+            svg.line("aim", (at, top), (at, bottom));
+            let words = format!("lowest P{percent}: {name}");
+            Mark::Pointer.draw(svg, "lowest", (at, top - 7.0), &words);
+        } else if could_be_as_low(choice, load) {
+            let words = format!("P{percent} may be as low: {name}");
+            Mark::Pointer.draw(svg, "could", (at, top - 7.0), &words);
         }
     }
 }
@@ -360,7 +269,7 @@ fn curves(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
         let at = x.at(limit.scenario);
         if let (Some(low), Some(high)) = (limit.value(5), limit.value(95)) {
             let (low, high) = (frame.y.at(low), frame.y.at(high));
-            svg.rectangle("band", (at - 13.0, low), (at + 13.0, high), "");
+            svg.rectangle("band", (at - 16.0, low), (at + 16.0, high), "");
         }
         if let Some(tuned) = limit.tuned {
             let y = frame.y.at(tuned);
@@ -368,12 +277,12 @@ fn curves(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
         }
     }
     svg.polyline("curve tuned", &line(&|load| load.tuned));
+    // Through the places of the loads, not of the marks beside them: lines set aside would cross on a slope.
     for (percent, class, _) in DRAWN.iter().rev() {
-        let points: Vec<(f64, f64)> = line(&|load| load.value(*percent))
-            .into_iter()
-            .map(|(at, y)| (at + aside(x, drawn, *percent), y))
-            .collect();
-        svg.polyline(&format!("curve {class}"), &points);
+        svg.polyline(
+            &format!("curve {class}"),
+            &line(&|load| load.value(*percent)),
+        );
     }
 }
 
@@ -435,7 +344,8 @@ fn caption(
     loads: &[&ScenarioSummary],
 ) -> String {
     let mut words = format!(
-        "Percentiles over {patterns} patterns with distribution-free 95 % bounds, side by side at each load."
+        "Percentiles over {patterns} patterns with distribution-free 95 % bounds, side by side at each load. Only loads \
+         with marks were calculated; the lines between them guide the eye."
     );
     let mut limits: Vec<&str> = Vec::new();
     for (name, meaning) in [
@@ -449,7 +359,19 @@ fn caption(
     }
     // Writing to a String cannot fail.
     if !limits.is_empty() {
-        let _ = write!(words, " Linear limits: {}.", limits.join(", "));
+        // Linear limits alone need no break.
+        let newtons = loads.iter().any(|load| load.normal_load_n.is_some());
+        let head = if newtons {
+            "Beside the breaks, linear limits"
+        } else {
+            "Linear limits"
+        };
+        let _ = write!(words, " {head}: {}", limits.join(", "));
+        words.push_str(if amplitude {
+            "; dotted: their tuned peaks."
+        } else {
+            "."
+        });
     }
     if !amplitude {
         words.push_str(
@@ -460,16 +382,12 @@ fn caption(
     }
     if let Some(choice) = choice {
         let percent = percent_words(choice.percent);
-        let _ = write!(words, " Grey band: the lowest P{percent}.");
-        if choice.best.is_some() {
-            let _ = write!(
-                words,
-                " Bars on the axis: loads that could have the lowest P{percent} with 95 % confidence."
-            );
-        }
-    }
-    if !limits.is_empty() {
-        words.push_str(" Dotted: tuned wheel under the linear limits.");
+        let _ = write!(words, " Pointer above: the load with the lowest P{percent}");
+        words.push_str(if loads.iter().any(|load| could_be_as_low(choice, load)) {
+            "; hollow: those that may be as low (95 % confidence)."
+        } else {
+            "."
+        });
     }
     words
 }

@@ -6,6 +6,7 @@ mod distribution;
 mod figure;
 mod ladder;
 mod load;
+mod load_axis;
 mod response;
 mod sector;
 mod uncertainty;

@@ -126,7 +126,7 @@ fn draw(svg: &mut Svg, sector: &SectorPicture, at: &dyn Fn([f64; 3]) -> (f64, f6
     }
     for (class, places, mark) in [
         ("extreme", &sector.observed_m, Mark::Triangle),
-        ("high", &sector.forced_m, Mark::Diamond),
+        ("pick", &sector.forced_m, Mark::Diamond),
     ] {
         for &place in places {
             mark.draw(svg, class, at(place), "");
@@ -181,7 +181,7 @@ fn entries(report: &StudyReport, section: &ModelSection) -> Vec<LegendEntry<'sta
     if !sector.contacts.is_empty() {
         entries.push(LegendEntry::Area("touch", "contact"));
     }
-    entries.push(LegendEntry::Point("high", Mark::Diamond, "force"));
+    entries.push(LegendEntry::Point("pick", Mark::Diamond, "force"));
     entries.push(LegendEntry::Point("extreme", Mark::Triangle, "observed"));
     entries
 }

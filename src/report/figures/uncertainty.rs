@@ -1,6 +1,6 @@
 //! How sure a percentile is: width of its statistical interval and of its numerical bounds, by load.
 
-use super::load::LoadAxis;
+use super::load_axis::LoadAxis;
 use super::{Figure, FigureName};
 use crate::report::plot::{Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend};
 use crate::report::words::{load_words, percent_words, share_words};
@@ -37,13 +37,13 @@ pub(super) fn by_load(report: &StudyReport, group: &GroupReport) -> Option<Figur
         .collect();
     let widths: [(&str, Mark, f64, Width); 2] = [
         (
-            "high",
+            "pick",
             Mark::Square,
             -APART,
             PercentileError::statistical_width,
         ),
         (
-            "median",
+            "quiet",
             Mark::Circle,
             APART,
             PercentileError::numerical_width,
@@ -97,8 +97,8 @@ pub(super) fn by_load(report: &StudyReport, group: &GroupReport) -> Option<Figur
     legend(
         &mut svg,
         &[
-            LegendEntry::Line("high", Some(Mark::Square), "statistical interval, 95 %"),
-            LegendEntry::Line("median", Some(Mark::Circle), "numerical bounds"),
+            LegendEntry::Line("pick", Some(Mark::Square), "statistical interval, 95 %"),
+            LegendEntry::Line("quiet", Some(Mark::Circle), "numerical bounds"),
         ],
     );
     Some(Figure {

@@ -18,6 +18,7 @@ pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usi
         label,
         value,
         notes,
+        more,
     } in big_numbers(report, group)
     {
         // Writing to a String cannot fail.
@@ -29,6 +30,13 @@ pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usi
         );
         for note in notes {
             let _ = write!(html, "<p class=\"note\">{}</p>", escaped(&tied(&note)));
+        }
+        if let Some((target, words)) = more {
+            let words = escaped(&words);
+            let _ = write!(
+                html,
+                "<p class=\"note\"><a href=\"#{target}\">{words}</a></p>"
+            );
         }
         html.push_str("</div>\n");
     }
@@ -93,7 +101,11 @@ fn folded(report: &StudyReport, group: &GroupReport) -> String {
 /// Links to the parts of the page; of several groups each with its answer.
 pub(super) fn contents(report: &StudyReport) -> String {
     let several = report.groups.len() > 1;
-    let mut html = "<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ul>\n".to_owned();
+    // On paper links between several settings still say what each answers.
+    let class = if several { "several" } else { "one" };
+    let mut html = format!(
+        "<nav id=\"contents\" class=\"{class}\" aria-label=\"Contents\">\n<h2>Contents</h2>\n<ul>\n"
+    );
     let mut entry = |target: &str, words: &str| {
         let _ = writeln!(
             html,

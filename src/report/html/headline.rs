@@ -2,8 +2,8 @@
 
 use crate::population::statistics::CONFIDENCE;
 use crate::report::words::{
-    LengthUnit, force, four_digits, load_with_unit, loads_and_limits, percent_words,
-    scenarios_in_words, share_words,
+    LengthUnit, four_digits, loads_and_limits, percent_words, scenarios_in_words, share_words,
+    short_load_words,
 };
 use crate::report::{
     GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, Warning, setting,
@@ -15,9 +15,6 @@ const NAMED: usize = 3;
 /// Percentile below which a choice of the load says too little of the highest blades.
 const LEAST_OF_A_DESIGN: f64 = 90.0;
 
-/// Letters of a load that is shown as it is written.
-const LONGEST_LOAD: usize = 8;
-
 /// A number in large type.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct BigNumber {
@@ -27,6 +24,8 @@ pub(super) struct BigNumber {
     pub(super) value: String,
     /// How sure it is, a line each.
     pub(super) notes: Vec<String>,
+    /// Where the page says more: id and words of a link.
+    pub(super) more: Option<(&'static str, String)>,
 }
 
 /// Whether anything is wrong with a study.
@@ -64,6 +63,7 @@ pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumb
             },
             value: short_load(scenario),
             notes: notes_of_load(report, group, choice, scenario),
+            more: other_settings(report),
         },
         BigNumber {
             label: format!("P{percent} of the peak amplitude"),
@@ -71,6 +71,7 @@ pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumb
                 .and_then(|own| own.percentile.value)
                 .map_or_else(|| "not known".to_owned(), |value| units.length(value)),
             notes: notes_of_percentile(report, group, choice, error),
+            more: None,
         },
         number_of_error(units, group, lowest, (&percent, error)),
     ]
@@ -94,12 +95,67 @@ pub(super) fn in_one_line(report: &StudyReport, group: &GroupReport) -> String {
     format!("{}: {answer}", setting(group))
 }
 
-/// A load as written, or with four digits where more are written: those of a rotation have many.
+/// A load with its unit in few letters, or the name of a linear limit.
 fn short_load(scenario: &ScenarioSummary) -> String {
-    let written = load_with_unit(scenario.contact, scenario.normal_load_n);
-    match scenario.normal_load_n {
-        Some(newtons) if written.len() > LONGEST_LOAD => force(newtons),
-        _ => written,
+    let words = short_load_words(scenario.contact, scenario.normal_load_n);
+    if scenario.normal_load_n.is_some() {
+        format!("{words} N")
+    } else {
+        words
+    }
+}
+
+/// The next lower and the next higher load in newtons of a group; none beside a linear limit.
+fn neighbours<'a>(
+    report: &'a StudyReport,
+    group: &GroupReport,
+    scenario: &ScenarioSummary,
+) -> [Option<&'a ScenarioSummary>; 2] {
+    let Some(own) = scenario.normal_load_n else {
+        return [None; 2];
+    };
+    let newtons = |scenario: &ScenarioSummary| scenario.normal_load_n.unwrap_or(f64::NAN);
+    let all = group.scenarios.iter();
+    let all = all.map(|&index| &report.summary.scenarios[index]);
+    let by_load = |a: &&ScenarioSummary, b: &&ScenarioSummary| newtons(a).total_cmp(&newtons(b));
+    [
+        all.clone()
+            .filter(|load| newtons(load) < own)
+            .max_by(by_load),
+        all.filter(|load| newtons(load) > own).min_by(by_load),
+    ]
+}
+
+/// Which loads were calculated next to that of the answer: between them none was, so that the optimum is known no
+/// better.
+fn beside(lower: Option<&ScenarioSummary>, higher: Option<&ScenarioSummary>) -> String {
+    const BEYOND: &str = "the optimum may lie beyond";
+    match (lower, higher) {
+        (Some(lower), Some(higher)) => {
+            let (lower, higher) = (short_load(lower), short_load(higher));
+            format!("next loads calculated: {lower} and {higher}")
+        }
+        (Some(next), None) => {
+            let next = short_load(next);
+            format!("next load calculated: {next}; none higher: {BEYOND}")
+        }
+        (None, Some(next)) => {
+            let next = short_load(next);
+            format!("next load calculated: {next}; none lower: {BEYOND}")
+        }
+        (None, None) => format!("no load on both sides was calculated: {BEYOND}"),
+    }
+}
+
+/// Where the answers of the other settings are.
+fn other_settings(report: &StudyReport) -> Option<(&'static str, String)> {
+    match report.groups.len() {
+        0 | 1 => None,
+        2 => Some(("answer-1", "for the other setting see below".to_owned())),
+        all => Some((
+            "contents",
+            format!("for {} other settings see below", all - 1),
+        )),
     }
 }
 
@@ -114,6 +170,7 @@ fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
         label: label.to_owned(),
         value: "not known".to_owned(),
         notes,
+        more: None,
     };
     let lowest = group.choices.iter().min_by_key(|own| own.needed_patterns);
     let why = match lowest {
@@ -160,7 +217,7 @@ fn notes_of_load(
         .collect();
     notes.push(if others.is_empty() {
         format!(
-            "of {} on the same patterns (95 % confidence)",
+            "of the {} calculated, with 95 % confidence",
             loads_and_limits(
                 group
                     .scenarios
@@ -178,16 +235,8 @@ fn notes_of_load(
             .filter(|_| !is_of_a_design(choice))
             .map(|higher| format!("no P{} is known", percent_words(higher.percent))),
     );
-    if report.groups.len() > 1 {
-        let others = report.groups.len() - 1;
-        notes.push(match others {
-            1 => "for the other setting see below".to_owned(),
-            _ => format!("for {others} other settings see below"),
-        });
-    }
-    if !choice.enclosed {
-        notes.push("no load on both sides was studied: the optimum may lie beyond".to_owned());
-    }
+    let [lower, higher] = neighbours(report, group, scenario);
+    notes.push(beside(lower, higher));
     notes
 }
 
@@ -256,6 +305,7 @@ fn number_of_error(
                 })
                 .into_iter()
                 .collect(),
+            more: None,
         };
     };
     let largest = (1.0 - low / value).max(high / value - 1.0);
@@ -274,6 +324,7 @@ fn number_of_error(
         label,
         value: share_words(largest),
         notes: beside.into_iter().collect(),
+        more: None,
     }
 }
 

@@ -9,7 +9,7 @@ use super::tables;
 use crate::input::term_of;
 use crate::report::figures::friction_words;
 use crate::report::plot::{escaped, page_style};
-use crate::report::words::{scenarios_in_words, tied};
+use crate::report::words::{loads_and_limits, scenarios_in_words, tied};
 use crate::report::{FIGURES, FigureName, GroupReport, StudyReport, Wheels, figure, setting};
 
 /// Style of everything but the plots.
@@ -61,6 +61,18 @@ pub fn html_report(report: &StudyReport) -> String {
 
 fn header(report: &StudyReport) -> String {
     let summary = &report.summary;
+    let first = { report.groups.first() }.map_or(&[][..], |group| &group.scenarios);
+    let loads = loads_and_limits(first.iter().map(|&own| &summary.scenarios[own]));
+    let settings = match report.groups.len() {
+        0 | 1 => String::new(),
+        several => format!(" in {several} settings"),
+    };
+    let (failed, planned) = (summary.rows.failed(), summary.rows.planned());
+    let rows = if failed == 0 {
+        format!("all {planned} rows have a result")
+    } else {
+        format!("{failed} of {planned} rows failed")
+    };
     let stop = summary.stop.as_ref().map_or_else(String::new, |stop| {
         let met = if stop.met { "reached" } else { "not reached" };
         format!(
@@ -70,14 +82,11 @@ fn header(report: &StudyReport) -> String {
         )
     });
     format!(
-        "<header>\n<h1>Study “{}”</h1>\n<p class=\"quiet\">Forced response of randomly mistuned bladed disks with {}: \
-         {} patterns, {} scenarios, {} rows with a result, {} failed.{stop}</p>\n</header>\n",
+        "<header>\n<h1>Mistuned forced response</h1>\n<p class=\"quiet\">Study “{}”, bladed disks with {}: \
+         {} patterns, {loads}{settings}; {rows}.{stop}</p>\n</header>\n",
         escaped(&summary.name),
         friction_words(report),
         summary.patterns,
-        summary.scenarios.len(),
-        summary.rows.ok(),
-        summary.rows.failed(),
     )
 }
 

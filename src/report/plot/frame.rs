@@ -7,13 +7,17 @@ pub(in crate::report) const WIDTH: f64 = 560.0;
 /// Left and right end of the horizontal axis of a plot.
 pub(in crate::report) const SIDES: (f64, f64) = (70.0, 546.0);
 /// Upper end of the vertical axis; above it stands the legend.
-pub(in crate::report) const TOP: f64 = 44.0;
+pub(in crate::report) const TOP: f64 = 48.0;
 /// Length of a tick.
 const TICK: f64 = 4.0;
+/// Where a legend begins, below the title of the figure.
+const LEGEND_LEFT: f64 = 14.0;
 /// Space between entries of a legend and the width of a letter on a narrow page, about.
-const LEGEND: (f64, f64) = (40.0, 10.0);
+const LEGEND: (f64, f64) = (40.0, 11.0);
 /// Height of a line of a legend, and its distance from the plot.
-const LEGEND_LINE: (f64, f64) = (19.0, 12.0);
+const LEGEND_LINE: (f64, f64) = (21.0, 12.0);
+/// Half the width of the caps of a bound: they reach beyond the mark that may cover the bound.
+const CAP: f64 = 6.5;
 
 /// What stands at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,19 +26,22 @@ pub(in crate::report) enum Mark {
     Square,
     Diamond,
     Triangle,
+    /// A triangle on its point, which points at what is below.
+    Pointer,
 }
 
 impl Mark {
     /// Draws the mark with the classes `mark` and `class`.
     pub(in crate::report) fn draw(self, svg: &mut Svg, class: &str, at: (f64, f64), words: &str) {
-        const R: f64 = 4.2;
+        const R: f64 = 4.0;
         let class = format!("mark {class}");
         let (x, y) = at;
         let shape: &[(f64, f64)] = match self {
             Self::Circle => return svg.circle(&class, at, R, words),
             Self::Square => &[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)],
-            Self::Diamond => &[(0.0, -1.35), (1.35, 0.0), (0.0, 1.35), (-1.35, 0.0)],
+            Self::Diamond => &[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
             Self::Triangle => &[(0.0, -1.2), (1.15, 0.9), (-1.15, 0.9)],
+            Self::Pointer => &[(-1.5, -1.2), (1.5, -1.2), (0.0, 1.3)],
         };
         let points: Vec<(f64, f64)> = shape
             .iter()
@@ -107,7 +114,7 @@ impl Frame<'_> {
         let class = format!("bound {class}");
         svg.line(&class, (x, low), (x, high));
         for y in [low, high] {
-            svg.line(&class, (x - 3.5, y), (x + 3.5, y));
+            svg.line(&class, (x - CAP, y), (x + CAP, y));
         }
     }
 }
@@ -115,14 +122,14 @@ impl Frame<'_> {
 /// Entries from left to right in lines above the plot, the last of which is next to it.
 pub(in crate::report) fn legend(svg: &mut Svg, entries: &[LegendEntry<'_>]) {
     let mut lines: Vec<Vec<(f64, &LegendEntry<'_>)>> = vec![Vec::new()];
-    let mut x = SIDES.0;
+    let mut x = LEGEND_LEFT;
     for entry in entries {
         let (LegendEntry::Line(_, _, words)
         | LegendEntry::Point(_, _, words)
         | LegendEntry::Area(_, words)) = entry;
         let width = LEGEND.0 + LEGEND.1 * words.chars().count() as f64;
-        if x + width > WIDTH + 10.0 && x > SIDES.0 {
-            x = SIDES.0;
+        if x + width > WIDTH + 10.0 && x > LEGEND_LEFT {
+            x = LEGEND_LEFT;
             lines.push(Vec::new());
         }
         if let Some(line) = lines.last_mut() {
@@ -153,7 +160,8 @@ fn legend_entry(svg: &mut Svg, (x, y): (f64, f64), entry: &LegendEntry<'_>) {
             words
         }
         LegendEntry::Area(class, words) => {
-            svg.rectangle(class, (x, y - 9.0), (x + 24.0, y + 1.0), "");
+            let class = format!("{class} swatch");
+            svg.rectangle(&class, (x, y - 10.0), (x + 24.0, y + 1.0), "");
             words
         }
     };

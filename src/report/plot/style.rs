@@ -6,13 +6,14 @@
 use std::fmt::Write;
 
 /// Colours: name, in light, in dark.
-const COLOURS: [(&str, &str, &str); 15] = [
+const COLOURS: [(&str, &str, &str); 16] = [
     ("paper", "#ffffff", "#15191f"),
     ("panel", "#f6f8fa", "#1c222a"),
     ("ink", "#1b2733", "#e8ecf1"),
     ("quiet", "#566573", "#9fadbb"),
     ("grid", "#dfe5ea", "#313a45"),
     ("median", "#0072b2", "#56b4e9"),
+    ("band", "#0072b2", "#7cc8ff"),
     ("high", "#d55e00", "#ff8a3d"),
     ("extreme", "#8f2d6b", "#e58fc4"),
     ("tuned", "#1b2733", "#e8ecf1"),
@@ -36,8 +37,7 @@ const RULES: &[(&str, &str)] = &[
     (".grid", "stroke:$grid;stroke-width:1;fill:none"),
     (".axis", "stroke:$quiet;stroke-width:1;fill:none"),
     (".panel", "fill:$panel;stroke:none"),
-    (".band", "fill:$median;fill-opacity:.16;stroke:none"),
-    (".band.high", "fill:$high;fill-opacity:.13"),
+    (".band", "fill:$band;fill-opacity:.22;stroke:none"),
     (
         ".curve",
         "fill:none;stroke-width:2;stroke-linejoin:round;stroke-linecap:round",
@@ -60,25 +60,32 @@ const RULES: &[(&str, &str)] = &[
     ),
     (
         ".curve.limit",
-        "stroke:$quiet;stroke-width:2;stroke-dasharray:.1 4.5",
+        "stroke:$quiet;stroke-width:2.8;stroke-dasharray:.1 7.5",
     ),
     (".curve.touch", "stroke:$slip;stroke-width:3"),
-    (".bound", "fill:none;stroke-width:1.4"),
+    (".curve.pick", "stroke:$ink"),
+    (".bound", "fill:none;stroke-width:1.6"),
     (".bound.median", "stroke:$median"),
     (".bound.high", "stroke:$high"),
     (".bound.extreme", "stroke:$extreme"),
+    (".bound.pick", "stroke:$ink"),
     (".stem", "fill:none;stroke-width:3.5;stroke-opacity:.45"),
-    (".stem.median", "stroke:$median"),
-    (".stem.high", "stroke:$high"),
+    (".stem.pick", "stroke:$ink"),
+    (".stem.quiet", "stroke:$quiet"),
     (".mark", "stroke:$paper;stroke-width:1.2"),
     (".mark.median", "fill:$median"),
     (".mark.high", "fill:$high"),
     (".mark.extreme", "fill:$extreme"),
     (".mark.tuned", "fill:$paper;stroke:$tuned;stroke-width:1.5"),
-    (".chosen", "fill:$ink;fill-opacity:.12;stroke:none"),
-    (".could", "fill:$ink;stroke:none"),
+    (".mark.pick", "fill:$ink"),
+    (".mark.quiet", "fill:$quiet"),
+    // Both pointers are of one size: an outline of the paper would make the filled one smaller.
+    (".mark.lowest", "fill:$ink;stroke:$ink;stroke-width:1.5"),
+    (".mark.could", "fill:$paper;stroke:$ink;stroke-width:1.5"),
+    (".aim", "stroke:$ink;stroke-width:1;stroke-opacity:.55"),
+    (".gap", "fill:$paper;stroke:none"),
     (".bar", "fill:$median;fill-opacity:.75;stroke:none"),
-    (".bar.peak", "fill:$high;fill-opacity:1"),
+    (".bar.peak", "fill:$ink;fill-opacity:1"),
     (".bar.up", "fill:$quiet;fill-opacity:.65"),
     (".bar.down", "fill:$quiet;fill-opacity:.65"),
     (".cell", "stroke:$paper;stroke-width:1"),
@@ -96,10 +103,12 @@ const RULES: &[(&str, &str)] = &[
     (".node.ring", "fill:$median"),
     (".node.damper", "fill:$good"),
     (".touch", "fill:$slip;stroke:$ink;stroke-width:.8"),
+    // An area of a legend, which may be faint by itself.
+    (".swatch", "stroke:$quiet;stroke-width:1"),
 ];
 
 /// Rules for narrow pages, where a drawing is scaled down.
-const NARROW: &str = "@media (max-width:600px){svg.plot text,svg.plot text.small{font-size:18px}svg.plot text.quiet{font-size:16px}}";
+const NARROW: &str = "@media (max-width:600px){svg.plot text{font-size:19px}svg.plot text.small{font-size:20px}svg.plot text.quiet{font-size:18px}}";
 
 /// Style sheet of the page: colours as variables for light, dark and print, and the classes of the plots.
 pub(in crate::report) fn page_style() -> String {
