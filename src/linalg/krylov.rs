@@ -2,14 +2,12 @@
 
 use super::dot;
 
-/// Products with the matrix at most.
-const PRODUCTS: usize = 120;
-
-/// `x` with `A x` near `right`, until the residual is `enough` of `right` or 120 products are spent, and the number of products
+/// `x` with `A x` near `right`, until the residual is `enough` of `right` or `most` products are spent, and the number of products
 /// with A that it took.
 pub fn gmres(
     right: &[f64],
     enough: f64,
+    most: usize,
     mut product: impl FnMut(&[f64]) -> Vec<f64>,
 ) -> (Vec<f64>, usize) {
     let size = dot(right, right).sqrt();
@@ -21,7 +19,7 @@ pub fn gmres(
     let mut triangle: Vec<Vec<f64>> = Vec::new();
     let mut rotations: Vec<(f64, f64)> = Vec::new();
     let mut left = vec![size];
-    while triangle.len() < PRODUCTS {
+    while triangle.len() < most {
         let mut vector = product(&basis[triangle.len()]);
         let mut column = vec![0.0; basis.len()];
         for _ in 0..2 {
@@ -78,7 +76,7 @@ mod tests {
             let row = |row: &[f64; 3]| row.iter().zip(x).map(|(a, x)| a * x).sum();
             a.iter().map(row).collect()
         };
-        let (x, products) = gmres(&[1.0, 2.0, 3.0], 1e-3, product);
+        let (x, products) = gmres(&[1.0, 2.0, 3.0], 1e-3, 120, product);
         let back = product(&x);
         assert!(products <= 3);
         for (b, own) in [1.0, 2.0, 3.0].iter().zip(&back) {

@@ -160,6 +160,36 @@ fn rows_on_tuned_receptances_are_as_true_as_they_state() {
     );
 }
 
+/// Rows under light loads, whose pairs open: wheel and load, N.
+const OPENING: [(&str, f64); 2] = [("half", 64.93), ("odd", 82.89)];
+
+/// Where pairs open, rows have a peak with fewer harmonics, within 1 % and within what they state.
+#[test]
+fn rows_whose_pairs_open_are_found_and_as_true_as_they_state() {
+    for (wheel, load_n) in OPENING {
+        let rows = engine::solved_within(wheel, None, |row| row.load_n() == Some(load_n));
+        assert_eq!(rows.len(), 2, "{wheel}");
+        for (truth, row) in rows {
+            let name = format!("{wheel}, pattern {}, {load_n} N", truth.pattern);
+            let found_m = row.peak_amplitude_m.expect("a peak");
+            let error = found_m / truth.amplitude_m.expect("a peak") - 1.0;
+            let stated = row.stated_error.expect("an error");
+            println!(
+                "{name}: {error:.2e}, stated {stated:.2e}, {}",
+                row.harmonics
+            );
+            assert!(
+                row.separated_fraction.is_some_and(|share| share > 0.0),
+                "{name}"
+            );
+            assert!(
+                error.abs() <= stated.min(0.01),
+                "{name}: {error:.2e}, {stated:.2e}"
+            );
+        }
+    }
+}
+
 /// Whether a row without friction has its peak elsewhere than the truth, which climbs from a hint.
 fn is_at_another_top(truth: &Row, row: &ResponseRow) -> bool {
     let found_hz = row.peak_frequency_hz.expect("a peak");

@@ -18,6 +18,7 @@ use super::acceleration::Acceleration;
 use super::contact_forces::ContactForces;
 use super::contact_places::Places;
 use super::fields::{Field, SectorTransform, flatten, norm_squared, padded, unflatten};
+use super::pair_preconditioner::PairPreconditioner;
 use super::preconditioner::Preconditioner;
 use super::wheel_harmonic::WheelHarmonic;
 
@@ -181,6 +182,21 @@ impl ContactEquation<'_> {
         for (own, residual) in preconditioners.iter_mut().zip(residual) {
             own.apply(self.transform, residual);
         }
+    }
+
+    /// What every pair by itself makes of motions, in place.
+    pub(super) fn precondition_pairs(&mut self, by: &mut PairPreconditioner, flat: &mut Vec<f64>) {
+        let places = Places::of(self.contact);
+        let mut fields = self.buffers.motions.clone();
+        unflatten(flat, &mut fields);
+        let mut motions = vec![0.0; self.contact.motion().len()];
+        let sectors = &mut self.buffers.sectors;
+        places.to_sectors(self.transform, &fields, sectors, &mut motions);
+        by.apply(&mut motions);
+        for (place, field) in fields.iter_mut().enumerate() {
+            places.to_waves(self.transform, place, &motions, sectors, field);
+        }
+        flatten(&fields, 1.0, flat);
     }
 
     /// [`Self::residual`]; the derivative is that of the contact with fewer samples, if there is one.

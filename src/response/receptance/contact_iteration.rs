@@ -2,7 +2,8 @@
 //!
 //! A step is `-P r` with the inverse P of `I + A G'` for the mean tangent G' of the contact; Anderson's acceleration makes up for
 //! what the mean leaves out. What is approximate stands in P alone. Where no attempt of the [`LADDER`] by these steps ends with a
-//! solution, the last ones are Newton's method.
+//! solution, the next ones are Newton's method, and with few harmonics the last ones are Newton's method with every pair preconditioned by
+//! itself besides.
 
 use crate::linalg::gmres;
 use crate::response::harmonic_balance::{ContactShares, Status};
@@ -10,6 +11,7 @@ use crate::response::harmonic_balance::{ContactShares, Status};
 use super::contact_equation::PreconditionedShapes::{self, FirstOfFundamental, Resonant};
 use super::contact_equation::{Buffers, ContactEquation};
 use super::fields::{Field, flatten, norm_squared, unflatten};
+use super::pair_preconditioner::PairPreconditioner;
 use super::preconditioner::Preconditioner;
 
 /// Earlier steps that are combined.
@@ -19,10 +21,21 @@ const DAMPING: f64 = 0.5;
 
 /// Newton steps of an attempt at most.
 const NEWTON_STEPS: usize = 40;
-/// Residual of each, relative to its right-hand side.
+/// Residual of each, relative to its right-hand side, and products with the derivative at most.
 const STEP_ERROR: f64 = 1e-3;
+const PRODUCTS: usize = 120;
 /// Share of a step from which on it is not halved.
 const LEAST_FACTOR: f64 = 1.0 / 64.0;
+
+/// Most harmonics with which pairs are preconditioned by themselves: with more the steps take too long.
+const MOST_HARMONICS: usize = 6;
+/// Residual of a step with pairs preconditioned by themselves, relative to its right-hand side; products of it and of the attempt.
+const PAIRED_STEP_ERROR: f64 = 1e-2;
+const PAIRED_PRODUCTS: usize = 250;
+const PAIRED_PRODUCTS_IN_ALL: u64 = 3_500;
+/// Share of such a step below which it is not tried, and share of what it promises that it has to take off.
+const LEAST_PAIRED_FACTOR: f64 = 1.0 / 256.0;
+const DECREASE: f64 = 0.1;
 
 /// When preconditioners are renewed, what they take in, and how many steps are taken at most.
 struct Plan {
@@ -52,11 +65,13 @@ enum Start {
 enum Attempt {
     Accelerated(Plan),
     Newton,
+    PairedNewton,
 }
 
 /// What is tried, in this order, until an attempt ends with a solution. The tangent of a known start is near; that of the linear
-/// response says little, and is renewed. Harmonics above 1 near resonances that deviations split take the resonant shapes.
-const LADDER: [(Start, Attempt); 10] = [
+/// response says little, and is renewed. Harmonics above 1 near resonances that deviations split take the resonant shapes. Where pairs open,
+/// their harmonics depend on each other, and pairs are preconditioned by themselves.
+const LADDER: [(Start, Attempt); 12] = [
     (
         Start::Known,
         Attempt::Accelerated(plan(&[0], 100, FirstOfFundamental)),
@@ -91,6 +106,8 @@ const LADDER: [(Start, Attempt); 10] = [
     ),
     (Start::Known, Attempt::Newton),
     (Start::Linear, Attempt::Newton),
+    (Start::Known, Attempt::PairedNewton),
+    (Start::Linear, Attempt::PairedNewton),
 ];
 
 /// For the errors of a solution, from that solution.
@@ -157,6 +174,8 @@ impl ContactEquation<'_> {
             Start::Linear => Some(&linear),
         };
         let attempts = LADDER.iter();
+        let few = self.harmonics.len() <= MOST_HARMONICS;
+        let attempts = attempts.filter(|(_, own)| few || !matches!(own, Attempt::PairedNewton));
         let attempts = attempts.filter_map(|(start, attempt)| Some((begin(start)?, attempt)));
         let mut total = Outcome::none();
         for (rung, (start, attempt)) in attempts.enumerate() {
@@ -164,6 +183,7 @@ impl ContactEquation<'_> {
             let outcome = match attempt {
                 Attempt::Accelerated(plan) => self.accelerate(plan, tolerance),
                 Attempt::Newton => self.newton(tolerance),
+                Attempt::PairedNewton => self.paired_newton(tolerance),
             };
             total = total.followed_by(outcome, rung);
             if total.status == Status::Ok {
@@ -251,7 +271,7 @@ impl ContactEquation<'_> {
             let mut right = Vec::new();
             flatten(&self.buffers.residual, -1.0, &mut right);
             self.precondition_flat(&mut preconditioners, &mut right);
-            let (step, products) = gmres(&right, STEP_ERROR, |direction| {
+            let (step, products) = gmres(&right, STEP_ERROR, PRODUCTS, |direction| {
                 let mut turned = self.derivative(direction);
                 self.precondition_flat(&mut preconditioners, &mut turned);
                 turned
@@ -291,6 +311,95 @@ impl ContactEquation<'_> {
             factor *= 0.5;
         }
     }
+
+    /// Newton's method whose steps are preconditioned by every harmonic by itself and by every pair by itself, and shortened until the
+    /// preconditioned residual becomes less: measured without the preconditioner the stiffest pairs alone would count.
+    fn paired_newton(&mut self, tolerance: f64) -> Outcome {
+        self.contact.couple(true);
+        let mut outcome = Outcome::none();
+        let judge = Judge {
+            tolerance,
+            first: f64::INFINITY,
+        };
+        for _ in 0..NEWTON_STEPS {
+            (outcome.residual, outcome.shares) = self.residual(true);
+            let settled = judge.settled(outcome.residual, 0.0, &outcome.shares);
+            let settled = settled.filter(|status| *status == Status::Ok);
+            if let Some(status) = settled.or(judge.lost(outcome.residual)) {
+                outcome.status = status;
+                break;
+            }
+            outcome.tangents += 1;
+            let mut by = Paired {
+                harmonics: self.preconditioners(FirstOfFundamental),
+                pairs: PairPreconditioner::new(self.contact, self.harmonics),
+            };
+            let right = self.paired_residual(&mut by);
+            let (step, products) = gmres(&right, PAIRED_STEP_ERROR, PAIRED_PRODUCTS, |direction| {
+                let mut turned = self.derivative(direction);
+                self.precondition_paired(&mut by, &mut turned);
+                turned
+            });
+            outcome.iterations += products as u64;
+            if outcome.iterations > PAIRED_PRODUCTS_IN_ALL {
+                break;
+            }
+            if !self.moves_by_paired(&step, &mut by, norm(&right)) {
+                outcome.status = Status::Stagnated;
+                break;
+            }
+        }
+        self.contact.couple(false);
+        outcome
+    }
+
+    /// What both preconditioners make of motions, in place: every harmonic by itself, then every pair by itself what that leaves.
+    fn precondition_paired(&mut self, by: &mut Paired, flat: &mut Vec<f64>) {
+        let mut left = flat.clone();
+        self.precondition_flat(&mut by.harmonics, flat);
+        let taken = self.derivative(flat);
+        left.iter_mut().zip(taken).for_each(|(l, t)| *l -= t);
+        self.precondition_pairs(&mut by.pairs, &mut left);
+        flat.iter_mut().zip(left).for_each(|(x, l)| *x += l);
+    }
+
+    /// The step that the residual last evaluated asks for, by the preconditioners alone.
+    fn paired_residual(&mut self, by: &mut Paired) -> Vec<f64> {
+        let mut right = Vec::new();
+        flatten(&self.buffers.residual, -1.0, &mut right);
+        self.precondition_paired(by, &mut right);
+        right
+    }
+
+    /// Moves by the largest of the step, its half and so on after which the preconditioned residual is below `before`; false if none
+    /// is.
+    fn moves_by_paired(&mut self, step: &[f64], by: &mut Paired, before: f64) -> bool {
+        let mut from = Vec::new();
+        flatten(&self.buffers.motions, 1.0, &mut from);
+        let mut factor = 1.0;
+        while factor >= LEAST_PAIRED_FACTOR {
+            let moved = from.iter().zip(step).map(|(u, s)| u + factor * s);
+            let moved: Vec<f64> = moved.collect();
+            unflatten(&moved, &mut self.buffers.motions);
+            self.residual(false);
+            let left = self.paired_residual(by);
+            if norm(&left) < (1.0 - DECREASE * factor) * before {
+                return true;
+            }
+            factor *= 0.5;
+        }
+        false
+    }
+}
+
+/// Preconditioners of a Newton step with pairs by themselves.
+struct Paired {
+    harmonics: Vec<Preconditioner>,
+    pairs: PairPreconditioner,
+}
+
+fn norm(vector: &[f64]) -> f64 {
+    crate::linalg::dot(vector, vector).sqrt()
 }
 
 impl Buffers {

@@ -15,6 +15,7 @@ mod elimination;
 mod engine;
 mod fields;
 mod free_waves;
+mod pair_preconditioner;
 mod preconditioner;
 mod resonances;
 mod tables;

@@ -86,6 +86,22 @@ impl WheelHarmonic {
         shapes.filter(|_| self.is_mistuned).collect()
     }
 
+    /// What each of `pairs` answers to its own forces in the tuned wheel, m/N: a `3 x 3` matrix over its rows, row after row.
+    pub(super) fn pair_answers(&self, pairs: &[[Option<usize>; 3]]) -> Vec<[Complex64; 9]> {
+        let share = 1.0 / self.sectors as f64;
+        let own = |row: usize, column: usize| {
+            let waves = (0..self.sectors).map(|wave| self.receptance.at(wave, row, column));
+            waves.sum::<Complex64>() * share
+        };
+        let of = |rows: &[Option<usize>; 3]| {
+            std::array::from_fn(|place| match (rows[place / 3], rows[place % 3]) {
+                (Some(row), Some(column)) => own(row, column),
+                _ => Complex64::default(),
+            })
+        };
+        pairs.iter().map(of).collect()
+    }
+
     /// Strain coordinates to blade forces `D (I + R_zz D)^-1 z`, in place.
     fn blade_forces(&mut self, transform: &SectorTransform) {
         if self.is_mistuned {

@@ -291,7 +291,7 @@ impl PeriodMap {
             wave_motion,
             ..
         } = moving;
-        let (force, products) = gmres(&right, FORCE_TOLERANCE, |force| {
+        let (force, products) = gmres(&right, FORCE_TOLERANCE, MOST_PRODUCTS, |force| {
             self.yields(at, force, (wave_force, wave_motion), &mut motion);
             let mut left = vec![0.0; force.len()];
             for (sector, left) in left.chunks_exact_mut(forces).enumerate() {

@@ -192,6 +192,19 @@ impl WheelContact {
         }
     }
 
+    /// Whether the forces of a pair, counted sector after sector, change with its motions at those last evaluated.
+    #[must_use]
+    pub fn is_active(&self, pair: usize) -> bool {
+        self.workspace.active[pair]
+    }
+
+    /// Derivative of a pair's correction along one direction by its displacement along another, of n, t1, t2, at the motions last
+    /// evaluated with derivative, N/m: a row per coefficient of the correction; none where it is zero.
+    #[must_use]
+    pub fn slopes(&self, pair: usize, along: usize, by: usize) -> Option<&[f64]> {
+        self.workspace.jacobians[pair].block(along, by)
+    }
+
     /// From now on derivatives are of every harmonic by every other one, or each by itself.
     pub fn couple(&mut self, all: bool) {
         self.workspace
