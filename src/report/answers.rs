@@ -1,12 +1,13 @@
 //! The answers that a report opens with: which normal load, how sure, and how much of it is numerical error.
 
+use super::numerical_error::Remedy;
 use super::words::{
-    LengthUnit, four_digits, load_per_sector, load_with_unit, loads_and_limits, percent_words,
-    share_words,
+    LengthUnit, four_digits, listed, loads_and_limits, percent_words, share_words,
+    short_load_with_unit,
 };
 use super::{
     BestLoads, CommonErrors, GroupReport, LoadChoice, MeasuredPeak, NumericalError,
-    PercentileError, ScenarioErrors, ScenarioSummary, StatedErrors, StudyReport,
+    PercentileError, ScenarioErrors, ScenarioSummary, StatedErrors, StudyReport, Warning,
 };
 use crate::population::monte_carlo::{
     HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, TUNED_RECEPTANCES,
@@ -33,7 +34,12 @@ pub fn answers(report: &StudyReport, group: &GroupReport) -> Vec<Answer> {
         group,
         units: LengthUnit::of_summary(&report.summary),
     };
-    let asked = || group.choices.iter().filter(|choice| choice.percent > 90.0);
+    let asked = || {
+        group
+            .choices
+            .iter()
+            .filter(|choice| choice.is_of_a_design())
+    };
     let (known, unknown): (Vec<&LoadChoice>, Vec<&LoadChoice>) =
         asked().partition(|choice| choice.lowest.is_some());
     let loads = known.into_iter().chain(unknown.into_iter().rev());
@@ -55,20 +61,21 @@ impl Writer<'_> {
     }
 
     fn load_of(&self, index: usize) -> String {
-        self.with_speed(index, load_with_unit)
+        self.with_speed(index, "")
     }
 
     /// The load of scenario `index` in words, per sector: where a load is named for the first time.
     fn load_per_sector_of(&self, index: usize) -> String {
-        self.with_speed(index, load_per_sector)
+        let of_newtons = self.scenario(index).normal_load_n.is_some();
+        self.with_speed(index, if of_newtons { " per sector" } else { "" })
     }
 
-    fn with_speed(&self, index: usize, words: fn(&str, Option<f64>) -> String) -> String {
+    fn with_speed(&self, index: usize, per: &str) -> String {
         let scenario = self.scenario(index);
-        let load = words(scenario.contact, scenario.normal_load_n);
+        let load = short_load_with_unit(scenario.contact, scenario.normal_load_n);
         match scenario.speed_rpm {
-            Some(speed) => format!("{load} ({speed} rpm)"),
-            None => load,
+            Some(speed) => format!("{load}{per} ({speed} rpm)"),
+            None => format!("{load}{per}"),
         }
     }
 
@@ -102,7 +109,7 @@ impl Writer<'_> {
         let Some((lowest, found)) = found else {
             return Answer {
                 question,
-                verdict: format!("Not known: these rows give no P{percent}."),
+                verdict: self.unknown(choice),
                 reasons: self.why_none(choice),
             };
         };
@@ -122,11 +129,14 @@ impl Writer<'_> {
             reasons.extend(self.by_numerical_error(lowest, choice.percent));
         }
         if choice.best.is_some() && !choice.enclosed {
-            reasons.push(
+            let loads = match self.scenario(lowest).speed_rpm {
+                Some(_) => "speeds to contact.normal_load.speed_rpm",
+                None => "loads to sweep.normal_load_n",
+            };
+            reasons.push(format!(
                 "No lower and higher normal load than this one were both studied, so the optimum may lie beyond: add \
-                 loads to sweep.normal_load_n and run again."
-                    .to_owned(),
-            );
+                 {loads} and run again."
+            ));
         }
         Answer {
             question,
@@ -169,6 +179,18 @@ impl Writer<'_> {
     fn confidence(&self) -> f64 {
         let stop = self.report.summary.stop.as_ref();
         stop.map_or(CONFIDENCE, |stop| stop.confidence)
+    }
+
+    /// What a percentile without value lacks.
+    fn unknown(&self, choice: &LoadChoice) -> String {
+        let needed = choice.needed_patterns;
+        if self.report.summary.patterns >= needed {
+            "Not known: too many rows failed.".to_owned()
+        } else if self.group.standard_deviation.is_none() {
+            format!("Not known: needs {needed} wheels.")
+        } else {
+            format!("Not known yet: needs {needed} patterns.")
+        }
     }
 
     fn why_none(&self, choice: &LoadChoice) -> Vec<String> {
@@ -354,16 +376,12 @@ impl Writer<'_> {
             ));
         }
         if let Some(range) = around(found.percentile.lower, found.percentile.upper) {
-            let beside = match statistical.zip(numerical) {
-                Some((statistical, numerical)) if numerical > statistical => {
-                    ": less than the numerical bounds, so finer solutions (reduction.error, solver.harmonics) before more \
-                     patterns"
-                }
-                Some(_) => {
-                    ": more than the numerical bounds, so more patterns before finer solutions"
-                }
-                None => "",
-            };
+            let findings = self.report.summary.warnings.iter();
+            let findings = findings.filter_map(Warning::numerical_finding);
+            let remedy = { statistical.zip(numerical) }
+                .map(|(statistical, numerical)| Remedy::of(statistical, numerical, findings));
+            let wider = numerical > statistical;
+            let beside = remedy.map_or("", |remedy| remedy.beside_bounds(wider));
             reasons.push(format!("The statistical interval spans {range}{beside}."));
         }
         reasons.push(format!(
@@ -474,14 +492,5 @@ fn stated(rows: &StatedErrors) -> String {
         "These rows state no errors.".to_owned()
     } else {
         format!("Median of the rows: {}.", parts.join(", "))
-    }
-}
-
-/// Names with commas, and an `and` before the last.
-fn listed(names: &[String]) -> String {
-    match names {
-        [] => String::new(),
-        [only] => only.clone(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }

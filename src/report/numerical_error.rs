@@ -12,6 +12,58 @@ const LARGE_SHARE: f64 = 0.1;
 /// Share of an interval below which accuracy is paid for in vain.
 const NEEDLESS_SHARE: f64 = 0.01;
 
+/// What makes a percentile surer: the one verdict of a report on its statistical and its numerical error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Remedy {
+    /// More patterns.
+    Patterns,
+    /// More patterns first; the numerical error is not small beside the interval.
+    PatternsThenFiner,
+    /// Finer solutions.
+    Finer,
+}
+
+impl Remedy {
+    /// By both widths of the percentile, and by what was found of the error that was measured: it weighs more than what
+    /// the rows state at worst.
+    pub(super) fn of<'a>(
+        statistical: f64,
+        numerical: f64,
+        findings: impl IntoIterator<Item = &'a NumericalFinding>,
+    ) -> Self {
+        match findings.into_iter().next() {
+            Some(NumericalFinding::Needless { .. }) => Self::Patterns,
+            _ if numerical > statistical => Self::Finer,
+            Some(_) => Self::PatternsThenFiner,
+            None => Self::Patterns,
+        }
+    }
+
+    /// What the statistical interval is beside the numerical bounds, and what follows; `wider`: the bounds are wider.
+    pub(super) fn beside_bounds(self, wider: bool) -> &'static str {
+        match self {
+            Self::Finer => {
+                ": less than the numerical bounds, so finer solutions (reduction.error, solver.harmonics) before more \
+                 patterns"
+            }
+            _ if wider => {
+                ": less than the numerical bounds, but far more than the error that was measured, so more patterns \
+                 before finer solutions"
+            }
+            _ => ": more than the numerical bounds, so more patterns before finer solutions",
+        }
+    }
+
+    /// In a few words.
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::Patterns => "patterns help more than finer solutions",
+            Self::PatternsThenFiner => "patterns help more, finer solutions too",
+            Self::Finer => "finer solutions help more than patterns",
+        }
+    }
+}
+
 /// Numerical error of the peak amplitudes of a study with `[accuracy]`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NumericalError {
@@ -143,7 +195,7 @@ impl fmt::Display for NumericalFinding {
 
 #[cfg(test)]
 mod tests {
-    use super::{NumericalError, NumericalFinding};
+    use super::{NumericalError, NumericalFinding, Remedy};
     use crate::population::statistics::percentile;
 
     #[test]
@@ -175,5 +227,29 @@ mod tests {
             warned(0.09, false)[..],
             [NumericalFinding::Missed { .. }]
         ));
+    }
+    #[test]
+    fn one_verdict_weighs_both_errors_and_what_was_measured() {
+        let (error, percent, width) = (0.01, 95.0, 0.05);
+        let large = NumericalFinding::Large {
+            error,
+            percent,
+            width,
+        };
+        let needless = NumericalFinding::Needless {
+            error,
+            percent,
+            width,
+        };
+        for (widths, finding, remedy) in [
+            ((0.05, 0.01), None, Remedy::Patterns),
+            ((0.05, 0.06), None, Remedy::Finer),
+            ((0.05, 0.01), Some(large), Remedy::PatternsThenFiner),
+            ((0.05, 0.06), Some(large), Remedy::Finer),
+            // Bounds that rows state may be wide where the error that was measured is small.
+            ((0.05, 0.06), Some(needless), Remedy::Patterns),
+        ] {
+            assert_eq!(Remedy::of(widths.0, widths.1, &finding), remedy);
+        }
     }
 }

@@ -105,6 +105,16 @@ pub struct LoadChoice {
     pub enclosed: bool,
 }
 
+/// Percentile below which a choice of the load says too little of the highest blades.
+const LEAST_OF_A_DESIGN: f64 = 90.0;
+
+impl LoadChoice {
+    /// Whether the percentile says enough of the highest blades to design for.
+    pub(super) fn is_of_a_design(&self) -> bool {
+        self.percent >= LEAST_OF_A_DESIGN
+    }
+}
+
 /// Numerical and statistical error of the percentiles of one scenario.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ScenarioErrors {

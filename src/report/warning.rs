@@ -134,6 +134,53 @@ impl Warning {
             .collect()
     }
 
+    /// What there is to say of the numerical error by which the settings were chosen.
+    pub(super) fn numerical_finding(&self) -> Option<&NumericalFinding> {
+        match self {
+            Self::NumericalError(finding) => Some(finding),
+            _ => None,
+        }
+    }
+
+    /// What follows for a reader who has the load by the percentile `chosen`, after its rank: what weighs most has the
+    /// lowest.
+    pub(super) fn consequence(&self, chosen: Option<f64>) -> (u8, String) {
+        let (rank, words) = match self {
+            Self::TooManyFailures { .. } | Self::TunedFailures { .. } => {
+                (0, "Results are missing: too many rows failed.")
+            }
+            Self::NumericalError(NumericalFinding::Missed { .. }) => {
+                (1, "The numerical error is larger than accepted.")
+            }
+            Self::Unstable { .. } => (2, "Some motions at peaks are unstable."),
+            Self::SeparationWithFewHarmonics { .. } => {
+                (3, "Contacts separate, which the harmonics miss.")
+            }
+            Self::BasisError { .. }
+            | Self::CraigBamptonModes { .. }
+            | Self::CraigBamptonError { .. } => (4, "The reduced model is coarser than asked for."),
+            Self::Failures { .. } => (5, "Some rows have no result: bounds are wider."),
+            Self::BeyondTolerance { .. } => (6, "Some rows are less accurate than asked for."),
+            Self::NumericalError(NumericalFinding::Large { .. }) => {
+                (7, "The numerical error is not negligible.")
+            }
+            Self::TooFewPatterns { percent, .. } => {
+                let words = match chosen {
+                    Some(chosen) if f64::from(*percent) > chosen => {
+                        format!("No P{percent}: the load is chosen by P{chosen}.")
+                    }
+                    _ => format!("P{percent} has no value: too few patterns."),
+                };
+                return (8, words);
+            }
+            Self::ReplacedBasis { .. } => (9, "The basis of the study is replaced."),
+            Self::NumericalError(NumericalFinding::Needless { .. }) => {
+                (10, "Solutions are finer than needed.")
+            }
+        };
+        (rank, words.to_owned())
+    }
+
     /// Scenarios of which failures leave a percentile or a tuned reference without value.
     #[must_use]
     pub(super) fn costly_scenarios(&self) -> &[usize] {
@@ -191,10 +238,14 @@ impl Warning {
                 format!("the accepted error of {} is not kept", share(*accepted))
             }
             Self::NumericalError(NumericalFinding::Large { percent, .. }) => {
-                format!("the numerical error is not small beside the interval of P{percent}")
+                format!(
+                    "numerical error over a tenth of the P{percent} interval: finer solutions help too"
+                )
             }
             Self::NumericalError(NumericalFinding::Needless { percent, .. }) => {
-                format!("the numerical error is needlessly small beside the interval of P{percent}")
+                format!(
+                    "numerical error under a hundredth of the P{percent} interval: finer than needed"
+                )
             }
             Self::Failures { failed, planned } => {
                 format!("{failed} of {planned} rows have no result")

@@ -55,6 +55,11 @@ impl LengthUnit {
         format!("{} {}", self.number(metres), self.name)
     }
 
+    /// A length in m, two digits in the unit, where it is an error.
+    pub(super) fn rough(self, metres: f64) -> String {
+        format!("{} {}", digits(metres / self.metres, 2), self.name)
+    }
+
     /// A length in m, seven digits in the unit, where small differences matter.
     #[must_use]
     pub fn precise(self, metres: f64) -> String {
@@ -145,6 +150,16 @@ pub(super) fn load_with_unit(contact: &str, normal_load_n: Option<f64>) -> Strin
     }
 }
 
+/// A load with its unit, a number with at most four digits where more are written; or the name of a linear limit.
+pub(super) fn short_load_with_unit(contact: &str, normal_load_n: Option<f64>) -> String {
+    let words = short_load_words(contact, normal_load_n);
+    if normal_load_n.is_some() {
+        format!("{words} N")
+    } else {
+        words
+    }
+}
+
 /// A load with its unit, newtons per sector, since it acts on every sector; or the name of a linear limit.
 pub(super) fn load_per_sector(contact: &str, normal_load_n: Option<f64>) -> String {
     let words = load_with_unit(contact, normal_load_n);
@@ -169,7 +184,7 @@ pub(super) fn scenarios_in_words(summary: &StudySummary, indices: &[usize]) -> S
                 "all loads".to_owned()
             } else {
                 let loads = { meant.iter() };
-                let loads = loads.map(|own| load_with_unit(own.contact, own.normal_load_n));
+                let loads = loads.map(|own| short_load_with_unit(own.contact, own.normal_load_n));
                 loads.collect::<Vec<_>>().join(", ")
             };
             let told = told_apart(summary, first);
@@ -184,7 +199,7 @@ pub(super) fn scenarios_in_words(summary: &StudySummary, indices: &[usize]) -> S
 }
 
 /// What tells the group of a scenario from the others of the study; empty where there is one group alone.
-fn told_apart(summary: &StudySummary, own: &ScenarioSummary) -> String {
+pub(super) fn told_apart(summary: &StudySummary, own: &ScenarioSummary) -> String {
     let differs = |same: &dyn Fn(&ScenarioSummary) -> bool| !summary.scenarios.iter().all(same);
     let excitations = differs(&|other| {
         other.load_case == own.load_case && other.engine_order == own.engine_order
@@ -334,4 +349,13 @@ pub(super) fn hanging(head: &str, margin: &str, text: &str) -> String {
         }
     }
     lines.join("\n")
+}
+
+/// Names with commas, and an `and` before the last.
+pub(super) fn listed(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [only] => only.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
 }

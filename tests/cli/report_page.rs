@@ -54,8 +54,8 @@ fn between<'a>(page: &'a str, head: &str, end: &str) -> &'a str {
 fn big_numbers(page: &str) -> Vec<[String; 3]> {
     let section = between(page, "id=\"answer-0\"", "</section>");
     section
-        .split("<div class=\"number\">")
-        .skip(1)
+        .split("<div class=\"number")
+        .filter(|number| number.starts_with("\">") || number.starts_with(" look\">"))
         .map(|number| {
             let number = number.replace('\u{a0}', " ");
             let part = |class: &str| {
@@ -114,22 +114,27 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
     let lower = newtons().filter(|load| *load < own).reduce(f64::max);
     let higher = newtons().filter(|load| *load > own).reduce(f64::min);
     let next = match (lower, higher) {
-        (Some(lower), Some(higher)) => format!("next loads calculated: {lower} N and {higher} N"),
-        (Some(lower), None) => format!("next load calculated: {lower} N; none higher"),
+        (Some(lower), Some(higher)) => format!("neighbouring loads: {lower} N and {higher} N"),
+        (Some(lower), None) => format!("neighbouring load: {lower} N, none higher"),
         (None, higher) => format!(
-            "next load calculated: {} N; none lower",
+            "neighbouring load: {} N, none lower",
             higher.expect("another load")
         ),
     };
     assert!(load[2].contains(&next), "{next}: {}", load[2]);
     let is_enclosed = lower.is_some() && higher.is_some();
     assert_eq!(group["choices"][1]["enclosed"], is_enclosed);
-    assert_eq!(
-        load[2].contains("the optimum may lie beyond"),
-        !is_enclosed,
-        "{}",
-        load[2]
-    );
+    let first = between(&page, "id=\"answer-0\"", "</section>");
+    for sign in [
+        "<div class=\"number look\">",
+        "add higher loads",
+        "add lower loads",
+    ] {
+        assert!(is_enclosed && !first.contains(sign), "{sign}");
+    }
+    // Of two loads that were calculated one is lower, with 95 % confidence unless others could be as low.
+    let sure = "95 % confident: no other calculated load has a lower P95";
+    assert_eq!(load[2].contains(sure), others == 0, "{}", load[2]);
     // 80 patterns give no P99: the page says so, and how many do.
     assert_eq!(percentile[0], "P95 of the peak amplitude");
     assert!(
@@ -152,6 +157,18 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
     let largest = 100.0 * (1.0 - low / value).max(high / value - 1.0);
     let shown = numbers_in(&error[1])[0];
     assert!((shown / largest - 1.0).abs() < 0.06, "{shown} {largest}");
+    // The same error as a length beside the interval, and one verdict on both.
+    let interval = bounds[1] - bounds[0];
+    let lengths = numbers_in(&error[2]);
+    for (shown, length) in lengths.iter().zip([0.01 * largest * value, interval]) {
+        assert!((shown / length - 1.0).abs() < 0.06, "{}", error[2]);
+    }
+    let verdict = if (high - low) > interval {
+        "finer solutions help more than patterns"
+    } else {
+        "patterns help more than finer solutions"
+    };
+    assert!(error[2].contains(verdict), "{}", error[2]);
     // The main figure stands beside them, and what the answers rest on is folded.
     let section = between(&page, "id=\"answer-0\"", "</section>");
     assert!(section.contains("<figure id=\"amplitude-0\">"));
@@ -162,22 +179,97 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
 
 #[test]
 fn a_load_by_the_median_alone_is_none_to_design_for() {
-    let (_place, page, _) = reported(&study().replace("patterns = 80", "patterns = 20"), 0);
+    let (_place, page, report) = reported(&study().replace("patterns = 80", "patterns = 20"), 0);
     let [load, percentile, _] = &big_numbers(&page)[..] else {
         panic!("three numbers: {page}");
     };
     assert_eq!(percentile[0], "P50 of the peak amplitude");
-    assert_eq!(load[0], "No design load; the lowest P50 is at");
+    // What is large is no load: the number of newtons stands below it, and nothing points at it in the figure.
+    assert_eq!(load[..2], ["Load per sector", "No design load yet"]);
+    let told = between(&page, "<p class=\"told\">", "</p>").replace('\u{a0}', " ");
+    let lowest = report["groups"][0]["choices"][2]["lowest"].as_u64();
+    let scenarios = &report["summary"]["scenarios"];
+    let newtons = &scenarios[lowest.expect("a scenario") as usize]["normal_load_n"];
+    let newtons = newtons.as_f64().expect("a load");
+    assert_eq!(told, format!("lowest P50: at {newtons} N"));
+    assert_eq!(page.matches("<div class=\"number look\">").count(), 1);
     assert!(load[2].contains("no P95 is known"), "{}", load[2]);
+    assert!(!load[2].contains("confident"), "{}", load[2]);
+    let figure = between(&page, "<figure id=\"amplitude-0\">", "</figure>");
+    for pointer in [
+        "class=\"aim\"",
+        "mark lowest",
+        "mark could",
+        "Pointer above",
+    ] {
+        assert!(!figure.contains(pointer), "{pointer}");
+    }
     // The question that fewer patterns answer comes first.
     let [p95, p99] = ["(P95)", "(P99)"].map(|own| page.find(own).expect("a question"));
     assert!(p95 < p99);
     let health = between(&page, "<div class=\"health look\">", "</div>");
+    assert!(page.contains("Not known yet: needs 72 patterns"));
     let words = "Too few patterns for a design load.";
     assert!(health.contains(words), "{health}");
     // A P95 has no such word.
     let (_place, page, _) = reported(&study(), 0);
     assert!(!page.contains("No design load") && !page.contains(words));
+}
+
+#[test]
+fn a_load_at_the_end_of_those_studied_is_the_first_warning() {
+    for (loads, own, beyond, advice) in [
+        (
+            "[20, 30]",
+            "30 N",
+            "above 30 N",
+            "30 N is the highest load studied: add higher loads",
+        ),
+        (
+            "[300, 600]",
+            "300 N",
+            "below 300 N",
+            "300 N is the lowest load studied: add lower loads",
+        ),
+        (
+            "[\"slide\", 100]",
+            "100 N",
+            "another one",
+            "100 N is the only load studied: add lower and higher loads",
+        ),
+        (
+            "[\"slide\", 5000, \"stuck\"]",
+            "slide",
+            "below 5000 N",
+            "slide has the lowest P95: add lower loads",
+        ),
+    ] {
+        let ends = study().replace("[\"slide\", 50, 100, 200, \"stuck\"]", loads);
+        let (_place, page, report) = reported(&ends, 0);
+        let page = page.replace('\u{a0}', " ");
+        assert_eq!(report["groups"][0]["choices"][1]["enclosed"], false);
+        let [load, ..] = &big_numbers(&page)[..] else {
+            panic!("three numbers: {page}");
+        };
+        assert_eq!(load[1], own);
+        assert_eq!(page.matches("<div class=\"number look\">").count(), 1);
+        let health = between(&page, "<div class=\"health look\">", "</div>");
+        assert!(
+            health.contains(&format!("Best load may be {beyond}.")),
+            "{health}"
+        );
+        let first = health.split("<li>").nth(1).expect("a finding");
+        assert_eq!(first.split_once("</li>").expect("an end").0, advice);
+        // What to do about it stands first among the warnings too, which are no others in the tables.
+        let all = between(&page, "<ul class=\"warnings\">", "</ul>");
+        let first = between(all, "<li>", "</li>");
+        assert!(
+            first.contains("to sweep.normal_load_n and run again"),
+            "{first}"
+        );
+        let warnings = report["summary"]["warnings"].as_array().expect("a list");
+        assert_eq!(all.matches("<li>").count(), warnings.len() + 1);
+    }
 }
 
 #[test]
@@ -223,10 +315,24 @@ fn a_load_of_a_speed_has_four_digits_and_its_speed() {
     );
     let speed = scenario["speed_rpm"].as_f64().expect("a speed");
     assert!(
-        load[2].contains(&format!("that of {speed} rpm")),
+        load[2].contains(&format!("load at {speed} rpm")),
         "{load:?}"
     );
-    assert!(load[2].contains("the optimum may lie beyond"), "{load:?}");
+    // Loads follow from speeds, and have one rounding on the first screen.
+    let own = &load[1];
+    let section = between(&page, "id=\"answer-0\"", "</section>").replace('\u{a0}', " ");
+    let end = format!("{own} is the highest load studied: add higher speeds");
+    assert!(section.contains(&end), "{section}");
+    assert!(
+        section.contains(&format!("{own} per sector ({speed} rpm): P95 = ")),
+        "{section}"
+    );
+    assert!(page.contains("to contact.normal_load.speed_rpm and run again"));
+    let (before_figure, after) = section.split_once("<figure").expect("a figure");
+    let answers = after.split_once("</figure>").expect("an end").1;
+    for text in [before_figure, answers] {
+        assert!(!text.contains(&format!("{newtons} N")), "{newtons}");
+    }
 }
 
 #[test]
@@ -255,7 +361,10 @@ fn the_first_screen_says_whether_anything_is_wrong() {
         health.contains("P99 has no value: it needs 368 patterns"),
         "{health}"
     );
-    assert!(health.contains("400 of 400 rows have a result"), "{health}");
+    // The title says what follows; how many rows have a result stands in the header.
+    let title = "<strong>Some rows are less accurate than asked for.</strong>";
+    assert!(health.contains(title), "{health}");
+    assert!(between(&page, "<header>", "</header>").contains("all 400 rows have a result"));
 
     let (_place, page, report) = reported(&with_failures(), 5);
     let health = between(&page, "<div class=\"health bad\">", "</div>");
@@ -264,15 +373,23 @@ fn the_first_screen_says_whether_anything_is_wrong() {
         "{} of {} rows have no result",
         rows["failed"], rows["planned"]
     );
-    assert!(health.contains("Something is wrong"), "{health}");
+    // The failures are of the second deviation: nothing else stands in this card.
+    let verdict = between(health, "<strong>", "</strong>").replace('\u{a0}', " ");
+    assert_eq!(
+        verdict,
+        format!(
+            "Standard deviation 50 %: no percentile at any load. The {} above is not affected.",
+            big_numbers(&page)[0][1]
+        )
+    );
+    assert!(!health.contains("P99"), "{health}");
+    assert_eq!(page.matches("<div class=\"health").count(), 2);
+    let own = between(&page, "<div class=\"health look\">", "</div>");
+    assert!(own.contains("P99"), "{own}");
     // What costs a percentile comes first.
     let first = health.split("<li>").nth(1).expect("a finding");
     assert!(first.contains("too many rows failed"), "{health}");
-    // The failures are of the second deviation, and a reader knows no scenario by its number.
-    assert!(
-        health.contains("in another setting, not in this one"),
-        "{health}"
-    );
+    // A reader knows no scenario by its number.
     assert!(
         first.contains("under all loads (standard deviation 50"),
         "{health}"
@@ -306,6 +423,9 @@ fn every_link_of_the_page_leads_to_a_part_of_it() {
             let target = link.strip_prefix('#').expect("a link inside of the page");
             assert!(ids.contains(&target), "{link}");
         }
+        // What is not good has its section.
+        let is_good = page.contains("<div class=\"health good\">");
+        assert_eq!(is_good, !ids.contains(&"warnings"));
         // Of several groups each has a link with its answer.
         let groups = report["groups"].as_array().expect("a list").len();
         let contents = between(&page, "<nav ", "</nav>");

@@ -7,7 +7,7 @@ use crate::model::cyclic::nodal_diameter_of;
 use crate::report::plot::{
     Anchor, Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend, nice_top,
 };
-use crate::report::words::load_with_unit;
+use crate::report::words::short_load_with_unit;
 use crate::report::{CampbellMode, CampbellReport, ScenarioSummary, StudyReport};
 
 /// Lower end of the vertical axis.
@@ -83,7 +83,7 @@ pub(super) fn over_speed(report: &StudyReport) -> Option<Figure> {
     for (scenario, speed_rpm, hz) in &peaks {
         let words = format!(
             "load {}, engine order {}: {hz:.2} Hz at {speed_rpm:.0} rpm",
-            load_with_unit(scenario.contact, scenario.normal_load_n),
+            short_load_with_unit(scenario.contact, scenario.normal_load_n),
             scenario.engine_order
         );
         Mark::Diamond.draw(&mut svg, "pick", frame.at(*speed_rpm, *hz), &words);

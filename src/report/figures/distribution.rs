@@ -3,7 +3,7 @@
 use super::{Figure, FigureName};
 use crate::population::statistics::{FitStatus, Quantity, TailLaw};
 use crate::report::plot::{Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend};
-use crate::report::words::{LengthUnit, load_with_unit};
+use crate::report::words::{LengthUnit, short_load_with_unit};
 use crate::report::{DistributionReport, GroupReport, ScenarioSummary, StudyReport, setting};
 
 /// Lower end of the vertical axis.
@@ -158,7 +158,7 @@ fn title(quantity: Quantity, scenario: &ScenarioSummary) -> String {
     };
     format!(
         "Distribution of the {what} at load {}",
-        load_with_unit(scenario.contact, scenario.normal_load_n)
+        short_load_with_unit(scenario.contact, scenario.normal_load_n)
     )
 }
 

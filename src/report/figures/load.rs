@@ -21,11 +21,11 @@ const STRIP: f64 = 15.0;
 const LOGARITHMIC_FROM: f64 = 4.0;
 /// Share of the largest value below which the smallest one makes an axis begin at zero.
 const FROM_ZERO: f64 = 0.4;
-/// Percentiles drawn: in percent, class, mark.
+/// Percentiles drawn: in percent, class, mark. Through hollow marks a bound is seen that is narrower than its mark.
 const DRAWN: [(u32, &str, Mark); 3] = [
-    (99, "extreme", Mark::Diamond),
-    (95, "high", Mark::Square),
-    (50, "median", Mark::Circle),
+    (99, "hollow extreme", Mark::Diamond),
+    (95, "hollow high", Mark::Square),
+    (50, "hollow median", Mark::Circle),
 ];
 
 /// An axis from `bottom` to `top` that shows `values`, all positive.
@@ -104,9 +104,10 @@ pub(super) fn by_load(
     } else {
         "amplification factor".to_owned()
     };
-    // Without a choice by the amplitude there is nothing to point at.
+    // Without a choice by the amplitude there is nothing to point at; a pointer at that of the median alone would be
+    // read as the load to design for.
     let choice = { group.choices.iter() }.find(|choice| choice.lowest.is_some());
-    let pointed = choice.filter(|_| amplitude);
+    let pointed = choice.filter(|choice| amplitude && choice.is_of_a_design());
     let strip = if pointed.is_some() { STRIP } else { 0.0 };
     let y = value_axis(&values, BOTTOM + strip, TOP + strip);
     let y_title = match y.scale {
@@ -150,7 +151,12 @@ pub(super) fn by_load(
         name,
         title: format!("{what} against damper normal load"),
         setting: setting(group),
-        caption: caption(amplitude, pointed, report.summary.patterns, &loads),
+        caption: caption(
+            pointed,
+            report.summary.patterns,
+            &loads,
+            amplitude.then_some(units),
+        ),
         height: HEIGHT + strip,
         body: svg.into_body(),
     })
@@ -302,13 +308,14 @@ fn points(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
             let Some(value) = found.value else { continue };
             let at = at + aside(x, drawn, *percent);
             let bounds = found.lower.zip(found.upper);
+            let shown =
+                bounds.map_or_else(String::new, |(low, high)| format!(" [{low:.4}, {high:.4}]"));
+            let words = format!("P{percent}, {name}: {value:.4}{shown}");
+            mark.draw(svg, class, (at, frame.y.at(value)), &words);
+            // Above the mark, which would hide a bound narrower than it.
             if let Some(bounds) = bounds {
                 frame.bound(svg, class, at, bounds);
             }
-            let bounds =
-                bounds.map_or_else(String::new, |(low, high)| format!(" [{low:.4}, {high:.4}]"));
-            let words = format!("P{percent}, {name}: {value:.4}{bounds}");
-            mark.draw(svg, class, (at, frame.y.at(value)), &words);
         }
     }
 }
@@ -337,11 +344,27 @@ fn entries(drawn: &[Load<'_>]) -> Vec<LegendEntry<'static>> {
     entries
 }
 
+/// Which dotted line is that of which limit: the value of each.
+fn tuned_limits(loads: &[&ScenarioSummary], units: LengthUnit) -> String {
+    let limits = loads.iter().filter(|load| load.normal_load_n.is_none());
+    let named: Vec<String> = limits
+        .filter_map(|load| {
+            let tuned = units.number(load.tuned_amplitude_m?);
+            Some(format!("{} {tuned}", load.contact))
+        })
+        .collect();
+    if named.is_empty() {
+        String::new()
+    } else {
+        format!(" ({} {})", named.join(", "), units.name())
+    }
+}
+
 fn caption(
-    amplitude: bool,
     choice: Option<&LoadChoice>,
     patterns: u64,
     loads: &[&ScenarioSummary],
+    amplitudes: Option<LengthUnit>,
 ) -> String {
     let mut words = format!(
         "Percentiles over {patterns} patterns with distribution-free 95 % bounds, side by side at each load. Only loads \
@@ -367,13 +390,16 @@ fn caption(
             "Linear limits"
         };
         let _ = write!(words, " {head}: {}", limits.join(", "));
-        words.push_str(if amplitude {
-            "; dotted: their tuned peaks."
-        } else {
-            "."
-        });
+        if let Some(units) = amplitudes {
+            let _ = write!(
+                words,
+                "; dotted: their tuned peaks{}",
+                tuned_limits(loads, units)
+            );
+        }
+        words.push('.');
     }
-    if !amplitude {
+    if amplitudes.is_none() {
         words.push_str(
             " The factor refers to the tuned wheel of the same load, so that a lower factor over a higher tuned peak \
              is no improvement.",

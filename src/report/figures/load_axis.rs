@@ -12,7 +12,9 @@ const GAP_AT: f64 = 1.25;
 /// Half the width of a break of the axis.
 const GAP: f64 = 4.5;
 /// Distance between the marks of a load, and the share of the distance of two loads that it is at most.
-const ASIDE: (f64, f64) = (9.0, 0.25);
+const ASIDE: (f64, f64) = (6.0, 0.25);
+/// Half the width of a letter of a name on a narrow page, where letters are large, and on a wide one.
+const HALF_LETTER: [f64; 2] = [6.6, 4.7];
 
 /// Places of the loads of a group: `slide` and `free` on the left, `stuck` on the right, the loads in
 /// newtons between them.
@@ -92,7 +94,8 @@ impl LoadAxis {
         }
     }
 
-    /// Breaks of the axis, and a tick per load; the names of those that would touch are left out.
+    /// Breaks of the axis, and a tick per load. Names that would touch on a narrow page are left out there; a name that
+    /// would touch anywhere is left out with its tick.
     pub(super) fn ticks(&self, svg: &mut Svg, frame: &Frame<'_>, loads: &[&ScenarioSummary]) {
         let (bottom, top) = frame.y.ends;
         for at in self.gaps.into_iter().flatten() {
@@ -109,19 +112,23 @@ impl LoadAxis {
             let limits_first = newtons(a).cmp(&newtons(b));
             limits_first.then(self.at(a).total_cmp(&self.at(b)))
         });
-        let mut taken: Vec<(f64, f64)> = Vec::new();
-        for load in ordered {
-            let (x, name) = (
-                self.at(load),
-                short_load_words(load.contact, load.normal_load_n),
-            );
-            let half = 6.6 * name.chars().count() as f64;
-            let touches = |&(left, right): &(f64, f64)| x - half < right && left < x + half;
-            let name = if taken.iter().any(touches) { "" } else { &name };
-            if !name.is_empty() {
-                taken.push((x - half, x + half));
+        let name = |load: &ScenarioSummary| short_load_words(load.contact, load.normal_load_n);
+        let mut named: Vec<(f64, f64)> = Vec::new();
+        for (half_letter, class) in HALF_LETTER.into_iter().zip(["", "squeezed"]) {
+            for load in &ordered {
+                let (x, name) = (self.at(load), name(load));
+                let letters = name.chars().count() as f64;
+                let touches =
+                    |&(other, own): &(f64, f64)| (x - other).abs() < half_letter * (letters + own);
+                if !named.iter().any(touches) {
+                    named.push((x, letters));
+                    frame.x_tick_of(svg, class, x, &name);
+                }
             }
-            frame.x_tick(svg, x, name);
+        }
+        let (bottom, top) = frame.y.ends;
+        for x in ordered.into_iter().map(|load| self.at(load)) {
+            svg.line("grid", (x, top), (x, bottom));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Figure, FigureName};
 use crate::report::plot::{Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend};
-use crate::report::words::{LengthUnit, load_with_unit, share_words};
+use crate::report::words::{LengthUnit, share_words, short_load_with_unit};
 use crate::report::{GroupReport, ResponseCurve, StudyReport, WheelCurves, WheelReport, setting};
 
 /// Lower end of the vertical axis.
@@ -91,7 +91,7 @@ pub(super) fn of_wheel(
         title: format!(
             "Response of the {which} wheel (pattern {}) at load {}",
             wheel.pattern,
-            load_with_unit(scenario.contact, scenario.normal_load_n)
+            short_load_with_unit(scenario.contact, scenario.normal_load_n)
         ),
         setting: setting(group),
         caption: caption(wheel, units),

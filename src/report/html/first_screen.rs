@@ -2,10 +2,12 @@
 
 use std::fmt::Write;
 
-use super::headline::{BigNumber, big_numbers, health, in_one_line};
+use super::choice::at_the_end;
+use super::headline::{BigNumber, big_numbers, in_one_line};
+use super::health::health;
 use super::model::figure_html;
 use crate::report::plot::escaped;
-use crate::report::words::tied;
+use crate::report::words::{scenarios_in_words, tied};
 use crate::report::{Answer, FigureName, GroupReport, StudyReport, answers, figure, setting};
 
 /// Numbers, main figure and answers of a group.
@@ -17,17 +19,23 @@ pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usi
     for BigNumber {
         label,
         value,
+        told,
         notes,
         more,
+        is_open,
     } in big_numbers(report, group)
     {
+        let class = if is_open { "number look" } else { "number" };
         // Writing to a String cannot fail.
         let _ = write!(
             html,
-            "<div class=\"number\"><p class=\"label\">{}</p><p class=\"value\">{}</p>",
+            "<div class=\"{class}\"><p class=\"label\">{}</p><p class=\"value\">{}</p>",
             escaped(&label),
             escaped(&tied(&value))
         );
+        if let Some(told) = told {
+            let _ = write!(html, "<p class=\"told\">{}</p>", escaped(&tied(&told)));
+        }
         for note in notes {
             let _ = write!(html, "<p class=\"note\">{}</p>", escaped(&tied(&note)));
         }
@@ -54,24 +62,35 @@ pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usi
 }
 
 fn health_of(report: &StudyReport) -> String {
-    let found = health(report);
-    let mut html = format!(
-        "<div class=\"health {}\"><p><strong>{}</strong></p>",
-        found.class,
-        escaped(&tied(&found.verdict))
-    );
-    if !found.findings.is_empty() {
-        html.push_str("<ul>");
-        for finding in &found.findings {
-            let _ = write!(html, "<li>{}</li>", escaped(&tied(finding)));
+    let mut html = String::new();
+    for (place, found) in health(report).into_iter().enumerate() {
+        let _ = write!(
+            html,
+            "<div class=\"health {}\"><p><strong>{}</strong></p>",
+            found.class,
+            escaped(&tied(&found.verdict))
+        );
+        if !found.findings.is_empty() {
+            html.push_str("<ul>");
+            for finding in &found.findings {
+                let _ = write!(html, "<li>{}</li>", escaped(&tied(finding)));
+            }
+            html.push_str("</ul>");
         }
-        html.push_str("</ul>");
+        if place == 0 && found.class != "good" {
+            html.push_str("<p><a href=\"#warnings\">What to do about it</a></p>");
+        }
+        html.push_str("</div>\n");
     }
-    if !report.summary.warnings.is_empty() {
-        html.push_str("<p><a href=\"#warnings\">What to do about it</a></p>");
-    }
-    html.push_str("</div>\n");
     html
+}
+
+/// All warnings with what to do about them: first the settings whose load is at the end of those studied.
+pub(super) fn warnings_in_words(report: &StudyReport) -> Vec<String> {
+    let named = |own: &[usize]| scenarios_in_words(&report.summary, own);
+    let ends = { report.groups.iter() }.filter_map(|group| at_the_end(report, group));
+    let warnings = { report.summary.warnings.iter() }.map(|warning| warning.in_words(&named));
+    ends.map(|end| end.in_words).chain(warnings).collect()
 }
 
 /// The questions with their answers; what each rests on is folded.
@@ -113,7 +132,7 @@ pub(super) fn contents(report: &StudyReport) -> String {
             escaped(&tied(words))
         );
     };
-    if !report.summary.warnings.is_empty() {
+    if !warnings_in_words(report).is_empty() {
         entry("warnings", "Warnings");
     }
     entry("model", "The model");

@@ -1,19 +1,12 @@
-//! What the first screen says: three numbers and whether anything is wrong.
+//! What the first screen says in large type: load, percentile and numerical error.
 
+use super::choice::{at_the_end, known_choice, neighbours, short_load};
 use crate::population::statistics::CONFIDENCE;
-use crate::report::words::{
-    LengthUnit, four_digits, loads_and_limits, percent_words, scenarios_in_words, share_words,
-    short_load_words,
-};
+use crate::report::numerical_error::Remedy;
+use crate::report::words::{LengthUnit, four_digits, percent_words, share_words};
 use crate::report::{
     GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, Warning, setting,
 };
-
-/// Warnings that the first screen names.
-const NAMED: usize = 3;
-
-/// Percentile below which a choice of the load says too little of the highest blades.
-const LEAST_OF_A_DESIGN: f64 = 90.0;
 
 /// A number in large type.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,27 +15,14 @@ pub(super) struct BigNumber {
     pub(super) label: String,
     /// The number with its unit.
     pub(super) value: String,
+    /// What stands below it in ordinary type.
+    pub(super) told: Option<String>,
     /// How sure it is, a line each.
     pub(super) notes: Vec<String>,
     /// Where the page says more: id and words of a link.
     pub(super) more: Option<(&'static str, String)>,
-}
-
-/// Whether anything is wrong with a study.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Health {
-    /// `good`, `look` or `bad`: the class of its style.
-    pub(super) class: &'static str,
-    /// In a few words.
-    pub(super) verdict: String,
-    /// What there is to see, a line each.
-    pub(super) findings: Vec<String>,
-}
-
-/// The percentile that a group is judged by: the highest that has a value.
-pub(super) fn known_choice(group: &GroupReport) -> Option<(&LoadChoice, usize)> {
-    let mut choices = group.choices.iter();
-    choices.find_map(|choice| Some((choice, choice.lowest?)))
+    /// Whether it is no answer yet, or one that a better load may replace.
+    pub(super) is_open: bool,
 }
 
 /// Load, percentile and numerical error of a group.
@@ -55,31 +35,47 @@ pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumb
     let scenario = &report.summary.scenarios[lowest];
     let error = error_of(group, lowest, choice.percent);
     [
-        BigNumber {
-            label: if is_of_a_design(choice) {
-                format!("Load per sector with the lowest P{percent}")
-            } else {
-                format!("No design load; the lowest P{percent} is at")
-            },
-            value: short_load(scenario),
-            notes: notes_of_load(report, group, choice, scenario),
-            more: other_settings(report),
-        },
+        number_of_load(report, group, choice, scenario),
         BigNumber {
             label: format!("P{percent} of the peak amplitude"),
             value: error
                 .and_then(|own| own.percentile.value)
                 .map_or_else(|| "not known".to_owned(), |value| units.length(value)),
+            told: None,
             notes: notes_of_percentile(report, group, choice, error),
             more: None,
+            is_open: false,
         },
-        number_of_error(units, group, lowest, (&percent, error)),
+        number_of_error(report, group, lowest, (&percent, error)),
     ]
 }
 
-/// Whether the percentile of a choice says enough of the highest blades to design for.
-fn is_of_a_design(choice: &LoadChoice) -> bool {
-    choice.percent >= LEAST_OF_A_DESIGN
+/// The load with the lowest percentile. By a percentile that says too little of the highest blades it is no load to
+/// design for, and does not stand where an answer would.
+fn number_of_load(
+    report: &StudyReport,
+    group: &GroupReport,
+    choice: &LoadChoice,
+    scenario: &ScenarioSummary,
+) -> BigNumber {
+    let percent = percent_words(choice.percent);
+    let load = short_load(scenario);
+    let (label, value, told) = if choice.is_of_a_design() {
+        let label = format!("Load per sector with the lowest P{percent}");
+        (label, load, None)
+    } else {
+        let told = format!("lowest P{percent}: at {load}");
+        let value = "No design load yet".to_owned();
+        ("Load per sector".to_owned(), value, Some(told))
+    };
+    BigNumber {
+        label,
+        value,
+        told,
+        notes: notes_of_load(report, group, choice, scenario),
+        more: other_settings(report),
+        is_open: !choice.is_of_a_design() || at_the_end(report, group).is_some(),
+    }
 }
 
 /// The load that a group is answered by and its percentile, in one line.
@@ -89,61 +85,25 @@ pub(super) fn in_one_line(report: &StudyReport, group: &GroupReport) -> String {
         |(choice, _)| {
             let [load, percentile, _] = big_numbers(report, group);
             let percent = percent_words(choice.percent);
-            format!("{}, P{percent} = {}", load.value, percentile.value)
+            let told = load.told.unwrap_or_default();
+            if choice.is_of_a_design() {
+                format!("{}, P{percent} = {}", load.value, percentile.value)
+            } else {
+                format!("no design load yet, {told}")
+            }
         },
     );
     format!("{}: {answer}", setting(group))
 }
 
-/// A load with its unit in few letters, or the name of a linear limit.
-fn short_load(scenario: &ScenarioSummary) -> String {
-    let words = short_load_words(scenario.contact, scenario.normal_load_n);
-    if scenario.normal_load_n.is_some() {
-        format!("{words} N")
-    } else {
-        words
-    }
-}
-
-/// The next lower and the next higher load in newtons of a group; none beside a linear limit.
-fn neighbours<'a>(
-    report: &'a StudyReport,
-    group: &GroupReport,
-    scenario: &ScenarioSummary,
-) -> [Option<&'a ScenarioSummary>; 2] {
-    let Some(own) = scenario.normal_load_n else {
-        return [None; 2];
-    };
-    let newtons = |scenario: &ScenarioSummary| scenario.normal_load_n.unwrap_or(f64::NAN);
-    let all = group.scenarios.iter();
-    let all = all.map(|&index| &report.summary.scenarios[index]);
-    let by_load = |a: &&ScenarioSummary, b: &&ScenarioSummary| newtons(a).total_cmp(&newtons(b));
-    [
-        all.clone()
-            .filter(|load| newtons(load) < own)
-            .max_by(by_load),
-        all.filter(|load| newtons(load) > own).min_by(by_load),
-    ]
-}
-
 /// Which loads were calculated next to that of the answer: between them none was, so that the optimum is known no
 /// better.
-fn beside(lower: Option<&ScenarioSummary>, higher: Option<&ScenarioSummary>) -> String {
-    const BEYOND: &str = "the optimum may lie beyond";
-    match (lower, higher) {
-        (Some(lower), Some(higher)) => {
-            let (lower, higher) = (short_load(lower), short_load(higher));
-            format!("next loads calculated: {lower} and {higher}")
-        }
-        (Some(next), None) => {
-            let next = short_load(next);
-            format!("next load calculated: {next}; none higher: {BEYOND}")
-        }
-        (None, Some(next)) => {
-            let next = short_load(next);
-            format!("next load calculated: {next}; none lower: {BEYOND}")
-        }
-        (None, None) => format!("no load on both sides was calculated: {BEYOND}"),
+fn beside(lower: Option<&ScenarioSummary>, higher: Option<&ScenarioSummary>) -> Option<String> {
+    match (lower.map(short_load), higher.map(short_load)) {
+        (Some(lower), Some(higher)) => Some(format!("neighbouring loads: {lower} and {higher}")),
+        (Some(next), None) => Some(format!("neighbouring load: {next}, none higher")),
+        (None, Some(next)) => Some(format!("neighbouring load: {next}, none lower")),
+        (None, None) => None,
     }
 }
 
@@ -169,8 +129,10 @@ fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
     let unknown = |label: &str, notes: Vec<String>| BigNumber {
         label: label.to_owned(),
         value: "not known".to_owned(),
+        told: None,
         notes,
         more: None,
+        is_open: true,
     };
     let lowest = group.choices.iter().min_by_key(|own| own.needed_patterns);
     let why = match lowest {
@@ -202,7 +164,7 @@ fn notes_of_load(
     notes.extend(
         scenario
             .speed_rpm
-            .map(|speed| format!("that of {speed} rpm")),
+            .map(|speed| format!("load at {speed} rpm")),
     );
     let Some(best) = &choice.best else {
         notes.push("the only load of this study".to_owned());
@@ -215,28 +177,23 @@ fn notes_of_load(
             short_load(other)
         })
         .collect();
-    notes.push(if others.is_empty() {
-        format!(
-            "of the {} calculated, with 95 % confidence",
-            loads_and_limits(
-                group
-                    .scenarios
-                    .iter()
-                    .map(|&own| &report.summary.scenarios[own])
-            )
-        )
-    } else {
-        format!("could be as good: {}", others.join(", "))
-    });
+    let percent = percent_words(choice.percent);
+    if !others.is_empty() {
+        notes.push(format!("could be as good: {}", others.join(", ")));
+    } else if choice.is_of_a_design() {
+        notes.push(format!(
+            "95 % confident: no other calculated load has a lower P{percent}"
+        ));
+    }
     let mut higher = { group.choices.iter() }.filter(|own| own.percent > choice.percent);
     let higher = higher.next_back();
     notes.extend(
         higher
-            .filter(|_| !is_of_a_design(choice))
+            .filter(|_| !choice.is_of_a_design())
             .map(|higher| format!("no P{} is known", percent_words(higher.percent))),
     );
     let [lower, higher] = neighbours(report, group, scenario);
-    notes.push(beside(lower, higher));
+    notes.extend(beside(lower, higher));
     notes
 }
 
@@ -267,9 +224,9 @@ fn notes_of_percentile(
         _ => "no interval".to_owned(),
     });
     let stress = summary.stress_pa_per_m.zip(found.and_then(|own| own.value));
-    notes.extend(
-        stress.map(|(pa_per_m, value)| format!("{} MPa", four_digits(1e-6 * pa_per_m * value))),
-    );
+    notes.extend(stress.map(|(pa_per_m, value)| {
+        format!("= {} MPa peak stress", four_digits(1e-6 * pa_per_m * value))
+    }));
     let mut higher = { group.choices.iter() }
         .filter(|own| own.percent > choice.percent && summary.patterns < own.needed_patterns);
     notes.extend(higher.next_back().map(|own| {
@@ -284,11 +241,12 @@ fn notes_of_percentile(
 
 /// Numerical error of the percentile: the larger side of its bounds.
 fn number_of_error(
-    units: LengthUnit,
+    report: &StudyReport,
     group: &GroupReport,
     lowest: usize,
     (percent, error): (&str, Option<&PercentileError>),
 ) -> BigNumber {
+    let units = LengthUnit::of_summary(&report.summary);
     let label = format!("Numerical error of P{percent}, at most");
     let bounds = error.and_then(|own| Some((own.lowest?, own.highest?, own.percentile.value?)));
     let Some((low, high, value)) = bounds else {
@@ -296,6 +254,7 @@ fn number_of_error(
         return BigNumber {
             label,
             value: "no bound".to_owned(),
+            told: None,
             notes: errors
                 .map(|own| {
                     format!(
@@ -306,87 +265,30 @@ fn number_of_error(
                 .into_iter()
                 .collect(),
             more: None,
+            is_open: false,
         };
     };
     let largest = (1.0 - low / value).max(high / value - 1.0);
     let widths = error.and_then(|own| Some((own.numerical_width()?, own.statistical_width()?)));
-    let beside = widths.map(|(numerical, statistical)| {
-        let interval = units.length(statistical * value);
-        let first = if numerical > statistical {
-            "refine first"
-        } else {
-            "add patterns first"
-        };
-        let own = units.length(largest * value);
-        format!("{own}; interval {interval} wide: {first}")
+    let notes = widths.map_or_else(Vec::new, |(numerical, statistical)| {
+        let findings = { report.summary.warnings.iter() }.filter_map(Warning::numerical_finding);
+        let remedy = Remedy::of(statistical, numerical, findings);
+        let (own, interval) = (largest * value, statistical * value);
+        vec![
+            format!(
+                "±{}; statistical interval {} wide",
+                units.rough(own),
+                units.rough(interval)
+            ),
+            remedy.words().to_owned(),
+        ]
     });
     BigNumber {
         label,
         value: share_words(largest),
-        notes: beside.into_iter().collect(),
+        told: None,
+        notes,
         more: None,
-    }
-}
-
-/// Whether a group has percentiles, none of which says enough of the highest blades to design for.
-fn is_without_a_design(group: &GroupReport) -> bool {
-    known_choice(group).is_some_and(|(choice, _)| !is_of_a_design(choice))
-}
-
-/// Whether anything is wrong with the study.
-pub(super) fn health(report: &StudyReport) -> Health {
-    let summary = &report.summary;
-    // What costs a result comes first.
-    let (costly, others): (Vec<&Warning>, Vec<&Warning>) =
-        { summary.warnings.iter() }.partition(|warning| warning.costs_a_statistic());
-    let ordered: Vec<&Warning> = costly.into_iter().chain(others).collect();
-    let mut findings = Warning::headlines(&ordered, &|own| scenarios_in_words(summary, own));
-    if summary.misses_its_target() {
-        findings.insert(
-            0,
-            "the wanted width of the interval was not reached".to_owned(),
-        );
-    }
-    let (class, verdict) = if summary.failures_cost_a_statistic() {
-        let shown = { report.groups.first() }.map_or(&[][..], |group| &group.scenarios);
-        let mut costly = { summary.warnings.iter() }.flat_map(Warning::costly_scenarios);
-        let verdict = if costly.any(|scenario| shown.contains(scenario)) {
-            "Something is wrong: results are missing."
-        } else {
-            "Something is wrong in another setting, not in this one: results are missing."
-        };
-        ("bad", verdict.to_owned())
-    } else if findings.is_empty() {
-        (
-            "good",
-            format!(
-                "No problem found: all {} rows have a result, and there is no warning.",
-                summary.rows.ok()
-            ),
-        )
-    } else if report.groups.first().is_some_and(is_without_a_design) {
-        let verdict = "Too few patterns for a design load.";
-        ("look", verdict.to_owned())
-    } else {
-        let count = findings.len();
-        let warnings = if count == 1 { "warning" } else { "warnings" };
-        (
-            "look",
-            format!(
-                "{count} {warnings}; {} of {} rows have a result.",
-                summary.rows.ok(),
-                summary.rows.planned()
-            ),
-        )
-    };
-    let more = findings.len().saturating_sub(NAMED);
-    findings.truncate(NAMED);
-    if more > 0 {
-        findings.push(format!("and {more} more"));
-    }
-    Health {
-        class,
-        verdict,
-        findings,
+        is_open: false,
     }
 }

@@ -1,7 +1,9 @@
 //! The report as one HTML file that needs nothing else.
 
+mod choice;
 mod first_screen;
 mod headline;
+mod health;
 mod model;
 mod page;
 mod table;

@@ -2,14 +2,14 @@
 
 use std::fmt::Write;
 
-use super::first_screen::{contents, first_screen};
+use super::first_screen::{contents, first_screen, warnings_in_words};
 use super::model::{figure_html, model};
 use super::table::Table;
 use super::tables;
 use crate::input::term_of;
 use crate::report::figures::friction_words;
 use crate::report::plot::{escaped, page_style};
-use crate::report::words::{loads_and_limits, scenarios_in_words, tied};
+use crate::report::words::{loads_and_limits, tied};
 use crate::report::{FIGURES, FigureName, GroupReport, StudyReport, Wheels, figure, setting};
 
 /// Style of everything but the plots.
@@ -91,17 +91,13 @@ fn header(report: &StudyReport) -> String {
 }
 
 fn warnings(report: &StudyReport) -> String {
-    if report.summary.warnings.is_empty() {
+    let warnings = warnings_in_words(report);
+    if warnings.is_empty() {
         return String::new();
     }
     let mut items = String::new();
-    let named = |own: &[usize]| scenarios_in_words(&report.summary, own);
-    for warning in &report.summary.warnings {
-        let _ = writeln!(
-            items,
-            "<li>{}</li>",
-            escaped(&tied(&warning.in_words(&named)))
-        );
+    for warning in warnings {
+        let _ = writeln!(items, "<li>{}</li>", escaped(&tied(&warning)));
     }
     format!(
         "<section id=\"warnings\">\n<h2>Warnings</h2>\n<ul class=\"warnings\">\n{items}</ul>\n</section>\n"

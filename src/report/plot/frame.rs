@@ -12,12 +12,35 @@ pub(in crate::report) const TOP: f64 = 48.0;
 const TICK: f64 = 4.0;
 /// Where a legend begins, below the title of the figure.
 const LEGEND_LEFT: f64 = 14.0;
-/// Space between entries of a legend and the width of a letter on a narrow page, about.
-const LEGEND: (f64, f64) = (40.0, 11.0);
-/// Height of a line of a legend, and its distance from the plot.
-const LEGEND_LINE: (f64, f64) = (21.0, 12.0);
-/// Half the width of the caps of a bound: they reach beyond the mark that may cover the bound.
-const CAP: f64 = 6.5;
+/// Distance of a legend from the plot.
+const LEGEND_ABOVE: f64 = 12.0;
+
+/// What a legend takes, about, for letters of one size.
+struct LegendSize {
+    /// Attributes of its group.
+    attributes: &'static str,
+    /// Width of an entry without its letters, and of a letter.
+    entry: (f64, f64),
+    /// Height of a line.
+    line: f64,
+}
+
+/// A legend is drawn for both sizes of its letters; a style sheet shows that of the page.
+const LEGENDS: [LegendSize; 2] = [
+    LegendSize {
+        attributes: "class=\"wide\"",
+        entry: (46.0, 6.6),
+        line: 21.0,
+    },
+    // Programs without that style sheet show no narrow page.
+    LegendSize {
+        attributes: "class=\"narrow\" display=\"none\"",
+        entry: (44.0, 10.8),
+        line: 23.0,
+    },
+];
+/// Half the width of the caps of a bound: they reach beyond its mark.
+const CAP: f64 = 5.5;
 
 /// What stands at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,8 +122,15 @@ impl Frame<'_> {
     pub(in crate::report) fn x_tick(&self, svg: &mut Svg, x: f64, name: &str) {
         let (bottom, top) = self.y.ends;
         svg.line("grid", (x, top), (x, bottom));
-        svg.line("axis", (x, bottom), (x, bottom + TICK));
-        svg.text("quiet", (x, bottom + 20.0), Anchor::Middle, name);
+        self.x_tick_of(svg, "", x, name);
+    }
+
+    /// One tick of the horizontal axis with its name and without grid, both also of the class `class`.
+    pub(in crate::report) fn x_tick_of(&self, svg: &mut Svg, class: &str, x: f64, name: &str) {
+        let bottom = self.y.ends.0;
+        let of = |own: &str| format!("{own} {class}").trim_end().to_owned();
+        svg.line(&of("axis"), (x, bottom), (x, bottom + TICK));
+        svg.text(&of("quiet"), (x, bottom + 20.0), Anchor::Middle, name);
     }
 
     /// Place of a point.
@@ -121,13 +151,31 @@ impl Frame<'_> {
 
 /// Entries from left to right in lines above the plot, the last of which is next to it.
 pub(in crate::report) fn legend(svg: &mut Svg, entries: &[LegendEntry<'_>]) {
+    for size in LEGENDS {
+        let mut drawn = Svg::default();
+        let lines = legend_lines(entries, size.entry);
+        for (place, line) in lines.iter().rev().enumerate() {
+            let y = TOP - LEGEND_ABOVE - size.line * place as f64;
+            for &(x, entry) in line {
+                legend_entry(&mut drawn, (x, y), entry);
+            }
+        }
+        svg.group(size.attributes, &drawn);
+    }
+}
+
+/// The entries of each line of a legend with their places; `space` and `letter` are widths.
+fn legend_lines<'a, 'b>(
+    entries: &'a [LegendEntry<'b>],
+    (space, letter): (f64, f64),
+) -> Vec<Vec<(f64, &'a LegendEntry<'b>)>> {
     let mut lines: Vec<Vec<(f64, &LegendEntry<'_>)>> = vec![Vec::new()];
     let mut x = LEGEND_LEFT;
     for entry in entries {
         let (LegendEntry::Line(_, _, words)
         | LegendEntry::Point(_, _, words)
         | LegendEntry::Area(_, words)) = entry;
-        let width = LEGEND.0 + LEGEND.1 * words.chars().count() as f64;
+        let width = space + letter * words.chars().count() as f64;
         if x + width > WIDTH + 10.0 && x > LEGEND_LEFT {
             x = LEGEND_LEFT;
             lines.push(Vec::new());
@@ -137,13 +185,7 @@ pub(in crate::report) fn legend(svg: &mut Svg, entries: &[LegendEntry<'_>]) {
         }
         x += width;
     }
-    let (height, distance) = LEGEND_LINE;
-    for (place, line) in lines.iter().rev().enumerate() {
-        let y = TOP - distance - height * place as f64;
-        for &(x, entry) in line {
-            legend_entry(svg, (x, y), entry);
-        }
-    }
+    lines
 }
 
 fn legend_entry(svg: &mut Svg, (x, y): (f64, f64), entry: &LegendEntry<'_>) {

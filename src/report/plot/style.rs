@@ -13,7 +13,7 @@ const COLOURS: [(&str, &str, &str); 16] = [
     ("quiet", "#566573", "#9fadbb"),
     ("grid", "#dfe5ea", "#313a45"),
     ("median", "#0072b2", "#56b4e9"),
-    ("band", "#0072b2", "#7cc8ff"),
+    ("band", "#566573", "#9fadbb"),
     ("high", "#d55e00", "#ff8a3d"),
     ("extreme", "#8f2d6b", "#e58fc4"),
     ("tuned", "#1b2733", "#e8ecf1"),
@@ -79,6 +79,10 @@ const RULES: &[(&str, &str)] = &[
     (".mark.tuned", "fill:$paper;stroke:$tuned;stroke-width:1.5"),
     (".mark.pick", "fill:$ink"),
     (".mark.quiet", "fill:$quiet"),
+    (".mark.hollow", "fill:$paper;stroke-width:1.6"),
+    (".mark.hollow.median", "stroke:$median"),
+    (".mark.hollow.high", "stroke:$high"),
+    (".mark.hollow.extreme", "stroke:$extreme"),
     // Both pointers are of one size: an outline of the paper would make the filled one smaller.
     (".mark.lowest", "fill:$ink;stroke:$ink;stroke-width:1.5"),
     (".mark.could", "fill:$paper;stroke:$ink;stroke-width:1.5"),
@@ -108,7 +112,7 @@ const RULES: &[(&str, &str)] = &[
 ];
 
 /// Rules for narrow pages, where a drawing is scaled down.
-const NARROW: &str = "@media (max-width:600px){svg.plot text{font-size:19px}svg.plot text.small{font-size:20px}svg.plot text.quiet{font-size:18px}}";
+const NARROW: &str = "@media (max-width:600px){svg.plot text{font-size:19px}svg.plot text.small{font-size:18px}svg.plot text.quiet{font-size:18px}svg.plot g.wide,svg.plot .squeezed{display:none}svg.plot g.narrow{display:inline}}";
 
 /// Style sheet of the page: colours as variables for light, dark and print, and the classes of the plots.
 pub(in crate::report) fn page_style() -> String {

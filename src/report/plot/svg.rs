@@ -39,6 +39,13 @@ impl Svg {
         self.body.push('\n');
     }
 
+    /// Elements that share attributes.
+    pub(in crate::report) fn group(&mut self, attributes: &str, inside: &Self) {
+        self.element(format_args!("<g {attributes}>"));
+        self.body.push_str(&inside.body);
+        self.element(format_args!("</g>"));
+    }
+
     pub(in crate::report) fn line(&mut self, class: &str, from: (f64, f64), to: (f64, f64)) {
         self.element(format_args!(
             r#"<line class="{class}" x1="{}" y1="{}" x2="{}" y2="{}"/>"#,

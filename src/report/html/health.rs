@@ -1,0 +1,178 @@
+//! Whether anything is wrong with a study: the worst consequence, and the warnings in a few words.
+
+use super::choice::{at_the_end, known_choice, short_load};
+use crate::report::words::{scenarios_in_words, told_apart};
+use crate::report::{GroupReport, StudyReport, Warning};
+
+/// Warnings that the first screen names.
+const NAMED: usize = 3;
+
+/// Whether anything is wrong, with a study or with the setting that the page opens with.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Health {
+    /// `good`, `look` or `bad`: the class of its style.
+    pub(super) class: &'static str,
+    /// The worst consequence.
+    pub(super) verdict: String,
+    /// What there is to see, a line each.
+    pub(super) findings: Vec<String>,
+}
+
+/// Whether anything is wrong with the study. Results that another setting lacks are apart from what concerns the
+/// numbers of this one.
+pub(super) fn health(report: &StudyReport) -> Vec<Health> {
+    let summary = &report.summary;
+    let all = summary.warnings.iter();
+    let (costly, others): (Vec<&Warning>, Vec<&Warning>) =
+        all.partition(|warning| warning.costs_a_statistic());
+    if costly.is_empty() {
+        return vec![of_setting(report, others)];
+    }
+    let shown = { report.groups.first() }.map_or(&[][..], |group| &group.scenarios);
+    let scenarios: Vec<usize> = { costly.iter() }
+        .flat_map(|warning| warning.costly_scenarios())
+        .copied()
+        .collect();
+    if scenarios.iter().any(|own| shown.contains(own)) {
+        let ordered: Vec<&Warning> = costly.into_iter().chain(others).collect();
+        return vec![Health {
+            class: "bad",
+            verdict: missing_here(report, shown),
+            findings: named(lines(report, &ordered)),
+        }];
+    }
+    // Failed rows are those of the setting that lacks results, or hardly matter beside it.
+    let failures = |own: &&Warning| matches!(own, Warning::Failures { .. });
+    let (failed, rest): (Vec<&Warning>, Vec<&Warning>) = others.into_iter().partition(failures);
+    let elsewhere: Vec<&Warning> = costly.into_iter().chain(failed).collect();
+    let mut found = vec![Health {
+        class: "bad",
+        verdict: missing_elsewhere(report, &scenarios),
+        findings: named(lines(report, &elsewhere)),
+    }];
+    // The percentile says by itself how many patterns the next one needs.
+    let few = |own: &&Warning| matches!(own, Warning::TooFewPatterns { .. });
+    let is_said = rest.iter().all(few);
+    let mut own = of_setting(report, rest);
+    if own.class != "good" {
+        if is_said && own.findings.len() == 1 {
+            own.findings.clear();
+        }
+        found.push(own);
+    }
+    found
+}
+
+fn lines(report: &StudyReport, warnings: &[&Warning]) -> Vec<String> {
+    Warning::headlines(warnings, &|own| scenarios_in_words(&report.summary, own))
+}
+
+/// The first findings, and how many more there are.
+fn named(mut findings: Vec<String>) -> Vec<String> {
+    let more = findings.len().saturating_sub(NAMED);
+    findings.truncate(NAMED);
+    if more > 0 {
+        findings.push(format!("and {more} more"));
+    }
+    findings
+}
+
+/// What there is to say of the setting that the page opens with, where it lacks no result.
+fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
+    let summary = &report.summary;
+    let first = report.groups.first();
+    let choice = first.and_then(known_choice);
+    let chosen = choice.map(|(choice, _)| choice.percent);
+    // What weighs most comes first.
+    warnings.sort_by_key(|warning| warning.consequence(chosen).0);
+    let mut findings = lines(report, &warnings);
+    let mut verdict = warnings.first().map(|worst| worst.consequence(chosen).1);
+    if summary.misses_its_target() {
+        findings.insert(
+            0,
+            "the wanted width of the interval was not reached".to_owned(),
+        );
+        verdict = Some("The interval is wider than wanted.".to_owned());
+    }
+    if let Some(end) = first.and_then(|group| at_the_end(report, group)) {
+        findings.insert(0, end.headline);
+        verdict = Some(end.consequence);
+    }
+    let others = report.groups.iter().skip(1);
+    let others = others.filter(|group| at_the_end(report, group).is_some());
+    match others.count() {
+        0 => {}
+        count => {
+            findings.push(format!(
+                "loads of other settings at the end of those studied: {count}"
+            ));
+            verdict = verdict.or(Some(
+                "Best load of another setting may lie beyond.".to_owned(),
+            ));
+        }
+    }
+    if choice.is_some_and(|(choice, _)| !choice.is_of_a_design()) && verdict.is_some() {
+        verdict = Some("Too few patterns for a design load.".to_owned());
+    }
+    let class = if verdict.is_some() { "look" } else { "good" };
+    Health {
+        class,
+        verdict: verdict.unwrap_or_else(|| {
+            format!(
+                "No problem found: all {} rows have a result, and there is no warning.",
+                summary.rows.ok()
+            )
+        }),
+        findings: named(findings),
+    }
+}
+
+/// What failed rows cost in the setting that the page opens with.
+fn missing_here(report: &StudyReport, shown: &[usize]) -> String {
+    let mut lacking = { report.summary.warnings.iter() }.filter(|own| {
+        let scenarios = own.costly_scenarios();
+        matches!(own, Warning::TooManyFailures { .. })
+            && scenarios.iter().any(|own| shown.contains(own))
+    });
+    let first = report.groups.first();
+    let verdict = if lacking.next().is_none() {
+        "Tuned peaks are missing, and with them amplification factors."
+    } else if first.and_then(known_choice).is_none() {
+        "No percentile at any load: too many rows failed."
+    } else {
+        "Percentiles are missing at some loads: too many rows failed."
+    };
+    verdict.to_owned()
+}
+
+/// Which other setting lacks what, and that the load of this one does not depend on it.
+fn missing_elsewhere(report: &StudyReport, scenarios: &[usize]) -> String {
+    let lacks = |group: &&GroupReport| group.scenarios.iter().any(|own| scenarios.contains(own));
+    let groups: Vec<&GroupReport> = report.groups.iter().filter(lacks).collect();
+    let which = match groups[..] {
+        [only] => {
+            let own = &report.summary.scenarios[only.scenarios[0]];
+            let told = told_apart(&report.summary, own).replace(" of blade stiffness", "");
+            let mut letters = told.chars();
+            let head = letters.next().map(char::to_uppercase);
+            head.into_iter().flatten().chain(letters).collect()
+        }
+        _ => format!("{} other settings", groups.len()),
+    };
+    let what = if groups.iter().all(|group| known_choice(group).is_none()) {
+        "no percentile at any load"
+    } else {
+        "results are missing"
+    };
+    let first = report.groups.first();
+    let load = first.and_then(known_choice).map_or_else(
+        || "This setting".to_owned(),
+        |(_, lowest)| {
+            format!(
+                "The {} above",
+                short_load(&report.summary.scenarios[lowest])
+            )
+        },
+    );
+    format!("{which}: {what}. {load} is not affected.")
+}
