@@ -287,9 +287,9 @@ impl Warning {
                 largest_stated_error,
             } => format!(
                 "{rows} of {planned} rows state a sampling or harmonic error beyond its tolerance \
-                 (stated errors up to {:.1} %); take solver.harmonics = \"auto\" with \
-                 solver.rows_beyond_tolerance = \"resolve\", a larger set, or accept it by a larger \
-                 solver.harmonic_tolerance",
+                 (stated errors up to {:.1} %); where sampling_error in responses.parquet is the larger one, \
+                 raise solver.samples_per_period; where harmonic_error is, take solver.harmonics = \"auto\" or a \
+                 larger set, or accept it by a larger solver.harmonic_tolerance",
                 100.0 * largest_stated_error
             ),
             Self::ReplacedBasis { taken } => format!(
