@@ -4,8 +4,8 @@
 //! P = (I + A_p G_p')^-1
 //! ```
 //!
-//! with what a pair answers to its own forces in the tuned wheel, A_p, which is the mean of the receptances over the waves, and the
-//! whole derivative G_p' of its forces. Where pairs open, their harmonics depend on each other, which the preconditioner of one harmonic
+//! with what a pair answers to its own forces in the tuned wheel, `A_p`, which is the mean of the receptances over the waves, and the
+//! whole derivative `G_p'` of its forces. Where pairs open, their harmonics depend on each other, which the preconditioner of one harmonic
 //! after the other leaves out.
 
 use crate::linalg::{Complex64, LuWorkspace};
