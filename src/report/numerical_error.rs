@@ -228,6 +228,7 @@ mod tests {
             [NumericalFinding::Missed { .. }]
         ));
     }
+
     #[test]
     fn one_verdict_weighs_both_errors_and_what_was_measured() {
         let (error, percent, width) = (0.01, 95.0, 0.05);

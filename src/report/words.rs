@@ -142,22 +142,19 @@ pub(super) fn short_load_words(contact: &str, normal_load_n: Option<f64>) -> Str
 
 /// A load with its unit: a number of newtons, or the name of a linear limit.
 pub(super) fn load_with_unit(contact: &str, normal_load_n: Option<f64>) -> String {
-    let words = load_words(contact, normal_load_n);
-    if normal_load_n.is_some() {
-        format!("{words} N")
-    } else {
-        words
+    with_newtons(load_words(contact, normal_load_n), normal_load_n)
+}
+
+fn with_newtons(words: String, normal_load_n: Option<f64>) -> String {
+    match normal_load_n {
+        Some(_) => format!("{words} N"),
+        None => words,
     }
 }
 
 /// A load with its unit, a number with at most four digits where more are written; or the name of a linear limit.
 pub(super) fn short_load_with_unit(contact: &str, normal_load_n: Option<f64>) -> String {
-    let words = short_load_words(contact, normal_load_n);
-    if normal_load_n.is_some() {
-        format!("{words} N")
-    } else {
-        words
-    }
+    with_newtons(short_load_words(contact, normal_load_n), normal_load_n)
 }
 
 /// A load with its unit, newtons per sector, since it acts on every sector; or the name of a linear limit.

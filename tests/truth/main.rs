@@ -160,33 +160,43 @@ fn rows_on_tuned_receptances_are_as_true_as_they_state() {
     );
 }
 
-/// Rows under light loads, whose pairs open: wheel and load, N.
-const OPENING: [(&str, f64); 2] = [("half", 64.93), ("odd", 82.89)];
+/// Rows under light loads, whose pairs open: wheel, load, N, and rows of the truth.
+const OPENING: [(&str, f64, usize); 2] = [("half", 64.93, 2), ("odd", 82.89, 2)];
+const OPENING_FURTHER: [(&str, f64, usize); 3] =
+    [("odd", 49.42, 3), ("odd", 60.39, 3), ("half", 33.47, 1)];
 
-/// Where pairs open, rows have a peak with fewer harmonics, within 1 % and within what they state.
 #[test]
 fn rows_whose_pairs_open_are_found_and_as_true_as_they_state() {
-    for (wheel, load_n) in OPENING {
-        let rows = engine::solved_within(wheel, None, |row| row.load_n() == Some(load_n));
-        assert_eq!(rows.len(), 2, "{wheel}");
-        for (truth, row) in rows {
-            let name = format!("{wheel}, pattern {}, {load_n} N", truth.pattern);
-            let found_m = row.peak_amplitude_m.expect("a peak");
-            let error = found_m / truth.amplitude_m.expect("a peak") - 1.0;
-            let stated = row.stated_error.expect("an error");
-            println!(
-                "{name}: {error:.2e}, stated {stated:.2e}, {}",
-                row.harmonics
-            );
-            assert!(
-                row.separated_fraction.is_some_and(|share| share > 0.0),
-                "{name}"
-            );
-            assert!(
-                error.abs() <= stated.min(0.01),
-                "{name}: {error:.2e}, {stated:.2e}"
-            );
-        }
+    OPENING.map(open_pairs_are_found);
+}
+
+#[test]
+#[ignore = "minutes: a row takes some ten seconds"]
+fn so_they_are_under_loads_that_open_more_pairs() {
+    OPENING_FURTHER.map(open_pairs_are_found);
+}
+
+/// Where pairs open, rows have a peak with fewer harmonics, within 1 % and within what they state.
+fn open_pairs_are_found((wheel, load_n, count): (&str, f64, usize)) {
+    let rows = engine::solved_within(wheel, None, |row| row.load_n() == Some(load_n));
+    assert_eq!(rows.len(), count, "{wheel}");
+    for (truth, row) in rows {
+        let name = format!("{wheel}, pattern {}, {load_n} N", truth.pattern);
+        let found_m = row.peak_amplitude_m.expect("a peak");
+        let error = found_m / truth.amplitude_m.expect("a peak") - 1.0;
+        let stated = row.stated_error.expect("an error");
+        println!(
+            "{name}: {error:.2e}, stated {stated:.2e}, {}",
+            row.harmonics
+        );
+        assert!(
+            row.separated_fraction.is_some_and(|share| share > 0.0),
+            "{name}"
+        );
+        assert!(
+            error.abs() <= stated.min(0.01),
+            "{name}: {error:.2e}, {stated:.2e}"
+        );
     }
 }
 

@@ -18,7 +18,7 @@ use crate::response::receptance::{
     embedded,
 };
 
-/// Points of a row that may be lost before no other one is solved: each takes as long as many that are found.
+/// Points that the search of a row may lose before it is over: each takes as long as many that are found.
 const MOST_FAILURES: usize = 8;
 
 /// One wheel on an engine under one excitation and contact condition.
@@ -229,15 +229,17 @@ impl<'a> ReceptancePoints<'a> {
         self.settings.bounds.residual_tolerance.max(self.precision)
     }
 
-    fn added(&mut self, frequency_hz: f64) -> Result<&Point, Status> {
-        let most = if self.settings.guide().is_some() {
+    /// Points that a search may lose before it is over. Where fewer harmonics can take the place of an automatic set of all, the first
+    /// lost point ends it.
+    fn most_failures(&self) -> usize {
+        if self.settings.guide().is_some() {
             0
         } else {
             MOST_FAILURES
-        };
-        if let Some((_, status)) = self.failures.get(most) {
-            return Err(*status);
         }
+    }
+
+    fn added(&mut self, frequency_hz: f64) -> Result<&Point, Status> {
         match self.solve(frequency_hz, self.tolerance()) {
             Ok(point) => {
                 self.points.push(point);
@@ -256,6 +258,9 @@ impl PointSource for ReceptancePoints<'_> {
         let known = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
         if let Some(point) = self.points.iter().find(known) {
             return Some(point.amplitudes_m.clone());
+        }
+        if self.failures.len() > self.most_failures() {
+            return None;
         }
         let point = self.added(frequency_hz).ok()?;
         Some(point.amplitudes_m.clone())

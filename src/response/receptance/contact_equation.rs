@@ -184,16 +184,24 @@ impl ContactEquation<'_> {
         }
     }
 
-    /// What every pair by itself makes of motions, in place.
-    pub(super) fn precondition_pairs(&mut self, by: &mut PairPreconditioner, flat: &mut Vec<f64>) {
+    /// Motions in the order of the unknowns as fields over the waves, and of every sector in the order of the contact.
+    fn of_sectors(&mut self, flat: &[f64]) -> (Vec<Field>, Vec<f64>) {
         let places = Places::of(self.contact);
         let mut fields = self.buffers.motions.clone();
         unflatten(flat, &mut fields);
         let mut motions = vec![0.0; self.contact.motion().len()];
         let sectors = &mut self.buffers.sectors;
         places.to_sectors(self.transform, &fields, sectors, &mut motions);
+        (fields, motions)
+    }
+
+    /// What every pair by itself makes of motions, in place.
+    pub(super) fn precondition_pairs(&mut self, by: &mut PairPreconditioner, flat: &mut Vec<f64>) {
+        let places = Places::of(self.contact);
+        let (mut fields, mut motions) = self.of_sectors(flat);
         by.apply(&mut motions);
         for (place, field) in fields.iter_mut().enumerate() {
+            let sectors = &mut self.buffers.sectors;
             places.to_waves(self.transform, place, &motions, sectors, field);
         }
         flatten(&fields, 1.0, flat);
@@ -213,11 +221,7 @@ impl ContactEquation<'_> {
     /// `J v` at the motions last evaluated with derivative: `v + A G' v`.
     pub(super) fn derivative(&mut self, direction: &[f64]) -> Vec<f64> {
         let places = Places::of(self.contact);
-        let mut fields = self.buffers.motions.clone();
-        unflatten(direction, &mut fields);
-        let mut change = vec![0.0; self.contact.motion().len()];
-        let sectors = &mut self.buffers.sectors;
-        places.to_sectors(self.transform, &fields, sectors, &mut change);
+        let (mut fields, change) = self.of_sectors(direction);
         let mut force = vec![0.0; change.len()];
         self.contact.add_derivative(&change, &mut force);
         for (place, field) in fields.iter_mut().enumerate() {

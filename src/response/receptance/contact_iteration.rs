@@ -21,21 +21,8 @@ const DAMPING: f64 = 0.5;
 
 /// Newton steps of an attempt at most.
 const NEWTON_STEPS: usize = 40;
-/// Residual of each, relative to its right-hand side, and products with the derivative at most.
-const STEP_ERROR: f64 = 1e-3;
-const PRODUCTS: usize = 120;
-/// Share of a step from which on it is not halved.
-const LEAST_FACTOR: f64 = 1.0 / 64.0;
-
 /// Most harmonics with which pairs are preconditioned by themselves: with more the steps take too long.
 const MOST_HARMONICS: usize = 6;
-/// Residual of a step with pairs preconditioned by themselves, relative to its right-hand side; products of it and of the attempt.
-const PAIRED_STEP_ERROR: f64 = 1e-2;
-const PAIRED_PRODUCTS: usize = 250;
-const PAIRED_PRODUCTS_IN_ALL: u64 = 3_500;
-/// Share of such a step below which it is not tried, and share of what it promises that it has to take off.
-const LEAST_PAIRED_FACTOR: f64 = 1.0 / 256.0;
-const DECREASE: f64 = 0.1;
 
 /// When preconditioners are renewed, what they take in, and how many steps are taken at most.
 struct Plan {
@@ -52,6 +39,39 @@ const fn plan(renewals: &'static [usize], iterations: usize, shapes: Preconditio
     }
 }
 
+/// How Newton steps are preconditioned, how closely they are solved, and how they are shortened.
+struct NewtonPlan {
+    /// Whether every pair is preconditioned by itself besides. What is left is then measured after the preconditioners: without them
+    /// the stiffest pairs alone would count.
+    pairs: bool,
+    /// Residual of a step, relative to its right-hand side.
+    step_error: f64,
+    /// Products with the derivative of a step, and of an attempt, at most.
+    products: usize,
+    products_in_all: u64,
+    /// Share of a step below which it is not tried.
+    least_factor: f64,
+    /// Share of what a step promises that it has to take off.
+    decrease: f64,
+}
+
+const BY_HARMONICS: NewtonPlan = NewtonPlan {
+    pairs: false,
+    step_error: 1e-3,
+    products: 120,
+    products_in_all: u64::MAX,
+    least_factor: 1.0 / 128.0,
+    decrease: 0.0,
+};
+const BY_PAIRS: NewtonPlan = NewtonPlan {
+    pairs: true,
+    step_error: 1e-2,
+    products: 250,
+    products_in_all: 3_500,
+    least_factor: 1.0 / 256.0,
+    decrease: 0.1,
+};
+
 /// Where an attempt begins.
 #[derive(Clone, Copy, PartialEq)]
 enum Start {
@@ -64,8 +84,7 @@ enum Start {
 /// One way to a solution.
 enum Attempt {
     Accelerated(Plan),
-    Newton,
-    PairedNewton,
+    Newton(NewtonPlan),
 }
 
 /// What is tried, in this order, until an attempt ends with a solution. The tangent of a known start is near; that of the linear
@@ -104,10 +123,10 @@ const LADDER: [(Start, Attempt); 12] = [
         Start::Linear,
         Attempt::Accelerated(plan(&[0, 10, 25], 160, Resonant)),
     ),
-    (Start::Known, Attempt::Newton),
-    (Start::Linear, Attempt::Newton),
-    (Start::Known, Attempt::PairedNewton),
-    (Start::Linear, Attempt::PairedNewton),
+    (Start::Known, Attempt::Newton(BY_HARMONICS)),
+    (Start::Linear, Attempt::Newton(BY_HARMONICS)),
+    (Start::Known, Attempt::Newton(BY_PAIRS)),
+    (Start::Linear, Attempt::Newton(BY_PAIRS)),
 ];
 
 /// For the errors of a solution, from that solution.
@@ -175,15 +194,15 @@ impl ContactEquation<'_> {
         };
         let attempts = LADDER.iter();
         let few = self.harmonics.len() <= MOST_HARMONICS;
-        let attempts = attempts.filter(|(_, own)| few || !matches!(own, Attempt::PairedNewton));
+        let attempts =
+            attempts.filter(|(_, own)| few || !matches!(own, Attempt::Newton(plan) if plan.pairs));
         let attempts = attempts.filter_map(|(start, attempt)| Some((begin(start)?, attempt)));
         let mut total = Outcome::none();
         for (rung, (start, attempt)) in attempts.enumerate() {
             self.buffers.motions.clone_from(start);
             let outcome = match attempt {
                 Attempt::Accelerated(plan) => self.accelerate(plan, tolerance),
-                Attempt::Newton => self.newton(tolerance),
-                Attempt::PairedNewton => self.paired_newton(tolerance),
+                Attempt::Newton(plan) => self.newton(plan, tolerance),
             };
             total = total.followed_by(outcome, rung);
             if total.status == Status::Ok {
@@ -249,9 +268,9 @@ impl ContactEquation<'_> {
         outcome
     }
 
-    /// Newton's method with steps by GMRES under the preconditioner, damped while the residual would grow; all harmonics of the tangent
-    /// are coupled.
-    fn newton(&mut self, tolerance: f64) -> Outcome {
+    /// Newton's method with steps by GMRES under preconditioners, shortened while more would be left; all harmonics of the tangent are
+    /// coupled.
+    fn newton(&mut self, plan: &NewtonPlan, tolerance: f64) -> Outcome {
         self.contact.couple(true);
         let mut outcome = Outcome::none();
         let judge = Judge {
@@ -267,84 +286,27 @@ impl ContactEquation<'_> {
                 break;
             }
             outcome.tangents += 1;
-            let mut preconditioners = self.preconditioners(FirstOfFundamental);
-            let mut right = Vec::new();
-            flatten(&self.buffers.residual, -1.0, &mut right);
-            self.precondition_flat(&mut preconditioners, &mut right);
-            let (step, products) = gmres(&right, STEP_ERROR, PRODUCTS, |direction| {
-                let mut turned = self.derivative(direction);
-                self.precondition_flat(&mut preconditioners, &mut turned);
-                turned
-            });
-            outcome.iterations += products as u64;
-            if !self.moves_by(&step, outcome.residual) {
-                outcome.status = Status::Stagnated;
-                break;
-            }
-        }
-        self.contact.couple(false);
-        outcome
-    }
-
-    fn precondition_flat(&mut self, preconditioners: &mut [Preconditioner], flat: &mut Vec<f64>) {
-        unflatten(flat, &mut self.buffers.residual);
-        self.precondition(preconditioners);
-        flatten(&self.buffers.residual, 1.0, flat);
-    }
-
-    /// Moves by the largest of the step, its half and so on that lowers the residual below `norm`; false if none does.
-    fn moves_by(&mut self, step: &[f64], norm: f64) -> bool {
-        let mut before = Vec::new();
-        flatten(&self.buffers.motions, 1.0, &mut before);
-        let mut factor = 1.0;
-        loop {
-            let moved = before.iter().zip(step).map(|(u, s)| u + factor * s);
-            let moved: Vec<f64> = moved.collect();
-            unflatten(&moved, &mut self.buffers.motions);
-            let (own, _) = self.residual(false);
-            if own < norm {
-                return true;
-            }
-            if factor < LEAST_FACTOR {
-                return false;
-            }
-            factor *= 0.5;
-        }
-    }
-
-    /// Newton's method whose steps are preconditioned by every harmonic by itself and by every pair by itself, and shortened until the
-    /// preconditioned residual becomes less: measured without the preconditioner the stiffest pairs alone would count.
-    fn paired_newton(&mut self, tolerance: f64) -> Outcome {
-        self.contact.couple(true);
-        let mut outcome = Outcome::none();
-        let judge = Judge {
-            tolerance,
-            first: f64::INFINITY,
-        };
-        for _ in 0..NEWTON_STEPS {
-            (outcome.residual, outcome.shares) = self.residual(true);
-            let settled = judge.settled(outcome.residual, 0.0, &outcome.shares);
-            let settled = settled.filter(|status| *status == Status::Ok);
-            if let Some(status) = settled.or(judge.lost(outcome.residual)) {
-                outcome.status = status;
-                break;
-            }
-            outcome.tangents += 1;
-            let mut by = Paired {
+            let pairs = plan.pairs;
+            let mut by = NewtonPreconditioner {
                 harmonics: self.preconditioners(FirstOfFundamental),
-                pairs: PairPreconditioner::new(self.contact, self.harmonics),
+                pairs: pairs.then(|| PairPreconditioner::new(self.contact, self.harmonics)),
             };
-            let right = self.paired_residual(&mut by);
-            let (step, products) = gmres(&right, PAIRED_STEP_ERROR, PAIRED_PRODUCTS, |direction| {
+            let right = self.preconditioned_residual(&mut by);
+            let (step, products) = gmres(&right, plan.step_error, plan.products, |direction| {
                 let mut turned = self.derivative(direction);
-                self.precondition_paired(&mut by, &mut turned);
+                self.precondition_flat(&mut by, &mut turned);
                 turned
             });
             outcome.iterations += products as u64;
-            if outcome.iterations > PAIRED_PRODUCTS_IN_ALL {
+            if outcome.iterations > plan.products_in_all {
                 break;
             }
-            if !self.moves_by_paired(&step, &mut by, norm(&right)) {
+            let before = if pairs {
+                norm(&right)
+            } else {
+                outcome.residual
+            };
+            if !self.moves_by(&step, plan, &mut by, before) {
                 outcome.status = Status::Stagnated;
                 break;
             }
@@ -353,37 +315,50 @@ impl ContactEquation<'_> {
         outcome
     }
 
-    /// What both preconditioners make of motions, in place: every harmonic by itself, then every pair by itself what that leaves.
-    fn precondition_paired(&mut self, by: &mut Paired, flat: &mut Vec<f64>) {
-        let mut left = flat.clone();
-        self.precondition_flat(&mut by.harmonics, flat);
-        let taken = self.derivative(flat);
-        left.iter_mut().zip(taken).for_each(|(l, t)| *l -= t);
-        self.precondition_pairs(&mut by.pairs, &mut left);
-        flat.iter_mut().zip(left).for_each(|(x, l)| *x += l);
+    /// Preconditions motions in place: every harmonic by itself, then every pair by itself what that leaves.
+    fn precondition_flat(&mut self, by: &mut NewtonPreconditioner, flat: &mut Vec<f64>) {
+        let mut left = by.pairs.is_some().then(|| flat.clone());
+        unflatten(flat, &mut self.buffers.residual);
+        self.precondition(&mut by.harmonics);
+        flatten(&self.buffers.residual, 1.0, flat);
+        if let (Some(pairs), Some(left)) = (&mut by.pairs, &mut left) {
+            let taken = self.derivative(flat);
+            left.iter_mut().zip(taken).for_each(|(l, t)| *l -= t);
+            self.precondition_pairs(pairs, left);
+            flat.iter_mut().zip(left).for_each(|(x, l)| *x += *l);
+        }
     }
 
     /// The step that the residual last evaluated asks for, by the preconditioners alone.
-    fn paired_residual(&mut self, by: &mut Paired) -> Vec<f64> {
+    fn preconditioned_residual(&mut self, by: &mut NewtonPreconditioner) -> Vec<f64> {
         let mut right = Vec::new();
         flatten(&self.buffers.residual, -1.0, &mut right);
-        self.precondition_paired(by, &mut right);
+        self.precondition_flat(by, &mut right);
         right
     }
 
-    /// Moves by the largest of the step, its half and so on after which the preconditioned residual is below `before`; false if none
-    /// is.
-    fn moves_by_paired(&mut self, step: &[f64], by: &mut Paired, before: f64) -> bool {
+    /// Moves by the largest of the step, its half and so on after which less than `before` is left; false if there is none.
+    fn moves_by(
+        &mut self,
+        step: &[f64],
+        plan: &NewtonPlan,
+        by: &mut NewtonPreconditioner,
+        before: f64,
+    ) -> bool {
         let mut from = Vec::new();
         flatten(&self.buffers.motions, 1.0, &mut from);
         let mut factor = 1.0;
-        while factor >= LEAST_PAIRED_FACTOR {
+        while factor >= plan.least_factor {
             let moved = from.iter().zip(step).map(|(u, s)| u + factor * s);
             let moved: Vec<f64> = moved.collect();
             unflatten(&moved, &mut self.buffers.motions);
-            self.residual(false);
-            let left = self.paired_residual(by);
-            if norm(&left) < (1.0 - DECREASE * factor) * before {
+            let (residual, _) = self.residual(false);
+            let left = if plan.pairs {
+                norm(&self.preconditioned_residual(by))
+            } else {
+                residual
+            };
+            if left < (1.0 - plan.decrease * factor) * before {
                 return true;
             }
             factor *= 0.5;
@@ -392,10 +367,11 @@ impl ContactEquation<'_> {
     }
 }
 
-/// Preconditioners of a Newton step with pairs by themselves.
-struct Paired {
+/// Preconditioners of a Newton step.
+struct NewtonPreconditioner {
     harmonics: Vec<Preconditioner>,
-    pairs: PairPreconditioner,
+    /// Of every pair by itself, where the plan has it.
+    pairs: Option<PairPreconditioner>,
 }
 
 fn norm(vector: &[f64]) -> f64 {
