@@ -167,13 +167,13 @@ const OPENING_FURTHER: [(&str, f64, usize); 3] =
 
 #[test]
 fn rows_whose_pairs_open_are_found_and_as_true_as_they_state() {
-    OPENING.map(open_pairs_are_found);
+    OPENING.into_iter().for_each(open_pairs_are_found);
 }
 
 #[test]
 #[ignore = "minutes: a row takes some ten seconds"]
 fn so_they_are_under_loads_that_open_more_pairs() {
-    OPENING_FURTHER.map(open_pairs_are_found);
+    OPENING_FURTHER.into_iter().for_each(open_pairs_are_found);
 }
 
 /// Where pairs open, rows have a peak with fewer harmonics, within 1 % and within what they state.
