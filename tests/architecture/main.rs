@@ -7,6 +7,7 @@
 
 mod circles;
 mod citation;
+mod documented_tests;
 mod glossary;
 mod links;
 mod long_tests;

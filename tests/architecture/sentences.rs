@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::complain;
+use super::links::pages;
 
 /// Most words of a sentence, in the mean of a page.
 const MOST_WORDS: f64 = 20.0;
@@ -90,22 +91,22 @@ fn mean(page: &str) -> f64 {
     counts.iter().sum::<usize>() as f64 / counts.len().max(1) as f64
 }
 
-/// README.md, CONTRIBUTING.md and every page of `docs`. `BLISK_SHOW_SENTENCES=1` with `--nocapture` prints the means.
+/// Every page of the repository and of its site. `BLISK_SHOW_SENTENCES=1` with `--nocapture` prints the means.
 #[test]
 fn sentences_of_a_page_have_at_most_twenty_words_in_the_mean() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut paths = vec![root.join("README.md"), root.join("CONTRIBUTING.md")];
-    let entries = std::fs::read_dir(root.join("docs")).expect("docs");
-    paths.extend(entries.map(|entry| entry.expect("an entry").path()));
-    paths.retain(|path| path.extension().is_some_and(|ending| ending == "md"));
-    paths.sort();
-    assert!(paths.len() > 20, "{paths:?}");
+    let mut paths = pages(root);
+    paths.extend(
+        ["validation/report.md", "optimal-load/README.md"]
+            .map(|page| root.join("results").join(page)),
+    );
+    assert!(paths.len() > 40, "{paths:?}");
     let means: Vec<(String, f64)> = paths
         .iter()
         .map(|path| {
-            let name = path.file_name().expect("a name").to_string_lossy();
+            let name = path.strip_prefix(root).expect("inside").display();
             let page = std::fs::read_to_string(path).expect("a page");
-            (name.into_owned(), mean(&page))
+            (name.to_string(), mean(&page))
         })
         .collect();
     if std::env::var_os("BLISK_SHOW_SENTENCES").is_some() {

@@ -1,4 +1,4 @@
-//! Every command that README.md and docs/*.md show is one that the program knows, and those that can be are run.
+//! Every command that a page of the site shows is one that the program knows, and those that can be are run.
 
 use std::path::Path;
 
@@ -6,25 +6,24 @@ use clap::{CommandFactory, Parser};
 
 use crate::blisk::{GOOD, Place};
 
-/// Pages with commands.
+/// Pages with commands: those of the site, and those that a repository is known by.
 pub fn pages() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut paths = vec![
-        root.join("README.md"),
-        root.join("CONTRIBUTING.md"),
-        root.join("SECURITY.md"),
-        root.join(".github/ISSUE_TEMPLATE/import-fails.md"),
-        root.join(".github/ISSUE_TEMPLATE/wrong-number.md"),
-        root.join("results/README.md"),
-        root.join("studies/calculix/README.md"),
-        root.join("studies/validation/README.md"),
+    let docs = root.join("docs");
+    let summary = std::fs::read_to_string(docs.join("SUMMARY.md")).expect("the table of contents");
+    let of_site = summary
+        .split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split(')').next());
+    let of_site = of_site.map(|page| docs.join(page).canonicalize().expect("a page of the site"));
+    let others = [
+        "docs/SUMMARY.md",
+        "python/README.md",
+        ".github/ISSUE_TEMPLATE/import-fails.md",
+        ".github/ISSUE_TEMPLATE/wrong-number.md",
     ];
-    for entry in std::fs::read_dir(root.join("docs")).expect("docs") {
-        let path = entry.expect("an entry").path();
-        if path.extension().is_some_and(|ending| ending == "md") {
-            paths.push(path);
-        }
-    }
+    let root = &root.canonicalize().expect("the clone");
+    let mut paths: Vec<_> = of_site.chain(others.map(|page| root.join(page))).collect();
     paths.sort();
     let read = |path: &Path| std::fs::read_to_string(path).expect("a page");
     let name = |path: &Path| {

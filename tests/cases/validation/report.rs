@@ -253,16 +253,17 @@ fn write(
 const HOW_TO_READ: &str = "\
 ## How to read it
 
-Every number and every verdict is computed by that command from one build; none is typed but in the section of what is known and open. A
-verdict sets the worst number of a table against a bar that was fixed beforehand; a claim is one about ring dampers, not about this program, and may be
-refuted. The command ends with exit code 1 while a bar is not met that is not listed as open. Amplitude: largest over blades and frequency of
-the fundamental harmonic, in µm for an excitation of 1 N per sector, if nothing else is said. Differences are relative. *Fast path*: the
-reduced model that a study is run on; *full model*: every contact dof of the Craig-Bampton model, 512 samples, another solver
+Every number and every verdict is computed by that command from one build. Only the section of what is known and open is typed. A
+verdict sets the worst number of a table against a bar that was fixed beforehand. A claim is one about ring dampers, not about this program, and may be
+refuted. The command ends with exit code 1 while a bar is not met that is not listed as open.
+
+Amplitude is the largest over blades and frequency of the fundamental harmonic. It is in µm for an excitation of 1 N per sector, if nothing else is said. Differences are relative. *Fast path* is the
+solver that a study is run with. *Full model* has every contact dof of the Craig-Bampton model, 512 samples and another solver
 (docs/formulation.md, section 9). \"Default settings\" are those of a study that sets nothing under `[reduction]` and `[solver]`, but for the
 harmonics where a set is named. The bounds of a sample say what was seen in it, no more.
 
-Limits: the wheels are three of solid elements (8, 24 and 24 blades, about 1000 dofs per sector) and one of lumped masses, linear elastic, without
-rotation; one excitation of engine order 3 but for the section on nodal diameters; one or a few mistuned patterns where no number is given. The
-full model shares the sector matrices, their Craig-Bampton reduction and the law of a contact pair with the fast path; of the references
+Limits: three wheels are of solid elements (8, 24 and 24 blades, about 1000 dofs per sector) and one is of lumped masses. All are linear elastic, without
+rotation. The excitation has engine order 3 but for the section on nodal diameters. Where no number is given, one or a few patterns are mistuned. The
+full model shares the sector matrices, their Craig-Bampton reduction and the law of a contact pair with the fast path. Of the references
 only the rows of `tests/data`, CalculiX and the oracles come from other programs. No measured engine is among them.
 ";
