@@ -29,7 +29,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 30] = [
+const NOT_RUN: [(&str, &str); 35] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -49,11 +49,19 @@ const NOT_RUN: [(&str, &str); 30] = [
         "is a program; tests/library runs what it runs",
     ),
     ("cargo bench", "takes many minutes"),
+    ("cargo fmt", "the stage format of .ci/run runs it"),
+    (
+        "cargo +nightly fuzz",
+        "needs the nightly compiler; the stage fuzz of .ci/run runs it",
+    ),
     (
         "cargo deny",
-        "is a program of its own, and asks the network",
+        "asks the network; the stage deny of .ci/run runs what needs none",
     ),
-    ("cargo publish", "sends the package to crates.io"),
+    (
+        "cargo publish",
+        "sends the package to crates.io; the stage package of .ci/run tries it without sending",
+    ),
     ("cd \"$PBS_O_WORKDIR\"", "is the scheduler's folder"),
     ("qsub", "needs PBS; the program's part of it is run"),
     ("array=$(qsub", "needs PBS"),
@@ -61,12 +69,17 @@ const NOT_RUN: [(&str, &str); 30] = [
         "bash ring-normal-load-slurm.sh",
         "needs Slurm; tests/slurm has it",
     ),
-    ("studies/calculix/run.sh", "needs gmsh and ccx"),
-    ("apt-get install", "installs outside of the clone"),
     (
-        "cargo build --release --locked",
-        "compiles everything from nothing",
+        "studies/calculix/run.sh",
+        "needs gmsh and ccx; the stage calculix of .ci/run runs it",
     ),
+    ("studies/validation/run.sh", "solves for an hour"),
+    (
+        "python3 studies/optimal-load/run.py",
+        "solves for hours; tests/readers/optimal_load.py tries it small",
+    ),
+    ("apt-get install", "installs outside of the clone"),
+    ("cargo build --release", "compiles everything from nothing"),
     (
         "python3 benches/peers/run.py",
         "needs the other programs that it measures",
@@ -81,6 +94,7 @@ const NOT_RUN: [(&str, &str); 30] = [
         "needs mdBook; the stage site of .ci/run runs it",
     ),
     ("python docs/figures.py", "writes a figure of the clone"),
+    ("rsvg-convert", "is no part of a clone"),
     (
         "python docs/quickstart.py",
         "writes a figure of the clone, and needs pyarrow",
@@ -99,7 +113,7 @@ const NOT_RUN: [(&str, &str); 30] = [
 ];
 
 /// First words of the lines and spans that are commands of other programs.
-const OTHERS: [&str; 17] = [
+const OTHERS: [&str; 19] = [
     "cargo ",
     "ccx ",
     "gmsh ",
@@ -115,7 +129,9 @@ const OTHERS: [&str; 17] = [
     "sed ",
     "cd ",
     "apt-get ",
+    "rsvg-convert ",
     "studies/calculix/run.sh",
+    "studies/validation/run.sh",
     "BLISK_",
 ];
 
