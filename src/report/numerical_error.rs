@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::words::share_words;
 use crate::population::statistics::Percentile;
 use crate::response::friction::ContactLaw;
 
@@ -171,10 +172,11 @@ impl fmt::Display for NumericalFinding {
                 width,
             } => write!(
                 f,
-                "the numerical error (95 % of the amplitudes within {:.2} %) is more than a tenth of the \
-                 interval of P{percent} ({:.2} % wide): differences as small as that are no statistics; \
-                 take a smaller accuracy.amplitude_error",
+                "the numerical error (95 % of the amplitudes within {:.2} %) is {} of the width of the \
+                 interval of P{percent} ({:.2} %), more than a tenth: differences as small as that are no \
+                 statistics; take a smaller accuracy.amplitude_error",
                 100.0 * error,
+                share_words(error / width),
                 100.0 * width
             ),
             Self::Needless {
@@ -183,10 +185,11 @@ impl fmt::Display for NumericalFinding {
                 width,
             } => write!(
                 f,
-                "the numerical error (95 % of the amplitudes within {:.3} %) is less than a hundredth of \
-                 the interval of P{percent} ({:.1} % wide): a larger accuracy.amplitude_error is faster \
-                 and would hardly show",
+                "the numerical error (95 % of the amplitudes within {:.3} %) is {} of the width of the \
+                 interval of P{percent} ({:.1} %), less than a hundredth: a larger accuracy.amplitude_error \
+                 is faster and would hardly show",
                 100.0 * error,
+                share_words(error / width),
                 100.0 * width
             ),
         }

@@ -36,15 +36,13 @@ pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usi
         if let Some(told) = told {
             let _ = write!(html, "<p class=\"told\">{}</p>", escaped(&tied(&told)));
         }
-        for note in notes {
-            let _ = write!(html, "<p class=\"note\">{}</p>", escaped(&tied(&note)));
-        }
-        if let Some((target, words)) = more {
+        let mut notes: Vec<String> = notes.iter().map(|note| escaped(&tied(note))).collect();
+        notes.extend(more.map(|(target, words)| {
             let words = escaped(&words);
-            let _ = write!(
-                html,
-                "<p class=\"note\"><a href=\"#{target}\">{words}</a></p>"
-            );
+            format!("<a href=\"#{target}\">{words}</a>")
+        }));
+        for note in notes {
+            let _ = write!(html, "<p class=\"note\">{note}</p>");
         }
         html.push_str("</div>\n");
     }
@@ -78,7 +76,9 @@ fn health_of(report: &StudyReport) -> String {
             html.push_str("</ul>");
         }
         if place == 0 && found.class != "good" {
-            html.push_str("<p><a href=\"#warnings\">What to do about it</a></p>");
+            html.push_str(
+                "<p><a href=\"#warnings\">All warnings, and what to do: section “Warnings”</a></p>",
+            );
         }
         html.push_str("</div>\n");
     }
