@@ -4,7 +4,6 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::words::share_words;
 use crate::population::statistics::Percentile;
 use crate::response::friction::ContactLaw;
 
@@ -154,6 +153,13 @@ impl NumericalError {
     }
 }
 
+/// An error as a share of the width of an interval, in percent.
+pub(super) fn share_of_interval(error: f64, width: f64) -> String {
+    let share = error / width;
+    let decimals = if share < LARGE_SHARE { 2 } else { 0 };
+    format!("{:.decimals$} %", 100.0 * share)
+}
+
 impl fmt::Display for NumericalFinding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -176,7 +182,7 @@ impl fmt::Display for NumericalFinding {
                  interval of P{percent} ({:.2} %), more than a tenth: differences as small as that are no \
                  statistics; take a smaller accuracy.amplitude_error",
                 100.0 * error,
-                share_words(error / width),
+                share_of_interval(*error, *width),
                 100.0 * width
             ),
             Self::Needless {
@@ -189,7 +195,7 @@ impl fmt::Display for NumericalFinding {
                  interval of P{percent} ({:.1} %), less than a hundredth: a larger accuracy.amplitude_error \
                  is faster and would hardly show",
                 100.0 * error,
-                share_words(error / width),
+                share_of_interval(*error, *width),
                 100.0 * width
             ),
         }

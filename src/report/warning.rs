@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::NumericalFinding;
-use super::words::{share_words, trimmed};
+use super::numerical_error::share_of_interval;
 
 /// Largest number of wheels of a file that a report names one by one.
 pub const MOST_WHEELS_NAMED: u64 = 12;
@@ -30,7 +30,7 @@ impl RowTolerance {
             ("harmonics", self.harmonic_tolerance),
         ];
         let known: Vec<String> = { named.into_iter() }
-            .filter_map(|(name, own)| Some(format!("{name} {} %", trimmed(100.0 * own?))))
+            .filter_map(|(name, own)| Some(format!("{name} {} %", percent(own?))))
             .collect();
         if known.is_empty() {
             String::new()
@@ -38,6 +38,11 @@ impl RowTolerance {
             format!(" ({})", known.join(", "))
         }
     }
+}
+
+/// In percent, with six decimals at most.
+fn percent(ratio: f64) -> f64 {
+    (1e8 * ratio).round() / 1e6
 }
 
 /// A warning about the results of a study.
@@ -255,7 +260,7 @@ impl Warning {
                 tolerance,
                 ..
             } => format!(
-                "{rows} of {planned} rows state a numerical error beyond their tolerance{}: under {}",
+                "{rows} of {planned} rows beyond their error tolerance{} under {}",
                 tolerance.in_brackets(),
                 named(scenarios)
             ),
@@ -283,16 +288,16 @@ impl Warning {
                 percent,
                 width,
             }) => format!(
-                "numerical error {} of the width of the P{percent} interval: finer solutions help too",
-                share_words(error / width)
+                "numerical error {} of the P{percent} interval: finer solutions help too",
+                share_of_interval(*error, *width)
             ),
             Self::NumericalError(NumericalFinding::Needless {
                 error,
                 percent,
                 width,
             }) => format!(
-                "numerical error {} of the width of the P{percent} interval: finer than needed",
-                share_words(error / width)
+                "numerical error {} of the P{percent} interval: finer than needed",
+                share_of_interval(*error, *width)
             ),
             Self::Failures { failed, planned } => {
                 format!("{failed} of {planned} rows have no result")

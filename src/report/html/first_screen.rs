@@ -36,12 +36,7 @@ pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usi
         if let Some(told) = told {
             let _ = write!(html, "<p class=\"told\">{}</p>", escaped(&tied(&told)));
         }
-        let mut notes: Vec<String> = notes.iter().map(|note| escaped(&tied(note))).collect();
-        notes.extend(more.map(|(target, words)| {
-            let words = escaped(&words);
-            format!("<a href=\"#{target}\">{words}</a>")
-        }));
-        for note in notes {
+        for note in marked_up(&notes, more) {
             let _ = write!(html, "<p class=\"note\">{note}</p>");
         }
         html.push_str("</div>\n");
@@ -57,6 +52,27 @@ pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usi
     html.push_str(&folded(report, group));
     html.push_str("</section>\n");
     html
+}
+
+/// Letters of a line of notes on a telephone.
+const LINE: usize = 46;
+
+/// Notes, and the link to more of the page: beside the last note where both are one line.
+fn marked_up(notes: &[String], more: Option<(String, String)>) -> Vec<String> {
+    let mut lines: Vec<String> = notes.iter().map(|note| escaped(&tied(note))).collect();
+    let Some((target, words)) = more else {
+        return lines;
+    };
+    let link = format!("<a href=\"#{target}\">{}</a>", escaped(&words));
+    let letters = |text: &String| text.chars().count() + words.chars().count() + 2;
+    match (lines.last_mut(), notes.last()) {
+        (Some(line), Some(note)) if letters(note) <= LINE => {
+            line.push_str("; ");
+            line.push_str(&link);
+        }
+        _ => lines.push(link),
+    }
+    lines
 }
 
 fn health_of(report: &StudyReport) -> String {
@@ -77,7 +93,7 @@ fn health_of(report: &StudyReport) -> String {
         }
         if place == 0 && found.class != "good" {
             html.push_str(
-                "<p><a href=\"#warnings\">All warnings, and what to do: section “Warnings”</a></p>",
+                "<p><a href=\"#warnings\">All, and what to do: section “Warnings”</a></p>",
             );
         }
         html.push_str("</div>\n");

@@ -124,7 +124,7 @@ fn other_settings(report: &StudyReport) -> Option<(String, String)> {
 fn all_percentiles(report: &StudyReport, group: &GroupReport) -> (String, String) {
     let same = |other: &GroupReport| other.scenarios == group.scenarios;
     let place = report.groups.iter().position(same).unwrap_or(0);
-    let words = "all percentiles: section “Numbers”".to_owned();
+    let words = "all: section “Numbers”".to_owned();
     (format!("numbers-{place}"), words)
 }
 
@@ -310,7 +310,8 @@ fn number_of_error(
     (percent, error): (&str, Option<&PercentileError>),
 ) -> BigNumber {
     let units = LengthUnit::of_summary(&report.summary);
-    let label = format!("Numerical error of P{percent}, at most");
+    // Errors of single rows, which stand further below, may be larger than the bound.
+    let label = format!("Numerical error of P{percent} (not of a row), at most");
     let bounds = error.and_then(|own| Some((own.lowest?, own.highest?, own.percentile.value?)));
     let Some((low, high, value)) = bounds else {
         let errors = { group.errors.iter() }.find(|own| own.scenario == lowest);
@@ -338,7 +339,6 @@ fn number_of_error(
                 units.rough(own),
                 units.rough(interval)
             ),
-            format!("a bound on P{percent}: single rows may be further off"),
             remedy.words().to_owned(),
         ]
     });
