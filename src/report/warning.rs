@@ -260,7 +260,7 @@ impl Warning {
                 tolerance,
                 ..
             } => format!(
-                "{rows} of {planned} rows beyond their error tolerance{} under {}",
+                "{rows} of {planned} rows beyond tolerance{} under {}",
                 tolerance.in_brackets(),
                 named(scenarios)
             ),

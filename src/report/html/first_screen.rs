@@ -55,7 +55,7 @@ pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usi
 }
 
 /// Letters of a line of notes on a telephone.
-const LINE: usize = 46;
+const LINE: usize = 40;
 
 /// Notes, and the link to more of the page: beside the last note where both are one line.
 fn marked_up(notes: &[String], more: Option<(String, String)>) -> Vec<String> {

@@ -124,7 +124,7 @@ fn other_settings(report: &StudyReport) -> Option<(String, String)> {
 fn all_percentiles(report: &StudyReport, group: &GroupReport) -> (String, String) {
     let same = |other: &GroupReport| other.scenarios == group.scenarios;
     let place = report.groups.iter().position(same).unwrap_or(0);
-    let words = "all: section “Numbers”".to_owned();
+    let words = "all in “Numbers”".to_owned();
     (format!("numbers-{place}"), words)
 }
 
@@ -241,12 +241,10 @@ fn notes_of_load(
     let percent = percent_words(choice.percent);
     if !others.is_empty() {
         let others = others.join(", ");
-        notes.push(format!(
-            "could be as good: {others} (same patterns compared)"
-        ));
+        notes.push(format!("could be as good: {others} (same patterns)"));
     } else if choice.is_of_a_design() {
         notes.push(format!(
-            "95 % confident: no other calculated load has a lower P{percent} (same patterns compared)"
+            "95 % confident: no other calculated load has a lower P{percent} (same patterns)"
         ));
     }
     let mut higher = { group.choices.iter() }.filter(|own| own.percent > choice.percent);
@@ -311,7 +309,7 @@ fn number_of_error(
 ) -> BigNumber {
     let units = LengthUnit::of_summary(&report.summary);
     // Errors of single rows, which stand further below, may be larger than the bound.
-    let label = format!("Numerical error of P{percent} (not of a row), at most");
+    let label = format!("Numerical error of P{percent}, not of a row");
     let bounds = error.and_then(|own| Some((own.lowest?, own.highest?, own.percentile.value?)));
     let Some((low, high, value)) = bounds else {
         let errors = { group.errors.iter() }.find(|own| own.scenario == lowest);
@@ -344,7 +342,7 @@ fn number_of_error(
     });
     BigNumber {
         label,
-        value: share_words(largest),
+        value: format!("at most {}", share_words(largest)),
         told: None,
         notes,
         more: None,
