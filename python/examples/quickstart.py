@@ -28,7 +28,6 @@ study = blisk.Study(
     excitation={"engine_orders": [2], "amplitude_n": 10.0},
     mistuning={"distribution": {"kind": "normal"}},
     sweep={"normal_load_n": ["slide", 50, 100, 150, "stuck"], "standard_deviation": [0.03]},
-    solver={"harmonics": [1, 3, 5, 7]},
 )
 for remark in study.check():
     print("remark:", remark)

@@ -228,6 +228,12 @@ def test_axes_hold_the_numbers_of_the_tables(finished):
     assert {"P50", "P95", "tuned"} <= set(lines) and "P99" not in lines
     assert list(lines["P95"].get_ydata()) == [row["peak_amplitude_m_p95"] for row in rows]
     assert list(lines["P95"].get_xdata()) == [row["normal_load_n"] for row in rows] == [50, 150]
+    # Unit and scales are those of the figure of the report; the data stay in m.
+    figure = finished.figure("amplitude").svg
+    assert axes.get_ylabel() in ("peak amplitude, µm", "peak amplitude, µm (log.)")
+    assert ("µm (log.)" in figure) == (axes.get_yscale() == "log") == axes.get_ylabel().endswith("(log.)")
+    assert "µm" in figure and ("N (logarithmic)" in figure) == (axes.get_xscale() == "log")
+    assert axes.yaxis.get_major_formatter()(250e-6, 0) == "250"
     assert list(lines["tuned"].get_ydata()) == [row["tuned_amplitude_m"] for row in rows]
     again = finished.plot("amplification_factor", ax=axes)
     assert again is axes and axes.get_ylabel() == "amplification factor"

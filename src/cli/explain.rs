@@ -9,15 +9,21 @@ use serde::{Serialize, Serializer};
 use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::input::nearest_key_names;
-use crate::input::{Term, terms_about};
+use crate::input::terms_about;
 use crate::model::sector::import::{import_keys, import_schema};
+use crate::population::table::{
+    ColumnSpec, DISTRIBUTION_COLUMNS, MAIN_EFFECT_COLUMNS, PATTERN_COLUMNS, PERCENTILE_COLUMNS,
+    RESPONSE_COLUMNS, SCENARIO_COLUMNS, TAIL_FIT_COLUMNS, TRADEOFF_COLUMNS, VERIFICATION_COLUMNS,
+};
+use crate::response::harmonic_balance::Status;
 use crate::study::{KeySpec, keys_about, keys_below, nearest_keys, study_schema};
 
 /// Arguments of `blisk explain`.
 #[derive(Debug, Args)]
 pub struct ExplainArguments {
-    /// A key, like `solver.peak_tolerance`, a table, like `solver`, or words, like `friction`, that are sought in
-    /// names and meanings; `import` for the keys of import files [default: all keys of study files].
+    /// A key, like `solver.peak_tolerance`, a table, like `solver`, a column of results, like `harmonic_error`, a
+    /// status of rows, like `stagnated`, or words, like `friction`, that are sought in names and meanings; `import`
+    /// for the keys of import files [default: all keys of study files].
     #[arg(value_name = "KEY|WORD")]
     words: Vec<String>,
     /// Print JSON.
@@ -99,15 +105,62 @@ pub(super) fn explain(arguments: &ExplainArguments) -> Result<ExitStatus, Failur
     Ok(ExitStatus::Done)
 }
 
+/// The tables whose columns are explained.
+const TABLES: [(&str, &[ColumnSpec]); 9] = [
+    ("responses.parquet", RESPONSE_COLUMNS),
+    ("scenarios.parquet", SCENARIO_COLUMNS),
+    ("percentiles.parquet", PERCENTILE_COLUMNS),
+    ("distribution.parquet", DISTRIBUTION_COLUMNS),
+    ("patterns.parquet", PATTERN_COLUMNS),
+    ("main_effects.parquet", MAIN_EFFECT_COLUMNS),
+    ("tail_fits.parquet", TAIL_FIT_COLUMNS),
+    ("tradeoff.parquet", TRADEOFF_COLUMNS),
+    ("verification.parquet", VERIFICATION_COLUMNS),
+];
+
+/// A word that is no key: with where it stands, and its meaning.
+#[derive(Debug)]
+struct Meaning {
+    word: String,
+    meaning: String,
+}
+
+/// The status and the columns of this name; of a column in several tables each meaning once.
+fn of_results(name: &str) -> Vec<Meaning> {
+    let status = { Status::ALL.iter() }.filter(|status| status.name() == name);
+    let statuses = status.map(|status| Meaning {
+        word: format!("{name} (status of a row)"),
+        meaning: status.meaning().to_owned(),
+    });
+    let mut found: Vec<Meaning> = statuses.collect();
+    for (table, columns) in TABLES {
+        for column in columns.iter().filter(|column| column.name == name) {
+            let meaning = match column.unit {
+                "" | "1" => column.description.to_owned(),
+                unit => format!("{}; unit {unit}", column.description),
+            };
+            match found.iter_mut().find(|own| own.meaning == meaning) {
+                Some(same) => same.word = same.word.replace(')', &format!(", {table})")),
+                None => found.push(Meaning {
+                    word: format!("{name} (column of {table})"),
+                    meaning,
+                }),
+            }
+        }
+    }
+    found
+}
+
 /// Keys and terms that were asked for: as JSON the keys, as text both.
 #[derive(Debug)]
 pub struct Explanations {
     keys: Vec<Explanation>,
-    terms: Vec<Term>,
+    terms: Vec<Meaning>,
 }
 
 impl Explanations {
-    /// The keys that `name` is or that stand below it, else the keys and terms that have its words; all keys for "".
+    /// The keys that `name` is or that stand below it, else the status and the columns of this name and the keys and
+    /// terms that have its words; all keys for "".
     ///
     /// # Errors
     /// There is none of them; the message has the nearest names.
@@ -119,7 +172,11 @@ impl Explanations {
         let mut terms = Vec::new();
         if keys.is_empty() {
             keys = keys_about(name);
-            terms = terms_about(name);
+            terms = of_results(name);
+            terms.extend(terms_about(name).into_iter().map(|term| Meaning {
+                word: term.word.to_owned(),
+                meaning: term.meaning.to_owned(),
+            }));
         }
         if keys.is_empty() && terms.is_empty() {
             let near = if name.starts_with("import.") {

@@ -11,6 +11,7 @@ use super::scheduler::threads;
 use super::{ExitStatus, output};
 use crate::campaign::{OptimumRequest, find_optimum};
 use crate::population::statistics::Quantity;
+use crate::population::table::MANIFEST;
 use crate::settings::ReducedEngineSource;
 use crate::study::Study;
 
@@ -60,6 +61,15 @@ pub(super) fn command(arguments: &OptimumArguments) -> Result<ExitStatus, Failur
     let study = Study::read(&arguments.study)?;
     let named = || Path::new("results").join(format!("{}-optimum", study.name));
     let results = arguments.out.clone().unwrap_or_else(named);
+    if results.join(MANIFEST).exists() {
+        return Err(Failure::usage(format!(
+            "--out {}: it holds the results of a study; accepted: a folder of its own for the search, like {}; the \
+             loads of these results are taken by --solved {}",
+            results.display(),
+            named().display(),
+            results.display()
+        )));
+    }
     let of_study = || Path::new("results").join(&study.name);
     let solved = arguments.solved.clone().unwrap_or_else(of_study);
     let progress = RunProgress::new();

@@ -122,6 +122,13 @@ impl Progress for RunProgress {
         }
     }
 
+    fn solves_anew(&self, rows: u64) {
+        self.say(&format!(
+            "{rows} stored rows are solved anew: the study now has other settings for their loads, as harmonics, basis or \
+             stated error"
+        ));
+    }
+
     fn surrogate_times(&self, surrogate_s: f64, row_s: f64) {
         self.say(&format!(
             "measured: a row takes {:.1} ms of processor time, a surrogate {:.1} ms, {:.2} of a row",

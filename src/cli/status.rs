@@ -46,7 +46,10 @@ impl fmt::Display for StatusAnswer {
 }
 
 fn lines(status: &FolderStatus) -> Vec<String> {
-    let mut lines = vec![format!("study {}: {}", status.name, line(status))];
+    let absent = absent_shards(status).map_or_else(String::new, |(absent, count)| {
+        format!("; {absent} of {count} shards not begun, their rows not counted")
+    });
+    let mut lines = vec![format!("study {}: {}{absent}", status.name, line(status))];
     for shard in &status.shards {
         let name = shard.shard.as_deref().unwrap_or_default();
         lines.push(format!("  shard {name}: {}", line(shard)));
@@ -56,6 +59,15 @@ fn lines(status: &FolderStatus) -> Vec<String> {
         lines.push(format!("  shards not finished: {}", numbers.join(",")));
     }
     lines
+}
+
+/// How many shards nobody has begun, and how many there are; none where all are begun, or where the rows are not those
+/// of the shards.
+fn absent_shards(status: &FolderStatus) -> Option<(usize, usize)> {
+    let first = status.shards.first()?.shard.as_deref()?;
+    let count: usize = first.split_once('/')?.1.parse().ok()?;
+    let absent = count.saturating_sub(status.shards.len());
+    (absent > 0 && status.work != Work::Finished).then_some((absent, count))
 }
 
 fn line(status: &FolderStatus) -> String {

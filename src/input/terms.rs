@@ -17,7 +17,7 @@ const fn term(word: &'static str, meaning: &'static str) -> Term {
 const TERMS: &[Term] = &[
     term(
         "full (column contact)",
-        "friction by the contact law under a normal load, as opposed to the linear limits stuck, slide and free; \
+        "friction by the contact law under a normal load, as opposed to the linear solutions stuck, slide and free; \
          nothing is said about the model",
     ),
     term(
@@ -27,16 +27,16 @@ const TERMS: &[Term] = &[
     ),
     term(
         "stuck (contact, load)",
-        "linear limit: every contact pair is welded by its contact springs; the limit of a large normal load",
+        "linear solution, a limit of friction: every contact pair is welded by its contact springs; the limit of a large normal load",
     ),
     term(
         "slide (contact, load)",
-        "linear limit: contact pairs slide without friction and stay closed; the limit of a small normal load. \
+        "linear solution, a limit of friction: contact pairs slide without friction and stay closed; the limit of a small normal load. \
          Its share of slipping pairs is no result and shown as -",
     ),
     term(
         "free (contact, load)",
-        "linear limit: no contact springs at all, as if there were no damper",
+        "linear solution: no contact springs at all, as if there were no damper",
     ),
     term(
         "normal load N",

@@ -1,16 +1,14 @@
 //! The answers that a report opens with: which normal load, how sure, and how much of it is numerical error.
 
 use super::numerical_error::Remedy;
+use super::stated_errors::{common_words, measured, stated};
 use super::words::{
     LengthUnit, four_digits, listed, loads_and_limits, percent_words, share_words,
     short_load_with_unit,
 };
 use super::{
-    BestLoads, CommonErrors, GroupReport, LoadChoice, MeasuredPeak, NumericalError,
-    PercentileError, ScenarioErrors, ScenarioSummary, StatedErrors, StudyReport, Warning,
-};
-use crate::population::monte_carlo::{
-    HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, TUNED_RECEPTANCES,
+    BestLoads, GroupReport, LoadChoice, MeasuredPeak, PercentileError, ScenarioErrors,
+    ScenarioSummary, StudyReport, Warning,
 };
 use crate::population::statistics::{CONFIDENCE, Percentile};
 
@@ -44,6 +42,9 @@ pub fn answers(report: &StudyReport, group: &GroupReport) -> Vec<Answer> {
         asked().partition(|choice| choice.lowest.is_some());
     let loads = known.into_iter().chain(unknown.into_iter().rev());
     let mut answers: Vec<Answer> = writer.measured_wheels().into_iter().collect();
+    if report.summary.is_of_one_wheel() {
+        return answers;
+    }
     answers.extend(loads.map(|choice| writer.load(choice)));
     answers.extend(asked().find_map(|choice| writer.error(choice)));
     answers
@@ -169,7 +170,7 @@ impl Writer<'_> {
         };
         format!(
             "{percent} % of such wheels have a lower peak. From {} random patterns: with {confidence} % confidence the \
-             P{percent} at {} {range}.",
+             P{percent} at {} {range}. This interval counts for that load.",
             self.report.summary.patterns,
             self.load_of(scenario),
         )
@@ -294,7 +295,8 @@ impl Writer<'_> {
         }];
         match best.lower.zip(best.upper) {
             Some((lower, upper)) => reasons.push(format!(
-                "At the truly best of these loads the P{percent} lies between {} and {} (95 %, the choice allowed for).",
+                "Another interval counts for how low any of these loads can be: at the truly best of them the P{percent} \
+                 lies between {} and {} (95 %, the choice allowed for).",
                 self.units.number(lower),
                 self.units.length(upper)
             )),
@@ -311,21 +313,33 @@ impl Writer<'_> {
     /// the rows of the chosen load state no bound.
     fn by_numerical_error(&self, lowest: usize, percent: f64) -> Option<String> {
         let highest = self.error_of(lowest, percent)?.1.highest?;
-        let could: Vec<String> = self
-            .group
-            .scenarios
-            .iter()
-            .filter(|&&other| other != lowest)
-            .filter(|&&other| {
-                let bound = self
-                    .error_of(other, percent)
-                    .and_then(|(_, own)| own.lowest);
+        // Where failed rows leave no value, finer solutions decide nothing.
+        let others = self.group.scenarios.iter().filter(|&&own| own != lowest);
+        let (known, unknown): (Vec<usize>, Vec<usize>) = others.partition(|&&other| {
+            let own = self.error_of(other, percent);
+            own.is_some_and(|(_, own)| own.percentile.value.is_some())
+        });
+        let could: Vec<String> = { known.into_iter() }
+            .filter(|&other| {
+                let own = self.error_of(other, percent);
+                let bound = own.and_then(|(_, own)| own.lowest);
                 bound.is_none_or(|bound| bound < highest)
             })
-            .map(|&other| self.load_of(other))
+            .map(|other| self.load_of(other))
             .collect();
         let words = percent_words(percent);
-        Some(if could.is_empty() {
+        let unknown: Vec<String> = { unknown.into_iter() }
+            .map(|other| self.load_of(other))
+            .collect();
+        let not_compared = if unknown.is_empty() {
+            String::new()
+        } else {
+            format!(
+                " Not compared: {}, where failed rows leave no P{words}.",
+                listed(&unknown)
+            )
+        };
+        let by_error = if could.is_empty() {
             format!(
                 "By what the rows state, numerical error cannot make the P{words} of another load the lowest."
             )
@@ -334,7 +348,8 @@ impl Writer<'_> {
                 "By what the rows state, numerical error could hide a lower P{words} at {}: finer solutions decide.",
                 listed(&could)
             )
-        })
+        };
+        Some(by_error + &not_compared)
     }
 
     /// How much of the percentile at the chosen load is numerical error; none without a percentile.
@@ -361,10 +376,9 @@ impl Writer<'_> {
                 self.load_of(lowest)
             ),
             None => format!(
-                "Not bounded: {} of {} rows at {} state no bound.",
-                rows.without_bound,
-                rows.rows,
-                self.load_of(lowest)
+                "Not bounded at {}: {}.",
+                self.load_of(lowest),
+                rows.why_no_bound()
             ),
         };
         let mut reasons = Vec::new();
@@ -394,7 +408,7 @@ impl Writer<'_> {
                 self.units.length(corrected)
             ));
         }
-        reasons.extend(self.common(&errors.common));
+        reasons.extend(common_words(&self.report.summary.basis, &errors.common));
         reasons.extend(self.report.summary.numerical_error.map(measured));
         reasons.push(
             "Not in these numbers: errors of the model that was given, as of its mesh, contact stiffness, friction \
@@ -406,91 +420,5 @@ impl Writer<'_> {
             verdict,
             reasons,
         })
-    }
-
-    /// Errors that every row of a load states, whatever its own.
-    fn common(&self, common: &CommonErrors) -> Option<String> {
-        let basis = &self.report.summary.basis;
-        let (safety, judged_by, measured_on) = if basis.name == TUNED_RECEPTANCES {
-            // The tuned wheel judges harmonics too, mistuned ones alone the modes.
-            (
-                HARMONIC_SAFETY_ON_RECEPTANCES,
-                "the worst of the wheels that judge",
-                "mistuned wheels",
-            )
-        } else {
-            (HARMONIC_SAFETY, "the tuned wheel", "the tuned wheel")
-        };
-        let parts = [
-            (
-                common.harmonics.map(|change| safety * change),
-                format!("harmonics left out ({safety} times what they change on {judged_by})"),
-            ),
-            (common.peak, "the peak search".to_owned()),
-            (
-                basis.tuned_peak_error,
-                format!(
-                    "the reduced model ({}, measured on {measured_on})",
-                    basis.name
-                ),
-            ),
-        ];
-        let parts: Vec<String> = parts
-            .into_iter()
-            .filter_map(|(error, of)| Some(format!("{} for {of}", share_words(error?))))
-            .collect();
-        (!parts.is_empty()).then(|| format!("Every row here states at least {}.", listed(&parts)))
-    }
-}
-
-/// What was measured of the error before the settings were chosen by it.
-fn measured(error: NumericalError) -> String {
-    let accepted = share_words(error.accepted);
-    let kept = match (error.p95_upper, error.met) {
-        (Some(bound), true) => format!(
-            "with 95 % confidence 95 % of the amplitudes are within {} of a finer solution",
-            share_words(bound)
-        ),
-        (Some(bound), false) => format!(
-            "not kept, 95 % of the amplitudes are within {} of a finer solution",
-            share_words(bound)
-        ),
-        (None, _) => "without a bound".to_owned(),
-    };
-    let worst = error.worst_upper.map_or(String::new(), |worst| {
-        format!(
-            ", and the worst is claimed to be within {}",
-            share_words(worst)
-        )
-    });
-    let law = error
-        .law_words()
-        .map_or(String::new(), |words| format!(" They have {words}."));
-    format!(
-        "The settings were chosen on a sample of rows for an error of {accepted} (accuracy.amplitude_error): {kept}{worst}.{law}"
-    )
-}
-
-/// What the rows of the chosen load state.
-fn stated(rows: &StatedErrors) -> String {
-    let mut parts = Vec::new();
-    let sources = [
-        ("all sources", &rows.stated),
-        ("sampling", &rows.sampling),
-        ("harmonics left out", &rows.harmonics),
-    ];
-    for (name, spread) in sources {
-        if let Some(spread) = spread {
-            parts.push(format!(
-                "{name} {} (largest {})",
-                share_words(spread.median),
-                share_words(spread.largest)
-            ));
-        }
-    }
-    if parts.is_empty() {
-        "These rows state no errors.".to_owned()
-    } else {
-        format!("Median of the rows: {}.", parts.join(", "))
     }
 }

@@ -53,12 +53,12 @@ pub use optimum::{OptimumExcitation, OptimumReport};
 pub use peak_audit::PeakAuditReport;
 pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};
 pub use rotation::RotationFacts;
-pub use stated_errors::{ErrorRows, ErrorSpread, PercentileError, StatedErrors};
+pub use stated_errors::{CommonErrors, ErrorRows, ErrorSpread, PercentileError, StatedErrors};
 pub use statistics_csv::statistics_csv;
 pub use study_echo::{EchoedExcitation, EchoedLoad, EchoedModel, Remark, StudyEcho, Travel};
 pub use study_report::{
-    CommonErrors, DistributionReport, GroupReport, LoadChoice, MeasuredPeak, Provenance,
-    ScenarioErrors, StudyReport, Wheels, setting,
+    DistributionReport, GroupReport, LoadChoice, MeasuredPeak, Provenance, ScenarioErrors,
+    StudyReport, Wheels, setting,
 };
 pub use summary::{BasisSummary, BestLoad, ScenarioSummary, StudySummary, SummaryContext};
 pub use tail_report::StatisticsReport;
@@ -66,6 +66,6 @@ pub use time_domain::{StepReport, TimeDomainReport};
 pub use tradeoff::{FullContactCheck, TradeoffChoice, TradeoffReference, TradeoffReport};
 pub use verification::{ErrorDistribution, RegimeErrors, VerificationContext, VerificationReport};
 pub use visible::{is_order, visible, with_orders_escaped};
-pub use warning::{MOST_WHEELS_NAMED, Warning};
+pub use warning::{MOST_WHEELS_NAMED, RowTolerance, Warning};
 pub use wheel_report::{PairReport, ResponseCurve, WheelCurves, WheelReport, WheelStateReport};
 pub use words::LengthUnit;

@@ -153,6 +153,13 @@ impl NumericalError {
     }
 }
 
+/// An error as a share of the width of an interval, in percent.
+pub(super) fn share_of_interval(error: f64, width: f64) -> String {
+    let share = error / width;
+    let decimals = if share < LARGE_SHARE { 2 } else { 0 };
+    format!("{:.decimals$} %", 100.0 * share)
+}
+
 impl fmt::Display for NumericalFinding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -171,10 +178,11 @@ impl fmt::Display for NumericalFinding {
                 width,
             } => write!(
                 f,
-                "the numerical error (95 % of the amplitudes within {:.2} %) is more than a tenth of the \
-                 interval of P{percent} ({:.2} % wide): differences as small as that are no statistics; \
-                 take a smaller accuracy.amplitude_error",
+                "the numerical error (95 % of the amplitudes within {:.2} %) is {} of the width of the \
+                 interval of P{percent} ({:.2} %), more than a tenth: differences as small as that are no \
+                 statistics; take a smaller accuracy.amplitude_error",
                 100.0 * error,
+                share_of_interval(*error, *width),
                 100.0 * width
             ),
             Self::Needless {
@@ -183,10 +191,11 @@ impl fmt::Display for NumericalFinding {
                 width,
             } => write!(
                 f,
-                "the numerical error (95 % of the amplitudes within {:.3} %) is less than a hundredth of \
-                 the interval of P{percent} ({:.1} % wide): a larger accuracy.amplitude_error is faster \
-                 and would hardly show",
+                "the numerical error (95 % of the amplitudes within {:.3} %) is {} of the width of the \
+                 interval of P{percent} ({:.1} %), less than a hundredth: a larger accuracy.amplitude_error \
+                 is faster and would hardly show",
                 100.0 * error,
+                share_of_interval(*error, *width),
                 100.0 * width
             ),
         }

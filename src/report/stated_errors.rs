@@ -2,7 +2,11 @@
 
 use serde::Serialize;
 
-use crate::population::monte_carlo::ResponseRow;
+use super::words::{listed, share_words};
+use super::{BasisSummary, NumericalError};
+use crate::population::monte_carlo::{
+    HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, ResponseRow, TUNED_RECEPTANCES,
+};
 use crate::population::statistics::{Percentile, percentile_at};
 use crate::response::harmonic_balance::Status;
 
@@ -75,6 +79,31 @@ pub struct StatedErrors {
     pub harmonics: Option<ErrorSpread>,
     /// Bound on the error from all sources.
     pub stated: Option<ErrorSpread>,
+}
+
+impl StatedErrors {
+    /// Why a percentile of these rows has no numerical bound.
+    pub(super) fn why_no_bound(&self) -> String {
+        let Self {
+            rows,
+            without_bound,
+            ..
+        } = self;
+        if *without_bound > 0 {
+            format!("{without_bound} of {rows} rows state none")
+        } else {
+            "rows state errors as large as the amplitude, or failed".to_owned()
+        }
+    }
+}
+
+/// Errors that every row of a scenario states besides its own and that of the basis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CommonErrors {
+    /// What the harmonics left out change in the tuned peak of the full contact model; none for linear limits.
+    pub harmonics: Option<f64>,
+    /// Tolerance of the peak search.
+    pub peak: Option<f64>,
 }
 
 /// Amplitude and errors of one row with a result.
@@ -152,6 +181,96 @@ impl ErrorRows {
             highest: finite(highest.value),
             corrected: corrected.value,
         }
+    }
+}
+
+/// Errors that every row of a load states, whatever its own.
+pub(super) fn common_words(basis: &BasisSummary, common: &CommonErrors) -> Option<String> {
+    let (safety, judged_by, measured_on) = if basis.name == TUNED_RECEPTANCES {
+        // The tuned wheel judges harmonics too, mistuned ones alone the modes.
+        (
+            HARMONIC_SAFETY_ON_RECEPTANCES,
+            "the worst of the wheels that judge",
+            "mistuned wheels",
+        )
+    } else {
+        (HARMONIC_SAFETY, "the tuned wheel", "the tuned wheel")
+    };
+    let parts = [
+        (
+            common.harmonics.map(|change| safety * change),
+            format!(
+                "harmonics left out, whatever its own change ({safety} times what they change on {judged_by})"
+            ),
+        ),
+        (common.peak, "the peak search".to_owned()),
+        (
+            basis.tuned_peak_error,
+            format!(
+                "the reduced model ({}, measured on {measured_on})",
+                basis.name
+            ),
+        ),
+    ];
+    let parts: Vec<String> = parts
+        .into_iter()
+        .filter_map(|(error, of)| Some(format!("{} for {of}", share_words(error?))))
+        .collect();
+    (!parts.is_empty()).then(|| format!("Every row here states at least {}.", listed(&parts)))
+}
+
+/// What was measured of the error before the settings were chosen by it.
+pub(super) fn measured(error: NumericalError) -> String {
+    let accepted = share_words(error.accepted);
+    let kept = match (error.p95_upper, error.met) {
+        (Some(bound), true) => format!(
+            "with 95 % confidence 95 % of the amplitudes are within {} of a finer solution",
+            share_words(bound)
+        ),
+        (Some(bound), false) => format!(
+            "not kept, 95 % of the amplitudes are within {} of a finer solution",
+            share_words(bound)
+        ),
+        (None, _) => "without a bound".to_owned(),
+    };
+    let worst = error.worst_upper.map_or(String::new(), |worst| {
+        format!(
+            ", and the worst is claimed to be within {}",
+            share_words(worst)
+        )
+    });
+    let law = error
+        .law_words()
+        .map_or(String::new(), |words| format!(" They have {words}."));
+    format!(
+        "The settings were chosen on a sample of rows for an error of {accepted} (accuracy.amplitude_error): {kept}{worst}.{law}"
+    )
+}
+
+/// What the rows of the chosen load state.
+pub(super) fn stated(rows: &StatedErrors) -> String {
+    let mut parts = Vec::new();
+    let sources = [
+        ("all that it states", &rows.stated),
+        ("change by finer sampling", &rows.sampling),
+        ("change by the next harmonics", &rows.harmonics),
+    ];
+    for (name, spread) in sources {
+        if let Some(spread) = spread {
+            parts.push(format!(
+                "{name} {} (largest {})",
+                share_words(spread.median),
+                share_words(spread.largest)
+            ));
+        }
+    }
+    if parts.is_empty() {
+        "These rows state no errors.".to_owned()
+    } else {
+        format!(
+            "Median of the single rows: {}. A row may be further off than a percentile, which few rows make.",
+            parts.join(", ")
+        )
     }
 }
 

@@ -185,7 +185,7 @@ impl fmt::Display for Remark {
                 f,
                 "a normal load of {} per sector is {} on the wheel; its friction limit, {} per sector, is far \
                  above the force of the excitation at resonance, {}, so that every pair is likely to stick as \
-                 under the linear limit stuck; loads are per sector, not those of the wheel",
+                 under the linear solution stuck; loads are per sector, not those of the wheel",
                 force(*normal_load_n),
                 force(*wheel_load_n),
                 force(*friction_limit_n),
@@ -198,7 +198,7 @@ impl fmt::Display for Remark {
             } => write!(
                 f,
                 "a normal load of {} per sector has the friction limit {} per sector, far below the force of \
-                 the excitation, {}: every pair is likely to slide as under the linear limit slide",
+                 the excitation, {}: every pair is likely to slide as under the linear solution slide",
                 force(*normal_load_n),
                 force(*friction_limit_n),
                 force(*force_n)
@@ -314,14 +314,14 @@ impl StudyEcho {
             ))
         });
         match (numbers.is_empty(), limits.is_empty()) {
-            (true, _) => format!("the linear limits {limits}"),
+            (true, _) => format!("the linear solutions {limits}"),
             (false, true) => format!(
                 "{} N per sector{}",
                 numbers.join(", "),
                 of_wheel.unwrap_or_default()
             ),
             (false, false) => format!(
-                "{} N per sector{}, and the linear limits {limits}",
+                "{} N per sector{}, and the linear solutions {limits}",
                 numbers.join(", "),
                 of_wheel.unwrap_or_default()
             ),

@@ -7,7 +7,8 @@ use serde_json::Value;
 
 use super::words::excitation_and_deviation;
 use super::{
-    AccuracyTrials, BestLoads, PercentileError, ShownModel, StatedErrors, StudySummary, WheelReport,
+    AccuracyTrials, BestLoads, CommonErrors, PercentileError, ShownModel, StatedErrors,
+    StudySummary, WheelReport,
 };
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{Percentile, Quantity, TailFit};
@@ -126,15 +127,6 @@ pub struct ScenarioErrors {
     pub common: CommonErrors,
     /// What the errors come to in percentiles of the peak amplitude.
     pub percentiles: Vec<PercentileError>,
-}
-
-/// Errors that every row of a scenario states besides its own and that of the basis.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct CommonErrors {
-    /// What the harmonics left out change in the tuned peak of the full contact model; none for linear limits.
-    pub harmonics: Option<f64>,
-    /// Tolerance of the peak search.
-    pub peak: Option<f64>,
 }
 
 /// The distribution of a quantity in one scenario.

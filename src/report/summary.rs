@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{NumericalError, RotationFacts, Warning};
+use super::{NumericalError, RotationFacts, RowTolerance, Warning};
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{
     Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics, ScenarioStability,
@@ -27,6 +27,8 @@ pub struct SummaryContext {
     pub stop: Option<StopOutcome>,
     /// Harmonics as the study has them.
     pub harmonics: Harmonics,
+    /// What rows are marked by.
+    pub tolerance: RowTolerance,
     /// Reduction basis in use.
     pub basis: BasisSummary,
     /// Numerical error by which the settings were chosen, if they were.
@@ -247,6 +249,12 @@ impl StudySummary {
         self.stop.as_ref().is_some_and(|stop| !stop.met)
     }
 
+    /// Whether it is of one wheel of `mistuning.file`, of which there is no percentile.
+    pub(super) fn is_of_one_wheel(&self) -> bool {
+        let mut own = self.scenarios.iter();
+        self.patterns == 1 && own.all(|own| own.standard_deviation.is_none())
+    }
+
     /// Whether failures leave a percentile or a tuned reference without value.
     #[must_use]
     pub fn failures_cost_a_statistic(&self) -> bool {
@@ -333,17 +341,18 @@ fn warnings(
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
     warnings.extend(separation(&context.harmonics, records));
-    let beyond: u64 = records
-        .iter()
-        .map(|record| record.statistics.beyond_tolerance)
-        .sum();
-    if beyond > 0 {
+    let beyond = { records.iter() }.filter(|record| record.statistics.beyond_tolerance > 0);
+    let scenarios: Vec<usize> = beyond.map(|record| record.scenario.index).collect();
+    if !scenarios.is_empty() {
         let stated = records
             .iter()
             .filter_map(|record| record.statistics.largest_stated_error);
+        let beyond = records.iter().map(|own| own.statistics.beyond_tolerance);
         warnings.push(Warning::BeyondTolerance {
-            rows: beyond,
+            rows: beyond.sum(),
             planned: rows.planned(),
+            scenarios,
+            tolerance: context.tolerance,
             largest_stated_error: stated.fold(0.0, f64::max),
         });
     }
@@ -445,6 +454,10 @@ fn unestimated(patterns: u64, records: &[ScenarioRecord]) -> Vec<Warning> {
     // Only wheels of a file have no standard deviation.
     let of_file = |record: &ScenarioRecord| record.scenario.standard_deviation.is_none();
     let wheels_in_file = records.iter().any(of_file).then_some(patterns);
+    // Nobody asks one wheel for a percentile: its peak is the answer.
+    if wheels_in_file == Some(1) {
+        return warnings;
+    }
     for percent in PERCENTILES {
         let of = |record: &ScenarioRecord| -> Vec<Percentile> {
             [

@@ -4,7 +4,8 @@ use std::fmt;
 
 use super::text_table::TextTable;
 use super::words::{
-    LengthUnit, excitation, excitation_and_deviation, load_per_sector, load_words, trimmed,
+    LengthUnit, excitation, excitation_and_deviation, load_per_sector, load_words,
+    scenarios_in_words, trimmed,
 };
 use super::{BestLoad, NumericalError, ScenarioSummary, StudySummary};
 use crate::population::statistics::{
@@ -35,7 +36,8 @@ impl fmt::Display for StudySummary {
             writeln!(f, "{}", numerical_line(error))?;
         }
         if let Some(stop) = &self.stop {
-            writeln!(f, "{}", stop_line(stop))?;
+            let named = |own: usize| scenarios_in_words(self, &[own]);
+            writeln!(f, "{}", stop_line(stop, &named))?;
         }
         if let Some(rotation) = &self.rotation {
             writeln!(f, "{rotation}")?;
@@ -50,8 +52,10 @@ impl fmt::Display for StudySummary {
         let groups = self.scenarios.chunk_by(ScenarioSummary::same_group);
         for group in groups {
             writeln!(f, "\n{}", heading(&group[0]))?;
-            write!(f, "{}", amplitudes(group, unit))?;
-            write!(f, "\n{}", factors(group))?;
+            write!(f, "{}", amplitudes(group, unit, self.is_of_one_wheel()))?;
+            if !self.is_of_one_wheel() {
+                write!(f, "\n{}", factors(group))?;
+            }
         }
         if !self.best.is_empty() {
             writeln!(f)?;
@@ -63,13 +67,23 @@ impl fmt::Display for StudySummary {
             writeln!(f)?;
         }
         for warning in &self.warnings {
-            writeln!(f, "warning: {warning}")?;
+            let named = |own: &[usize]| scenarios_in_words(self, own);
+            writeln!(f, "warning: {}", warning.in_words(&named))?;
+        }
+        if self.is_of_one_wheel() {
+            return writeln!(
+                f,
+                "\npeak is that of the one wheel of mistuning.file, amplification its ratio to the tuned peak of the same \
+                 normal load; of one wheel there is no percentile. - = no result, or no such thing: the linear solutions \
+                 slide, stuck and free have no slip.\n\
+                 A load N is the normal load per sector."
+            );
         }
         writeln!(
             f,
             "\nP50, P95, P99 are order statistics over the patterns with 95 % bounds in brackets \
              (distribution-free); failed rows count as very small in the lower bound and as very large \
-             in the upper one. - = not estimable, or no such thing: the linear limits slide, stuck and \
+             in the upper one. - = not estimable, or no such thing: the linear solutions slide, stuck and \
              free have no slip.\n\
              A load N is the normal load per sector. Amplification factor: peak over the tuned peak of \
              the same normal load."
@@ -115,7 +129,7 @@ fn stability_line(scenarios: &[ScenarioSummary]) -> Option<String> {
 }
 
 /// What the stopping rule came to, in a line.
-fn stop_line(stop: &StopOutcome) -> String {
+fn stop_line(stop: &StopOutcome, named: &dyn Fn(usize) -> String) -> String {
     let made = stop.made.len();
     let last = stop.made.last();
     let widest = last.iter().flat_map(|look| &look.scenarios).max_by(|a, b| {
@@ -128,7 +142,7 @@ fn stop_line(stop: &StopOutcome) -> String {
             .map_or("no interval".to_owned(), |width| {
                 format!("{:.2} %", 100.0 * width)
             });
-        format!("; widest {width} (scenario {})", widest.scenario)
+        format!("; widest {width} (at {})", named(widest.scenario))
     });
     format!(
         "stop: P{} of {} within {} % {} at look {made} of {}, {} of at most {} patterns{width}; bounds at \
@@ -168,21 +182,17 @@ fn heading(scenario: &ScenarioSummary) -> String {
     )
 }
 
-fn amplitudes(group: &[ScenarioSummary], unit: LengthUnit) -> TextTable {
+fn amplitudes(group: &[ScenarioSummary], unit: LengthUnit, is_of_one_wheel: bool) -> TextTable {
     let column = |name: &str| format!("{name} {}", unit.name());
-    let header = [
-        "load N".to_owned(),
-        column("tuned"),
-        "at Hz".to_owned(),
-        column("P50"),
-        column("P95"),
-        column("P99"),
-        "ok".to_owned(),
-        "failed".to_owned(),
-        "slip".to_owned(),
-        "separated".to_owned(),
-    ];
-    let mut table = TextTable::new(&header.each_ref().map(String::as_str));
+    let mut header = vec!["load N".to_owned(), column("tuned"), "at Hz".to_owned()];
+    if is_of_one_wheel {
+        header.extend([column("peak"), "amplification".to_owned()]);
+    } else {
+        header.extend(["P50", "P95", "P99"].map(column));
+    }
+    header.extend(["ok", "failed", "slip", "separated"].map(str::to_owned));
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let mut table = TextTable::new(&header);
     for scenario in group {
         let metres = |value: f64| unit.number(value);
         let mut row = vec![
@@ -194,7 +204,15 @@ fn amplitudes(group: &[ScenarioSummary], unit: LengthUnit) -> TextTable {
                 .tuned_frequency_hz
                 .map_or("-".to_owned(), |hz| format!("{hz:.2}")),
         ];
-        row.extend(percentiles(&scenario.peak_amplitude_m, metres));
+        if is_of_one_wheel {
+            let shown =
+                |own: Option<f64>, show: &dyn Fn(f64) -> String| own.map_or("-".to_owned(), show);
+            let factor = |own: f64| format!("{own:.3}");
+            row.push(shown(scenario.peak_amplitude_m.mean, &metres));
+            row.push(shown(scenario.amplification_factor.mean, &factor));
+        } else {
+            row.extend(percentiles(&scenario.peak_amplitude_m, metres));
+        }
         row.push(scenario.rows.ok().to_string());
         row.push(scenario.rows.failed().to_string());
         // Pairs of a linear limit stick or slide by definition: no share of them is a result.

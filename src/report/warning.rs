@@ -5,12 +5,45 @@ use std::fmt;
 use serde::Serialize;
 
 use super::NumericalFinding;
+use super::numerical_error::share_of_interval;
 
 /// Largest number of wheels of a file that a report names one by one.
 pub const MOST_WHEELS_NAMED: u64 = 12;
 
 /// Says scenarios, of which it gets the indices, in the words of a reader.
 pub(super) type Named<'a> = &'a dyn Fn(&[usize]) -> String;
+
+/// The tolerances of the errors that a row is marked by; none where the results do not say it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct RowTolerance {
+    /// Of the change by finer sampling.
+    pub sampling_tolerance: Option<f64>,
+    /// Of the change by more harmonics, `solver.harmonic_tolerance`.
+    pub harmonic_tolerance: Option<f64>,
+}
+
+impl RowTolerance {
+    /// Both that are known, in brackets; empty without any.
+    fn in_brackets(self) -> String {
+        let named = [
+            ("sampling", self.sampling_tolerance),
+            ("harmonics", self.harmonic_tolerance),
+        ];
+        let known: Vec<String> = { named.into_iter() }
+            .filter_map(|(name, own)| Some(format!("{name} {} %", percent(own?))))
+            .collect();
+        if known.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", known.join(", "))
+        }
+    }
+}
+
+/// In percent, with six decimals at most.
+fn percent(ratio: f64) -> f64 {
+    (1e8 * ratio).round() / 1e6
+}
 
 /// A warning about the results of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -29,6 +62,11 @@ pub enum Warning {
         rows: u64,
         /// All rows.
         planned: u64,
+        /// Scenarios concerned.
+        scenarios: Vec<usize>,
+        /// The tolerances.
+        #[serde(flatten)]
+        tolerance: RowTolerance,
         /// Largest stated error of a row.
         largest_stated_error: f64,
     },
@@ -215,9 +253,17 @@ impl Warning {
                 "contacts separate under {}, which the harmonics cannot show",
                 named(scenarios)
             ),
-            Self::BeyondTolerance { rows, planned, .. } => {
-                format!("{rows} of {planned} rows state a numerical error beyond their tolerance")
-            }
+            Self::BeyondTolerance {
+                rows,
+                planned,
+                scenarios,
+                tolerance,
+                ..
+            } => format!(
+                "{rows} of {planned} rows beyond tolerance{} under {}",
+                tolerance.in_brackets(),
+                named(scenarios)
+            ),
             Self::ReplacedBasis { .. } => "the basis of the study is replaced".to_owned(),
             Self::Unstable { rows, tuned, .. } => {
                 let tuned = tuned.len();
@@ -237,16 +283,22 @@ impl Warning {
             Self::NumericalError(NumericalFinding::Missed { accepted, .. }) => {
                 format!("the accepted error of {} is not kept", share(*accepted))
             }
-            Self::NumericalError(NumericalFinding::Large { percent, .. }) => {
-                format!(
-                    "numerical error over a tenth of the P{percent} interval: finer solutions help too"
-                )
-            }
-            Self::NumericalError(NumericalFinding::Needless { percent, .. }) => {
-                format!(
-                    "numerical error under a hundredth of the P{percent} interval: finer than needed"
-                )
-            }
+            Self::NumericalError(NumericalFinding::Large {
+                error,
+                percent,
+                width,
+            }) => format!(
+                "numerical error {} of the P{percent} interval: finer solutions help too",
+                share_of_interval(*error, *width)
+            ),
+            Self::NumericalError(NumericalFinding::Needless {
+                error,
+                percent,
+                width,
+            }) => format!(
+                "numerical error {} of the P{percent} interval: finer than needed",
+                share_of_interval(*error, *width)
+            ),
             Self::Failures { failed, planned } => {
                 format!("{failed} of {planned} rows have no result")
             }
@@ -265,11 +317,7 @@ impl Warning {
 
     /// What is wrong and what to do about it, with the scenarios of the study by load and setting.
     pub(super) fn in_words(&self, named: Named<'_>) -> String {
-        self.text(&|_, scenarios| format!("under {}", named(scenarios)))
-    }
-
-    /// What is wrong and what to do about it; `under` says a preposition and scenarios.
-    fn text(&self, under: &dyn Fn(&str, &[usize]) -> String) -> String {
+        let under = |scenarios: &[usize]| format!("under {}", named(scenarios));
         match self {
             Self::SeparationWithFewHarmonics {
                 scenarios,
@@ -278,18 +326,22 @@ impl Warning {
                 "contacts separate {} (up to {:.0} % of the pairs of a wheel): \
                  harmonic 1 or odd harmonics alone cannot represent that; raise the normal load, or \
                  set solver.harmonics = [0, 1, 2, 3]",
-                under("in", scenarios),
+                under(scenarios),
                 100.0 * largest_fraction
             ),
             Self::BeyondTolerance {
                 rows,
                 planned,
+                scenarios,
+                tolerance,
                 largest_stated_error,
             } => format!(
-                "{rows} of {planned} rows state a sampling or harmonic error beyond its tolerance \
+                "{rows} of {planned} rows state a sampling or harmonic error beyond its tolerance{}, {} \
                  (stated errors up to {:.1} %); where sampling_error in responses.parquet is the larger one, \
                  raise solver.samples_per_period; where harmonic_error is, take solver.harmonics = \"auto\" or a \
                  larger set, or accept it by a larger solver.harmonic_tolerance",
+                tolerance.in_brackets(),
+                under(scenarios),
                 100.0 * largest_stated_error
             ),
             Self::ReplacedBasis { taken } => format!(
@@ -300,7 +352,7 @@ impl Warning {
                 looked_at,
                 rows,
                 tuned,
-            } => unstable_motions(*looked_at, *rows, tuned, under),
+            } => unstable_motions(*looked_at, *rows, tuned, &under),
             Self::BasisError {
                 basis,
                 error,
@@ -329,7 +381,7 @@ impl Warning {
             Self::TunedFailures { scenarios } => format!(
                 "the tuned wheel {} has no peak, so these have no amplification factor; \
                  widen solver.frequency_band_hz or raise solver.samples_per_period",
-                under("of", scenarios)
+                under(scenarios)
             ),
             Self::TooFewPatterns {
                 percent,
@@ -351,7 +403,7 @@ impl Warning {
             Self::TooManyFailures { percent, scenarios } => format!(
                 "P{percent} {} has no value: too many rows failed; see their status in \
                  responses.parquet",
-                under("of", scenarios)
+                under(scenarios)
             ),
         }
     }
@@ -360,7 +412,12 @@ impl Warning {
 /// With the scenarios by their numbers, as tables have them.
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text(&|of, scenarios| format!("{of} scenarios {}", list(scenarios))))
+        let numbers = |own: &usize| own.to_string();
+        let named = |own: &[usize]| {
+            let numbers: Vec<String> = own.iter().map(numbers).collect();
+            format!("scenarios {}", numbers.join(", "))
+        };
+        f.write_str(&self.in_words(&named))
     }
 }
 
@@ -369,14 +426,14 @@ fn unstable_motions(
     looked_at: u64,
     rows: u64,
     tuned: &[usize],
-    under: &dyn Fn(&str, &[usize]) -> String,
+    under: &dyn Fn(&[usize]) -> String,
 ) -> String {
     let mut motions = Vec::new();
     if rows > 0 {
         motions.push(format!("of {rows} of the {looked_at} rows looked at"));
     }
     if !tuned.is_empty() {
-        motions.push(format!("of the tuned wheel {}", under("of", tuned)));
+        motions.push(format!("of the tuned wheel {}", under(tuned)));
     }
     format!(
         "the motions {} are unstable: the wheel does not stay on them, and its amplitude in time differs, by a few per cent \
@@ -392,12 +449,4 @@ pub(super) fn read_each_wheel(wheels: u64) -> &'static str {
     } else {
         "read the peak of each wheel in responses.parquet"
     }
-}
-
-fn list(scenarios: &[usize]) -> String {
-    scenarios
-        .iter()
-        .map(usize::to_string)
-        .collect::<Vec<_>>()
-        .join(", ")
 }

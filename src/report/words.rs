@@ -184,7 +184,7 @@ pub(super) fn scenarios_in_words(summary: &StudySummary, indices: &[usize]) -> S
                 let loads = loads.map(|own| short_load_with_unit(own.contact, own.normal_load_n));
                 loads.collect::<Vec<_>>().join(", ")
             };
-            let told = told_apart(summary, first);
+            let told = told_apart(summary, first).in_full;
             Some(if told.is_empty() {
                 loads
             } else {
@@ -195,8 +195,16 @@ pub(super) fn scenarios_in_words(summary: &StudySummary, indices: &[usize]) -> S
     parts.join("; ")
 }
 
-/// What tells the group of a scenario from the others of the study; empty where there is one group alone.
-pub(super) fn told_apart(summary: &StudySummary, own: &ScenarioSummary) -> String {
+/// What tells a group of scenarios from the others of a study; empty where there is one group alone.
+pub(super) struct ToldApart {
+    /// With what deviates, for a text of its own.
+    pub(super) in_full: String,
+    /// Without, for a title.
+    pub(super) in_short: String,
+}
+
+/// What tells the group of a scenario from the others of the study.
+pub(super) fn told_apart(summary: &StudySummary, own: &ScenarioSummary) -> ToldApart {
     let differs = |same: &dyn Fn(&ScenarioSummary) -> bool| !summary.scenarios.iter().all(same);
     let excitations = differs(&|other| {
         other.load_case == own.load_case && other.engine_order == own.engine_order
@@ -205,41 +213,44 @@ pub(super) fn told_apart(summary: &StudySummary, own: &ScenarioSummary) -> Strin
     let deviation = own
         .standard_deviation
         .filter(|_| deviations)
-        .map(|deviation| {
-            format!(
-                "standard deviation {} % of blade stiffness",
-                trimmed(100.0 * deviation)
-            )
-        });
+        .map(|deviation| format!("standard deviation {} %", trimmed(100.0 * deviation)));
     let excitation = excitations.then(|| excitation(own.load_case, own.engine_order));
-    let told: Vec<String> = excitation.into_iter().chain(deviation).collect();
-    told.join(", ")
+    let with = |deviation: Option<String>| {
+        let told: Vec<String> = excitation.clone().into_iter().chain(deviation).collect();
+        told.join(", ")
+    };
+    let of_blades = { deviation.as_ref() }.map(|own| format!("{own} of blade stiffness"));
+    ToldApart {
+        in_full: with(of_blades),
+        in_short: with(deviation),
+    }
 }
 
-/// How many loads in newtons and how many linear limits there are, in words.
+/// How many loads in newtons there are, and which linear solutions, in words. A reader who does not know the wheel reads
+/// "limit" as what is allowed.
 pub(super) fn loads_and_limits<'a>(
     scenarios: impl IntoIterator<Item = &'a ScenarioSummary>,
 ) -> String {
-    let (mut loads, mut limits) = (0, 0);
+    let (mut loads, mut limits) = (0, Vec::new());
     for scenario in scenarios {
         if scenario.normal_load_n.is_some() {
             loads += 1;
         } else {
-            limits += 1;
+            limits.push(scenario.contact);
         }
     }
     let counted = |count: usize, word: &str| match count {
         1 => format!("1 {word}"),
         _ => format!("{count} {word}s"),
     };
-    match (loads, limits) {
+    let linear = || {
+        let counted = counted(limits.len(), "linear solution");
+        format!("{counted} ({})", limits.join(", "))
+    };
+    match (loads, limits.len()) {
         (_, 0) => counted(loads, "load"),
-        (0, _) => counted(limits, "linear limit"),
-        _ => format!(
-            "{} and {}",
-            counted(loads, "load"),
-            counted(limits, "linear limit")
-        ),
+        (0, _) => linear(),
+        _ => format!("{} and {}", counted(loads, "load"), linear()),
     }
 }
 

@@ -228,7 +228,8 @@ fn remarks(study: &Study, sector: &SectorModel, excitations: &[EchoedExcitation]
     let is_measured = matches!(study.mistuning.source, MistuningSource::File { .. });
     for percent in REPORTED {
         let needed = smallest_sample(f64::from(percent) / 100.0, CONFIDENCE);
-        if patterns < needed {
+        // Of one wheel the peak is the answer.
+        if patterns < needed && !(is_measured && patterns == 1) {
             remarks.push(Remark::FewPatterns {
                 percent,
                 needed,

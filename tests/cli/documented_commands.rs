@@ -65,10 +65,7 @@ const NOT_RUN: [(&str, &str); 35] = [
     ("cd \"$PBS_O_WORKDIR\"", "is the scheduler's folder"),
     ("qsub", "needs PBS; the program's part of it is run"),
     ("array=$(qsub", "needs PBS"),
-    (
-        "bash ring-normal-load-slurm.sh",
-        "needs Slurm; tests/slurm has it",
-    ),
+    ("bash ring-slurm.sh", "needs Slurm; tests/slurm has it"),
     (
         "studies/calculix/run.sh",
         "needs gmsh and ccx; the stage calculix of .ci/run runs it",

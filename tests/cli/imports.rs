@@ -304,6 +304,27 @@ fn a_file_of_another_code_in_the_place_of_an_import_file_is_answered_with_the_co
 }
 
 #[test]
+fn a_mesh_of_another_code_is_refused_by_what_it_is_and_what_is_accepted() {
+    let place = Place::new();
+    let (_, template) = { IMPORT_TEMPLATES.iter() }
+        .find(|(name, _)| *name == "nastran")
+        .expect("a template");
+    place.write("wheel.toml", &template.replace("wheel.bdf", "sector.cdb"));
+    place.write("sector.cdb", "/PREP7\nN,R5.3,LOC, -1,\n");
+    let ended = place.run(&["import", "wheel.toml", "--out", "bundle"]);
+    assert_eq!(ended.code, 4, "{}", ended.stderr);
+    for words in [
+        "sector.cdb",
+        "mesh_format",
+        "\"nastran\"",
+        "it is a mesh of Ansys",
+        "accepted: bulk data of Nastran with GRID, or the mesh_format of this file: calculix, ansys or nastran",
+    ] {
+        assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
+    }
+}
+
+#[test]
 fn templates_explanations_and_the_schema_of_import_files_are_printed() {
     let place = Place::new();
     for (code, text) in IMPORT_TEMPLATES {

@@ -208,6 +208,16 @@ fn a_living_process_keeps_others_out_and_a_killed_one_is_taken_over() {
 fn shards_run_side_by_side_and_merge_to_the_tables_of_a_run_at_once() {
     let place = Place::with(&study(60));
     let expected = undisturbed(&place).0;
+    // One shard alone: the two that nobody has begun are not in the count of rows, and the line says so.
+    let first = place.run(&["run", "study.toml", "--out", "out", "--shard", "1/3"]);
+    assert_eq!(first.code, 0, "{}", first.stderr);
+    let status = place.run(&["status", "out"]).stdout;
+    assert!(
+        status.contains("60 of 60 rows")
+            && status.contains("; 2 of 3 shards not begun, their rows not counted")
+            && status.contains("shards not finished: 2,3"),
+        "{status}"
+    );
     let workers: Vec<Child> = (1..=3)
         .map(|number| {
             let shard = format!("{number}/3");
@@ -220,7 +230,7 @@ fn shards_run_side_by_side_and_merge_to_the_tables_of_a_run_at_once() {
     }
     let status = place.run(&["status", "out"]);
     assert!(
-        status.stdout.contains("finished, 180 of 180 rows"),
+        status.stdout.contains("finished, 180 of 180 rows") && !status.stdout.contains("not begun"),
         "{}",
         status.stdout
     );

@@ -96,6 +96,54 @@ fn find(value: &Value, name: &str) -> Option<f64> {
 }
 
 #[test]
+fn one_measured_wheel_has_peaks_and_nothing_is_said_of_percentiles() {
+    let place = of_file(1);
+    let check = output(&place, &["check", "study.toml"]);
+    let run = output(&place, &["run", "study.toml"]);
+    let report = output(&place, &["report", "results/small", "--no-curves"]);
+    for text in [&check, &run, &report] {
+        assert!(
+            !text.contains("warning") && !text.contains("P95") && !text.contains("95 % interval"),
+            "{text}"
+        );
+    }
+    // The summary has the peak and its factor, as the row has them.
+    let arguments = [
+        "replay",
+        "results/small",
+        "--scenario",
+        "1",
+        "--pattern",
+        "0",
+        "--json",
+    ];
+    let row: Value = serde_json::from_str(&output(&place, &arguments)).expect("JSON");
+    let line = { run.lines() }.find(|line| line.trim_start().starts_with("50 "));
+    let cells: Vec<&str> = line.expect("the load").split_whitespace().collect();
+    let header = { run.lines() }
+        .find(|line| line.contains("load N"))
+        .expect("a header");
+    assert!(
+        header.contains("peak µm") && header.contains("amplification"),
+        "{header}"
+    );
+    for (place, name, unit) in [
+        (3, "peak_amplitude_m", 1e-6),
+        (4, "amplification_factor", 1.0),
+    ] {
+        let shown: f64 = cells[place].parse().expect("a number");
+        let own = find(&row, name).expect("a number");
+        assert!(
+            (shown * unit / own - 1.0).abs() < 1e-3,
+            "{name}: {shown} and {own}"
+        );
+    }
+    let page = std::fs::read_to_string(place.path("results/small/report.html")).expect("a page");
+    assert!(page.contains("Load per sector with the lowest peak of the wheel"));
+    assert!(page.contains("No problem found"));
+}
+
+#[test]
 fn many_measured_wheels_are_left_to_the_table() {
     let place = of_file(13);
     let run = output(&place, &["run", "study.toml"]);

@@ -135,6 +135,9 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
     // Of two loads that were calculated one is lower, with 95 % confidence unless others could be as low.
     let sure = "95 % confident: no other calculated load has a lower P95";
     assert_eq!(load[2].contains(sure), others == 0, "{}", load[2]);
+    // The other percentiles are a link away, which has the name of the section for a reader on paper.
+    let link = "P99 needs 368 patterns; <a href=\"#numbers-0\">all in “Numbers”</a>";
+    assert!(percentile[2].contains(link), "{}", percentile[2]);
     // 80 patterns give no P99: the page says so, and how many do.
     assert_eq!(percentile[0], "P95 of the peak amplitude");
     assert!(
@@ -169,6 +172,8 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
         "patterns help more than finer solutions"
     };
     assert!(error[2].contains(verdict), "{}", error[2]);
+    // The bound is beside medians of rows that may be larger.
+    assert_eq!(error[0], "Numerical error of P95, not of a row");
     // The main figure stands beside them, and what the answers rest on is folded.
     let section = between(&page, "id=\"answer-0\"", "</section>");
     assert!(section.contains("<figure id=\"amplitude-0\">"));
@@ -253,6 +258,14 @@ fn a_load_at_the_end_of_those_studied_is_the_first_warning() {
         };
         assert_eq!(load[1], own);
         assert_eq!(page.matches("<div class=\"number look\">").count(), 1);
+        // The card of the load says so before how sure the load is the lowest.
+        let open = load[2].find(&format!("best load may be {beyond}"));
+        let sure = load[2].find("(same patterns)");
+        assert!(
+            open.is_some_and(|open| sure.is_none_or(|sure| open < sure)),
+            "{}",
+            load[2]
+        );
         let health = between(&page, "<div class=\"health look\">", "</div>");
         assert!(
             health.contains(&format!("Best load may be {beyond}.")),

@@ -443,3 +443,27 @@ fn a_plan_says_what_a_study_takes_and_what_its_percentiles_are_worth_and_writes_
         "{text}"
     );
 }
+
+#[test]
+fn a_search_for_the_best_load_does_not_go_into_the_results_of_a_study() {
+    let place = Place::with(GOOD);
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+    let files = || {
+        std::fs::read_dir(place.path("results/small"))
+            .expect("a folder")
+            .count()
+    };
+    let before = files();
+    let search = "optimum study.toml --between 40:60 --percentile 50 --out results/small";
+    let arguments: Vec<&str> = search.split(' ').collect();
+    let ended = place.run(&arguments);
+    assert_eq!(ended.code, 2, "{}", ended.stderr);
+    for words in [
+        "--out results/small: it holds the results of a study",
+        "accepted: a folder of its own for the search, like results/small-optimum",
+        "--solved results/small",
+    ] {
+        assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
+    }
+    assert_eq!(files(), before);
+}

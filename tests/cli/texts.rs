@@ -1,5 +1,7 @@
 //! What people read: widths, units, names and the floor of a probability.
 
+use blisk::population::table::{RESPONSE_COLUMNS, SCENARIO_COLUMNS};
+use blisk::response::harmonic_balance::Status;
 use serde_json::Value;
 
 use crate::blisk::{GOOD, Place};
@@ -264,6 +266,41 @@ fn explain_finds_keys_and_terms_by_words_of_their_names_and_meanings() {
         );
     }
     assert_eq!(place.run(&["explain", "no-such-word"]).code, 2);
+}
+
+/// From their one declaration, which the page has too.
+#[test]
+fn explain_knows_the_statuses_of_rows_and_the_columns_of_tables() {
+    let place = Place::new();
+    let page = include_str!("../../docs/results.md");
+    for status in Status::ALL {
+        let (name, meaning) = (status.name(), status.meaning());
+        let line = format!("| `{name}` | {meaning} |\n");
+        assert!(page.contains(&line), "docs/results.md has not: {line}");
+        let text = output(&place, &["explain", name]);
+        let own = format!("{name} (status of a row)\n  meaning   {meaning}\n");
+        assert!(text.starts_with(&own), "{text}");
+    }
+    for (table, columns) in [
+        ("responses.parquet", RESPONSE_COLUMNS),
+        ("scenarios.parquet", SCENARIO_COLUMNS),
+    ] {
+        for column in columns {
+            let text = output(&place, &["explain", column.name]);
+            // A key of that name is meant first.
+            let is_key = text.starts_with(&format!("{}\n", column.name));
+            assert!(
+                is_key || text.contains(table) && text.contains(column.description),
+                "{table}: {}: {text}",
+                column.name
+            );
+        }
+    }
+    let error = output(&place, &["explain", "harmonic_error"]);
+    assert!(
+        error.starts_with("harmonic_error (column of responses.parquet"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -1,7 +1,10 @@
 //! A study that grows keeps its rows, and only what is new is solved.
 
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+use blisk::campaign::{RunRequest, run};
+use blisk::response::harmonic_balance::Status;
+use blisk::settings::Progress;
 use blisk::study::{PipelineError, Study};
 
 use crate::folder::{bytes, files, interrupt_in, reference_of, run_in};
@@ -101,8 +104,50 @@ fn rows_made_from_another_model_are_solved_anew() {
         model: "a basis chosen with the new scenario".to_owned(),
         ..MockSource::default()
     };
-    let outcome = run_in(folder.path(), &grown, 2, &other).expect("grown");
+    let listening = Listening::default();
+    let request = RunRequest {
+        study: &grown,
+        results: folder.path(),
+        threads: 2,
+    };
+    let outcome = run(request, &other, &listening).expect("grown");
     assert_eq!((outcome.rows_solved, outcome.rows_reused), (240, 0));
+    // Whoever watches hears before the first row how many that are stored are solved again.
+    assert_eq!(listening.anew.load(Ordering::SeqCst), 160);
+    assert!(!listening.late.load(Ordering::SeqCst));
+    // What is new alone is nothing to say.
+    let listening = Listening::default();
+    let longer = small(&[
+        ("[0.03, 0.01]", "[0.03, 0.02, 0.01]"),
+        ("patterns = 40", "patterns = 50"),
+    ]);
+    let request = RunRequest {
+        study: &longer,
+        ..request
+    };
+    let outcome = run(request, &other, &listening).expect("longer");
+    assert_eq!((outcome.rows_solved, outcome.rows_reused), (60, 240));
+    assert_eq!(listening.anew.load(Ordering::SeqCst), 0);
+}
+
+/// Rows that are said to be solved anew, and whether that comes after the first row.
+#[derive(Default)]
+struct Listening {
+    anew: AtomicU64,
+    began: AtomicBool,
+    late: AtomicBool,
+}
+
+impl Progress for Listening {
+    fn solves_anew(&self, rows: u64) {
+        self.anew.fetch_add(rows, Ordering::SeqCst);
+        let late = self.began.load(Ordering::SeqCst);
+        self.late.store(late, Ordering::SeqCst);
+    }
+
+    fn row(&self, _status: Status) {
+        self.began.store(true, Ordering::SeqCst);
+    }
 }
 
 #[test]

@@ -4,13 +4,18 @@ use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
 use blisk::population::statistics::ScenarioAccumulator;
 use blisk::population::table::ScenarioRecord;
 use blisk::report::{
-    BasisSummary, NumericalError, NumericalFinding, StudySummary, SummaryContext, Warning,
+    BasisSummary, NumericalError, NumericalFinding, RowTolerance, StudySummary, SummaryContext,
+    Warning,
 };
 use blisk::response::forced_response::{ContactCondition, Harmonics};
 use blisk::response::harmonic_balance::Status;
 
 fn context(harmonics: Harmonics) -> SummaryContext {
     SummaryContext {
+        tolerance: RowTolerance {
+            sampling_tolerance: Some(1e-3),
+            harmonic_tolerance: Some(0.02),
+        },
         basis: BasisSummary::default(),
         name: "made-up".to_owned(),
         study_digest: "0123".to_owned(),
@@ -148,8 +153,19 @@ fn rows_beyond_their_tolerance_are_counted_with_the_largest_stated_error() {
         [Warning::BeyondTolerance {
             rows: 100,
             planned: 400,
+            scenarios: vec![0],
+            tolerance: context(Harmonics::Auto).tolerance,
             largest_stated_error: 0.021 + 1e-5 * 399.0,
         }]
+    );
+    // The text says under which load, and what the tolerances are.
+    let text = auto.to_string();
+    assert!(
+        text.contains(
+            "100 of 400 rows state a sampling or harmonic error beyond its tolerance (sampling 0.1 %, harmonics 2 %), \
+             under 9 N (stated errors up to 2.5 %)"
+        ),
+        "{text}"
     );
 }
 

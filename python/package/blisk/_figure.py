@@ -13,7 +13,11 @@ from ._needed import needed
 if TYPE_CHECKING:
     from ._results import Results
 
-_LABELS = {"peak_amplitude_m": "peak amplitude, m", "amplification_factor": "amplification factor"}
+_LABELS = {"peak_amplitude_m": "peak amplitude", "amplification_factor": "amplification factor"}
+# Name, metres, and the length in m from which on the unit is taken: those of the report.
+_UNITS = (("m", 1.0, 100.0), ("mm", 1e-3, 0.1), ("µm", 1e-6, 1e-8), ("nm", 1e-9, 0.0))
+# Ratio of the largest to the smallest value from which on the report has a logarithmic axis.
+_LOGARITHMIC_FROM = 4.0
 
 
 class Figure:
@@ -87,9 +91,40 @@ def plotted(results: Results, quantity: str, percentiles: Sequence[float], wante
         )
         ax.plot(*zip(*tuned), color="black", linewidth=0.8, label="tuned") if tuned else None
     ax.set_xlabel("normal load per sector, N (dotted: slide, dashed: stuck)")
-    ax.set_ylabel(_LABELS[quantity])
+    drawn = [row[end] for row in table if row["percent"] in percentiles for end in ("value", "lower", "upper")]
+    if quantity == "peak_amplitude_m":
+        drawn += [row["tuned_amplitude_m"] for row in scenarios]
+    newtons = [row["normal_load_n"] for row in scenarios if row["contact"] == "full"]
+    _axes_of_report(ax, quantity, [own for own in drawn if own is not None and own > 0.0], newtons)
     ax.legend()
     return ax
+
+
+def _axes_of_report(ax: Any, quantity: str, values: Sequence[float], loads: Sequence[float]) -> None:
+    """Scales and unit of the figure of the report. The data stay in SI units, so that more can be drawn beside them."""
+    ticker = needed("matplotlib.ticker", "plot()")
+    is_logarithmic = bool(values) and max(values) > _LOGARITHMIC_FROM * min(values)
+    name, metres = "", 1.0
+    if quantity == "peak_amplitude_m":
+        smallest = min(values, default=1e-6)
+        name, metres = next((own, size) for own, size, least in _UNITS if smallest >= least)
+    if loads and 0.0 < min(loads) < max(loads):
+        _logarithmic(ax.xaxis, ax.set_xscale, 1.0, ticker)
+    if is_logarithmic:
+        _logarithmic(ax.yaxis, ax.set_yscale, metres, ticker)
+    else:
+        ax.set_yscale("linear")
+        ax.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value / metres:g}"))
+    unit = f", {name}" if name else ""
+    ax.set_ylabel(f"{_LABELS[quantity]}{unit}{' (log.)' if is_logarithmic else ''}")
+
+
+def _logarithmic(axis: Any, set_scale: Any, unit: float, ticker: Any) -> None:
+    """A logarithmic axis with numbers at 1, 2 and 5."""
+    set_scale("log")
+    axis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value / unit:g}"))
+    axis.set_minor_formatter(ticker.NullFormatter())
 
 
 def _only(rows: list[dict[str, Any]], wanted: Mapping[str, Any]) -> list[dict[str, Any]]:

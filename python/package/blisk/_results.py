@@ -211,6 +211,7 @@ class Results:
 
         ``quantity``: ``peak_amplitude_m`` (m) or ``amplification_factor`` (1). ``percentiles``: in %; those without a
         value are left out. ``ax``: axes to draw into; new ones unless given. The linear limits are levels at the sides.
+        Unit and scales are those of the report's figure, like µm and logarithmic; the data stay in m.
         """
         wanted = {"engine_order": engine_order, "standard_deviation": standard_deviation, "load_case": load_case}
         return plotted(self, quantity, percentiles, wanted, ax)

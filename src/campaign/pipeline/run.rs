@@ -13,7 +13,9 @@ use crate::campaign::store::{
     Found, ResultsFolder, finished_rows, folder_of_shard, is_complete, summary_of_rows,
     unix_seconds,
 };
-use crate::population::monte_carlo::{Interruption, block_size, plan_blocks, solve_blocks};
+use crate::population::monte_carlo::{
+    Interruption, Scenario, block_size, plan_blocks, solve_blocks,
+};
 use crate::population::table::{
     Manifest, PartSink, RowStore, RunRecord, Shard, is_folder, remove_leftovers,
 };
@@ -262,6 +264,24 @@ impl Job<'_> {
         }
     }
 
+    /// Rows of the finished study for those of `scenarios` that it has, at most `patterns` of each.
+    fn held_rows(&self, scenarios: &[Scenario], patterns: u64) -> u64 {
+        let Found::Finished(manifest) = self.found else {
+            return 0;
+        };
+        let has = |own: &&Scenario| {
+            let mut held = manifest.scenarios.iter();
+            held.any(|held| {
+                held.load_case == own.load_case
+                    && held.engine_order == own.engine_order
+                    && held.standard_deviation == own.standard_deviation
+                    && held.contact == own.contact
+            })
+        };
+        let rows_of_each = manifest.counts.planned / (manifest.scenarios.len().max(1) as u64);
+        scenarios.iter().filter(has).count() as u64 * rows_of_each.min(patterns)
+    }
+
     /// The rows stored.
     fn store(&self, tables: &TableWork) -> Result<RowStore, PipelineError> {
         let results = self.request.results;
@@ -290,6 +310,11 @@ impl Job<'_> {
         let blocks = plan_blocks(ids, &stored, scenarios.len(), block_size(ids.len()));
         let reused = stored.count(ids);
         folder.announce(tables.planned(), reused)?;
+        let held = self.held_rows(scenarios, ids.len() as u64);
+        let anew = held.saturating_sub(reused);
+        if anew > 0 {
+            self.progress.solves_anew(anew);
+        }
         self.progress.begin_rows(tables.planned(), reused);
         let rows = RowWork {
             engine,

@@ -5,13 +5,15 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::results_folder::{finished_rows, verify_tables};
-use crate::population::monte_carlo::{Scenario, TUNED_RECEPTANCES, TunedReference};
+use crate::population::monte_carlo::{
+    Scenario, TUNED_RECEPTANCES, TunedReference, sampling_tolerance,
+};
 use crate::population::statistics::{CONFIDENCE, ScenarioAccumulator, ScenarioStability};
 use crate::population::table::{
     Compression, Manifest, RowSchema, RowStore, RunState, ScenarioEntry, ScenarioRecord,
     TableHeader,
 };
-use crate::report::{BasisSummary, NumericalError, StudySummary, SummaryContext};
+use crate::report::{BasisSummary, NumericalError, RowTolerance, StudySummary, SummaryContext};
 use crate::response::forced_response::Harmonics;
 use crate::response::friction::ContactLaw;
 use crate::study::PipelineError;
@@ -152,11 +154,29 @@ pub(in crate::campaign) fn context_of(manifest: &Manifest) -> SummaryContext {
         patterns: manifest.patterns,
         stop: manifest.stop.clone(),
         harmonics: harmonics.unwrap_or(Harmonics::Auto),
+        tolerance: tolerance_of(manifest),
         basis: basis_of(manifest),
         numerical_error: numerical_error_of(manifest),
         rotation: serde_json::from_value(manifest.reduction["rotation"].clone()).ok(),
         stress_pa_per_m: manifest.study["output"]["stress_pa_per_m"].as_f64(),
         version: manifest.version.clone(),
+    }
+}
+
+/// The tolerances that the study says, or those of the settings that `[accuracy]` chose.
+fn tolerance_of(manifest: &Manifest) -> RowTolerance {
+    let said = &manifest.study["solver"];
+    let chosen = &manifest.chosen["accuracy"]["setting"];
+    let number = |words: &str| words.parse().ok();
+    let peak = chosen["peak_tolerance"].as_str().and_then(number);
+    // A set of numbers, which may be chosen too, has no tolerance in the manifest.
+    let harmonics = chosen["harmonics"].as_str();
+    let harmonics = harmonics.and_then(|words| number(words.strip_prefix("auto ")?));
+    RowTolerance {
+        sampling_tolerance: peak
+            .or_else(|| said["peak_tolerance"].as_f64())
+            .map(sampling_tolerance),
+        harmonic_tolerance: harmonics.or_else(|| said["harmonic_tolerance"].as_f64()),
     }
 }
 

@@ -30,7 +30,8 @@ pub use scenario::{LoadCaseName, Scenario};
 pub use sink::{MemorySink, RowSink};
 pub use stability::{is_row_stable, is_tuned_stable};
 pub use stated_error::{
-    ErrorTolerance, HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, ScenarioError, stated_error,
+    ErrorTolerance, HARMONIC_SAFETY, HARMONIC_SAFETY_ON_RECEPTANCES, ScenarioError,
+    sampling_tolerance, stated_error,
 };
 pub use surrogate::{Surrogate, SurrogatePeak};
 pub use time_domain::compare_in_time;

@@ -2,15 +2,12 @@
 
 use std::borrow::Cow;
 
-use super::{ErrorTolerance, HarmonicChoice};
+use super::{ErrorTolerance, HarmonicChoice, sampling_tolerance};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{ContactCondition, PointSettings, SolverOptions};
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{Damping, TransformError};
 use crate::response::mistuning::{Pattern, Projection};
-
-/// Tolerance of the sampling error, unless that of the peak is larger.
-const SAMPLING_TOLERANCE: f64 = 1e-3;
 
 /// What a study says about the physics of a row.
 #[derive(Debug, Clone)]
@@ -59,7 +56,7 @@ impl RowSettings {
 
     pub(super) fn tolerance(&self) -> ErrorTolerance {
         ErrorTolerance {
-            sampling: self.solver.peak_tolerance.max(SAMPLING_TOLERANCE),
+            sampling: sampling_tolerance(self.solver.peak_tolerance),
             harmonics: self.solver.harmonic_tolerance,
         }
     }

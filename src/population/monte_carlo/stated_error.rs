@@ -29,6 +29,15 @@ impl ErrorTolerance {
     }
 }
 
+/// Tolerance of the sampling error, unless that of the peak is larger.
+const SAMPLING_TOLERANCE: f64 = 1e-3;
+
+/// Tolerance of the sampling error of rows whose peak is sought to `peak_tolerance`.
+#[must_use]
+pub fn sampling_tolerance(peak_tolerance: f64) -> f64 {
+    peak_tolerance.max(SAMPLING_TOLERANCE)
+}
+
 /// Factor on the estimate of the harmonics in the stated error. The estimate is made at the frequency
 /// of the delivered peak and can be too small; a factor of safety on estimates of discretisation
 /// errors follows Roache (1994), its size what was measured (section 8 of docs/formulation.md).

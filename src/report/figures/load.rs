@@ -154,7 +154,7 @@ pub(super) fn by_load(
         caption: caption(
             pointed,
             report.summary.patterns,
-            &loads,
+            &drawn,
             amplitude.then_some(units),
         ),
         height: HEIGHT + strip,
@@ -301,6 +301,7 @@ fn points(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
             let words = format!("tuned, {name}: {tuned:.4}");
             Mark::Triangle.draw(svg, "tuned", (at, frame.y.at(tuned)), &words);
         }
+        let mut bars = Vec::new();
         for (percent, class, mark) in DRAWN.iter().rev() {
             let Some(found) = load.percentile(*percent) else {
                 continue;
@@ -312,10 +313,11 @@ fn points(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
                 bounds.map_or_else(String::new, |(low, high)| format!(" [{low:.4}, {high:.4}]"));
             let words = format!("P{percent}, {name}: {value:.4}{shown}");
             mark.draw(svg, class, (at, frame.y.at(value)), &words);
-            // Above the mark, which would hide a bound narrower than it.
-            if let Some(bounds) = bounds {
-                frame.bound(svg, class, at, bounds);
-            }
+            bars.extend(bounds.map(|bounds| (class, at, bounds)));
+        }
+        // Above all marks of the load, which would hide a bound narrower than them or that of a mark beside.
+        for (class, at, bounds) in bars {
+            frame.bound(svg, class, at, bounds);
         }
     }
 }
@@ -339,7 +341,7 @@ fn entries(drawn: &[Load<'_>]) -> Vec<LegendEntry<'static>> {
         let limit = load.scenario.normal_load_n.is_none();
         load.tuned.filter(|_| limit)
     }) {
-        entries.push(LegendEntry::Line("limit", None, "tuned limits"));
+        entries.push(LegendEntry::Line("limit", None, "tuned, linear"));
     }
     entries
 }
@@ -363,13 +365,23 @@ fn tuned_limits(loads: &[&ScenarioSummary], units: LengthUnit) -> String {
 fn caption(
     choice: Option<&LoadChoice>,
     patterns: u64,
-    loads: &[&ScenarioSummary],
+    drawn: &[Load<'_>],
     amplitudes: Option<LengthUnit>,
 ) -> String {
-    let mut words = format!(
-        "Percentiles over {patterns} patterns with distribution-free 95 % bounds, side by side at each load. Only loads \
-         with marks were calculated; the lines between them guide the eye."
-    );
+    let loads: Vec<&ScenarioSummary> = drawn.iter().map(|load| load.scenario).collect();
+    let loads = &loads[..];
+    let shows = |(percent, ..): &(u32, &str, Mark)| {
+        let mut loads = drawn.iter();
+        loads.any(|load| load.value(*percent).is_some())
+    };
+    let mut words = if DRAWN.iter().any(shows) {
+        format!(
+            "Percentiles over {patterns} patterns with distribution-free 95 % bounds, side by side at each load."
+        )
+    } else {
+        "No percentile has a value; the tuned wheel is drawn alone.".to_owned()
+    };
+    words.push_str(" Only loads with marks were calculated; the lines between them guide the eye.");
     let mut limits: Vec<&str> = Vec::new();
     for (name, meaning) in [
         ("slide", "slide (friction gone)"),
@@ -385,9 +397,9 @@ fn caption(
         // Linear limits alone need no break.
         let newtons = loads.iter().any(|load| load.normal_load_n.is_some());
         let head = if newtons {
-            "Beside the breaks, linear limits"
+            "Beside the breaks, linear solutions"
         } else {
-            "Linear limits"
+            "Linear solutions"
         };
         let _ = write!(words, " {head}: {}", limits.join(", "));
         if let Some(units) = amplitudes {
@@ -410,7 +422,7 @@ fn caption(
         let percent = percent_words(choice.percent);
         let _ = write!(words, " Pointer above: the load with the lowest P{percent}");
         words.push_str(if loads.iter().any(|load| could_be_as_low(choice, load)) {
-            "; hollow: those that may be as low (95 % confidence)."
+            "; hollow: those that may be as low (95 % confidence, same patterns compared)."
         } else {
             "."
         });

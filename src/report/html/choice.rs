@@ -51,6 +51,15 @@ pub(super) struct AtTheEnd {
     pub(super) in_words: String,
 }
 
+impl AtTheEnd {
+    /// What follows from it, in the words of a note.
+    pub(super) fn on_card(&self) -> String {
+        self.consequence
+            .trim_end_matches('.')
+            .replacen("Best", "best", 1)
+    }
+}
+
 /// Whether a better load may lie beyond those of a group. Linear limits alone ask for no load, and neither does a load
 /// alone.
 pub(super) fn at_the_end(report: &StudyReport, group: &GroupReport) -> Option<AtTheEnd> {

@@ -36,15 +36,8 @@ pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usi
         if let Some(told) = told {
             let _ = write!(html, "<p class=\"told\">{}</p>", escaped(&tied(&told)));
         }
-        for note in notes {
-            let _ = write!(html, "<p class=\"note\">{}</p>", escaped(&tied(&note)));
-        }
-        if let Some((target, words)) = more {
-            let words = escaped(&words);
-            let _ = write!(
-                html,
-                "<p class=\"note\"><a href=\"#{target}\">{words}</a></p>"
-            );
+        for note in marked_up(&notes, more) {
+            let _ = write!(html, "<p class=\"note\">{note}</p>");
         }
         html.push_str("</div>\n");
     }
@@ -59,6 +52,27 @@ pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usi
     html.push_str(&folded(report, group));
     html.push_str("</section>\n");
     html
+}
+
+/// Letters of a line of notes on a telephone.
+const LINE: usize = 40;
+
+/// Notes, and the link to more of the page: beside the last note where both are one line.
+fn marked_up(notes: &[String], more: Option<(String, String)>) -> Vec<String> {
+    let mut lines: Vec<String> = notes.iter().map(|note| escaped(&tied(note))).collect();
+    let Some((target, words)) = more else {
+        return lines;
+    };
+    let link = format!("<a href=\"#{target}\">{}</a>", escaped(&words));
+    let letters = |text: &String| text.chars().count() + words.chars().count() + 2;
+    match (lines.last_mut(), notes.last()) {
+        (Some(line), Some(note)) if letters(note) <= LINE => {
+            line.push_str("; ");
+            line.push_str(&link);
+        }
+        _ => lines.push(link),
+    }
+    lines
 }
 
 fn health_of(report: &StudyReport) -> String {
@@ -78,7 +92,9 @@ fn health_of(report: &StudyReport) -> String {
             html.push_str("</ul>");
         }
         if place == 0 && found.class != "good" {
-            html.push_str("<p><a href=\"#warnings\">What to do about it</a></p>");
+            html.push_str(
+                "<p><a href=\"#warnings\">All, and what to do: section “Warnings”</a></p>",
+            );
         }
         html.push_str("</div>\n");
     }

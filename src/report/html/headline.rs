@@ -20,7 +20,7 @@ pub(super) struct BigNumber {
     /// How sure it is, a line each.
     pub(super) notes: Vec<String>,
     /// Where the page says more: id and words of a link.
-    pub(super) more: Option<(&'static str, String)>,
+    pub(super) more: Option<(String, String)>,
     /// Whether it is no answer yet, or one that a better load may replace.
     pub(super) is_open: bool,
 }
@@ -43,7 +43,7 @@ pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumb
                 .map_or_else(|| "not known".to_owned(), |value| units.length(value)),
             told: None,
             notes: notes_of_percentile(report, group, choice, error),
-            more: None,
+            more: Some(all_percentiles(report, group)),
             is_open: false,
         },
         number_of_error(report, group, lowest, (&percent, error)),
@@ -108,15 +108,24 @@ fn beside(lower: Option<&ScenarioSummary>, higher: Option<&ScenarioSummary>) -> 
 }
 
 /// Where the answers of the other settings are.
-fn other_settings(report: &StudyReport) -> Option<(&'static str, String)> {
-    match report.groups.len() {
-        0 | 1 => None,
-        2 => Some(("answer-1", "for the other setting see below".to_owned())),
-        all => Some((
+fn other_settings(report: &StudyReport) -> Option<(String, String)> {
+    let (target, words) = match report.groups.len() {
+        0 | 1 => return None,
+        2 => ("answer-1", "for the other setting see below".to_owned()),
+        all => (
             "contents",
             format!("for {} other settings see below", all - 1),
-        )),
-    }
+        ),
+    };
+    Some((target.to_owned(), words))
+}
+
+/// Where the other percentiles are.
+fn all_percentiles(report: &StudyReport, group: &GroupReport) -> (String, String) {
+    let same = |other: &GroupReport| other.scenarios == group.scenarios;
+    let place = report.groups.iter().position(same).unwrap_or(0);
+    let words = "all in “Numbers”".to_owned();
+    (format!("numbers-{place}"), words)
 }
 
 fn error_of(group: &GroupReport, scenario: usize, percent: f64) -> Option<&PercentileError> {
@@ -134,6 +143,9 @@ fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
         more: None,
         is_open: true,
     };
+    if let Some(found) = of_one_wheel(report, group) {
+        return found;
+    }
     let lowest = group.choices.iter().min_by_key(|own| own.needed_patterns);
     let why = match lowest {
         Some(choice) if report.summary.patterns < choice.needed_patterns => format!(
@@ -150,8 +162,48 @@ fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
             vec!["no load has a percentile to choose it by".to_owned()],
         ),
         unknown("Percentile of the peak amplitude", vec![why]),
-        unknown("Numerical error, at most", Vec::new()),
+        unknown(
+            "Numerical error, at most",
+            vec!["no percentile that it could be of".to_owned()],
+        ),
     ]
+}
+
+/// Load with the lowest peak of the one wheel of a file, the peak, and the error that its row states.
+fn of_one_wheel(report: &StudyReport, group: &GroupReport) -> Option<[BigNumber; 3]> {
+    let summary = &report.summary;
+    let peaks = { group.measured.iter() }.filter(|_| summary.is_of_one_wheel());
+    let peaks = peaks.filter_map(|own| Some((own.scenario, own.peak_amplitude_m?)));
+    let (lowest, peak) = peaks.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let errors = { group.errors.iter() }.find(|own| own.scenario == lowest)?;
+    let number = |label: &str, value: String, note: String| BigNumber {
+        label: label.to_owned(),
+        value,
+        told: None,
+        notes: vec![note],
+        more: None,
+        is_open: false,
+    };
+    let [lower, higher] = neighbours(report, group, &summary.scenarios[lowest]);
+    let units = LengthUnit::of_summary(summary);
+    Some([
+        number(
+            "Load per sector with the lowest peak of the wheel",
+            short_load(&summary.scenarios[lowest]),
+            beside(lower, higher).unwrap_or_else(|| "no neighbouring load".to_owned()),
+        ),
+        number(
+            "Peak amplitude of the wheel",
+            units.length(peak),
+            "the one wheel of mistuning.file: no percentile".to_owned(),
+        ),
+        number(
+            "Numerical error of the peak, at most",
+            { errors.rows.stated }
+                .map_or_else(|| "no bound".to_owned(), |own| share_words(own.largest)),
+            "by what its row states".to_owned(),
+        ),
+    ])
 }
 
 fn notes_of_load(
@@ -170,6 +222,15 @@ fn notes_of_load(
         notes.push("the only load of this study".to_owned());
         return notes;
     };
+    let [lower, higher] = neighbours(report, group, scenario);
+    let beside = beside(lower, higher);
+    // What makes the load no optimum comes before how sure it is the lowest.
+    let is_at_the_end = at_the_end(report, group);
+    if let Some(end) = &is_at_the_end {
+        let beyond = end.on_card();
+        let beside = beside.as_ref();
+        notes.push(beside.map_or(beyond.clone(), |beside| format!("{beside}: {beyond}")));
+    }
     let others: Vec<String> = { best.loads.iter() }
         .filter(|own| own.could_be_best && own.scenario.scenario != scenario.scenario)
         .map(|own| {
@@ -179,10 +240,11 @@ fn notes_of_load(
         .collect();
     let percent = percent_words(choice.percent);
     if !others.is_empty() {
-        notes.push(format!("could be as good: {}", others.join(", ")));
+        let others = others.join(", ");
+        notes.push(format!("could be as good: {others} (same patterns)"));
     } else if choice.is_of_a_design() {
         notes.push(format!(
-            "95 % confident: no other calculated load has a lower P{percent}"
+            "95 % confident: no other calculated load has a lower P{percent} (same patterns)"
         ));
     }
     let mut higher = { group.choices.iter() }.filter(|own| own.percent > choice.percent);
@@ -192,8 +254,7 @@ fn notes_of_load(
             .filter(|_| !choice.is_of_a_design())
             .map(|higher| format!("no P{} is known", percent_words(higher.percent))),
     );
-    let [lower, higher] = neighbours(report, group, scenario);
-    notes.extend(beside(lower, higher));
+    notes.extend(beside.filter(|_| is_at_the_end.is_none()));
     notes
 }
 
@@ -247,7 +308,8 @@ fn number_of_error(
     (percent, error): (&str, Option<&PercentileError>),
 ) -> BigNumber {
     let units = LengthUnit::of_summary(&report.summary);
-    let label = format!("Numerical error of P{percent}, at most");
+    // Errors of single rows, which stand further below, may be larger than the bound.
+    let label = format!("Numerical error of P{percent}, not of a row");
     let bounds = error.and_then(|own| Some((own.lowest?, own.highest?, own.percentile.value?)));
     let Some((low, high, value)) = bounds else {
         let errors = { group.errors.iter() }.find(|own| own.scenario == lowest);
@@ -256,12 +318,7 @@ fn number_of_error(
             value: "no bound".to_owned(),
             told: None,
             notes: errors
-                .map(|own| {
-                    format!(
-                        "{} of {} rows state none",
-                        own.rows.without_bound, own.rows.rows
-                    )
-                })
+                .map(|own| own.rows.why_no_bound())
                 .into_iter()
                 .collect(),
             more: None,
@@ -285,7 +342,7 @@ fn number_of_error(
     });
     BigNumber {
         label,
-        value: share_words(largest),
+        value: format!("at most {}", share_words(largest)),
         told: None,
         notes,
         more: None,

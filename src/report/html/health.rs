@@ -111,8 +111,13 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
             ));
         }
     }
-    if choice.is_some_and(|(choice, _)| !choice.is_of_a_design()) && verdict.is_some() {
-        verdict = Some("Too few patterns for a design load.".to_owned());
+    let few = { warnings.iter() }.any(|own| matches!(own, Warning::TooFewPatterns { .. }));
+    match choice {
+        Some((choice, _)) if !choice.is_of_a_design() && verdict.is_some() => {
+            verdict = Some("Too few patterns for a design load.".to_owned());
+        }
+        None if few => verdict = Some("Too few patterns for any percentile.".to_owned()),
+        _ => {}
     }
     let class = if verdict.is_some() { "look" } else { "good" };
     Health {
@@ -152,7 +157,7 @@ fn missing_elsewhere(report: &StudyReport, scenarios: &[usize]) -> String {
     let which = match groups[..] {
         [only] => {
             let own = &report.summary.scenarios[only.scenarios[0]];
-            let told = told_apart(&report.summary, own).replace(" of blade stiffness", "");
+            let told = told_apart(&report.summary, own).in_short;
             let mut letters = told.chars();
             let head = letters.next().map(char::to_uppercase);
             head.into_iter().flatten().chain(letters).collect()

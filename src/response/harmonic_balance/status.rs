@@ -71,4 +71,30 @@ impl Status {
             Self::Panicked => "panicked",
         }
     }
+
+    /// What it says of a row.
+    #[must_use]
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Ok => "converged, and the peak is bracketed",
+            Self::NotBracketed => {
+                "the largest amplitude found lies at an end of the searched band with no failed point beside it, or no resonance answers the excitation"
+            }
+            Self::IterationLimit => "Newton's method used up its iterations",
+            Self::Stagnated => "no step makes progress above the tolerance",
+            Self::Diverged => "the residual grew without bound",
+            Self::NonFinite => "a value that is not finite appeared",
+            Self::SingularJacobian => "the Jacobian is singular to working precision",
+            Self::StepTooSmall => "the step of a continuation became too small",
+            Self::SweepIncomplete => "the search ended with points missing",
+            Self::BranchJump => {
+                "the solution left its branch, or a curve that may fold could not be followed from the peak to its neighbours"
+            }
+            Self::WorkBudget => "the evaluations for the row are used up",
+            Self::InvalidPattern => {
+                "a blade stiffness, or a factor on the contact, would not be positive"
+            }
+            Self::Panicked => "a defect of the program, caught",
+        }
+    }
 }

@@ -128,6 +128,22 @@ const BEGINNING: u64 = 1 << 20;
 /// none for a file that cannot be read, or can be read only once.
 #[must_use]
 pub fn foreign(path: &Path) -> Option<String> {
+    let kind = kind_of(path)?;
+    let advice =
+        format!("{}{}", kind.next, kind.usage).replace("FILE", &path.display().to_string());
+    Some(format!(
+        "{} is {}, not an import file; {advice}",
+        path.display(),
+        kind.what
+    ))
+}
+
+/// What a file of a finite-element code is; none for another file.
+pub(super) fn what_is(path: &Path) -> Option<&'static str> {
+    Some(kind_of(path)?.what)
+}
+
+fn kind_of(path: &Path) -> Option<&'static Kind> {
     if !path.metadata().is_ok_and(|found| found.is_file()) {
         return None;
     }
@@ -153,15 +169,6 @@ pub fn foreign(path: &Path) -> Option<String> {
             .is_some_and(|ending| kind.endings.contains(&ending.as_str()))
     };
     let by_text = |kind: &&Kind| kind.begins.iter().any(|start| first.starts_with(start));
-    let kind = KINDS
-        .iter()
-        .find(by_name)
-        .or_else(|| KINDS.iter().find(by_text))?;
-    let advice =
-        format!("{}{}", kind.next, kind.usage).replace("FILE", &path.display().to_string());
-    Some(format!(
-        "{} is {}, not an import file; {advice}",
-        path.display(),
-        kind.what
-    ))
+    let named = KINDS.iter().find(by_name);
+    named.or_else(|| KINDS.iter().find(by_text))
 }

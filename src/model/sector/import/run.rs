@@ -12,7 +12,7 @@ use super::mesh::Mesh;
 use super::problem::{ImportProblem, body_name};
 use super::source::refuse;
 use super::tables::MeshFormat;
-use super::{ansys, deck, nastran};
+use super::{ansys, deck, foreign, nastran};
 use crate::input::{Problem, nearest};
 use crate::linalg::SymmetricSparse;
 use crate::model::sector::error::ModelError;
@@ -35,6 +35,21 @@ pub(super) struct Run {
     others: BTreeMap<Body, BTreeSet<usize>>,
 }
 
+/// A mesh without a node: most often one of another code than the import file says.
+fn no_nodes(format: MeshFormat, path: &Path) -> ImportProblem {
+    let (name, what) = match format {
+        MeshFormat::Calculix => ("calculix", "a deck of CalculiX or Abaqus with *NODE"),
+        MeshFormat::Ansys => ("ansys", "a .cdb of Ansys with NBLOCK (CDWRITE)"),
+        MeshFormat::Nastran => ("nastran", "bulk data of Nastran with GRID"),
+    };
+    let is = foreign::what_is(path).map_or_else(String::new, |own| format!(", it is {own}"));
+    ImportProblem::Value {
+        key: "mesh_format".to_owned(),
+        found: format!("\"{name}\", but the file has no node in it{is}"),
+        accepted: format!("{what}, or the mesh_format of this file: calculix, ansys or nastran"),
+    }
+}
+
 impl Run {
     /// The runs of an import file: that of the blisk, and those of ring and damper if they have some of their own.
     pub fn read_meshes(file: &ImportFile) -> Result<Vec<Self>, ModelError> {
@@ -48,6 +63,9 @@ impl Run {
                 MeshFormat::Ansys => ansys::read(&mesh_path),
                 MeshFormat::Nastran => nastran::read(&mesh_path),
             }?;
+            if mesh.nodes.is_empty() {
+                return Err(refuse(&mesh_path, no_nodes(file.mesh_format, &mesh_path)));
+            }
             if let Some(&largest) = mesh.nodes.keys().next_back()
                 && largest > MOST_NODE_NUMBER
             {
