@@ -32,7 +32,10 @@ class Figure:
         self.name, self.svg, self.title, self.setting = name, svg, title, setting
 
     def save(self, path: Union[str, os.PathLike[str]]) -> Path:
-        """Writes the SVG file and gives its path."""
+        """Writes the SVG file.
+
+        ``path``: the file, which is written over. Returns its path.
+        """
         target = Path(path)
         target.write_text(self.svg, encoding="utf-8")
         return target
@@ -45,7 +48,10 @@ class Figure:
 
 
 def figures() -> dict[str, str]:
-    """Names of the figures of ``Results.figure``, and what each shows."""
+    """The figures of ``Results.figure``.
+
+    Returns a dictionary: what each shows, by its name.
+    """
     return dict(_native.figure_names())
 
 
