@@ -13,6 +13,7 @@ _INSTALLED_BY = {
     "scipy.io": "scipy",
     "scipy.spatial": "scipy",
     "matplotlib.pyplot": "matplotlib",
+    "matplotlib.ticker": "matplotlib",
 }
 
 

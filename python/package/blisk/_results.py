@@ -224,10 +224,17 @@ class Results:
         load_case: Optional[str] = None,
         ax: Any = None,
     ) -> Any:
-        """Percentiles over the normal load per sector (N) as axes of matplotlib, with 95 % bounds and the tuned wheel.
+        """Draws percentiles over the normal load per sector (N), with 95 % bounds and the tuned wheel.
 
-        ``quantity``: ``peak_amplitude_m`` (m) or ``amplification_factor`` (1). ``percentiles``: in %; those without a
-        value are left out. ``ax``: axes to draw into; new ones unless given. The linear limits are levels at the sides.
+        ``quantity``: ``peak_amplitude_m`` or ``amplification_factor``. Units and scales are those of the figure of the
+        report: amplitudes in µm from 0.01 µm to 10 cm, and a logarithmic axis where values differ by more than a
+        factor of 4.
+        ``percentiles``: in %; those without a value are left out.
+        ``engine_order``, ``standard_deviation``, ``load_case``: the number, the relative deviation (1) and the name of
+        one setting; needed where the study has several.
+        ``ax``: axes of matplotlib to draw into; new ones unless given.
+
+        Returns the axes. The linear limits are level lines.
         """
         wanted = {"engine_order": engine_order, "standard_deviation": standard_deviation, "load_case": load_case}
         return plotted(self, quantity, percentiles, wanted, ax)

@@ -109,21 +109,21 @@ class Study:
         return remarks
 
     def describe(self) -> str:
-        """The study in words, as ``blisk check`` prints it."""
+        """Returns the study in words, as ``blisk check`` prints it."""
         text: str = json.loads(self._checked.echo())["text"]
         return text
 
     def to_toml(self) -> str:
-        """The text of the study file: as it was read, or as it would be written."""
+        """Returns the text of the study file: as it was read, or as it would be written."""
         return self._text
 
     def to_dict(self) -> dict[str, Any]:
-        """The study as nested dictionaries, with the keys that it states."""
+        """Returns the study as nested dictionaries, with the keys that it states."""
         tables: dict[str, Any] = json.loads(_native.tables_of(self._text))
         return tables
 
     def resolved(self) -> dict[str, Any]:
-        """The study as nested dictionaries with every default filled in."""
+        """Returns the study as nested dictionaries with every default filled in."""
         tables: dict[str, Any] = json.loads(self._checked.resolved())
         return tables
 
