@@ -3,7 +3,6 @@
 import dataclasses
 import importlib.metadata
 import inspect
-import json
 import re
 import shutil
 import subprocess
@@ -90,10 +89,12 @@ def test_every_block_of_python_of_the_guide_to_imports_runs(tmp_path, monkeypatc
             found.append(names["sector"])
             assert found[-1].check["worst_relative_difference"] < 1e-6
     assert [sector.sectors for sector in found] == [24, 6, 6]
-    # Units and contact are those that the page says.
-    first = found[0]
-    made = json.loads((first.folder / "model.json").read_text()) if (first.folder / "model.json").exists() else {}
-    print(first.report.keys(), made)
+    # Units, ring and contact are those that the page says: half a millimetre squared is in contact.
+    report = found[0].report
+    assert [body["body"] for body in report["bodies"]] == ["blisk", "ring"]
+    (surfaces,) = report["contact"]["surfaces"]
+    assert (surfaces["first"], surfaces["second"]) == ("blisk.FLANGE", "ring.RING_TOP")
+    assert surfaces["area_m2"] == pytest.approx(0.5e-3**2, rel=1e-9)
 
 
 @pytest.mark.parametrize("code", ["ansys", "nastran", "abaqus", "arrays"])
