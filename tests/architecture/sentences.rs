@@ -90,11 +90,13 @@ fn mean(page: &str) -> f64 {
     counts.iter().sum::<usize>() as f64 / counts.len().max(1) as f64
 }
 
-/// README.md, CONTRIBUTING.md and every page of `docs`. `BLISK_SHOW_SENTENCES=1` with `--nocapture` prints the means.
+/// README.md, CONTRIBUTING.md, python/README.md and every page of `docs`. `BLISK_SHOW_SENTENCES=1` with `--nocapture` prints the means.
 #[test]
 fn sentences_of_a_page_have_at_most_twenty_words_in_the_mean() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut paths = vec![root.join("README.md"), root.join("CONTRIBUTING.md")];
+    let mut paths: Vec<_> = ["README.md", "CONTRIBUTING.md", "python/README.md"]
+        .map(|page| root.join(page))
+        .into();
     let entries = std::fs::read_dir(root.join("docs")).expect("docs");
     paths.extend(entries.map(|entry| entry.expect("an entry").path()));
     paths.retain(|path| path.extension().is_some_and(|ending| ending == "md"));
