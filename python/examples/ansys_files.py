@@ -53,7 +53,6 @@ study = blisk.Study(
     excitation={"engine_orders": [2], "amplitude_n": 1.0},
     mistuning={"distribution": {"kind": "normal"}},
     sweep={"normal_load_n": ["slide", 2, 3, 6, "stuck"], "standard_deviation": [0.02]},
-    solver={"harmonics": [1, 3]},
 )
 results = blisk.run(study, out=folder / "beam", progress=True)
 best = results.best(percentile=95)

@@ -48,6 +48,20 @@ def test_a_table_can_be_read_more_than_once_and_outlives_its_results(finished):
     assert pyarrow.schema(finished.scenarios).names == finished.scenarios.columns
 
 
+def test_exports_share_the_memory_of_the_table(finished):
+    table = finished.responses
+    first, second = pyarrow.table(table), pyarrow.table(table)
+    frame = polars.DataFrame(table)
+    numbers = [field.name for field in first.schema if pyarrow.types.is_floating(field.type)]
+    assert len(numbers) >= 4
+    for name in numbers:
+        addresses = [own.column(name).chunk(0).buffers()[1].address for own in (first, second)]
+        assert addresses[0] == addresses[1] == frame[name].to_arrow().buffers()[1].address, name
+    # Two readings of the file do not share.
+    other = pyarrow.table(finished.responses)
+    assert other.column(numbers[0]).chunk(0).buffers()[1].address != addresses[0]
+
+
 def test_a_column_that_is_not_there_is_a_key_error(finished):
     with pytest.raises(KeyError, match="peak_amplitude_m_p95"):
         finished.scenarios["p95"]

@@ -13,11 +13,15 @@ from ._needed import needed
 if TYPE_CHECKING:
     from ._results import Results
 
-_LABELS = {"peak_amplitude_m": "peak amplitude", "amplification_factor": "amplification factor"}
-# Name, metres, and the length in m from which on the unit is taken: those of the report.
+_LABELS = {"peak_amplitude_m": "peak blade amplitude", "amplification_factor": "amplification factor"}
+_LIMITS = {"slide": ":", "stuck": "--"}
+"""Line of a linear limit."""
 _UNITS = (("m", 1.0, 100.0), ("mm", 1e-3, 0.1), ("µm", 1e-6, 1e-8), ("nm", 1e-9, 0.0))
-# Ratio of the largest to the smallest value from which on the report has a logarithmic axis.
+"""Name and length (m) of a unit, and the amplitude (m) from which on the report takes it."""
+_OF_THE_REPORT = (5, 50, 95, 99)
+"""Percentiles whose values and bounds decide on the scale of the report's figure."""
 _LOGARITHMIC_FROM = 4.0
+"""Ratio of the largest to the smallest value from which on the report has a logarithmic axis."""
 
 
 class Figure:
@@ -36,7 +40,10 @@ class Figure:
         self.name, self.svg, self.title, self.setting = name, svg, title, setting
 
     def save(self, path: Union[str, os.PathLike[str]]) -> Path:
-        """Writes the SVG file and gives its path."""
+        """Writes the SVG file.
+
+        ``path``: the file, which is written over. Returns its path.
+        """
         target = Path(path)
         target.write_text(self.svg, encoding="utf-8")
         return target
@@ -49,7 +56,10 @@ class Figure:
 
 
 def figures() -> dict[str, str]:
-    """Names of the figures of ``Results.figure``, and what each shows."""
+    """The figures of ``Results.figure``.
+
+    Returns a dictionary: what each shows, by its name.
+    """
     return dict(_native.figure_names())
 
 
@@ -57,9 +67,11 @@ def plotted(results: Results, quantity: str, percentiles: Sequence[float], wante
     """Percentiles over the normal load; see ``Results.plot``."""
     if quantity not in _LABELS:
         raise ValueError(f"quantity = {quantity!r} is not accepted; accepted: {', '.join(_LABELS)}")
-    scenarios = _only(results.scenarios.rows(), wanted)
+    every = results.scenarios.rows()
+    scenarios = _only(every, wanted)
     own = {row["scenario"] for row in scenarios}
     table = [row for row in results.percentiles.rows() if row["scenario"] in own and row["quantity"] == quantity]
+    unit, metres = _unit(every) if quantity == "peak_amplitude_m" else ("", 1.0)
     if ax is None:
         _, ax = needed("matplotlib.pyplot", "plot()").subplots()
     for percent in percentiles:
@@ -68,63 +80,56 @@ def plotted(results: Results, quantity: str, percentiles: Sequence[float], wante
         if not rows:
             continue
         x = [row["normal_load_n"] for row in loads]
-        (line,) = ax.plot(x, [row["value"] for row in loads], marker="o", label=f"P{percent:g}")
+        (line,) = ax.plot(x, [row["value"] / metres for row in loads], marker="o", label=f"P{percent:g}")
         bounded = [row for row in loads if row["lower"] is not None and row["upper"] is not None]
         ax.fill_between(
             [row["normal_load_n"] for row in bounded],
-            [row["lower"] for row in bounded],
-            [row["upper"] for row in bounded],
+            [row["lower"] / metres for row in bounded],
+            [row["upper"] / metres for row in bounded],
             color=line.get_color(),
             alpha=0.2,
         )
         for row in rows:
-            if row["contact"] in ("slide", "stuck"):
-                ax.axhline(
-                    row["value"],
-                    color=line.get_color(),
-                    linestyle=":" if row["contact"] == "slide" else "--",
-                    linewidth=0.8,
-                )
-    if quantity == "peak_amplitude_m":
-        tuned = sorted(
-            (row["normal_load_n"], row["tuned_amplitude_m"]) for row in scenarios if row["contact"] == "full"
-        )
-        ax.plot(*zip(*tuned), color="black", linewidth=0.8, label="tuned") if tuned else None
-    ax.set_xlabel("normal load per sector, N (dotted: slide, dashed: stuck)")
-    drawn = [row[end] for row in table if row["percent"] in percentiles for end in ("value", "lower", "upper")]
-    if quantity == "peak_amplitude_m":
-        drawn += [row["tuned_amplitude_m"] for row in scenarios]
-    newtons = [row["normal_load_n"] for row in scenarios if row["contact"] == "full"]
-    _axes_of_report(ax, quantity, [own for own in drawn if own is not None and own > 0.0], newtons)
+            if row["contact"] in _LIMITS:
+                style = _LIMITS[row["contact"]]
+                ax.axhline(row["value"] / metres, color=line.get_color(), linestyle=style, linewidth=0.8)
+    tuned = [row for row in scenarios if quantity == "peak_amplitude_m" and row["tuned_amplitude_m"] is not None]
+    points = sorted((row["normal_load_n"], row["tuned_amplitude_m"] / metres) for row in tuned if row["contact"] == "full")
+    ax.plot(*zip(*points), color="black", linewidth=0.8, label="tuned") if points else None
+    for contact, style in _LIMITS.items():
+        if any(row["contact"] == contact for row in scenarios):
+            ax.plot([], [], color="grey", linestyle=style, linewidth=0.8, label=contact)
+    drawn = [row for row in table if row["percent"] in _OF_THE_REPORT and row["value"] is not None]
+    values = [row[key] / metres for row in drawn for key in ("value", "lower", "upper") if row[key] is not None]
+    values += [row["tuned_amplitude_m"] / metres for row in tuned]
+    _scale(ax, [row["normal_load_n"] for row in scenarios if row["contact"] == "full"], values, f"{_LABELS[quantity]}{unit}")
     ax.legend()
     return ax
 
 
-def _axes_of_report(ax: Any, quantity: str, values: Sequence[float], loads: Sequence[float]) -> None:
-    """Scales and unit of the figure of the report. The data stay in SI units, so that more can be drawn beside them."""
+def _unit(scenarios: list[dict[str, Any]]) -> tuple[str, float]:
+    """The unit of amplitudes, as the report has it, and its length in m."""
+    found = [row[key] for row in scenarios for key in ("tuned_amplitude_m", "peak_amplitude_m_mean")]
+    smallest = min((own for own in found if own is not None), default=1e-6)
+    return next((f", {name}", metres) for name, metres, least in _UNITS if smallest >= least)
+
+
+def _scale(ax: Any, loads: Sequence[float], values: Sequence[float], label: str) -> None:
+    """Scales and titles of both axes, as the report has them."""
     ticker = needed("matplotlib.ticker", "plot()")
-    is_logarithmic = bool(values) and max(values) > _LOGARITHMIC_FROM * min(values)
-    name, metres = "", 1.0
-    if quantity == "peak_amplitude_m":
-        smallest = min(values, default=1e-6)
-        name, metres = next((own, size) for own, size, least in _UNITS if smallest >= least)
-    if loads and 0.0 < min(loads) < max(loads):
-        _logarithmic(ax.xaxis, ax.set_xscale, 1.0, ticker)
-    if is_logarithmic:
-        _logarithmic(ax.yaxis, ax.set_yscale, metres, ticker)
-    else:
-        ax.set_yscale("linear")
-        ax.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value / metres:g}"))
-    unit = f", {name}" if name else ""
-    ax.set_ylabel(f"{_LABELS[quantity]}{unit}{' (log.)' if is_logarithmic else ''}")
-
-
-def _logarithmic(axis: Any, set_scale: Any, unit: float, ticker: Any) -> None:
-    """A logarithmic axis with numbers at 1, 2 and 5."""
-    set_scale("log")
-    axis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value / unit:g}"))
-    axis.set_minor_formatter(ticker.NullFormatter())
+    spread = bool(loads) and 0.0 < min(loads) < max(loads)
+    ax.set_xscale("log" if spread else "linear")
+    ax.set_xlabel(f"damper normal load per sector, N{' (logarithmic)' if spread else ''}")
+    if spread:
+        ax.set_xticks(sorted(set(loads)), labels=[f"{load:g}" for load in sorted(set(loads))])
+        ax.xaxis.set_minor_locator(ticker.NullLocator())
+    wide = bool(values) and 0.0 < _LOGARITHMIC_FROM * min(values) < max(values)
+    ax.set_yscale("log" if wide else "linear")
+    ax.set_ylabel(f"{label}{' (log.)' if wide else ''}")
+    if wide:
+        ax.yaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+        ax.yaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+        ax.yaxis.set_minor_locator(ticker.NullLocator())
 
 
 def _only(rows: list[dict[str, Any]], wanted: Mapping[str, Any]) -> list[dict[str, Any]]:

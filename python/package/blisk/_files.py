@@ -33,11 +33,13 @@ class Keys(list[dict[str, Any]]):
 
 
 def init(out: Union[str, os.PathLike[str], None] = None, example: str = "template") -> str:
-    """The text of a commented study file, for ``Study.from_toml``.
+    """A commented study file to begin with.
 
     ``out``: a file that the text is written to as well, and beside it the files that the study reads. None of them is
     written over: there is a ``BliskError`` instead.
     ``example``: one of the studies that come with the program; a ``ValueError`` says which there are.
+
+    Returns the text of the file, for ``Study.from_toml``.
     """
     texts = dict(_native.examples())
     if example not in texts:
@@ -53,14 +55,19 @@ def explain(words: str = "") -> Keys:
     ``words``: a key, like ``solver.peak_tolerance``, a table, like ``solver``, or words that are sought in names and
     meanings; ``import`` for the keys of import files. All keys of study files unless given.
 
-    Raises ``ValueError`` with the nearest names where there is no such key.
+    Returns a list with a dictionary per key: ``key``, ``accepted``, ``default``, ``required``, ``meaning``. Raises ``ValueError`` with the nearest names where there is no such key.
     """
     keys, text = _native.explain(words)
     return Keys(json.loads(keys), text)
 
 
 def schema(of: str = "study") -> dict[str, Any]:
-    """The JSON schema of study files as nested dictionaries. ``of``: ``study``, or ``import`` for import files."""
+    """The JSON schema of study files, or of import files.
+
+    ``of``: ``study``, or ``import`` for import files.
+
+    Returns the schema as nested dictionaries.
+    """
     if of not in ("study", "import"):
         raise ValueError(f"of = {of!r} is not accepted; accepted: study, import")
     found: dict[str, Any] = json.loads(_native.schema(of == "import"))
@@ -77,14 +84,17 @@ def slurm(
     script: Union[str, os.PathLike[str], None] = None,
     program: Union[str, os.PathLike[str], None] = None,
 ) -> Path:
-    """Writes a script that submits a study to Slurm, as an array of shards and a merge after it; gives its path.
+    """Writes a script that submits a study to Slurm, as an array of shards and a merge after it.
 
-    ``study_file``: the study, which the tasks read. ``tasks``: number of shards, 1 to 100000.
+    ``study_file``: the study, which the tasks read.
+    ``tasks``: number of shards, 1 to 100000.
     ``out``: the results folder, on a file system that all nodes see; ``results/<name>`` unless given.
     ``threads``: threads of each shard, 1 to 1024.
     ``time``: time limit of each shard, as ``sbatch --time`` takes it, like ``12:00:00``; that of Slurm unless given.
     ``script``: the script, which must not exist yet; ``<name>-slurm.sh`` unless given.
     ``program``: the command ``blisk`` on the nodes; that of this package unless given.
+
+    Returns the path of the script.
     """
     if not 1 <= tasks <= 100_000:
         raise ValueError(f"tasks = {tasks} is not accepted; accepted: a whole number, 1 to 100000")

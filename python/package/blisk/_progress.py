@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import importlib
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Optional, Union
+from typing import Any, Optional, Union
 
 _STAGES = {
     "load_model": "loading the model",
@@ -20,6 +21,10 @@ _STAGES = {
 
 _PLAIN_INTERVAL_S = 30.0
 """Time between lines where no terminal shows a line that is written over."""
+_CELL_INTERVAL_S = 0.2
+"""Time between two messages to the cell of a notebook."""
+_BAR = 20
+"""Characters of the bar: with the rows and the time the line fits into 80 columns."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +44,7 @@ class Progress:
 
 
 ProgressArgument = Union[bool, Callable[[Progress], object], None]
-"""``True`` for a line on the standard error stream, a function, or nothing."""
+"""``True`` for a line with a bar, a function, or nothing."""
 
 
 @contextmanager
@@ -67,24 +72,23 @@ def listening(progress: ProgressArgument) -> Iterator[Optional[Callable[[str, in
 
 
 class _Line:
-    """A line about the progress: written over on a terminal and in a notebook, a plain one now and then elsewhere."""
+    """A line with a bar: on a terminal written over, in a notebook an output of its cell, elsewhere one now and then."""
 
     def __init__(self) -> None:
-        self._over = sys.stderr.isatty() or "ipykernel" in sys.modules
+        self._cell = _Cell() if _in_notebook() else None
+        self._over = sys.stderr.isatty()
         self._last = time.monotonic()
         self._width = 0
-        self._rows: Optional[tuple[float, int]] = None
+        self._rows: Optional[tuple[float, int, int]] = None
+        self._reached: Optional[Progress] = None
 
     def show(self, reached: Progress) -> None:
         now = time.monotonic()
-        text = _STAGES[reached.stage]
-        if reached.stage == "rows" and reached.planned:
-            text += f": {reached.done} of {reached.planned} rows, {reached.failed} failed"
-            # The rate is that of this run; rows that were there took no time.
-            since, before = self._rows = self._rows or (now, reached.done)
-            if reached.done > before and now > since:
-                left = (reached.planned - reached.done) * (now - since) / (reached.done - before)
-                text += f", about {left:.0f} s left"
+        self._reached = reached
+        text = self._text(reached, now)
+        if self._cell is not None:
+            self._cell.show(text, now)
+            return
         if self._over:
             sys.stderr.write("\r" + text.ljust(self._width))
             self._width = len(text)
@@ -93,7 +97,66 @@ class _Line:
             sys.stderr.write(text + "\n")
         sys.stderr.flush()
 
+    def _text(self, reached: Progress, now: float) -> str:
+        if reached.stage != "rows" or not reached.planned:
+            return _STAGES[reached.stage]
+        text = _bar(reached)
+        # The rate is that of this run; rows that were there took no time. A search has several runs.
+        if self._rows is None or self._rows[1] > reached.done or self._rows[2] != reached.planned:
+            self._rows = (now, reached.done, reached.planned)
+        since, before, _ = self._rows
+        if reached.done > before and now > since:
+            left = (reached.planned - reached.done) * (now - since) / (reached.done - before)
+            text += f", about {_time(left)} left"
+        return text
+
     def finish(self) -> None:
-        if self._over and self._width:
+        reached = self._reached
+        if self._cell is not None and reached is not None:
+            # What stays in the notebook.
+            self._cell.write(f"{_bar(reached)}, {_time(reached.elapsed_s)}" if reached.planned else "")
+        elif self._over and self._width:
             sys.stderr.write("\r" + " " * self._width + "\r")
             sys.stderr.flush()
+
+
+class _Cell:
+    """The output of a notebook's cell that is written over."""
+
+    def __init__(self) -> None:
+        self._display = importlib.import_module("IPython.display").display
+        self._handle: Any = None
+        self._shown = 0.0
+
+    def show(self, text: str, now: float) -> None:
+        """Writes the text, unless the last one was written just now."""
+        if self._handle is None or now - self._shown >= _CELL_INTERVAL_S:
+            self._shown = now
+            self.write(text)
+
+    def write(self, text: str) -> None:
+        """Writes the text in the place of the last one."""
+        content = {"text/plain": text}
+        if self._handle is None:
+            self._handle = self._display(content, raw=True, display_id=True)
+        else:
+            self._handle.update(content, raw=True)
+
+
+def _in_notebook() -> bool:
+    """Whether a kernel of Jupyter carries this out."""
+    ipython = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    return getattr(shell, "kernel", None) is not None
+
+
+def _bar(reached: Progress) -> str:
+    """Rows done of all, as a bar and in words."""
+    filled = "#" * (_BAR * reached.done // reached.planned)
+    return f"[{filled:<{_BAR}}] {reached.done} of {reached.planned} rows, {reached.failed} failed"
+
+
+def _time(seconds: float) -> str:
+    if seconds < 120.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:.0f} h"

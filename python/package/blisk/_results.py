@@ -45,6 +45,8 @@ class Best:
 class Results:
     """A results folder, as ``run`` or the command ``blisk run`` writes it.
 
+    ``folder``: its path; ``BliskError`` where it is no results folder.
+
     Tables are read when they are asked for, and each is checked against its digest. docs/results.md says what every
     column holds; ``Table.units`` and ``Table.descriptions`` say it as well. N patterns, S scenarios and B blades make
 
@@ -64,7 +66,10 @@ class Results:
         _native.manifest(self.folder)
 
     def table(self, name: str) -> Table:
-        """The table ``<name>.parquet`` of the folder, also one that another command wrote, like ``tail_fits``."""
+        """A table of the folder, also one that another command wrote.
+
+        ``name``: that of the file without ``.parquet``, like ``tail_fits``. Returns the table.
+        """
         return _native.table(self.folder, name)
 
     @property
@@ -138,8 +143,13 @@ class Results:
     ) -> Best:
         """The normal load with the lowest percentile among the loads of the study; linear limits do not count.
 
-        Engine order, standard deviation and load case have to be named where the study has several. Loads whose bounds
-        overlap may still differ, or be as good: ``blisk compare`` tells, on the patterns that they share.
+        ``percentile``: in %; one of those that ``percentiles`` has.
+        ``quantity``: ``peak_amplitude_m`` (m) or ``amplification_factor`` (1).
+        ``engine_order``, ``standard_deviation``, ``load_case``: the number, the relative deviation (1) and the name of
+        one setting; needed where the study has several.
+
+        Returns the load (N per sector) with the percentile and its 95 % bounds. Loads whose bounds overlap may still
+        differ, or be as good: ``blisk.compare`` tells, on the patterns that they share.
 
         Raises ``ValueError`` where no load has such a percentile: P95 needs 72 patterns, P99 368.
         """
@@ -171,10 +181,13 @@ class Results:
         curves: bool = True,
         study_file: Union[str, os.PathLike[str], None] = None,
     ) -> Path:
-        """Writes the report, one HTML page, and gives its path: ``report.html`` in the folder unless ``path`` is given.
+        """Writes the report, one HTML page.
 
+        ``path``: the file; ``report.html`` in the folder unless given.
         ``curves``: also response curves, for which wheels are solved again.
         ``study_file``: the study file beside which the inputs lie now; that of the last run unless given.
+
+        Returns the path of the page.
         """
         target = self.folder / "report.html" if path is None else Path(path)
         _native.report(self.folder, target, curves, None if study_file is None else Path(study_file))
@@ -189,10 +202,14 @@ class Results:
         standard_deviation: Optional[float] = None,
         study_file: Union[str, os.PathLike[str], None] = None,
     ) -> Figure:
-        """A figure of the report as SVG, which a notebook shows; ``blisk.figures()`` has the names.
+        """A figure of the report as SVG, which a notebook shows.
 
-        Figures of single wheels solve these again. Load case, engine order and standard deviation have to be named where
-        the study has several.
+        ``name``: one of ``blisk.figures()``. Figures of single wheels solve these again.
+        ``load_case``, ``engine_order``, ``standard_deviation``: the name, the number and the relative deviation (1) of
+        one setting; needed where the study has several.
+        ``study_file``: the study file beside which the inputs lie now; that of the last run unless given.
+
+        Returns the figure.
         """
         own = (load_case, engine_order, standard_deviation, None if study_file is None else Path(study_file))
         return Figure(name, *_native.figure(self.folder, name, *own))
@@ -207,11 +224,17 @@ class Results:
         load_case: Optional[str] = None,
         ax: Any = None,
     ) -> Any:
-        """Percentiles over the normal load per sector (N) as axes of matplotlib, with 95 % bounds and the tuned wheel.
+        """Draws percentiles over the normal load per sector (N), with 95 % bounds and the tuned wheel.
 
-        ``quantity``: ``peak_amplitude_m`` (m) or ``amplification_factor`` (1). ``percentiles``: in %; those without a
-        value are left out. ``ax``: axes to draw into; new ones unless given. The linear limits are levels at the sides.
-        Unit and scales are those of the report's figure, like µm and logarithmic; the data stay in m.
+        ``quantity``: ``peak_amplitude_m`` or ``amplification_factor``. Units and scales are those of the figure of the
+        report: amplitudes in µm from 0.01 µm to 10 cm, and a logarithmic axis where values differ by more than a
+        factor of 4.
+        ``percentiles``: in %; those without a value are left out.
+        ``engine_order``, ``standard_deviation``, ``load_case``: the number, the relative deviation (1) and the name of
+        one setting; needed where the study has several.
+        ``ax``: axes of matplotlib to draw into; new ones unless given.
+
+        Returns the axes. The linear limits are level lines.
         """
         wanted = {"engine_order": engine_order, "standard_deviation": standard_deviation, "load_case": load_case}
         return plotted(self, quantity, percentiles, wanted, ax)

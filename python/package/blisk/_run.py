@@ -22,15 +22,16 @@ def run(
 ) -> Results:
     """Solves a study, or continues one: rows that are stored in the folder are not solved again.
 
+    ``study``: what is solved.
     ``out``: the results folder; ``results/<name>`` unless given.
     ``threads``: number of threads, 1 to 1024; those of the scheduler's allocation unless given, else all cores.
     Results do not depend on it.
-    ``progress``: ``True`` for a line on the standard error stream, or a function that is called with a ``Progress``, at
-    most 20 times a second, on the thread that called ``run``.
+    ``progress``: ``True`` for a line on the standard error stream with a bar, rows done of all and time left, or a
+    function that is called with a ``Progress``, at most 20 times a second, on the thread that called ``run``.
     ``solve_anew``: rows of another build of the program are set aside and everything is solved anew; without it they
     are a ``BliskError``.
 
-    Other threads of Python go on meanwhile. ``KeyboardInterrupt``, or an exception of ``progress``, stops the run
+    Returns the results. Other threads of Python go on meanwhile. ``KeyboardInterrupt``, or an exception of ``progress``, stops the run
     between rows; what is solved is stored, and the same call continues. A second one is raised at once.
     """
     folder = Path("results") / study.name if out is None else Path(out)

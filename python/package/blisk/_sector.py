@@ -31,22 +31,8 @@ class Sector:
         sector = blisk.Sector.from_ansys("file.full", "sector.cdb", out="wheel", sectors=24, ...)
         study = blisk.Study(study={...}, model=sector.model, ...)
 
-    **What the makers have in common.** ``out`` is the folder of the bundle. The import file and the matrices that it
-    was made of are kept in ``out/import``; ``blisk import out/import/import.toml --out DIR`` makes the same bundle.
-
-    ``name``: of the model; that of the mesh's file unless given. ``sectors``: number of sectors of the wheel.
-    ``axis``: axis of rotation through the origin, ``x``, ``y`` or ``z``. ``units``: of the files, ``m-kg-s`` (SI) or ``mm-t-s`` (mm, tonne, N).
-    ``low_face``, ``high_face``: sets of the cut faces; the high one is the low one turned by +360/sectors degrees. Where
-    they are not named, they are found: the nodes that lie where other ones lie after that turn.
-    ``force``, ``observe``, ``contact``, ``ring``, ``damper``: the tables of the import file as dictionaries
-    (docs/import.md), like ``force={"set": "TIP", "component": "z"}`` in N per newton of ``excitation.amplitude_n``. A
-    ring or damper stands in the same files (``{"set": "RING"}``) or has its own, which are named as those of the blisk.
-    ``sets``: further sets by node numbers, like ``{"TIP": [1204]}``.
-    ``position_tolerance_m``: how far the faces may be apart, m.
-    ``frequencies``: so many contact-free frequencies per nodal diameter are computed, Hz.
-    ``check``: these frequencies are compared with a cyclic eigenproblem of the same matrices in SciPy, which shares
-    nothing with the program: at every nodal diameter (of a sector of more than 5000 rows at 0, 1 and the last one), at
-    those that are listed, or at none (``False``). A relative difference beyond 1e-6 is a ``BliskError`` with the exit code 11, that of a failed verification.
+    ``folder``: that of the bundle, for ``from_bundle`` alone. Every maker from files has the same keywords beside those
+    of its files; its help lists them.
 
     What is not accepted is an ``InputError`` with the words of ``blisk import``. A package that is missing is an
     ``ImportError`` that names it.
@@ -69,12 +55,22 @@ class Sector:
 
     @classmethod
     def from_bundle(cls, folder: _Path) -> Sector:
-        """A bundle that is there."""
+        """A bundle that is there.
+
+        ``folder``: its folder. Returns the sector.
+        """
         return cls(folder)
 
     @classmethod
     def from_import_file(cls, file: _Path, out: _Path, frequencies: int = 0) -> Sector:
-        """The bundle that an import file makes, as ``blisk import FILE --out OUT --frequencies N`` does."""
+        """The bundle that an import file makes, as ``blisk import FILE --out OUT --frequencies N`` does.
+
+        ``file``: the import file.
+        ``out``: the folder of the bundle to write.
+        ``frequencies``: so many contact-free frequencies per nodal diameter are computed, Hz, 0 to 1000.
+
+        Returns the sector.
+        """
         if not 0 <= frequencies <= 1000:
             raise ValueError(f"frequencies = {frequencies} is not accepted; accepted: 0 to 1000")
         answer = _native.import_sector(Path(file), Path(out), frequencies)
@@ -97,11 +93,11 @@ class Sector:
 
         ``full``: the ``.full`` file of a modal analysis of the sector, its cut faces free.
         ``cdb``: its mesh by ``CDWRITE``; the components are the sets.
-        The stiffness of the blade alone: ``blade_full``, the ``.full`` file of a run with the blade's elements alone; or
-        ``blade_emat``, the ``.emat`` file of the run itself, and ``blade``, a component or the numbers of the elements.
+        ``blade_full``: the stiffness of the blade alone, the ``.full`` file of a run with the blade's elements alone.
+        ``blade_emat``, ``blade``: the same in another way, the ``.emat`` file of the run itself, and a component or the
+        numbers of the elements.
         ``rst``: a result file that is compared as well. One of a cyclic analysis: its frequencies by nodal diameter. One
         of the sector alone: each mode has to satisfy ``K u = omega^2 M u`` away from the faces and the held nodes.
-        ``held``: nodes whose rows are taken out as well, like free ones on the axis: a set, or node numbers.
         ``ring``, ``damper`` with files of their own: the keys ``full`` and ``cdb``, and ``held``.
         """
         wheel = Wheel.of(cdb, keywords)
@@ -143,12 +139,14 @@ class Sector:
 
         ``bdf``: the bulk data; the SET1 entries are the sets, and their names are their numbers.
         ``matrices``: stiffness and mass, ``.op2``, ``.op4`` (``.ou1`` to ``.ou7`` of MYSTRAN) or a punch file ``.pch`` with
-        DMIG; ``mass``: the file of the mass, where it is another one. ``stiffness_name``, ``mass_name``: unless only one
-        name begins with K or M.
+        DMIG.
+        ``mass``: the file of the mass, where it is another one.
+        ``stiffness_name``, ``mass_name``: names of the matrices in the files; needed unless only one begins with K or M.
         ``rows``: node and direction (1, 2, 3) of each row of an ``.op2`` or ``.op4``, shape (n, 2); unless given 3 or 6
         rows for each grid point in ascending order. Empty rows are left out, as those of rotations are.
-        ``blade``: the stiffness of the blade's elements alone, likewise, with ``blade_rows`` and ``blade_stiffness_name``.
-        ``held``: grid points whose rows are taken out, where the matrices are those without SPC: a set, or numbers.
+        ``blade``: the file of the stiffness of the blade's elements alone.
+        ``blade_rows``, ``blade_stiffness_name``: as ``rows`` and ``stiffness_name``, of that file.
+        ``held``: here of use where the matrices are those without SPC.
         ``ring``, ``damper`` with files of their own: the keys ``bdf`` and ``matrices``, and ``rows``, ``held``.
         """
         wheel = Wheel.of(bdf, keywords)
@@ -186,10 +184,9 @@ class Sector:
         ``inp``: the input file, flat or with one instance that is not moved; its node and element sets are the sets.
         ``stiffness``, ``mass``: the ``.mtx`` files of ``*MATRIX GENERATE, STIFFNESS, MASS`` and ``*MATRIX OUTPUT``, in any
         of its text formats. ``COORDINATE`` does not name its rows: they are those of the nodes of the elements.
-        ``blade_stiffness``: that of a job with the blade's elements alone, same nodes; ``blade_inp``: the input file of
-        that job, which ``COORDINATE`` needs.
-        ``held``: nodes whose rows are taken out, a set or node numbers; rows with a penalty of 1e30 or more on the
-        diagonal are, too.
+        ``blade_stiffness``: that of a job with the blade's elements alone, same nodes.
+        ``blade_inp``: the input file of that job, which ``COORDINATE`` needs.
+        ``held``: rows with a penalty of 1e30 or more on the diagonal are taken out, too.
         ``ring``, ``damper`` with files of their own: the keys ``inp``, ``stiffness`` and ``mass``, and ``held``.
         """
         wheel = Wheel.of(inp, keywords)
@@ -227,7 +224,6 @@ class Sector:
         ``rows``: node and direction (1, 2, 3 for x, y, z) of each row, shape (n, 2); three for each node unless given.
         ``elements``: node numbers of solid elements by their type in Abaqus or meshio, like ``{"C3D8": array of (k, 8)}``;
         a contact needs them, or a ``normal``.
-        ``held``: nodes whose rows are taken out: a set, or node numbers.
         """
         wheel = Wheel.of("wheel", keywords)
         own, named = _arrays.run(stiffness, mass, rows, nodes, elements, wheel.held, wheel.sets)
@@ -265,16 +261,24 @@ class Sector:
         return int(self._facts["dofs"])
 
     def frequencies_hz(self, count: int = 6) -> list[list[float]]:
-        """The lowest contact-free natural frequencies, Hz: ``count`` for each nodal diameter 0 to sectors/2.
+        """The lowest contact-free natural frequencies.
 
-        A body that nothing holds has frequencies of nought.
+        ``count``: how many for each nodal diameter, 1 to 1000.
+
+        Returns a list for each nodal diameter 0 to sectors/2, with ``count`` frequencies, Hz, in ascending order. A body that nothing holds has frequencies of nought.
         """
         if not 1 <= count <= 1000:
             raise ValueError(f"count = {count} is not accepted; accepted: 1 to 1000")
         return _native.bundle_frequencies(self.folder, count)
 
     def plot(self, count: int = 6, *, ax: Any = None) -> Any:
-        """The contact-free frequencies over the nodal diameter as axes of matplotlib; ``ax``: axes to draw into."""
+        """Draws the contact-free frequencies (Hz) over the nodal diameter.
+
+        ``count``: how many for each nodal diameter, 1 to 1000.
+        ``ax``: axes of matplotlib to draw into; new ones unless given.
+
+        Returns the axes.
+        """
         by_diameter = self.frequencies_hz(count)
         if ax is None:
             _, ax = needed("matplotlib.pyplot", "plot()").subplots()

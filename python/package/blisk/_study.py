@@ -28,7 +28,10 @@ class Study:
 
     Keys may be dotted as well, and a value of ``None`` is a key that is left out. Everything is checked as the command
     checks a study file, and ``InputError`` says what is wrong in the same words. A study cannot be changed; ``replace``
-    makes another one. Files that it names are sought in ``base``, which is the working directory unless given.
+    makes another one.
+
+    ``base``: the folder in which files that the study names are sought; the working directory unless given.
+    ``tables``: the tables of the study file by name, a dictionary each. ``blisk.explain()`` has every key with its unit.
     """
 
     __slots__ = ("_checked", "_path", "_text")
@@ -46,9 +49,11 @@ class Study:
     def from_toml(cls, source: Union[str, os.PathLike[str]], base: Union[str, os.PathLike[str], None] = None) -> Study:
         """The study in a file, or in a text.
 
-        A ``str`` with a line break or ``=`` is the text of a study file, any other one the path of a file. Files that
-        the study names are sought in ``base``, which is the folder of the file, or for a text the working directory,
-        unless given.
+        ``source``: a ``str`` with a line break or ``=`` is the text of a study file, any other one the path of a file.
+        ``base``: the folder in which files that the study names are sought; that of the file, or for a text the working
+        directory, unless given.
+
+        Returns the study; ``InputError`` says what of it is not accepted.
         """
         is_text = isinstance(source, str) and ("\n" in source or "=" in source)
         if is_text:
@@ -70,10 +75,13 @@ class Study:
     def replace(self, changes: Optional[Mapping[str, Any]] = None, /, **tables: Any) -> Study:
         """The same study with other values.
 
-        Keys are dotted or nested, and what is not named stays as it is; ``None`` takes a key out:
+        ``changes``, ``tables``: values by their keys, dotted or nested. What is not named stays as it is; ``None`` takes
+        a key out:
 
             study.replace({"study.patterns": 4000, "solver.harmonics": None})
             study.replace(study={"patterns": 4000})
+
+        Returns the other study.
         """
         own = self.to_dict()
         _put_all(own, changes or {})
@@ -83,37 +91,39 @@ class Study:
     def wheel(self, deviations: Iterable[float]) -> Wheel:
         """One wheel with known blades, for instance a measured one, under the loads and settings of this study.
 
-        ``deviations``: relative deviation of each blade's stiffness, one per sector; a deviation of the blade's frequency
-        is about half of it.
+        ``deviations``: relative deviation of each blade's stiffness, shape (N,) with N sectors, unit 1: 0.02 is 2 %. A
+        deviation of the blade's frequency is about half of it.
+
+        Returns the wheel.
         """
         from ._wheel import Wheel
 
         return Wheel(self, deviations)
 
     def check(self) -> list[str]:
-        """Looks at model and patterns as well, and solves nothing; gives remarks on what is unusual.
+        """Looks at model and patterns as well, and solves nothing.
 
-        Raises ``InputError`` if the model or the patterns are not accepted.
+        Returns remarks on what is unusual, a text each. Raises ``InputError`` if the model or the patterns are not accepted.
         """
         remarks: list[str] = json.loads(self._checked.echo())["remarks"]
         return remarks
 
     def describe(self) -> str:
-        """The study in words, as ``blisk check`` prints it."""
+        """Returns the study in words, as ``blisk check`` prints it."""
         text: str = json.loads(self._checked.echo())["text"]
         return text
 
     def to_toml(self) -> str:
-        """The text of the study file: as it was read, or as it would be written."""
+        """Returns the text of the study file: as it was read, or as it would be written."""
         return self._text
 
     def to_dict(self) -> dict[str, Any]:
-        """The study as nested dictionaries, with the keys that it states."""
+        """Returns the study as nested dictionaries, with the keys that it states."""
         tables: dict[str, Any] = json.loads(_native.tables_of(self._text))
         return tables
 
     def resolved(self) -> dict[str, Any]:
-        """The study as nested dictionaries with every default filled in."""
+        """Returns the study as nested dictionaries with every default filled in."""
         tables: dict[str, Any] = json.loads(self._checked.resolved())
         return tables
 

@@ -35,10 +35,14 @@ class Peak:
 
 
 class Wheel:
-    """One wheel with known blades, under the loads and settings of a study; ``Study.wheel`` makes it."""
+    """One wheel with known blades, under the loads and settings of a study; ``Study.wheel`` makes it.
+
+    ``study``: the study.
+    ``deviations``: relative deviation of each blade's stiffness, shape (N,) with N sectors, unit 1: 0.02 is 2 %.
+    """
 
     deviations: tuple[float, ...]
-    """Relative deviation of each blade's stiffness."""
+    """Relative deviation of each blade's stiffness, one per sector, unit 1."""
 
     def __init__(self, study: Study, deviations: Iterable[float]) -> None:
         self.deviations = tuple(float(own) for own in deviations)
@@ -52,8 +56,11 @@ class Wheel:
         """The peak at each of the loads, in the order of the study's scenarios.
 
         ``loads``: normal loads per sector, N, and linear limits by name; those of the study unless given. The study has
-        one load case and engine order. ``InputError``: the study is not accepted with this wheel, for instance where
-        there are not as many deviations as sectors.
+        one load case and engine order.
+        ``threads``: as in ``run``.
+
+        Returns a ``Peak`` per load. ``InputError``: the study is not accepted with this wheel, for instance where there
+        are not as many deviations as sectors.
         """
         with tempfile.TemporaryDirectory() as folder:
             study = self._study(Path(folder), loads)
@@ -68,11 +75,24 @@ class Wheel:
         ]
 
     def peak(self, load: Union[float, str], *, threads: Optional[int] = None) -> Peak:
-        """The peak at one normal load per sector, N, or at a linear limit by name."""
+        """The peak at one load.
+
+        ``load``: normal load per sector, N, or a linear limit: ``stuck``, ``slide``, ``free``.
+        ``threads``: as in ``run``.
+
+        Returns the ``Peak``: amplitude in m, frequency in Hz.
+        """
         return self.peaks([load], threads=threads)[0]
 
     def response(self, load: Union[float, str], frequencies_hz: Iterable[float]) -> Table:
-        """Amplitude of every blade over frequency, as ``blisk.response`` gives it."""
+        """Amplitude of every blade over frequency.
+
+        ``load``: normal load per sector, N, or a linear limit: ``stuck``, ``slide``, ``free``.
+        ``frequencies_hz``: frequencies of the excitation, Hz, shape (F,), positive and ascending.
+
+        Returns the table of ``blisk.response``, F B rows with B blades: ``frequency_hz`` (Hz), ``blade``,
+        ``amplitude_m`` (m), ``status``.
+        """
         from ._answers import response
 
         with tempfile.TemporaryDirectory() as folder:

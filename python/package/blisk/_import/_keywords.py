@@ -87,6 +87,35 @@ class Wheel:
                 raise ValueError(f"check = {self.check} is not accepted; accepted: nodal diameters from 0 to {last}")
 
 
+SHARED = """``out``: the folder of the bundle to write. The import file and the matrices that it was made of are kept in
+``out/import``; ``blisk import out/import/import.toml --out DIR`` makes the same bundle.
+``sectors``: number of sectors of the wheel.
+``force``, ``observe``: where the excitation acts, and whose displacement counts: tables of the import file as
+dictionaries (docs/import.md), like ``force={"set": "TIP", "component": "z"}`` in N per newton of
+``excitation.amplitude_n``, and ``observe={"name": "tip", "set": "TIP"}``.
+``contact``: the surfaces that rub on each other, a dictionary or a list of them, like
+``{"blisk": "FLANGE", "ring": "RING_TOP"}``; none unless given.
+``ring``, ``damper``: a body in the same files (``{"set": "RING"}``) or in its own, which are named as those of the
+blisk; none unless given.
+``held``: nodes whose rows are taken out as well, like free ones on the axis: a set, or node numbers.
+``name``: of the model; that of the mesh's file unless given.
+``low_face``, ``high_face``: sets of the cut faces; the high one is the low one turned by +360/sectors degrees. Where
+they are not named, they are found: the nodes that lie where other ones lie after that turn.
+``sets``: further sets by node numbers, like ``{"TIP": [1204]}``.
+``units``: of the files, ``m-kg-s`` (SI) or ``mm-t-s`` (mm, tonne, N).
+``axis``: axis of rotation through the origin, ``x``, ``y`` or ``z``.
+``position_tolerance_m``: how far the faces may be apart, m; 1e-6 of the largest distance from the origin unless
+given.
+``frequencies``: so many contact-free frequencies per nodal diameter are computed, Hz, 0 to 1000.
+``check``: these frequencies are compared with a cyclic eigenproblem of the same matrices in SciPy, which shares
+nothing with the program: at every nodal diameter (of a sector of more than 5000 rows at 0, 1 and the last one), at
+those that are listed, or at none (``False``). A relative difference beyond 1e-6 is a ``BliskError`` with the exit code
+11, that of a failed verification.
+
+Returns the sector: ``report`` says what was found, ``check`` what was compared."""
+"""The keywords of ``Wheel`` in the help of every maker."""
+
+
 Maker = TypeVar("Maker", bound=Callable[..., Any])
 
 
@@ -114,4 +143,5 @@ def with_keywords(maker: Maker) -> Maker:
         return maker(*arguments, **keywords)
 
     made.__signature__ = signature  # type: ignore[attr-defined]
+    made.__doc__ = f"{inspect.cleandoc(maker.__doc__ or '')}\n\n**As every maker.**\n\n{SHARED}"
     return made  # type: ignore[return-value]
