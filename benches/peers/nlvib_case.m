@@ -196,7 +196,7 @@ function main(folder, repetitions, nlvib)
     least = min(least, cputime() - before);
   end
   highest = height;
-  for around = frequency + (-0.1:0.02:0.1)
+  for around = frequency + (-0.1:0.05:0.1)
     [points, other] = height_of(case_, points, around);
     highest = max(highest, other);
   end
