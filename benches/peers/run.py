@@ -9,6 +9,7 @@ import resource
 import shutil
 import subprocess
 import sys
+import time
 import tomllib
 from pathlib import Path
 
@@ -210,6 +211,7 @@ def report(peers, blisk, binary):
         apart = abs(found["peak_m"] / blisk.peak_m - 1)
         # Each is within 0.1 % of the top.
         assert apart <= 2 * PEAK_TOLERANCE, apart
+    sys.stdout.flush()
 
 
 def main():
@@ -237,12 +239,13 @@ def main():
         before = figures(run(bench)[0])
     # In turns, so that a machine that grows busy is busy for all.
     blisk = Blisk(binary, arguments.environment)
-    for _ in range(arguments.repetitions):
+    for turn in range(arguments.repetitions):
         for peer in peers:
             blisk.measure()
             peer.measure(arguments.environment)  # pyHarm leaves a folder where it is run
-    blisk.measure()
-    report(peers, blisk, binary)
+        blisk.measure()
+        print(f"\nturn {turn + 1} of {arguments.repetitions}, {time.strftime('%H:%M')}")
+        report(peers, blisk, binary)
     if not arguments.blisk:
         bench_lines(before, figures(run(bench)[0]), peers[0].figures)
     else:
