@@ -9,7 +9,7 @@ use serde::{Serialize, Serializer};
 use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::input::nearest_key_names;
-use crate::input::terms_about;
+use crate::input::{Term, terms_about};
 use crate::model::sector::import::{import_keys, import_schema};
 use crate::population::table::{
     ColumnSpec, DISTRIBUTION_COLUMNS, MAIN_EFFECT_COLUMNS, PATTERN_COLUMNS, PERCENTILE_COLUMNS,
@@ -125,6 +125,15 @@ struct Meaning {
     meaning: String,
 }
 
+impl From<Term> for Meaning {
+    fn from(term: Term) -> Self {
+        Self {
+            word: term.word.to_owned(),
+            meaning: term.meaning.to_owned(),
+        }
+    }
+}
+
 /// The status and the columns of this name; of a column in several tables each meaning once.
 fn of_results(name: &str) -> Vec<Meaning> {
     let status = { Status::ALL.iter() }.filter(|status| status.name() == name);
@@ -172,11 +181,13 @@ impl Explanations {
         let mut terms = Vec::new();
         if keys.is_empty() {
             keys = keys_about(name);
-            terms = of_results(name);
-            terms.extend(terms_about(name).into_iter().map(|term| Meaning {
-                word: term.word.to_owned(),
-                meaning: term.meaning.to_owned(),
-            }));
+            // Terms that are named by the word, the status and columns of this name, terms that mention it.
+            let named = |term: &Term| term.word.to_lowercase().contains(&name.to_lowercase());
+            let (before, after): (Vec<Term>, Vec<Term>) =
+                terms_about(name).into_iter().partition(named);
+            terms.extend(before.into_iter().map(Meaning::from));
+            terms.extend(of_results(name));
+            terms.extend(after.into_iter().map(Meaning::from));
         }
         if keys.is_empty() && terms.is_empty() {
             let near = if name.starts_with("import.") {
