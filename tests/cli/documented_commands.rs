@@ -29,7 +29,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 35] = [
+const NOT_RUN: [(&str, &str); 37] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -99,6 +99,14 @@ const NOT_RUN: [(&str, &str); 35] = [
     ("gmsh", "is no part of a clone"),
     ("ccx", "is no part of a clone"),
     ("pip install", "installs outside of the clone"),
+    (
+        "python3 -m venv",
+        "makes an environment outside of the clone",
+    ),
+    (
+        "python -m pytest",
+        "needs the Python package; the stage python of .ci/run runs it",
+    ),
     (
         "python studies/ansys/",
         "needs ansys-mapdl-reader; tests/readers/ansys_files.py runs it",
