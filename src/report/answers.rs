@@ -2,13 +2,13 @@
 
 use super::numerical_error::Remedy;
 use super::stated_errors::{common_words, measured, stated};
+use super::study_report::at_the_end_by;
 use super::words::{
     LengthUnit, four_digits, listed, loads_and_limits, percent_words, share_words,
     short_load_with_unit,
 };
 use super::{
-    BestLoads, GroupReport, LoadChoice, MeasuredPeak, PercentileError, ScenarioErrors,
-    ScenarioSummary, StudyReport, Warning,
+    BestLoads, GroupReport, LoadChoice, MeasuredPeak, ScenarioSummary, StudyReport, Warning,
 };
 use crate::population::statistics::{CONFIDENCE, Percentile};
 
@@ -80,23 +80,6 @@ impl Writer<'_> {
         }
     }
 
-    fn error_of(
-        &self,
-        scenario: usize,
-        percent: f64,
-    ) -> Option<(&ScenarioErrors, &PercentileError)> {
-        let errors = self
-            .group
-            .errors
-            .iter()
-            .find(|errors| errors.scenario == scenario)?;
-        let of_percent = errors
-            .percentiles
-            .iter()
-            .find(|error| error.percentile.percent.total_cmp(&percent).is_eq())?;
-        Some((errors, of_percent))
-    }
-
     /// Which load to choose for a percentile, and how sure that is.
     fn load(&self, choice: &LoadChoice) -> Answer {
         let percent = percent_words(choice.percent);
@@ -106,7 +89,7 @@ impl Writer<'_> {
         );
         let found = choice
             .lowest
-            .and_then(|lowest| Some((lowest, self.error_of(lowest, choice.percent)?.1)));
+            .and_then(|lowest| Some((lowest, self.group.error_of(lowest, choice.percent)?.1)));
         let Some((lowest, found)) = found else {
             return Answer {
                 question,
@@ -129,15 +112,8 @@ impl Writer<'_> {
         if choice.best.is_some() {
             reasons.extend(self.by_numerical_error(lowest, choice.percent));
         }
-        if choice.best.is_some() && !choice.enclosed {
-            let loads = match self.scenario(lowest).speed_rpm {
-                Some(_) => "speeds to contact.normal_load.speed_rpm",
-                None => "loads to sweep.normal_load_n",
-            };
-            reasons.push(format!(
-                "No lower and higher normal load than this one were both studied, so the optimum may lie beyond: add \
-                 {loads} and run again."
-            ));
+        if let Some(end) = at_the_end_by(self.report, self.group, (choice, lowest)) {
+            reasons.push(format!("{}.", end.in_words));
         }
         Answer {
             question,
@@ -170,7 +146,7 @@ impl Writer<'_> {
         };
         format!(
             "{percent} % of such wheels have a lower peak. From {} random patterns: with {confidence} % confidence the \
-             P{percent} at {} {range}. This interval counts for that load.",
+             P{percent} at {} {range}; numerical error is not in this interval.",
             self.report.summary.patterns,
             self.load_of(scenario),
         )
@@ -295,8 +271,8 @@ impl Writer<'_> {
         }];
         match best.lower.zip(best.upper) {
             Some((lower, upper)) => reasons.push(format!(
-                "Another interval counts for how low any of these loads can be: at the truly best of them the P{percent} \
-                 lies between {} and {} (95 %, the choice allowed for).",
+                "At the truly best of these loads, whichever it is, the P{percent} lies between {} and {} (95 %, the choice \
+                 allowed for).",
                 self.units.number(lower),
                 self.units.length(upper)
             )),
@@ -312,25 +288,14 @@ impl Writer<'_> {
     /// Which other loads could have a lower percentile if rows are wrong by what they state; none where
     /// the rows of the chosen load state no bound.
     fn by_numerical_error(&self, lowest: usize, percent: f64) -> Option<String> {
-        let highest = self.error_of(lowest, percent)?.1.highest?;
-        // Where failed rows leave no value, finer solutions decide nothing.
-        let others = self.group.scenarios.iter().filter(|&&own| own != lowest);
-        let (known, unknown): (Vec<usize>, Vec<usize>) = others.partition(|&&other| {
-            let own = self.error_of(other, percent);
-            own.is_some_and(|(_, own)| own.percentile.value.is_some())
-        });
-        let could: Vec<String> = { known.into_iter() }
-            .filter(|&other| {
-                let own = self.error_of(other, percent);
-                let bound = own.and_then(|(_, own)| own.lowest);
-                bound.is_none_or(|bound| bound < highest)
-            })
-            .map(|other| self.load_of(other))
-            .collect();
+        let rivals = self.group.numerical_rivals(lowest, percent)?;
+        let named = |scenarios: Vec<usize>| -> Vec<String> {
+            { scenarios.into_iter() }
+                .map(|own| self.load_of(own))
+                .collect()
+        };
+        let (could, unknown) = (named(rivals.could_be_lower), named(rivals.unknown));
         let words = percent_words(percent);
-        let unknown: Vec<String> = { unknown.into_iter() }
-            .map(|other| self.load_of(other))
-            .collect();
         let not_compared = if unknown.is_empty() {
             String::new()
         } else {
@@ -345,7 +310,7 @@ impl Writer<'_> {
             )
         } else {
             format!(
-                "By what the rows state, numerical error could hide a lower P{words} at {}: finer solutions decide.",
+                "By what the rows state, numerical error could hide a lower P{words} at {}: more accurate solutions decide.",
                 listed(&could)
             )
         };
@@ -355,7 +320,7 @@ impl Writer<'_> {
     /// How much of the percentile at the chosen load is numerical error; none without a percentile.
     fn error(&self, choice: &LoadChoice) -> Option<Answer> {
         let lowest = choice.lowest?;
-        let (errors, found) = self.error_of(lowest, choice.percent)?;
+        let (errors, found) = self.group.error_of(lowest, choice.percent)?;
         let rows = &errors.rows;
         let value = found.percentile.value?;
         let percent = percent_words(choice.percent);
@@ -367,12 +332,11 @@ impl Writer<'_> {
                 let sign = if share < 0.0 { "−" } else { "+" };
                 format!("{sign}{}", share_words(share.abs()))
             };
-            low.zip(high)
-                .map(|(low, high)| format!("{} to {}", side(low), side(high)))
+            low.zip(high).map(|(low, high)| (side(low), side(high)))
         };
         let verdict = match around(found.lowest, found.highest) {
-            Some(range) => format!(
-                "At most {range} of the P{percent} at {}, by what the rows state.",
+            Some((low, high)) => format!(
+                "Between {low} and {high} of the P{percent} at {}, by what the rows state.",
                 self.load_of(lowest)
             ),
             None => format!(
@@ -389,14 +353,16 @@ impl Writer<'_> {
                 self.units.length(highest)
             ));
         }
-        if let Some(range) = around(found.percentile.lower, found.percentile.upper) {
+        if let Some((low, high)) = around(found.percentile.lower, found.percentile.upper) {
             let findings = self.report.summary.warnings.iter();
             let findings = findings.filter_map(Warning::numerical_finding);
             let remedy = { statistical.zip(numerical) }
                 .map(|(statistical, numerical)| Remedy::of(statistical, numerical, findings));
             let wider = numerical > statistical;
             let beside = remedy.map_or("", |remedy| remedy.beside_bounds(wider));
-            reasons.push(format!("The statistical interval spans {range}{beside}."));
+            reasons.push(format!(
+                "The statistical interval spans {low} to {high}{beside}."
+            ));
         }
         reasons.push(format!(
             "The bound takes every row as wrong by all that it states, and all in the same direction. {}",

@@ -43,23 +43,25 @@ impl Remedy {
     pub(super) fn beside_bounds(self, wider: bool) -> &'static str {
         match self {
             Self::Finer => {
-                ": less than the numerical bounds, so finer solutions (reduction.error, solver.harmonics) before more \
+                ": less than the numerical bounds, so more accurate solutions (accuracy.amplitude_error) before more \
                  patterns"
             }
             _ if wider => {
                 ": less than the numerical bounds, but far more than the error that was measured, so more patterns \
-                 before finer solutions"
+                 before more accurate solutions"
             }
-            _ => ": more than the numerical bounds, so more patterns before finer solutions",
+            _ => {
+                ": more than the numerical bounds, so more patterns before more accurate solutions"
+            }
         }
     }
 
     /// In a few words.
     pub(super) fn words(self) -> &'static str {
         match self {
-            Self::Patterns => "patterns help more than finer solutions",
-            Self::PatternsThenFiner => "patterns help more, finer solutions too",
-            Self::Finer => "finer solutions help more than patterns",
+            Self::Patterns => "to be surer: more patterns before more accuracy",
+            Self::PatternsThenFiner => "to be surer: more patterns, and more accuracy",
+            Self::Finer => "to be surer: more accuracy before more patterns",
         }
     }
 }

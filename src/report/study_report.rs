@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::words::excitation_and_deviation;
+use super::words::{excitation_and_deviation, percent_words, short_load_with_unit};
 use super::{
-    AccuracyTrials, BestLoads, CommonErrors, PercentileError, ShownModel, StatedErrors,
-    StudySummary, WheelReport,
+    AccuracyTrials, BestLoads, CommonErrors, PercentileError, ScenarioSummary, ShownModel,
+    StatedErrors, StudySummary, WheelReport,
 };
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{Percentile, Quantity, TailFit};
@@ -76,6 +76,54 @@ pub struct GroupReport {
     /// Peak of each wheel of `mistuning.file` under each scenario, where it holds few.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measured: Vec<MeasuredPeak>,
+}
+
+/// Scenarios beside the one with the lowest percentile, by what numerical error can do to them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct NumericalRivals {
+    /// Those whose percentile could be lower than that one.
+    pub(super) could_be_lower: Vec<usize>,
+    /// Those without value: too many rows failed.
+    pub(super) unknown: Vec<usize>,
+}
+
+impl GroupReport {
+    /// The percentile that the group is judged by, with its lowest scenario: the highest that has a value.
+    pub(super) fn known_choice(&self) -> Option<(&LoadChoice, usize)> {
+        let mut choices = self.choices.iter();
+        choices.find_map(|choice| Some((choice, choice.lowest?)))
+    }
+
+    /// Errors of a percentile of one scenario, after those of all its rows.
+    pub(super) fn error_of(
+        &self,
+        scenario: usize,
+        percent: f64,
+    ) -> Option<(&ScenarioErrors, &PercentileError)> {
+        let errors = { self.errors.iter() }.find(|errors| errors.scenario == scenario)?;
+        let mut percentiles = errors.percentiles.iter();
+        let found = percentiles.find(|own| own.percentile.percent.total_cmp(&percent).is_eq());
+        Some((errors, found?))
+    }
+
+    /// Which scenarios could have a lower percentile than `lowest` if rows are wrong by what they state; none where the
+    /// rows of `lowest` state no bound.
+    pub(super) fn numerical_rivals(&self, lowest: usize, percent: f64) -> Option<NumericalRivals> {
+        let highest = self.error_of(lowest, percent)?.1.highest?;
+        let found = |other: usize| Some(self.error_of(other, percent)?.1);
+        let others = { self.scenarios.iter() }.filter(|&&own| own != lowest);
+        // Where failed rows leave no value, more accurate solutions decide nothing.
+        let (known, unknown): (Vec<usize>, Vec<usize>) = others
+            .partition(|&&other| found(other).is_some_and(|own| own.percentile.value.is_some()));
+        let could = |other: &usize| {
+            let bound = found(*other).and_then(|own| own.lowest);
+            bound.is_none_or(|bound| bound < highest)
+        };
+        Some(NumericalRivals {
+            could_be_lower: known.into_iter().filter(could).collect(),
+            unknown,
+        })
+    }
 }
 
 /// The peak of one wheel of `mistuning.file` under one scenario.
@@ -172,4 +220,97 @@ pub fn setting(group: &GroupReport) -> String {
         "standard deviation",
         "standard deviation of blade stiffness",
     )
+}
+/// A load with its unit in few letters, or the name of a linear limit.
+pub(super) fn short_load(scenario: &ScenarioSummary) -> String {
+    short_load_with_unit(scenario.contact, scenario.normal_load_n)
+}
+
+/// The next lower and the next higher load in newtons of a group; none beside a linear limit.
+pub(super) fn neighbours<'a>(
+    report: &'a StudyReport,
+    group: &GroupReport,
+    scenario: &ScenarioSummary,
+) -> [Option<&'a ScenarioSummary>; 2] {
+    let Some(own) = scenario.normal_load_n else {
+        return [None; 2];
+    };
+    let all = in_newtons(report, group);
+    let lower = all.iter().rfind(|(newtons, _)| *newtons < own);
+    let higher = all.iter().find(|(newtons, _)| *newtons > own);
+    [lower, higher].map(|found| found.map(|&(_, load)| load))
+}
+
+/// Loads in newtons of a group, ascending.
+fn in_newtons<'a>(report: &'a StudyReport, group: &GroupReport) -> Vec<(f64, &'a ScenarioSummary)> {
+    let all = group.scenarios.iter();
+    let all = all.map(|&index| &report.summary.scenarios[index]);
+    let mut found: Vec<_> = all
+        .filter_map(|load| Some((load.normal_load_n?, load)))
+        .collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found
+}
+
+/// The load of a group is the last one that was studied on a side, so that a better one may lie beyond.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct AtTheEnd {
+    /// What follows from it, without a full stop.
+    pub(super) consequence: String,
+    /// What is wrong, in a few words.
+    pub(super) headline: String,
+    /// The same, and where loads are added.
+    pub(super) in_words: String,
+}
+
+/// Whether a better load may lie beyond those of a group, by the percentile that it is judged by.
+pub(super) fn at_the_end(report: &StudyReport, group: &GroupReport) -> Option<AtTheEnd> {
+    at_the_end_by(report, group, group.known_choice()?)
+}
+
+/// Whether a load with a lower percentile may lie beyond those of a group. Linear limits alone ask for no load, and
+/// neither does a load alone.
+pub(super) fn at_the_end_by(
+    report: &StudyReport,
+    group: &GroupReport,
+    (choice, lowest): (&LoadChoice, usize),
+) -> Option<AtTheEnd> {
+    if choice.best.is_none() || choice.enclosed {
+        return None;
+    }
+    let all = in_newtons(report, group);
+    let (least, most) = (short_load(all.first()?.1), short_load(all.last()?.1));
+    let own = &report.summary.scenarios[lowest];
+    let name = short_load(own);
+    let (side, beyond) = match (own.contact, neighbours(report, group, own)) {
+        ("slide", _) => ("lower", format!("below {least}")),
+        ("stuck", _) => ("higher", format!("above {most}")),
+        (_, [Some(_), _]) => ("higher", format!("above {name}")),
+        (_, [_, Some(_)]) => ("lower", format!("below {name}")),
+        _ if own.normal_load_n.is_some() => ("lower and higher", "another one".to_owned()),
+        _ => ("more", "another one".to_owned()),
+    };
+    let what = match (own.normal_load_n, side) {
+        (None, _) => format!("{name} has the lowest P{}", percent_words(choice.percent)),
+        (_, "higher") => format!("{name} is the highest load studied"),
+        (_, "lower") => format!("{name} is the lowest load studied"),
+        _ => format!("{name} is the only load studied"),
+    };
+    let of_speeds = all.iter().any(|(_, load)| load.speed_rpm.is_some());
+    let (loads, key) = if of_speeds {
+        ("speeds", "contact.normal_load.speed_rpm")
+    } else {
+        ("loads", "sweep.normal_load_n")
+    };
+    let of_setting = match report.groups.len() {
+        0 | 1 => String::new(),
+        _ => format!("{}: ", setting(group)),
+    };
+    Some(AtTheEnd {
+        consequence: format!("the best load may be {beyond}"),
+        headline: format!("{what}: add {side} {loads}"),
+        in_words: format!(
+            "{of_setting}{what}, so that the optimum may lie beyond: add {side} {loads} to {key} and run again"
+        ),
+    })
 }

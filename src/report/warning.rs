@@ -30,12 +30,12 @@ impl RowTolerance {
             ("harmonics", self.harmonic_tolerance),
         ];
         let known: Vec<String> = { named.into_iter() }
-            .filter_map(|(name, own)| Some(format!("{name} {} %", percent(own?))))
+            .filter_map(|(name, own)| Some(format!("{} % by {name}", percent(own?))))
             .collect();
         if known.is_empty() {
             String::new()
         } else {
-            format!(" ({})", known.join(", "))
+            format!(" ({})", known.join(" or "))
         }
     }
 }
@@ -156,14 +156,17 @@ impl Warning {
                 Self::TooManyFailures { scenarios: a, .. },
                 Self::TooManyFailures { scenarios: b, .. },
             ) => a == b,
-            (Self::TooFewPatterns { needed: a, .. }, Self::TooFewPatterns { needed: b, .. }) => {
-                a == b
-            }
+            (Self::TooFewPatterns { .. }, Self::TooFewPatterns { .. }) => true,
             _ => false,
         };
         let lines = warnings.chunk_by(alike);
         lines
             .map(|line| {
+                let needing = { line.iter() }.filter_map(|own| own.needing());
+                let needing: Vec<(String, u64)> = needing.collect();
+                if needing.len() > 1 {
+                    return too_few_patterns(needing);
+                }
                 let percentiles = line.iter().filter_map(|own| own.percentile());
                 let percentiles: Vec<String> =
                     percentiles.map(|percent| format!("P{percent}")).collect();
@@ -213,7 +216,7 @@ impl Warning {
             }
             Self::ReplacedBasis { .. } => (9, "The basis of the study is replaced."),
             Self::NumericalError(NumericalFinding::Needless { .. }) => {
-                (10, "Solutions are finer than needed.")
+                (10, "Solutions are more accurate than needed.")
             }
         };
         (rank, words.to_owned())
@@ -227,6 +230,16 @@ impl Warning {
                 scenarios
             }
             _ => &[],
+        }
+    }
+
+    /// The percentile that has too few patterns, and how many it needs.
+    fn needing(&self) -> Option<(String, u64)> {
+        match self {
+            Self::TooFewPatterns {
+                percent, needed, ..
+            } => Some((format!("P{percent}"), *needed)),
+            _ => None,
         }
     }
 
@@ -250,7 +263,7 @@ impl Warning {
         let share = |ratio: f64| format!("{:.2} %", 100.0 * ratio);
         match self {
             Self::SeparationWithFewHarmonics { scenarios, .. } => format!(
-                "contacts separate under {}, which the harmonics cannot show",
+                "contacts separate at {}, which the harmonics cannot show",
                 named(scenarios)
             ),
             Self::BeyondTolerance {
@@ -260,7 +273,7 @@ impl Warning {
                 tolerance,
                 ..
             } => format!(
-                "{rows} of {planned} rows beyond tolerance{} under {}",
+                "{rows} of {planned} solutions beyond the tolerance{} at {}",
                 tolerance.in_brackets(),
                 named(scenarios)
             ),
@@ -288,7 +301,7 @@ impl Warning {
                 percent,
                 width,
             }) => format!(
-                "numerical error {} of the P{percent} interval: finer solutions help too",
+                "numerical error {} of the P{percent} interval: more accuracy helps too",
                 share_of_interval(*error, *width)
             ),
             Self::NumericalError(NumericalFinding::Needless {
@@ -296,20 +309,20 @@ impl Warning {
                 percent,
                 width,
             }) => format!(
-                "numerical error {} of the P{percent} interval: finer than needed",
+                "numerical error {} of the P{percent} interval: more accurate than needed",
                 share_of_interval(*error, *width)
             ),
             Self::Failures { failed, planned } => {
                 format!("{failed} of {planned} rows have no result")
             }
             Self::TunedFailures { scenarios } => {
-                format!("no tuned peak under {}", named(scenarios))
+                format!("no tuned peak at {}", named(scenarios))
             }
             Self::TooFewPatterns { needed, .. } => {
                 format!("{percentiles} {have} no value: {need} {needed} patterns")
             }
             Self::TooManyFailures { scenarios, .. } => format!(
-                "{percentiles} {have} no value under {}: too many rows failed",
+                "{percentiles} {have} no value at {}: too many rows failed",
                 named(scenarios)
             ),
         }
@@ -317,7 +330,7 @@ impl Warning {
 
     /// What is wrong and what to do about it, with the scenarios of the study by load and setting.
     pub(super) fn in_words(&self, named: Named<'_>) -> String {
-        let under = |scenarios: &[usize]| format!("under {}", named(scenarios));
+        let at = |scenarios: &[usize]| format!("at {}", named(scenarios));
         match self {
             Self::SeparationWithFewHarmonics {
                 scenarios,
@@ -326,7 +339,7 @@ impl Warning {
                 "contacts separate {} (up to {:.0} % of the pairs of a wheel): \
                  harmonic 1 or odd harmonics alone cannot represent that; raise the normal load, or \
                  set solver.harmonics = [0, 1, 2, 3]",
-                under(scenarios),
+                at(scenarios),
                 100.0 * largest_fraction
             ),
             Self::BeyondTolerance {
@@ -336,12 +349,12 @@ impl Warning {
                 tolerance,
                 largest_stated_error,
             } => format!(
-                "{rows} of {planned} rows state a sampling or harmonic error beyond its tolerance{}, {} \
+                "{rows} of {planned} rows state a sampling or harmonic error beyond its tolerance{} {} \
                  (stated errors up to {:.1} %); where sampling_error in responses.parquet is the larger one, \
                  raise solver.samples_per_period; where harmonic_error is, take solver.harmonics = \"auto\" or a \
                  larger set, or accept it by a larger solver.harmonic_tolerance",
                 tolerance.in_brackets(),
-                under(scenarios),
+                at(scenarios),
                 100.0 * largest_stated_error
             ),
             Self::ReplacedBasis { taken } => format!(
@@ -352,7 +365,7 @@ impl Warning {
                 looked_at,
                 rows,
                 tuned,
-            } => unstable_motions(*looked_at, *rows, tuned, &under),
+            } => unstable_motions(*looked_at, *rows, tuned, &at),
             Self::BasisError {
                 basis,
                 error,
@@ -381,7 +394,7 @@ impl Warning {
             Self::TunedFailures { scenarios } => format!(
                 "the tuned wheel {} has no peak, so these have no amplification factor; \
                  widen solver.frequency_band_hz or raise solver.samples_per_period",
-                under(scenarios)
+                at(scenarios)
             ),
             Self::TooFewPatterns {
                 percent,
@@ -403,7 +416,7 @@ impl Warning {
             Self::TooManyFailures { percent, scenarios } => format!(
                 "P{percent} {} has no value: too many rows failed; see their status in \
                  responses.parquet",
-                under(scenarios)
+                at(scenarios)
             ),
         }
     }
@@ -421,19 +434,30 @@ impl fmt::Display for Warning {
     }
 }
 
+/// Percentiles without value and how many patterns each needs, those that need as many together.
+fn too_few_patterns(mut needing: Vec<(String, u64)>) -> String {
+    needing.sort_by_key(|own| own.1);
+    let each = needing.chunk_by(|a, b| a.1 == b.1).map(|alike| {
+        let names: Vec<&str> = alike.iter().map(|own| own.0.as_str()).collect();
+        let verb = if names.len() == 1 { "needs" } else { "need" };
+        format!("{} {verb} {}", names.join(", "), alike[0].1)
+    });
+    format!("no value: {} patterns", each.collect::<Vec<_>>().join("; "))
+}
+
 /// Which motions are unstable, and what follows from it.
 fn unstable_motions(
     looked_at: u64,
     rows: u64,
     tuned: &[usize],
-    under: &dyn Fn(&[usize]) -> String,
+    at: &dyn Fn(&[usize]) -> String,
 ) -> String {
     let mut motions = Vec::new();
     if rows > 0 {
         motions.push(format!("of {rows} of the {looked_at} rows looked at"));
     }
     if !tuned.is_empty() {
-        motions.push(format!("of the tuned wheel {}", under(tuned)));
+        motions.push(format!("of the tuned wheel {}", at(tuned)));
     }
     format!(
         "the motions {} are unstable: the wheel does not stay on them, and its amplitude in time differs, by a few per cent \

@@ -143,8 +143,69 @@ fn one_measured_wheel_has_peaks_and_nothing_is_said_of_percentiles() {
         );
     }
     let page = std::fs::read_to_string(place.path("results/small/report.html")).expect("a page");
-    assert!(page.contains("Load per sector with the lowest peak of the wheel"));
+    assert!(page.contains("Normal load per sector with the lowest peak of the wheel"));
     assert!(page.contains("No problem found"));
+}
+
+#[test]
+fn a_few_measured_wheels_open_the_report_with_the_highest_of_them() {
+    let place = of_file(3);
+    let study = std::fs::read_to_string(place.path("study.toml")).expect("a study");
+    let loads = "[\"slide\", 50, \"stuck\"]";
+    assert!(study.contains(loads));
+    place.write("study.toml", &study.replace(loads, "[50, 100, 200]"));
+    output(&place, &["run", "study.toml"]);
+    let arguments = [
+        "report",
+        "results/small",
+        "--no-curves",
+        "--json",
+        "--out",
+        "page.html",
+    ];
+    let numbers: Value = serde_json::from_str(&output(&place, &arguments)).expect("JSON");
+    let group = &numbers["groups"][0];
+    // By the peaks of the report, which `replay` finds as well: the test above.
+    let measured = group["measured"].as_array().expect("a list");
+    let peak = |own: &Value| own["peak_amplitude_m"].as_f64().expect("a peak");
+    let highest = |load: u64| {
+        let wheels = measured.iter().filter(move |own| own["scenario"] == load);
+        wheels
+            .max_by(|a, b| peak(a).total_cmp(&peak(b)))
+            .expect("wheels")
+    };
+    let best = (0..3).min_by(|a, b| peak(highest(*a)).total_cmp(&peak(highest(*b))));
+    let best = best.expect("loads");
+    let wheel = highest(best);
+    let load = [50, 100, 200][usize::try_from(best).expect("a load")];
+    let error = &group["errors"][usize::try_from(best).expect("a load")];
+    let error = error["rows"]["stated"]["largest"]
+        .as_f64()
+        .expect("an error");
+    let page = std::fs::read_to_string(place.path("page.html")).expect("a page");
+    let page = page.replace('\u{a0}', " ");
+    let number = |label: &str, unit: &str| -> f64 {
+        let (_, rest) = page
+            .split_once(label)
+            .unwrap_or_else(|| panic!("no {label}"));
+        let (_, rest) = rest.split_once("<p class=\"value\">").expect("a value");
+        let value = rest.split_once(unit).expect("a unit").0;
+        value.trim().parse().expect("a number")
+    };
+    let label = "Normal load per sector where the highest wheel is lowest";
+    assert!((number(label, "N<") - f64::from(load)).abs() < 1e-9);
+    let shown = number("Peak amplitude of the highest wheel", "µm<");
+    assert!((1e-6 * shown / peak(wheel) - 1.0).abs() < 1e-3, "{shown}");
+    let shown = number("Numerical error of the peaks there, at most", "%<");
+    assert!((0.01 * shown / error - 1.0).abs() < 0.06, "{shown} {error}");
+    let of = format!("wheel {} of the 3 of mistuning.file", wheel["pattern"]);
+    assert!(page.contains(&of), "{of}");
+    // The main figure has a mark for each wheel under each load.
+    let (_, figure) = page
+        .split_once("<figure id=\"amplitude-0\">")
+        .expect("the figure");
+    let figure = figure.split_once("</figure>").expect("an end").0;
+    assert_eq!(figure.matches("<title>wheel ").count(), 9, "{figure}");
 }
 
 #[test]

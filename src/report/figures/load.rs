@@ -92,6 +92,10 @@ pub(super) fn by_load(
                 .iter()
                 .map(|found| scaled(found, scale))
                 .collect(),
+            wheels: { group.measured.iter() }
+                .filter(|own| amplitude && own.scenario == load.scenario)
+                .filter_map(|own| Some((own.pattern, own.peak_amplitude_m? / scale)))
+                .collect(),
         })
         .collect();
     let values: Vec<f64> = drawn.iter().flat_map(Load::values).collect();
@@ -167,6 +171,8 @@ struct Load<'a> {
     scenario: &'a ScenarioSummary,
     tuned: Option<f64>,
     percentiles: Vec<Percentile>,
+    /// Measured wheels with their peaks.
+    wheels: Vec<(u32, f64)>,
 }
 
 impl Load<'_> {
@@ -192,6 +198,7 @@ impl Load<'_> {
             .flat_map(of)
             .chain([self.tuned])
             .flatten()
+            .chain(self.wheels.iter().map(|own| own.1))
             .collect()
     }
 }
@@ -301,6 +308,10 @@ fn points(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
             let words = format!("tuned, {name}: {tuned:.4}");
             Mark::Triangle.draw(svg, "tuned", (at, frame.y.at(tuned)), &words);
         }
+        for (wheel, peak) in &load.wheels {
+            let words = format!("wheel {wheel}, {name}: {peak:.4}");
+            Mark::Circle.draw(svg, "quiet", (at, frame.y.at(*peak)), &words);
+        }
         let mut bars = Vec::new();
         for (percent, class, mark) in DRAWN.iter().rev() {
             let Some(found) = load.percentile(*percent) else {
@@ -336,6 +347,10 @@ fn entries(drawn: &[Load<'_>]) -> Vec<LegendEntry<'static>> {
     }
     if any(&|load| load.tuned) {
         entries.push(LegendEntry::Line("tuned", Some(Mark::Triangle), "tuned"));
+    }
+    if drawn.iter().any(|load| !load.wheels.is_empty()) {
+        let words = "a measured wheel";
+        entries.push(LegendEntry::Point("quiet", Mark::Circle, words));
     }
     if any(&|load| {
         let limit = load.scenario.normal_load_n.is_none();
@@ -374,14 +389,21 @@ fn caption(
         let mut loads = drawn.iter();
         loads.any(|load| load.value(*percent).is_some())
     };
+    let measured = drawn.iter().any(|load| !load.wheels.is_empty());
     let mut words = if DRAWN.iter().any(shows) {
         format!(
             "Percentiles over {patterns} patterns with distribution-free 95 % bounds, side by side at each load."
         )
+    } else if measured {
+        "Each wheel of mistuning.file at each load; so few have no percentile.".to_owned()
     } else {
         "No percentile has a value; the tuned wheel is drawn alone.".to_owned()
     };
-    words.push_str(" Only loads with marks were calculated; the lines between them guide the eye.");
+    let in_newtons = loads.iter().filter(|load| load.normal_load_n.is_some());
+    if in_newtons.count() > 1 {
+        words
+            .push_str(" Only loads with marks were studied; the lines between them guide the eye.");
+    }
     let mut limits: Vec<&str> = Vec::new();
     for (name, meaning) in [
         ("slide", "slide (friction gone)"),
@@ -422,7 +444,7 @@ fn caption(
         let percent = percent_words(choice.percent);
         let _ = write!(words, " Pointer above: the load with the lowest P{percent}");
         words.push_str(if loads.iter().any(|load| could_be_as_low(choice, load)) {
-            "; hollow: those that may be as low (95 % confidence, same patterns compared)."
+            "; hollow: those that may be as low (95 % confidence)."
         } else {
             "."
         });

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use super::choice::at_the_end;
 use super::headline::{BigNumber, big_numbers, in_one_line};
 use super::health::health;
 use super::model::figure_html;
 use crate::report::plot::escaped;
+use crate::report::study_report::at_the_end;
 use crate::report::words::{scenarios_in_words, tied};
 use crate::report::{Answer, FigureName, GroupReport, StudyReport, answers, figure, setting};
 

@@ -1,11 +1,12 @@
 //! What the first screen says in large type: load, percentile and numerical error.
 
-use super::choice::{at_the_end, known_choice, neighbours, short_load};
 use crate::population::statistics::CONFIDENCE;
 use crate::report::numerical_error::Remedy;
+use crate::report::study_report::{at_the_end, neighbours, short_load};
 use crate::report::words::{LengthUnit, four_digits, percent_words, share_words};
 use crate::report::{
-    GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, Warning, setting,
+    GroupReport, LoadChoice, MeasuredPeak, PercentileError, ScenarioSummary, StudyReport, Warning,
+    setting,
 };
 
 /// A number in large type.
@@ -28,12 +29,15 @@ pub(super) struct BigNumber {
 /// Load, percentile and numerical error of a group.
 pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
     let units = LengthUnit::of_summary(&report.summary);
-    let Some((choice, lowest)) = known_choice(group) else {
+    if let Some(found) = of_measured_wheels(report, group) {
+        return found;
+    }
+    let Some((choice, lowest)) = group.known_choice() else {
         return nothing_known(report, group);
     };
     let percent = percent_words(choice.percent);
     let scenario = &report.summary.scenarios[lowest];
-    let error = error_of(group, lowest, choice.percent);
+    let error = group.error_of(lowest, choice.percent).map(|found| found.1);
     [
         number_of_load(report, group, choice, scenario),
         BigNumber {
@@ -61,12 +65,12 @@ fn number_of_load(
     let percent = percent_words(choice.percent);
     let load = short_load(scenario);
     let (label, value, told) = if choice.is_of_a_design() {
-        let label = format!("Load per sector with the lowest P{percent}");
+        let label = format!("Normal load per sector with the lowest P{percent}");
         (label, load, None)
     } else {
         let told = format!("lowest P{percent}: at {load}");
         let value = "No design load yet".to_owned();
-        ("Load per sector".to_owned(), value, Some(told))
+        ("Normal load per sector".to_owned(), value, Some(told))
     };
     BigNumber {
         label,
@@ -74,13 +78,15 @@ fn number_of_load(
         told,
         notes: notes_of_load(report, group, choice, scenario),
         more: other_settings(report),
-        is_open: !choice.is_of_a_design() || at_the_end(report, group).is_some(),
+        is_open: !choice.is_of_a_design()
+            || at_the_end(report, group).is_some()
+            || hidden_by_error(report, group).is_some(),
     }
 }
 
 /// The load that a group is answered by and its percentile, in one line.
 pub(super) fn in_one_line(report: &StudyReport, group: &GroupReport) -> String {
-    let answer = known_choice(group).map_or_else(
+    let answer = group.known_choice().map_or_else(
         || "not known".to_owned(),
         |(choice, _)| {
             let [load, percentile, _] = big_numbers(report, group);
@@ -100,9 +106,9 @@ pub(super) fn in_one_line(report: &StudyReport, group: &GroupReport) -> String {
 /// better.
 fn beside(lower: Option<&ScenarioSummary>, higher: Option<&ScenarioSummary>) -> Option<String> {
     match (lower.map(short_load), higher.map(short_load)) {
-        (Some(lower), Some(higher)) => Some(format!("neighbouring loads: {lower} and {higher}")),
-        (Some(next), None) => Some(format!("neighbouring load: {next}, none higher")),
-        (None, Some(next)) => Some(format!("neighbouring load: {next}, none lower")),
+        (Some(lower), Some(higher)) => Some(format!("next loads studied: {lower} and {higher}")),
+        (Some(next), None) => Some(format!("next load studied: {next}, none higher")),
+        (None, Some(next)) => Some(format!("next load studied: {next}, none lower")),
         (None, None) => None,
     }
 }
@@ -124,14 +130,8 @@ fn other_settings(report: &StudyReport) -> Option<(String, String)> {
 fn all_percentiles(report: &StudyReport, group: &GroupReport) -> (String, String) {
     let same = |other: &GroupReport| other.scenarios == group.scenarios;
     let place = report.groups.iter().position(same).unwrap_or(0);
-    let words = "all in “Numbers”".to_owned();
+    let words = "all percentiles".to_owned();
     (format!("numbers-{place}"), words)
-}
-
-fn error_of(group: &GroupReport, scenario: usize, percent: f64) -> Option<&PercentileError> {
-    let errors = { group.errors.iter() }.find(|errors| errors.scenario == scenario)?;
-    let mut percentiles = errors.percentiles.iter();
-    percentiles.find(|error| error.percentile.percent.total_cmp(&percent).is_eq())
 }
 
 fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
@@ -143,9 +143,6 @@ fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
         more: None,
         is_open: true,
     };
-    if let Some(found) = of_one_wheel(report, group) {
-        return found;
-    }
     let lowest = group.choices.iter().min_by_key(|own| own.needed_patterns);
     let why = match lowest {
         Some(choice) if report.summary.patterns < choice.needed_patterns => format!(
@@ -154,7 +151,7 @@ fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
             choice.needed_patterns,
             report.summary.patterns
         ),
-        _ => "too many rows failed".to_owned(),
+        _ => "too many solutions failed".to_owned(),
     };
     [
         unknown(
@@ -169,41 +166,122 @@ fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
     ]
 }
 
-/// Load with the lowest peak of the one wheel of a file, the peak, and the error that its row states.
-fn of_one_wheel(report: &StudyReport, group: &GroupReport) -> Option<[BigNumber; 3]> {
+/// Load with the lowest peak of the wheels of a file, the largest of them where they are several, with the error that
+/// its row states.
+fn of_measured_wheels(report: &StudyReport, group: &GroupReport) -> Option<[BigNumber; 3]> {
     let summary = &report.summary;
-    let peaks = { group.measured.iter() }.filter(|_| summary.is_of_one_wheel());
-    let peaks = peaks.filter_map(|own| Some((own.scenario, own.peak_amplitude_m?)));
-    let (lowest, peak) = peaks.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let errors = { group.errors.iter() }.find(|own| own.scenario == lowest)?;
-    let number = |label: &str, value: String, note: String| BigNumber {
+    let loads = group.measured.chunk_by(|a, b| a.scenario == b.scenario);
+    let peaks: Vec<(&MeasuredPeak, f64)> = loads.filter_map(highest_peak).collect();
+    let &(of_wheel, peak) = peaks.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let lowest = of_wheel.scenario;
+    let errors = |own: usize| { group.errors.iter() }.find(|errors| errors.scenario == own);
+    let error_at = |own: usize| Some(errors(own)?.rows.stated?.largest);
+    let number = |label: &str, value: String, notes: Vec<String>, is_open: bool| BigNumber {
         label: label.to_owned(),
         value,
         told: None,
-        notes: vec![note],
+        notes,
         more: None,
-        is_open: false,
+        is_open,
     };
-    let [lower, higher] = neighbours(report, group, &summary.scenarios[lowest]);
-    let units = LengthUnit::of_summary(summary);
-    Some([
-        number(
-            "Load per sector with the lowest peak of the wheel",
-            short_load(&summary.scenarios[lowest]),
-            beside(lower, higher).unwrap_or_else(|| "no neighbouring load".to_owned()),
-        ),
-        number(
+    let load = short_load(&summary.scenarios[lowest]);
+    let between = neighbours(report, group, &summary.scenarios[lowest]);
+    let beyond = match between {
+        [None, Some(_)] => Some("below"),
+        [Some(_), None] => Some("above"),
+        _ => None,
+    };
+    let [lower, higher] = between;
+    let mut of_load = vec![beside(lower, higher).unwrap_or("the only load studied".to_owned())];
+    of_load.extend(beyond.map(|side| format!("the best load may be {side} {load}")));
+    // By what the solutions state, each peak wrong by all of it.
+    let highest = error_at(lowest).map(|own| peak * (1.0 + own));
+    let hidden: Vec<String> = { peaks.iter() }
+        .filter(|(own, _)| own.scenario != lowest)
+        .filter(|(own, peak)| {
+            let bound = error_at(own.scenario).map(|error| peak * (1.0 - error));
+            bound
+                .zip(highest)
+                .is_none_or(|(bound, highest)| bound < highest)
+        })
+        .map(|(own, _)| short_load(&summary.scenarios[own.scenario]))
+        .collect();
+    if !hidden.is_empty() {
+        let loads = hidden.join(", ");
+        of_load.push(format!(
+            "but numerical error could hide a lower one at {loads}"
+        ));
+    }
+    let is_open = beyond.is_some() || !hidden.is_empty();
+    let peak = LengthUnit::of_summary(summary).length(peak);
+    let error = error_at(lowest).map_or_else(|| "no bound".to_owned(), share_words);
+    let wheels = summary.patterns;
+    let [of_lowest, of_peak, of_error, told] = if summary.is_of_one_wheel() {
+        [
+            "Normal load per sector with the lowest peak of the wheel",
             "Peak amplitude of the wheel",
-            units.length(peak),
-            "the one wheel of mistuning.file: no percentile".to_owned(),
-        ),
-        number(
             "Numerical error of the peak, at most",
-            { errors.rows.stated }
-                .map_or_else(|| "no bound".to_owned(), |own| share_words(own.largest)),
-            "by what its row states".to_owned(),
-        ),
+            "by what its solution states",
+        ]
+    } else {
+        [
+            "Normal load per sector where the highest wheel is lowest",
+            "Peak amplitude of the highest wheel",
+            "Numerical error of the peaks there, at most",
+            "the largest that a solution states",
+        ]
+    };
+    let mut of_wheels = vec![if wheels == 1 {
+        "the one wheel of mistuning.file: no percentile".to_owned()
+    } else {
+        format!(
+            "wheel {} of the {wheels} of mistuning.file",
+            of_wheel.pattern
+        )
+    }];
+    let mut designs = group.choices.iter().filter(|_| wheels > 1);
+    of_wheels.extend(designs.rfind(|own| own.is_of_a_design()).map(|own| {
+        let percent = percent_words(own.percent);
+        format!(
+            "no percentile to design by: P{percent} needs {} wheels",
+            own.needed_patterns
+        )
+    }));
+    Some([
+        number(of_lowest, load, of_load, is_open),
+        number(of_peak, peak, of_wheels, false),
+        number(of_error, error, vec![told.to_owned()], false),
     ])
+}
+
+/// The wheel with the highest peak under one load; none where a wheel has no peak, which could be higher.
+fn highest_peak(wheels: &[MeasuredPeak]) -> Option<(&MeasuredPeak, f64)> {
+    let peaks: Option<Vec<(&MeasuredPeak, f64)>> = { wheels.iter() }
+        .map(|own| Some((own, own.peak_amplitude_m?)))
+        .collect();
+    peaks?.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Which loads, that by the patterns alone are higher, numerical error could make the lowest.
+pub(super) fn hidden_by_error(report: &StudyReport, group: &GroupReport) -> Option<String> {
+    let (choice, lowest) = group.known_choice()?;
+    let best = choice.best.as_ref()?;
+    let is_higher = |own: &usize| {
+        let mut loads = best.loads.iter();
+        loads.any(|load| load.scenario.scenario == *own && !load.could_be_best)
+    };
+    let rivals = group.numerical_rivals(lowest, choice.percent)?;
+    let hidden: Vec<String> = { rivals.could_be_lower.into_iter() }
+        .filter(is_higher)
+        .map(|own| short_load(&report.summary.scenarios[own]))
+        .collect();
+    let percent = percent_words(choice.percent);
+    (!hidden.is_empty()).then(|| {
+        format!(
+            "numerical error could hide a lower P{percent} at {}",
+            hidden.join(", ")
+        )
+    })
 }
 
 fn notes_of_load(
@@ -227,7 +305,7 @@ fn notes_of_load(
     // What makes the load no optimum comes before how sure it is the lowest.
     let is_at_the_end = at_the_end(report, group);
     if let Some(end) = &is_at_the_end {
-        let beyond = end.on_card();
+        let beyond = end.consequence.clone();
         let beside = beside.as_ref();
         notes.push(beside.map_or(beyond.clone(), |beside| format!("{beside}: {beyond}")));
     }
@@ -241,12 +319,13 @@ fn notes_of_load(
     let percent = percent_words(choice.percent);
     if !others.is_empty() {
         let others = others.join(", ");
-        notes.push(format!("could be as good: {others} (same patterns)"));
+        notes.push(format!("may be as good: {others} (95 % confidence)"));
     } else if choice.is_of_a_design() {
         notes.push(format!(
-            "95 % confident: no other calculated load has a lower P{percent} (same patterns)"
+            "no other load studied has a lower P{percent} (95 % confidence)"
         ));
     }
+    notes.extend(hidden_by_error(report, group).map(|hidden| format!("but {hidden}")));
     let mut higher = { group.choices.iter() }.filter(|own| own.percent > choice.percent);
     let higher = higher.next_back();
     notes.extend(
@@ -272,7 +351,7 @@ fn notes_of_percentile(
     let found = error.map(|own| own.percentile);
     notes.push(match found.map(|own| (own.lower, own.upper)) {
         Some((Some(lower), Some(upper))) => format!(
-            "{confidence} % interval {} to {}",
+            "{confidence} % interval {} to {}; numerical error on top",
             units.number(lower),
             units.length(upper)
         ),
@@ -308,8 +387,7 @@ fn number_of_error(
     (percent, error): (&str, Option<&PercentileError>),
 ) -> BigNumber {
     let units = LengthUnit::of_summary(&report.summary);
-    // Errors of single rows, which stand further below, may be larger than the bound.
-    let label = format!("Numerical error of P{percent}, not of a row");
+    let label = format!("Numerical error of that P{percent}");
     let bounds = error.and_then(|own| Some((own.lowest?, own.highest?, own.percentile.value?)));
     let Some((low, high, value)) = bounds else {
         let errors = { group.errors.iter() }.find(|own| own.scenario == lowest);
@@ -326,16 +404,13 @@ fn number_of_error(
         };
     };
     let largest = (1.0 - low / value).max(high / value - 1.0);
-    let widths = error.and_then(|own| Some((own.numerical_width()?, own.statistical_width()?)));
-    let notes = widths.map_or_else(Vec::new, |(numerical, statistical)| {
-        let findings = { report.summary.warnings.iter() }.filter_map(Warning::numerical_finding);
-        let remedy = Remedy::of(statistical, numerical, findings);
-        let (own, interval) = (largest * value, statistical * value);
+    let remedy = remedy(report, error);
+    let notes = remedy.map_or_else(Vec::new, |(remedy, numerical, statistical)| {
         vec![
             format!(
-                "±{}; statistical interval {} wide",
-                units.rough(own),
-                units.rough(interval)
+                "bounds {} apart, interval {} wide",
+                units.rough(numerical * value),
+                units.rough(statistical * value)
             ),
             remedy.words().to_owned(),
         ]
@@ -346,6 +421,15 @@ fn number_of_error(
         told: None,
         notes,
         more: None,
-        is_open: false,
+        is_open: matches!(remedy, Some((Remedy::Finer, ..))),
     }
+}
+
+/// What makes a percentile surer, with the relative widths of its numerical bounds and of its statistical interval.
+fn remedy(report: &StudyReport, error: Option<&PercentileError>) -> Option<(Remedy, f64, f64)> {
+    let (numerical, statistical) =
+        { error }.and_then(|own| Some((own.numerical_width()?, own.statistical_width()?)))?;
+    let findings = { report.summary.warnings.iter() }.filter_map(Warning::numerical_finding);
+    let remedy = Remedy::of(statistical, numerical, findings);
+    Some((remedy, numerical, statistical))
 }

@@ -1,6 +1,7 @@
 //! Whether anything is wrong with a study: the worst consequence, and the warnings in a few words.
 
-use super::choice::{at_the_end, known_choice, short_load};
+use super::headline::hidden_by_error;
+use crate::report::study_report::{at_the_end, short_load};
 use crate::report::words::{scenarios_in_words, told_apart};
 use crate::report::{GroupReport, StudyReport, Warning};
 
@@ -67,6 +68,18 @@ fn lines(report: &StudyReport, warnings: &[&Warning]) -> Vec<String> {
     Warning::headlines(warnings, &|own| scenarios_in_words(&report.summary, own))
 }
 
+/// With a capital letter and a full stop.
+fn sentence(words: &str) -> String {
+    format!("{}.", capital(words))
+}
+
+/// With a capital letter.
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    let head = letters.next().map(char::to_uppercase);
+    head.into_iter().flatten().chain(letters).collect()
+}
+
 /// The first findings, and how many more there are.
 fn named(mut findings: Vec<String>) -> Vec<String> {
     let more = findings.len().saturating_sub(NAMED);
@@ -81,7 +94,7 @@ fn named(mut findings: Vec<String>) -> Vec<String> {
 fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
     let summary = &report.summary;
     let first = report.groups.first();
-    let choice = first.and_then(known_choice);
+    let choice = first.and_then(GroupReport::known_choice);
     let chosen = choice.map(|(choice, _)| choice.percent);
     // What weighs most comes first.
     warnings.sort_by_key(|warning| warning.consequence(chosen).0);
@@ -94,9 +107,13 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
         );
         verdict = Some("The interval is wider than wanted.".to_owned());
     }
+    if let Some(hidden) = first.and_then(|group| hidden_by_error(report, group)) {
+        findings.insert(0, hidden);
+        verdict = Some("Numerical error could hide a better load.".to_owned());
+    }
     if let Some(end) = first.and_then(|group| at_the_end(report, group)) {
         findings.insert(0, end.headline);
-        verdict = Some(end.consequence);
+        verdict = Some(sentence(&end.consequence));
     }
     let others = report.groups.iter().skip(1);
     let others = others.filter(|group| at_the_end(report, group).is_some());
@@ -124,8 +141,12 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
         class,
         verdict: verdict.unwrap_or_else(|| {
             format!(
-                "No problem found: all {} rows have a result, and there is no warning.",
-                summary.rows.ok()
+                "No problem found: {} a result under every load, and there is no warning.",
+                if summary.patterns == 1 {
+                    "the wheel has".to_owned()
+                } else {
+                    format!("all {} wheels have", summary.patterns)
+                }
             )
         }),
         findings: named(findings),
@@ -140,9 +161,10 @@ fn missing_here(report: &StudyReport, shown: &[usize]) -> String {
             && scenarios.iter().any(|own| shown.contains(own))
     });
     let first = report.groups.first();
+    let choice = first.and_then(GroupReport::known_choice);
     let verdict = if lacking.next().is_none() {
         "Tuned peaks are missing, and with them amplification factors."
-    } else if first.and_then(known_choice).is_none() {
+    } else if choice.is_none() {
         "No percentile at any load: too many rows failed."
     } else {
         "Percentiles are missing at some loads: too many rows failed."
@@ -157,20 +179,18 @@ fn missing_elsewhere(report: &StudyReport, scenarios: &[usize]) -> String {
     let which = match groups[..] {
         [only] => {
             let own = &report.summary.scenarios[only.scenarios[0]];
-            let told = told_apart(&report.summary, own).in_short;
-            let mut letters = told.chars();
-            let head = letters.next().map(char::to_uppercase);
-            head.into_iter().flatten().chain(letters).collect()
+            capital(&told_apart(&report.summary, own).in_short)
         }
         _ => format!("{} other settings", groups.len()),
     };
-    let what = if groups.iter().all(|group| known_choice(group).is_none()) {
+    let what = if groups.iter().all(|group| group.known_choice().is_none()) {
         "no percentile at any load"
     } else {
         "results are missing"
     };
     let first = report.groups.first();
-    let load = first.and_then(known_choice).map_or_else(
+    let choice = first.and_then(GroupReport::known_choice);
+    let load = choice.map_or_else(
         || "This setting".to_owned(),
         |(_, lowest)| {
             format!(

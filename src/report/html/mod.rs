@@ -1,6 +1,5 @@
 //! The report as one HTML file that needs nothing else.
 
-mod choice;
 mod first_screen;
 mod headline;
 mod health;
