@@ -10,10 +10,9 @@ use std::time::Duration;
 use blisk::response::harmonic_balance::Status;
 use blisk::settings::{Progress, Stage};
 use blisk::study::PipelineError;
-use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-use crate::errors::of_pipeline;
+use crate::errors::{of_panic, of_pipeline};
 
 /// Time between looks for a signal, and between two reports of progress.
 const LOOK: Duration = Duration::from_millis(50);
@@ -107,7 +106,7 @@ pub fn watch<T: Send + 'static>(
             Ok(outcome) => break outcome,
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(PyRuntimeError::new_err("the thread of the work panicked"));
+                return Err(of_panic(py));
             }
         }
         let looked = py.check_signals().and_then(|()| {

@@ -1,6 +1,7 @@
 //! From the command line to an exit code.
 
 use std::ffi::OsString;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use clap::{CommandFactory, Parser};
@@ -30,7 +31,15 @@ pub fn main_of(program: &Path, arguments: impl IntoIterator<Item = OsString>) ->
             message: format!("cannot watch for signals: {error}"),
         });
     }
-    carry_out(program, arguments.command).unwrap_or_else(|failure| failed(&failure))
+    // The hook has already said where it panicked.
+    let work = || carry_out(program, arguments.command);
+    let ended = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
+        Err(Failure {
+            status: ExitStatus::InternalError,
+            message: "the program is at fault, not the study: please report the lines above with the study".to_owned(),
+        })
+    });
+    ended.unwrap_or_else(|failure| failed(&failure))
 }
 
 fn failed(failure: &Failure) -> ExitStatus {

@@ -4,8 +4,8 @@ use super::numerical_error::Remedy;
 use super::stated_errors::{common_words, measured, stated};
 use super::study_report::at_the_end_by;
 use super::words::{
-    LengthUnit, four_digits, listed, loads_and_limits, percent_words, share_words,
-    short_load_with_unit,
+    LengthUnit, four_digits, listed, loads_and_limits, percent_words, short_load_with_unit,
+    signed_share,
 };
 use super::{
     BestLoads, GroupReport, LoadChoice, MeasuredPeak, ScenarioSummary, StudyReport, Warning,
@@ -225,13 +225,22 @@ impl Writer<'_> {
             .group
             .measured
             .chunk_by(|a, b| a.scenario == b.scenario);
-        let peaks = { self.group.measured.iter() }.filter_map(|own| own.peak_amplitude_m);
-        let lowest = peaks.clone().reduce(f64::min);
-        let verdict = lowest.zip(peaks.reduce(f64::max)).map_or_else(
-            || "Not known: no row of these wheels has a result.".to_owned(),
-            |(lowest, highest)| {
-                let highest = self.units.length(highest);
-                format!("From {} to {highest}.", self.units.number(lowest))
+        let verdict = self.group.smallest_worst_peak().map_or_else(
+            || "Not known: a wheel has no peak under every load.".to_owned(),
+            |(worst, highest)| {
+                let here =
+                    { self.group.measured.iter() }.filter(|own| own.scenario == worst.scenario);
+                let lowest =
+                    { here.filter_map(|own| own.peak_amplitude_m) }.fold(highest, f64::min);
+                let (load, highest) = (self.load_of(worst.scenario), self.units.length(highest));
+                if self.report.summary.is_of_one_wheel() {
+                    format!("{highest} at {load}, its lowest.")
+                } else {
+                    format!(
+                        "{} to {highest} at {load}, where the worst is lowest.",
+                        self.units.number(lowest)
+                    )
+                }
             },
         );
         (!self.group.measured.is_empty()).then(|| Answer {
@@ -327,11 +336,7 @@ impl Writer<'_> {
         let statistical = found.statistical_width();
         let numerical = found.numerical_width();
         let around = |low: Option<f64>, high: Option<f64>| {
-            let side = |end: f64| {
-                let share = end / value - 1.0;
-                let sign = if share < 0.0 { "−" } else { "+" };
-                format!("{sign}{}", share_words(share.abs()))
-            };
+            let side = |end: f64| signed_share(end / value - 1.0);
             low.zip(high).map(|(low, high)| (side(low), side(high)))
         };
         let verdict = match around(found.lowest, found.highest) {

@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::words::signed_share;
 use crate::population::statistics::Percentile;
 use crate::response::friction::ContactLaw;
 
@@ -54,6 +55,16 @@ impl Remedy {
                 ": more than the numerical bounds, so more patterns before more accurate solutions"
             }
         }
+    }
+
+    /// Which of the two errors matters more, with the ends of the statistical interval over the percentile.
+    pub(super) fn beside_statistics(self, lower: f64, upper: f64) -> String {
+        let which = match self {
+            Self::Finer => "more",
+            Self::Patterns | Self::PatternsThenFiner => "less",
+        };
+        let (lower, upper) = (signed_share(lower), signed_share(upper));
+        format!("matters {which} than statistics ({lower} to {upper})")
     }
 
     /// In a few words.

@@ -126,6 +126,31 @@ impl GroupReport {
     }
 }
 
+/// What a few measured wheels say.
+impl GroupReport {
+    /// The worst of the measured wheels under each load, with its peak; not under one where a wheel has no peak, which could be
+    /// worse.
+    pub(super) fn worst_peaks(&self) -> impl Iterator<Item = (&MeasuredPeak, f64)> {
+        let loads = self.measured.chunk_by(|a, b| a.scenario == b.scenario);
+        loads.filter_map(|wheels| {
+            let peaks = wheels.iter().map(|own| Some((own, own.peak_amplitude_m?)));
+            let peaks: Option<Vec<(&MeasuredPeak, f64)>> = peaks.collect();
+            peaks?.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
+        })
+    }
+
+    /// The smallest of the worst peaks of the measured wheels.
+    pub(super) fn smallest_worst_peak(&self) -> Option<(&MeasuredPeak, f64)> {
+        self.worst_peaks().min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The largest error that a row of the scenario states.
+    pub(super) fn largest_stated_error(&self, scenario: usize) -> Option<f64> {
+        let errors = { self.errors.iter() }.find(|errors| errors.scenario == scenario)?;
+        Some(errors.rows.stated?.largest)
+    }
+}
+
 /// The peak of one wheel of `mistuning.file` under one scenario.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MeasuredPeak {
@@ -257,6 +282,8 @@ fn in_newtons<'a>(report: &'a StudyReport, group: &GroupReport) -> Vec<(f64, &'a
 pub(super) struct AtTheEnd {
     /// What follows from it, without a full stop.
     pub(super) consequence: String,
+    /// Which end of the loads studied it is.
+    pub(super) what: String,
     /// What is wrong, in a few words.
     pub(super) headline: String,
     /// The same, and where loads are added.
@@ -312,5 +339,6 @@ pub(super) fn at_the_end_by(
         in_words: format!(
             "{of_setting}{what}, so that the optimum may lie beyond: add {side} {loads} to {key} and run again"
         ),
+        what,
     })
 }

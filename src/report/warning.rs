@@ -26,7 +26,7 @@ impl RowTolerance {
     /// Both that are known, in brackets; empty without any.
     fn in_brackets(self) -> String {
         let named = [
-            ("sampling", self.sampling_tolerance),
+            ("samples per period", self.sampling_tolerance),
             ("harmonics", self.harmonic_tolerance),
         ];
         let known: Vec<String> = { named.into_iter() }
@@ -35,7 +35,7 @@ impl RowTolerance {
         if known.is_empty() {
             String::new()
         } else {
-            format!(" ({})", known.join(" or "))
+            format!(" ({})", known.join(", "))
         }
     }
 }
@@ -273,7 +273,7 @@ impl Warning {
                 tolerance,
                 ..
             } => format!(
-                "{rows} of {planned} solutions beyond the tolerance{} at {}",
+                "{rows} of {planned} solutions less accurate than asked{} at {}",
                 tolerance.in_brackets(),
                 named(scenarios)
             ),

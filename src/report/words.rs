@@ -55,11 +55,6 @@ impl LengthUnit {
         format!("{} {}", self.number(metres), self.name)
     }
 
-    /// A length in m, two digits in the unit, where it is an error.
-    pub(super) fn rough(self, metres: f64) -> String {
-        format!("{} {}", digits(metres / self.metres, 2), self.name)
-    }
-
     /// A length in m, seven digits in the unit, where small differences matter.
     #[must_use]
     pub fn precise(self, metres: f64) -> String {
@@ -270,6 +265,12 @@ pub(super) fn share_words(ratio: f64) -> String {
         return "below 0.0001 %".to_owned();
     }
     format!("{percent:.decimals$} %")
+}
+
+/// A relative change with its sign, like [`share_words`].
+pub(super) fn signed_share(change: f64) -> String {
+    let sign = if change < 0.0 { "−" } else { "+" };
+    format!("{sign}{}", share_words(change.abs()))
 }
 
 /// `text` with its units held to their numbers by spaces that do not break.

@@ -3,10 +3,12 @@
 use super::excitation::with_load_cases;
 use super::rotation_load::pressed_body;
 use super::{MistuningSource, ModelSource, PipelineError, Problem, Study, StudyError};
-use crate::model::cyclic::ring_free;
-use crate::model::sector::{Body, ModelError, SectorModel, bundle, lumped, parametric, validate};
+use crate::model::cyclic::{pair_tangents, ring_free};
+use crate::model::sector::{
+    Body, ContactSide, ModelError, SectorModel, bundle, lumped, parametric, validate,
+};
 use crate::response::forced_response::ContactCondition;
-use crate::response::friction::{ContactOptions, Ring};
+use crate::response::friction::{ContactLaw, ContactOptions, Ring};
 use crate::response::mistuning::{ContactSource, Pattern, PatternSource};
 
 /// Loads and validates the sector model of `study`.
@@ -176,6 +178,23 @@ fn check_contact(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
             },
         );
     }
+    if let Some(law) = study.contact.as_ref().map(|contact| contact.law)
+        && let Some(accepted) = law_for_tangents(law, model)
+    {
+        let value = study.map.value("contact.law");
+        return finding(
+            "contact.law",
+            Problem::NotAccepted {
+                value: if value.is_empty() {
+                    law.name().to_owned()
+                } else {
+                    value
+                },
+                accepted,
+                suggestion: None,
+            },
+        );
+    }
     let creeping = |contact: &ContactOptions| contact.ring == Ring::Creeping;
     if study.contact.as_ref().is_some_and(creeping) && !ring_free(model).contains(&true) {
         let held = if pressed_body(model) == Some(Body::Ring) {
@@ -193,6 +212,34 @@ fn check_contact(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
         );
     }
     Ok(())
+}
+
+/// What is accepted in the place of a law that acts on no motion of a pair; none where it acts on all.
+fn law_for_tangents(law: ContactLaw, model: &SectorModel) -> Option<String> {
+    let rubs = |[first, second]: [bool; 2]| match law {
+        ContactLaw::MacroSlip1d => first,
+        _ => first || second,
+    };
+    let tangents = pair_tangents(model);
+    let pair = tangents.iter().position(|own| !rubs(*own))?;
+    let own = &model.contact_pairs[pair];
+    let name = |side: &ContactSide| {
+        side.node()
+            .map_or("the ground".to_owned(), |node| format!("node {node}"))
+    };
+    let of = format!(
+        "contact pair {pair} ({} on {})",
+        name(&own.first),
+        name(&own.second)
+    );
+    let accepted = if tangents.iter().all(|[first, second]| *first || *second) {
+        format!(
+            "\"macro_slip_2d\", because {of} does not move along its first tangent, on which this law acts"
+        )
+    } else {
+        format!("none: {of} does not move along its surface, so that nothing rubs there")
+    };
+    Some(accepted)
 }
 
 /// Refuses nodal diameters that the wheel does not have.

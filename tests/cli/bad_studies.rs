@@ -184,3 +184,54 @@ fn lists_of_a_hundred_thousand_are_checked_at_once() {
     assert!(bad.stderr.contains("and 99899 more"), "{}", bad.stderr);
     assert!(bad.stderr.len() < 200_000, "{}", bad.stderr.len());
 }
+
+#[test]
+fn a_law_along_one_tangent_is_refused_where_a_pair_does_not_move_along_it() {
+    let place = Place::with(GOOD);
+    let exported = place.run(&["model", "study.toml", "--export", "bundle"]);
+    assert_eq!(exported.code, 0, "{}", exported.stderr);
+    // Masses that move along the axis: the second tangent of a surface whose normal is radial.
+    let dofs = std::fs::read_to_string(place.path("bundle/dofs.csv")).expect("a table");
+    place.write("bundle/dofs.csv", &dofs.replace(",t,", ",z,"));
+    let of_bundle = GOOD.split("[model]").next().expect("a head").to_owned()
+        + "[model]\nsource = \"bundle\"\n[model.bundle]\npath = \"bundle\"\n[contact]"
+        + GOOD.split("[contact]").nth(1).expect("the rest");
+    place.write("along.toml", &of_bundle);
+    for command in ["check", "run"] {
+        let refused = place.run(&[command, "along.toml"]);
+        assert_eq!(refused.code, 3, "{}", refused.stderr);
+        let text = refused
+            .stderr
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ");
+        for part in [
+            "contact.law",
+            "macro_slip_1d",
+            "contact pair 0 (node 1 on node 2) does not move along its first tangent",
+            "accepted: \"macro_slip_2d\"",
+        ] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+    }
+    // By the other law the wheel is that of the study, turned by a right angle.
+    let two = of_bundle.replace("macro_slip_1d", "macro_slip_2d");
+    place.write("along.toml", &two);
+    let rows = |study: &str, results: &str| {
+        let run = place.run(&["run", study, "--out", results]);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let stats = place.run(&["stats", results, "--csv"]);
+        assert_eq!(stats.code, 0, "{}", stats.stderr);
+        stats.stdout
+    };
+    let numbers = |text: &str| -> Vec<f64> {
+        let cells = text.split([',', '\n']);
+        cells.filter_map(|cell| cell.parse().ok()).collect()
+    };
+    let (turned, own) = (rows("along.toml", "turned"), rows("study.toml", "own"));
+    let pairs: Vec<(f64, f64)> = numbers(&turned).into_iter().zip(numbers(&own)).collect();
+    assert!(pairs.len() > 20, "{own}");
+    for (turned, own) in pairs {
+        assert!((turned - own).abs() <= 1e-6 * own.abs(), "{turned} {own}");
+    }
+}

@@ -139,7 +139,7 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
         assert!(!first.contains(sign), "{sign}");
     }
     // Of two loads that were calculated one is lower, with 95 % confidence unless others could be as low.
-    let sure = "no other load studied has a lower P95 (95 % confidence)";
+    let sure = "statistics: no other load studied has a lower P95 (95 % confidence)";
     assert_eq!(load[2].contains(sure), others == 0, "{}", load[2]);
     // The other percentiles are a link away, which has the name of the section for a reader on paper.
     let link = "P99 needs 368 patterns; <a href=\"#numbers-0\">all percentiles</a>";
@@ -166,18 +166,45 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
     let largest = 100.0 * (1.0 - low / value).max(high / value - 1.0);
     let shown = numbers_in(&error[1])[0];
     assert!((shown / largest - 1.0).abs() < 0.06, "{shown} {largest}");
-    // The same error as a length beside the interval, and one verdict on both.
+    // The interval beside it in percent, and one verdict on both.
     let interval = bounds[1] - bounds[0];
-    let lengths = numbers_in(&error[2]);
-    for (shown, length) in lengths.iter().zip([high - low, interval]) {
-        assert!((shown / length - 1.0).abs() < 0.06, "{}", error[2]);
+    let shares = numbers_in(error[2].split_once("than statistics (").expect("shares").1);
+    let sides = [value - bounds[0], bounds[1] - value].map(|side| 100.0 * side / value);
+    for (shown, side) in shares.iter().zip(sides) {
+        assert!((shown - side).abs() < 0.1, "{shown} {side}: {}", error[2]);
     }
-    let verdict = if (high - low) > interval {
-        "to be surer: more accuracy before more patterns"
+    let verdicts = if (high - low) > interval {
+        [
+            "matters more than statistics",
+            "to be surer: more accuracy before more patterns",
+        ]
     } else {
-        "to be surer: more patterns before more accuracy"
+        [
+            "matters less than statistics",
+            "to be surer: more patterns before more accuracy",
+        ]
     };
-    assert!(error[2].contains(verdict), "{}", error[2]);
+    for verdict in verdicts {
+        assert!(error[2].contains(verdict), "{}", error[2]);
+    }
+    // Both together, and the percentile beside the tuned wheel.
+    let with = percentile[2].split_once("with numerical error about ");
+    let with = &numbers_in(with.expect("both").1)[..2];
+    for (shown, both) in with
+        .iter()
+        .zip([bounds[0] * low / value, bounds[1] * high / value])
+    {
+        assert!((shown / both - 1.0).abs() < 1e-3, "{shown} {both}");
+    }
+    let tuned = um(&scenario["tuned_amplitude_m"]);
+    let ratio = percentile[2]
+        .split_once(" times the tuned wheel there")
+        .expect("a ratio");
+    let ratio = numbers_in(ratio.0).pop().expect("a ratio");
+    assert!(
+        (ratio * tuned / value - 1.0).abs() < 1e-3,
+        "{ratio} {tuned}"
+    );
     assert_eq!(error[0], "Numerical error of that P95");
     // The main figure stands beside them, and what the answers rest on is folded.
     let section = between(&page, "id=\"answer-0\"", "</section>");
@@ -330,7 +357,7 @@ fn the_first_screen_says_where_numerical_error_could_hide_a_better_load() {
         let hidden = hidden_loads(&report);
         assert_eq!(!hidden.is_empty(), hides, "{hidden:?}");
         let said = format!(
-            "numerical error could hide a lower P95 at {}",
+            "numerical error: could hide a lower P95 at {}",
             hidden.join(", ")
         );
         let section = between(&page, "id=\"answer-0\"", "</section>");
@@ -339,7 +366,17 @@ fn the_first_screen_says_where_numerical_error_could_hide_a_better_load() {
             assert_eq!(text.contains(&said), hides, "{said}: {text}");
         }
         // The error is yellow where its bounds are the wider ones.
-        let widths = numbers_in(&error[2]);
+        let lowest = report["groups"][0]["choices"][1]["lowest"]
+            .as_u64()
+            .expect("a scenario");
+        let of = &report["groups"][0]["errors"][lowest as usize]["percentiles"][1];
+        let width = |own: &Value, [low, high]: [&str; 2]| {
+            own[high].as_f64().expect("a bound") - own[low].as_f64().expect("a bound")
+        };
+        let widths = [
+            width(of, ["lowest", "highest"]),
+            width(&of["percentile"], ["lower", "upper"]),
+        ];
         let [.., of_error] = looks(section);
         assert_eq!(of_error, widths[0] > widths[1], "{}", error[2]);
     }

@@ -162,7 +162,7 @@ fn rows_beyond_their_tolerance_are_counted_with_the_largest_stated_error() {
     let text = auto.to_string();
     assert!(
         text.contains(
-            "100 of 400 rows state a sampling or harmonic error beyond its tolerance (0.1 % by sampling or 2 % by harmonics) \
+            "100 of 400 rows state a sampling or harmonic error beyond its tolerance (0.1 % by samples per period, 2 % by harmonics) \
              at 9 N (stated errors up to 2.5 %)"
         ),
         "{text}"

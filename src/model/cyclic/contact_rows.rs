@@ -85,6 +85,15 @@ impl ContactGeometry {
     }
 }
 
+/// Whether the two sides of each pair move against each other along the first and the second tangent.
+#[must_use]
+pub fn pair_tangents(model: &SectorModel) -> Vec<[bool; 2]> {
+    let (_, geometry) = contact_rows(model);
+    let rows = geometry.rows.iter();
+    rows.map(|[_, t1, t2]| [t1.is_some(), t2.is_some()])
+        .collect()
+}
+
 /// Frame of a pair in (r, theta, z): normal, first and second tangent.
 fn frame(pair: &ContactPair) -> [[f64; 3]; 3] {
     let n = pair.normal;

@@ -13,7 +13,9 @@ mod natural_frequencies;
 mod nodal_diameter;
 
 pub use centrifugal::{CentrifugalContact, CentrifugalError, Hoop, centrifugal_contact};
-pub use contact_rows::{ContactGeometry, ContactRow, Direction, RowEntry, ring_free};
+pub use contact_rows::{
+    ContactGeometry, ContactRow, Direction, RowEntry, pair_tangents, ring_free,
+};
 pub use cyclic_sector::CyclicSector;
 pub use natural_frequencies::{contact_free_frequencies_hz, natural_frequencies_hz};
 pub use nodal_diameter::{NodalDiameter, nodal_diameter_of, phase};

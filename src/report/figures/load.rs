@@ -112,7 +112,8 @@ pub(super) fn by_load(
     // read as the load to design for.
     let choice = { group.choices.iter() }.find(|choice| choice.lowest.is_some());
     let pointed = choice.filter(|choice| amplitude && choice.is_of_a_design());
-    let strip = if pointed.is_some() { STRIP } else { 0.0 };
+    let lowest = lowest_of(group, pointed).filter(|_| amplitude);
+    let strip = if lowest.is_some() { STRIP } else { 0.0 };
     let y = value_axis(&values, BOTTOM + strip, TOP + strip);
     let y_title = match y.scale {
         Scale::Logarithmic => format!("{y_title} (log.)"),
@@ -132,15 +133,14 @@ pub(super) fn by_load(
     let mut svg = Svg::default();
     frame.draw(&mut svg);
     x.ticks(&mut svg, &frame, &loads);
-    if let Some(choice) = pointed {
-        point_at(&mut svg, &frame, &x, &loads, choice);
+    if let Some((scenario, words)) = &lowest {
+        point_at(&mut svg, &frame, &x, &loads, (*scenario, words), pointed);
     }
     curves(&mut svg, &frame, &x, &drawn);
     points(&mut svg, &frame, &x, &drawn);
     let mut entries = entries(&drawn);
-    let lowest = pointed.map(|choice| format!("lowest P{}", percent_words(choice.percent)));
-    if let Some(lowest) = &lowest {
-        entries.push(LegendEntry::Point("lowest", Mark::Pointer, lowest));
+    if let Some((_, words)) = &lowest {
+        entries.push(LegendEntry::Point("lowest", Mark::Pointer, words));
     }
     if pointed.is_some_and(|choice| loads.iter().any(|load| could_be_as_low(choice, load))) {
         entries.push(LegendEntry::Point("could", Mark::Pointer, "may be as low"));
@@ -224,6 +224,19 @@ fn scaled(found: &Percentile, scale: f64) -> Percentile {
     }
 }
 
+/// The scenario that is pointed at, and why: by the percentile of a choice, or by the worst of a few measured wheels.
+fn lowest_of(group: &GroupReport, choice: Option<&LoadChoice>) -> Option<(usize, String)> {
+    let of_choice = choice.and_then(|own| {
+        let words = format!("lowest P{}", percent_words(own.percent));
+        Some((own.lowest?, words))
+    });
+    let of_wheels = || {
+        let (wheel, _) = group.smallest_worst_peak()?;
+        Some((wheel.scenario, "smallest worst peak".to_owned()))
+    };
+    of_choice.or_else(of_wheels)
+}
+
 /// Whether a load that has not the lowest percentile of the sample could be as low.
 fn could_be_as_low(choice: &LoadChoice, load: &ScenarioSummary) -> bool {
     let compared = choice.best.iter().flat_map(|best| &best.loads);
@@ -238,18 +251,19 @@ fn point_at(
     frame: &Frame<'_>,
     x: &LoadAxis,
     loads: &[&ScenarioSummary],
-    choice: &LoadChoice,
+    (lowest, words): (usize, &str),
+    choice: Option<&LoadChoice>,
 ) {
     let (bottom, top) = frame.y.ends;
-    let percent = percent_words(choice.percent);
     for load in loads {
         let at = x.at(load);
         let name = load_words(load.contact, load.normal_load_n);
-        if choice.lowest == Some(load.scenario) {
+        if lowest == load.scenario {
             svg.line("aim", (at, top), (at, bottom));
-            let words = format!("lowest P{percent}: {name}");
+            let words = format!("{words}: {name}");
             Mark::Pointer.draw(svg, "lowest", (at, top - 7.0), &words);
-        } else if could_be_as_low(choice, load) {
+        } else if let Some(choice) = choice.filter(|choice| could_be_as_low(choice, load)) {
+            let percent = percent_words(choice.percent);
             let words = format!("P{percent} may be as low: {name}");
             Mark::Pointer.draw(svg, "could", (at, top - 7.0), &words);
         }
@@ -308,7 +322,11 @@ fn points(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
             let words = format!("tuned, {name}: {tuned:.4}");
             Mark::Triangle.draw(svg, "tuned", (at, frame.y.at(tuned)), &words);
         }
-        for (wheel, peak) in &load.wheels {
+        // Side by side, as far apart as the marks of three percentiles.
+        let step = 2.0 * x.aside / (load.wheels.len().max(2) - 1) as f64;
+        let middle = 0.5 * (load.wheels.len().max(1) - 1) as f64;
+        for (place, (wheel, peak)) in load.wheels.iter().enumerate() {
+            let at = at + step * (place as f64 - middle);
             let words = format!("wheel {wheel}, {name}: {peak:.4}");
             Mark::Circle.draw(svg, "quiet", (at, frame.y.at(*peak)), &words);
         }
@@ -349,7 +367,7 @@ fn entries(drawn: &[Load<'_>]) -> Vec<LegendEntry<'static>> {
         entries.push(LegendEntry::Line("tuned", Some(Mark::Triangle), "tuned"));
     }
     if drawn.iter().any(|load| !load.wheels.is_empty()) {
-        let words = "a measured wheel";
+        let words = "wheel of the file (computed)";
         entries.push(LegendEntry::Point("quiet", Mark::Circle, words));
     }
     if any(&|load| {
@@ -392,10 +410,10 @@ fn caption(
     let measured = drawn.iter().any(|load| !load.wheels.is_empty());
     let mut words = if DRAWN.iter().any(shows) {
         format!(
-            "Percentiles over {patterns} patterns with distribution-free 95 % bounds, side by side at each load."
+            "Percentiles over {patterns} patterns with distribution-free 95 % bounds, side by side at each load; numerical error is not drawn."
         )
     } else if measured {
-        "Each wheel of mistuning.file at each load; so few have no percentile.".to_owned()
+        "Each wheel of mistuning.file at each load; too few for a percentile.".to_owned()
     } else {
         "No percentile has a value; the tuned wheel is drawn alone.".to_owned()
     };
@@ -418,18 +436,21 @@ fn caption(
     if !limits.is_empty() {
         // Linear limits alone need no break.
         let newtons = loads.iter().any(|load| load.normal_load_n.is_some());
-        let head = if newtons {
-            "Beside the breaks, linear solutions"
-        } else {
-            "Linear solutions"
+        let one = limits.len() == 1;
+        let head = match (newtons, one) {
+            (true, true) => "Beside the break, a linear solution",
+            (true, false) => "Beside the breaks, linear solutions",
+            (false, true) => "A linear solution",
+            (false, false) => "Linear solutions",
         };
         let _ = write!(words, " {head}: {}", limits.join(", "));
         if let Some(units) = amplitudes {
-            let _ = write!(
-                words,
-                "; dotted: their tuned peaks{}",
-                tuned_limits(loads, units)
-            );
+            let whose = if one {
+                "its tuned peak"
+            } else {
+                "their tuned peaks"
+            };
+            let _ = write!(words, "; dotted: {whose}{}", tuned_limits(loads, units));
         }
         words.push('.');
     }

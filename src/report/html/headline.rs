@@ -1,13 +1,17 @@
 //! What the first screen says in large type: load, percentile and numerical error.
 
-use crate::population::statistics::CONFIDENCE;
+use super::measured_wheels::of_measured_wheels;
+use crate::population::statistics::{CONFIDENCE, Percentile};
 use crate::report::numerical_error::Remedy;
 use crate::report::study_report::{at_the_end, neighbours, short_load};
-use crate::report::words::{LengthUnit, four_digits, percent_words, share_words};
+use crate::report::words::{LengthUnit, four_digits, percent_words, share_words, signed_share};
 use crate::report::{
-    GroupReport, LoadChoice, MeasuredPeak, PercentileError, ScenarioSummary, StudyReport, Warning,
+    GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, StudySummary, Warning,
     setting,
 };
+
+/// Relative correction of a percentile below which none is shown.
+const LEAST_CORRECTION: f64 = 1e-3;
 
 /// A number in large type.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -104,7 +108,10 @@ pub(super) fn in_one_line(report: &StudyReport, group: &GroupReport) -> String {
 
 /// Which loads were calculated next to that of the answer: between them none was, so that the optimum is known no
 /// better.
-fn beside(lower: Option<&ScenarioSummary>, higher: Option<&ScenarioSummary>) -> Option<String> {
+pub(super) fn beside(
+    lower: Option<&ScenarioSummary>,
+    higher: Option<&ScenarioSummary>,
+) -> Option<String> {
     match (lower.map(short_load), higher.map(short_load)) {
         (Some(lower), Some(higher)) => Some(format!("next loads studied: {lower} and {higher}")),
         (Some(next), None) => Some(format!("next load studied: {next}, none higher")),
@@ -166,102 +173,6 @@ fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
     ]
 }
 
-/// Load with the lowest peak of the wheels of a file, the largest of them where they are several, with the error that
-/// its row states.
-fn of_measured_wheels(report: &StudyReport, group: &GroupReport) -> Option<[BigNumber; 3]> {
-    let summary = &report.summary;
-    let loads = group.measured.chunk_by(|a, b| a.scenario == b.scenario);
-    let peaks: Vec<(&MeasuredPeak, f64)> = loads.filter_map(highest_peak).collect();
-    let &(of_wheel, peak) = peaks.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let lowest = of_wheel.scenario;
-    let errors = |own: usize| { group.errors.iter() }.find(|errors| errors.scenario == own);
-    let error_at = |own: usize| Some(errors(own)?.rows.stated?.largest);
-    let number = |label: &str, value: String, notes: Vec<String>, is_open: bool| BigNumber {
-        label: label.to_owned(),
-        value,
-        told: None,
-        notes,
-        more: None,
-        is_open,
-    };
-    let load = short_load(&summary.scenarios[lowest]);
-    let between = neighbours(report, group, &summary.scenarios[lowest]);
-    let beyond = match between {
-        [None, Some(_)] => Some("below"),
-        [Some(_), None] => Some("above"),
-        _ => None,
-    };
-    let [lower, higher] = between;
-    let mut of_load = vec![beside(lower, higher).unwrap_or("the only load studied".to_owned())];
-    of_load.extend(beyond.map(|side| format!("the best load may be {side} {load}")));
-    // By what the solutions state, each peak wrong by all of it.
-    let highest = error_at(lowest).map(|own| peak * (1.0 + own));
-    let hidden: Vec<String> = { peaks.iter() }
-        .filter(|(own, _)| own.scenario != lowest)
-        .filter(|(own, peak)| {
-            let bound = error_at(own.scenario).map(|error| peak * (1.0 - error));
-            bound
-                .zip(highest)
-                .is_none_or(|(bound, highest)| bound < highest)
-        })
-        .map(|(own, _)| short_load(&summary.scenarios[own.scenario]))
-        .collect();
-    if !hidden.is_empty() {
-        let loads = hidden.join(", ");
-        of_load.push(format!(
-            "but numerical error could hide a lower one at {loads}"
-        ));
-    }
-    let is_open = beyond.is_some() || !hidden.is_empty();
-    let peak = LengthUnit::of_summary(summary).length(peak);
-    let error = error_at(lowest).map_or_else(|| "no bound".to_owned(), share_words);
-    let wheels = summary.patterns;
-    let [of_lowest, of_peak, of_error, told] = if summary.is_of_one_wheel() {
-        [
-            "Normal load per sector with the lowest peak of the wheel",
-            "Peak amplitude of the wheel",
-            "Numerical error of the peak, at most",
-            "by what its solution states",
-        ]
-    } else {
-        [
-            "Normal load per sector where the highest wheel is lowest",
-            "Peak amplitude of the highest wheel",
-            "Numerical error of the peaks there, at most",
-            "the largest that a solution states",
-        ]
-    };
-    let mut of_wheels = vec![if wheels == 1 {
-        "the one wheel of mistuning.file: no percentile".to_owned()
-    } else {
-        format!(
-            "wheel {} of the {wheels} of mistuning.file",
-            of_wheel.pattern
-        )
-    }];
-    let mut designs = group.choices.iter().filter(|_| wheels > 1);
-    of_wheels.extend(designs.rfind(|own| own.is_of_a_design()).map(|own| {
-        let percent = percent_words(own.percent);
-        format!(
-            "no percentile to design by: P{percent} needs {} wheels",
-            own.needed_patterns
-        )
-    }));
-    Some([
-        number(of_lowest, load, of_load, is_open),
-        number(of_peak, peak, of_wheels, false),
-        number(of_error, error, vec![told.to_owned()], false),
-    ])
-}
-
-/// The wheel with the highest peak under one load; none where a wheel has no peak, which could be higher.
-fn highest_peak(wheels: &[MeasuredPeak]) -> Option<(&MeasuredPeak, f64)> {
-    let peaks: Option<Vec<(&MeasuredPeak, f64)>> = { wheels.iter() }
-        .map(|own| Some((own, own.peak_amplitude_m?)))
-        .collect();
-    peaks?.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
-}
-
 /// Which loads, that by the patterns alone are higher, numerical error could make the lowest.
 pub(super) fn hidden_by_error(report: &StudyReport, group: &GroupReport) -> Option<String> {
     let (choice, lowest) = group.known_choice()?;
@@ -278,7 +189,7 @@ pub(super) fn hidden_by_error(report: &StudyReport, group: &GroupReport) -> Opti
     let percent = percent_words(choice.percent);
     (!hidden.is_empty()).then(|| {
         format!(
-            "numerical error could hide a lower P{percent} at {}",
+            "numerical error: could hide a lower P{percent} at {}",
             hidden.join(", ")
         )
     })
@@ -300,15 +211,10 @@ fn notes_of_load(
         notes.push("the only load of this study".to_owned());
         return notes;
     };
-    let [lower, higher] = neighbours(report, group, scenario);
-    let beside = beside(lower, higher);
     // What makes the load no optimum comes before how sure it is the lowest.
     let is_at_the_end = at_the_end(report, group);
-    if let Some(end) = &is_at_the_end {
-        let beyond = end.consequence.clone();
-        let beside = beside.as_ref();
-        notes.push(beside.map_or(beyond.clone(), |beside| format!("{beside}: {beyond}")));
-    }
+    notes
+        .extend({ is_at_the_end.as_ref() }.map(|end| format!("{}: {}", end.what, end.consequence)));
     let others: Vec<String> = { best.loads.iter() }
         .filter(|own| own.could_be_best && own.scenario.scenario != scenario.scenario)
         .map(|own| {
@@ -319,13 +225,17 @@ fn notes_of_load(
     let percent = percent_words(choice.percent);
     if !others.is_empty() {
         let others = others.join(", ");
-        notes.push(format!("may be as good: {others} (95 % confidence)"));
+        notes.push(format!(
+            "statistics: may be as good: {others} (95 % confidence)"
+        ));
     } else if choice.is_of_a_design() {
         notes.push(format!(
-            "no other load studied has a lower P{percent} (95 % confidence)"
+            "statistics: no other load studied has a lower P{percent} (95 % confidence)"
         ));
     }
-    notes.extend(hidden_by_error(report, group).map(|hidden| format!("but {hidden}")));
+    if choice.is_of_a_design() {
+        notes.push(by_numerical_error(report, group, choice, scenario.scenario));
+    }
     let mut higher = { group.choices.iter() }.filter(|own| own.percent > choice.percent);
     let higher = higher.next_back();
     notes.extend(
@@ -333,8 +243,27 @@ fn notes_of_load(
             .filter(|_| !choice.is_of_a_design())
             .map(|higher| format!("no P{} is known", percent_words(higher.percent))),
     );
-    notes.extend(beside.filter(|_| is_at_the_end.is_none()));
+    let [lower, higher] = neighbours(report, group, scenario);
+    notes.extend(beside(lower, higher).filter(|_| is_at_the_end.is_none()));
     notes
+}
+
+/// What numerical error can do to the choice of a load.
+fn by_numerical_error(
+    report: &StudyReport,
+    group: &GroupReport,
+    choice: &LoadChoice,
+    lowest: usize,
+) -> String {
+    if let Some(hidden) = hidden_by_error(report, group) {
+        return hidden;
+    }
+    match group.numerical_rivals(lowest, choice.percent) {
+        Some(rivals) if rivals.unknown.is_empty() => "numerical error: changes nothing of that",
+        Some(_) => "numerical error: changes nothing of that where loads have a value",
+        None => "numerical error: not bounded, so that it may change that",
+    }
+    .to_owned()
 }
 
 fn notes_of_percentile(
@@ -351,7 +280,7 @@ fn notes_of_percentile(
     let found = error.map(|own| own.percentile);
     notes.push(match found.map(|own| (own.lower, own.upper)) {
         Some((Some(lower), Some(upper))) => format!(
-            "{confidence} % interval {} to {}; numerical error on top",
+            "{confidence} % interval {} to {}",
             units.number(lower),
             units.length(upper)
         ),
@@ -363,6 +292,8 @@ fn notes_of_percentile(
         }
         _ => "no interval".to_owned(),
     });
+    notes.extend(error.and_then(|own| with_numerical_error(own, units)));
+    notes.extend(beside_tuned(summary, choice, found));
     let stress = summary.stress_pa_per_m.zip(found.and_then(|own| own.value));
     notes.extend(stress.map(|(pa_per_m, value)| {
         format!("= {} MPa peak stress", four_digits(1e-6 * pa_per_m * value))
@@ -377,6 +308,32 @@ fn notes_of_percentile(
         )
     }));
     notes
+}
+
+/// About how far the interval goes with the numerical error of the percentile at its ends.
+fn with_numerical_error(error: &PercentileError, units: LengthUnit) -> Option<String> {
+    let found = error.percentile;
+    let (low, high) = (error.lowest? / found.value?, error.highest? / found.value?);
+    Some(format!(
+        "with numerical error about {} to {}",
+        units.number(low * found.lower?),
+        units.length(high * found.upper?)
+    ))
+}
+
+/// The percentile beside the peak of the tuned wheel under the same load.
+fn beside_tuned(
+    summary: &StudySummary,
+    choice: &LoadChoice,
+    found: Option<Percentile>,
+) -> Option<String> {
+    let tuned = summary.scenarios[choice.lowest?].tuned_amplitude_m?;
+    let ratio = found?.value? / tuned;
+    let tuned = LengthUnit::of_summary(summary).length(tuned);
+    Some(format!(
+        "{} times the tuned wheel there ({tuned})",
+        four_digits(ratio)
+    ))
 }
 
 /// Numerical error of the percentile: the larger side of its bounds.
@@ -405,31 +362,37 @@ fn number_of_error(
     };
     let largest = (1.0 - low / value).max(high / value - 1.0);
     let remedy = remedy(report, error);
-    let notes = remedy.map_or_else(Vec::new, |(remedy, numerical, statistical)| {
-        vec![
-            format!(
-                "bounds {} apart, interval {} wide",
-                units.rough(numerical * value),
-                units.rough(statistical * value)
-            ),
-            remedy.words().to_owned(),
-        ]
-    });
+    let mut notes = Vec::new();
+    notes.extend({ remedy.zip(error) }.map(|(remedy, error)| {
+        let found = error.percentile;
+        let side = |end: Option<f64>| end.map_or(f64::NAN, |end| end / value - 1.0);
+        remedy.beside_statistics(side(found.lower), side(found.upper))
+    }));
+    notes.extend(remedy.map(|remedy| remedy.words().to_owned()));
+    notes.extend(
+        { error.and_then(|own| own.corrected) }.and_then(|corrected| {
+            let change = corrected / value - 1.0;
+            let is_seen = change.abs() > 0.25 * largest && change.abs() > LEAST_CORRECTION;
+            is_seen.then(|| {
+                let (corrected, change) = (units.length(corrected), signed_share(change));
+                format!("corrected by its own errors: {corrected} ({change})")
+            })
+        }),
+    );
     BigNumber {
         label,
         value: format!("at most {}", share_words(largest)),
         told: None,
         notes,
         more: None,
-        is_open: matches!(remedy, Some((Remedy::Finer, ..))),
+        is_open: matches!(remedy, Some(Remedy::Finer)),
     }
 }
 
-/// What makes a percentile surer, with the relative widths of its numerical bounds and of its statistical interval.
-fn remedy(report: &StudyReport, error: Option<&PercentileError>) -> Option<(Remedy, f64, f64)> {
+/// What makes a percentile surer; none where its error or its interval has no bounds.
+fn remedy(report: &StudyReport, error: Option<&PercentileError>) -> Option<Remedy> {
     let (numerical, statistical) =
         { error }.and_then(|own| Some((own.numerical_width()?, own.statistical_width()?)))?;
     let findings = { report.summary.warnings.iter() }.filter_map(Warning::numerical_finding);
-    let remedy = Remedy::of(statistical, numerical, findings);
-    Some((remedy, numerical, statistical))
+    Some(Remedy::of(statistical, numerical, findings))
 }

@@ -1,12 +1,13 @@
 //! Whether anything is wrong with a study: the worst consequence, and the warnings in a few words.
 
 use super::headline::hidden_by_error;
+use super::measured_wheels::loads_left_open;
 use crate::report::study_report::{at_the_end, short_load};
 use crate::report::words::{scenarios_in_words, told_apart};
 use crate::report::{GroupReport, StudyReport, Warning};
 
 /// Warnings that the first screen names.
-const NAMED: usize = 3;
+const NAMED: usize = 5;
 
 /// Whether anything is wrong, with a study or with the setting that the page opens with.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -111,6 +112,7 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
         findings.insert(0, hidden);
         verdict = Some("Numerical error could hide a better load.".to_owned());
     }
+    let open = first.map_or_else(Vec::new, |group| loads_left_open(report, group));
     if let Some(end) = first.and_then(|group| at_the_end(report, group)) {
         findings.insert(0, end.headline);
         verdict = Some(sentence(&end.consequence));
@@ -135,6 +137,13 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
         }
         None if few => verdict = Some("Too few patterns for any percentile.".to_owned()),
         _ => {}
+    }
+    if !open.is_empty() {
+        findings.insert(
+            0,
+            "more accuracy decides which load has the smallest worst peak".to_owned(),
+        );
+        verdict = Some("Numerical error leaves the load open.".to_owned());
     }
     let class = if verdict.is_some() { "look" } else { "good" };
     Health {

@@ -3,6 +3,7 @@
 mod first_screen;
 mod headline;
 mod health;
+mod measured_wheels;
 mod model;
 mod page;
 mod table;
