@@ -88,7 +88,11 @@ def test_every_block_of_python_of_the_guide_to_imports_runs(tmp_path, monkeypatc
             exec(compile(block, f"{GUIDE.name}: block {number}", "exec"), names)
             found.append(names["sector"])
             assert found[-1].check["worst_relative_difference"] < 1e-6
-    assert [sector.sectors for sector in found] == [24, 6, 6, 6]
+    assert [sector.sectors for sector in found] == [24, 6, 12, 6, 6]
+    # What the example of masses prints is what the page says.
+    best = names["best"]
+    printed = f"{best.normal_load_n:g} N per sector: P95 {best.value:.3e} m, 95 % bounds {best.lower:.3e} to {best.upper:.3e} m"
+    assert printed in GUIDE.read_text(encoding="utf-8")
     # Units, ring and contact are those that the page says: half a millimetre squared is in contact.
     report = found[0].report
     assert [body["body"] for body in report["bodies"]] == ["blisk", "ring"]
