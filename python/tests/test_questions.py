@@ -245,6 +245,25 @@ def test_axes_hold_the_numbers_of_the_tables(finished):
     matplotlib.pyplot.close("all")
 
 
+def test_labels_of_loads_do_not_run_into_each_other(study):
+    loads = [50, 80, 100, 120, 140, 150, 400, 1000]
+    results = blisk.run(study.replace({"study.patterns": 6, "sweep.normal_load_n": loads}))
+    _, axes = matplotlib.pyplot.subplots(figsize=(3.5, 2.8), layout="constrained")
+    results.plot(percentiles=[50], ax=axes)
+    axes.figure.draw_without_rendering()
+    ticks = [label for label in axes.get_xticklabels() if label.get_text()]
+    boxes = [label.get_window_extent() for label in ticks]
+    assert all(left.x1 < right.x0 for left, right in zip(boxes, boxes[1:]))
+    texts = [label.get_text() for label in ticks]
+    # Every load has a tick, and the ends have labels. Where there is room all loads have one.
+    assert list(axes.get_xticks()) == loads
+    assert 4 <= len(texts) < len(loads) and (texts[0], texts[-1]) == ("50", "1000") and set(texts) < set(map(str, loads))
+    _, wide = matplotlib.pyplot.subplots(figsize=(30, 3))
+    results.plot(percentiles=[50], ax=wide)
+    assert [label.get_text() for label in wide.get_xticklabels()] == list(map(str, loads))
+    matplotlib.pyplot.close("all")
+
+
 DEVIATIONS = [0.02, -0.01, 0.005, -0.03, 0.01, 0.0]
 
 

@@ -121,7 +121,6 @@ def _scale(ax: Any, loads: Sequence[float], values: Sequence[float], label: str)
     ax.set_xscale("log" if spread else "linear")
     ax.set_xlabel(f"damper normal load per sector, N{' (logarithmic)' if spread else ''}")
     if spread:
-        ax.set_xticks(sorted(set(loads)), labels=[f"{load:g}" for load in sorted(set(loads))])
         ax.xaxis.set_minor_locator(ticker.NullLocator())
     wide = bool(values) and 0.0 < _LOGARITHMIC_FROM * min(values) < max(values)
     ax.set_yscale("log" if wide else "linear")
@@ -130,6 +129,27 @@ def _scale(ax: Any, loads: Sequence[float], values: Sequence[float], label: str)
         ax.yaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
         ax.yaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
         ax.yaxis.set_minor_locator(ticker.NullLocator())
+    if spread:
+        _ticks(ax, sorted(set(loads)))
+
+
+def _ticks(ax: Any, loads: Sequence[float]) -> None:
+    """A tick at every load, and labels at the ends and between them where they do not run into each other."""
+    labels = [f"{load:g}" for load in loads]
+    ax.set_xticks(loads, labels=labels)
+    # Places of the labels are those of the layout.
+    ax.figure.figure.draw_without_rendering()
+    boxes = [label.get_window_extent() for label in ax.get_xticklabels()]
+    last = len(boxes) - 1
+    end = boxes[0].x1
+    for place in range(1, last):
+        box = boxes[place]
+        gap = box.height / 2
+        if end + gap < box.x0 and box.x1 + gap < boxes[last].x0:
+            end = box.x1
+        else:
+            labels[place] = ""
+    ax.set_xticks(loads, labels=labels)
 
 
 def _only(rows: list[dict[str, Any]], wanted: Mapping[str, Any]) -> list[dict[str, Any]]:

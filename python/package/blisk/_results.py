@@ -234,7 +234,7 @@ class Results:
         one setting; needed where the study has several.
         ``ax``: axes of matplotlib to draw into; new ones unless given.
 
-        Returns the axes. The linear limits are level lines.
+        Returns the axes. The linear limits are level lines. Every load has a tick, and a label where there is room for it.
         """
         wanted = {"engine_order": engine_order, "standard_deviation": standard_deviation, "load_case": load_case}
         return plotted(self, quantity, percentiles, wanted, ax)
