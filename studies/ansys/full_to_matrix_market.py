@@ -2,7 +2,8 @@
 
     python full_to_matrix_market.py FILE.full [NAME]
 
-Writes NAME_k.mtx, NAME_m.mtx and NAME_dofs.csv; NAME is that of the file. Needs the packages
+Writes NAME_k.mtx, NAME_m.mtx and NAME_dofs.csv, and prints the lines that name them in an import file. NAME is that
+of the file unless given. Needs the packages
 ansys-mapdl-reader and scipy.
 """
 
@@ -40,6 +41,8 @@ def main(path, name=None):
         table.write("row,node,direction\n")
         for number, row in enumerate(free, start=1):
             table.write(f"{number},{dofs[row, 0]},{dofs[row, 1] + 1}\n")
+    print('matrix_format = "matrix_market"\n[blisk]')
+    print(f'stiffness = "{name}_k.mtx"\nmass = "{name}_m.mtx"\ndofs = "{name}_dofs.csv"')
 
 
 if __name__ == "__main__":
