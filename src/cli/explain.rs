@@ -165,6 +165,8 @@ fn of_results(name: &str) -> Vec<Meaning> {
 pub struct Explanations {
     keys: Vec<Explanation>,
     terms: Vec<Meaning>,
+    /// Whether a key has just the name that was asked for, which is then the first answer.
+    keys_first: bool,
 }
 
 impl Explanations {
@@ -200,8 +202,13 @@ impl Explanations {
                 near.join(" or ")
             )));
         }
-        let keys = keys.iter().map(Explanation::from).collect();
-        Ok(Self { keys, terms })
+        let is_last = |key: &KeySpec| key.key.rsplit('.').next() == Some(name);
+        let (named, others): (Vec<KeySpec>, Vec<KeySpec>) = keys.into_iter().partition(is_last);
+        Ok(Self {
+            keys_first: !named.is_empty(),
+            keys: named.iter().chain(&others).map(Explanation::from).collect(),
+            terms,
+        })
     }
 }
 
@@ -216,9 +223,10 @@ impl fmt::Display for Explanations {
         let apart = !self.terms.is_empty() || self.keys.len() > 1;
         let terms = { self.terms.iter() }
             .map(|term| format!("{}\n  meaning   {}\n", term.word, term.meaning));
-        let text: Vec<String> = terms
-            .chain(self.keys.iter().map(ToString::to_string))
-            .collect();
+        let mut text: Vec<String> = terms.collect();
+        let keys = self.keys.iter().map(ToString::to_string);
+        let place = if self.keys_first { 0 } else { text.len() };
+        text.splice(place..place, keys);
         f.write_str(&text.join(if apart { "\n" } else { "" }))
     }
 }

@@ -122,11 +122,8 @@ impl Progress for RunProgress {
         }
     }
 
-    fn solves_anew(&self, rows: u64) {
-        self.say(&format!(
-            "{rows} stored rows are solved anew: the study now has other settings for their loads, as harmonics, basis or \
-             stated error"
-        ));
+    fn solves_anew(&self, rows: u64, why: &str) {
+        self.say(&format!("{rows} stored rows are solved anew: {why}"));
     }
 
     fn surrogate_times(&self, surrogate_s: f64, row_s: f64) {

@@ -74,11 +74,19 @@ pub(super) fn command(arguments: RunArguments) -> Result<ExitStatus, Failure> {
             results.display()
         ));
     } else {
+        let place = results.display();
+        let place = shard.map_or_else(
+            || format!("results in {place}"),
+            |shard| {
+                let (number, count) = (shard.number, shard.count);
+                format!(
+                    "shard in {place}/shards/{number}-of-{count}; when all are solved: blisk merge {place} --out {place}"
+                )
+            },
+        );
         output::message(&format!(
-            "solved {} rows, reused {}; results in {}",
-            outcome.rows_solved,
-            outcome.rows_reused,
-            results.display()
+            "solved {} rows, reused {}; {place}",
+            outcome.rows_solved, outcome.rows_reused
         ));
     }
     if shard.is_some() {

@@ -97,11 +97,13 @@ impl StatedErrors {
     }
 }
 
-/// Errors that every row of a scenario states besides its own and that of the basis.
+/// Errors that every row of a scenario states besides its own.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CommonErrors {
     /// What the harmonics left out change in the tuned peak of the full contact model; none for linear limits.
     pub harmonics: Option<f64>,
+    /// What the reduced model leaves out under its load or limit; none where that of the basis counts for all.
+    pub reduced_model: Option<f64>,
     /// Tolerance of the peak search.
     pub peak: Option<f64>,
 }
@@ -205,7 +207,7 @@ pub(super) fn common_words(basis: &BasisSummary, common: &CommonErrors) -> Optio
         ),
         (common.peak, "the peak search".to_owned()),
         (
-            basis.tuned_peak_error,
+            common.reduced_model.or(basis.tuned_peak_error),
             format!(
                 "the reduced model ({}, measured on {measured_on})",
                 basis.name

@@ -55,6 +55,8 @@ pub struct BasisSummary {
     pub craig_bampton_error: Option<f64>,
     /// Error that the study asks for.
     pub wanted_error: f64,
+    /// What peaks may be off by the basis for it.
+    pub wanted_peak_error: f64,
     /// Whether rows are solved on something else than the basis that the study names, because that is replaced.
     pub is_replaced: bool,
 }
@@ -65,11 +67,11 @@ impl BasisSummary {
     pub fn warnings(&self) -> Vec<Warning> {
         let peak = self
             .tuned_peak_error
-            .filter(|&error| error > self.wanted_error)
+            .filter(|&error| error > self.wanted_peak_error)
             .map(|error| Warning::BasisError {
                 basis: self.name.clone(),
                 error,
-                wanted: self.wanted_error,
+                wanted: self.wanted_peak_error,
             });
         let modes = self
             .craig_bampton_reach

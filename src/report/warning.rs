@@ -338,7 +338,7 @@ impl Warning {
             } => format!(
                 "contacts separate {} (up to {:.0} % of the pairs of a wheel): \
                  harmonic 1 or odd harmonics alone cannot represent that; raise the normal load, or \
-                 set solver.harmonics = [0, 1, 2, 3]",
+                 take solver.harmonics = \"auto\" or a list with 0 and even ones, which is another study with another --out",
                 at(scenarios),
                 100.0 * largest_fraction
             ),
@@ -352,7 +352,7 @@ impl Warning {
                 "{rows} of {planned} rows state a sampling or harmonic error beyond its tolerance{} {} \
                  (stated errors up to {:.1} %); where sampling_error in responses.parquet is the larger one, \
                  raise solver.samples_per_period; where harmonic_error is, take solver.harmonics = \"auto\" or a \
-                 larger set, or accept it by a larger solver.harmonic_tolerance",
+                 larger set (another study with another --out), or accept it by a larger solver.harmonic_tolerance",
                 tolerance.in_brackets(),
                 at(scenarios),
                 100.0 * largest_stated_error

@@ -178,6 +178,7 @@ impl TunedWheel<'_> {
             harmonics: harmonics.to_vec(),
             remainder: None,
             sampling: None,
+            reduced_model: None,
         }
     }
 

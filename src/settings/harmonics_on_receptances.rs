@@ -35,10 +35,19 @@ pub(super) struct Judges<'a> {
 /// A judged row, the settings of its points, and its peak.
 type JudgedPeak<'a> = (EngineRow<'a>, PointSettings, Peak);
 
+/// A set of harmonics with what it leaves out, and the peaks of the wheels by which that was found.
+pub(super) struct JudgedSet<'a> {
+    pub(super) choice: HarmonicChoice,
+    peaks: Vec<JudgedPeak<'a>>,
+}
+
+/// What a top is of beside its wheel: engine order and condition.
+pub(super) type TopOf = (u32, ContactCondition);
+
 /// The top of a judged row, to be compared with that of the same wheel on another engine.
 pub(super) struct JudgedTop {
-    /// Wheel, engine order and condition.
-    of: (usize, u32, ContactCondition),
+    wheel: usize,
+    of: TopOf,
     points: PointSettings,
     point: Point,
     step_hz: f64,
@@ -83,7 +92,7 @@ impl<'a> Judges<'a> {
         conditions: &[ContactCondition],
         set: &[u32],
         reserve: Option<&[u32]>,
-    ) -> Result<Vec<HarmonicChoice>, TransformError> {
+    ) -> Result<Vec<JudgedSet<'_>>, TransformError> {
         let nonlinear = |own: &&ContactCondition| own.normal_load_n().is_some();
         let conditions: Vec<ContactCondition> =
             conditions.iter().filter(nonlinear).copied().collect();
@@ -93,67 +102,80 @@ impl<'a> Judges<'a> {
             .flat_map(|(order, _)| conditions.iter().map(|&condition| (*order, condition)))
             .collect();
         let judged = cases.into_par_iter().map(|case| {
-            let (choice, found) = self.judged(choice_of(case, set), reserve.is_some())?;
-            match reserve.filter(|_| !found) {
-                Some(reserve) => Ok(self.judged(choice_of(case, reserve), false)?.0),
-                None => Ok(choice),
+            let judged = self.judged(choice_of(case, set), reserve.is_some())?;
+            match reserve.filter(|_| judged.lacks_a_peak()) {
+                Some(reserve) => self.judged(choice_of(case, reserve), false),
+                None => Ok(judged),
             }
         });
         judged.collect()
     }
 
-    /// The peaks of these wheels with their harmonics, under some of `conditions`.
+    /// The peaks of these wheels with harmonics that were chosen before, on another engine.
+    ///
+    /// # Errors
+    /// If the samples per period cannot tell the harmonics apart.
+    pub(super) fn with_sets(
+        &self,
+        sets: Vec<HarmonicChoice>,
+    ) -> Result<Vec<JudgedSet<'_>>, TransformError> {
+        let judged = sets.into_par_iter().map(|choice| {
+            let peaks = self.peaks(&choice, false)?;
+            Ok(JudgedSet { choice, peaks })
+        });
+        judged.collect()
+    }
+
+    /// The tops of these wheels with their harmonics, and under the linear limits among `conditions`.
     ///
     /// # Errors
     /// If the samples per period cannot tell the harmonics apart.
     pub(super) fn judged_tops(
         &self,
         conditions: &[ContactCondition],
-        sets: &[HarmonicChoice],
+        sets: &[JudgedSet<'_>],
     ) -> Result<Vec<JudgedTop>, TransformError> {
-        let mut choices = Vec::new();
-        for &(order, _) in &self.forces {
-            for condition in spread(conditions) {
-                let own =
-                    |set: &&HarmonicChoice| set.engine_order == order && set.contact == condition;
-                let known = sets.iter().find(own).cloned();
-                choices.push(known.unwrap_or_else(|| choice_of((order, condition), &[1])));
-            }
-        }
-        let tops = choices.into_par_iter().map(|choice| {
-            let peaks = self.peaks(&choice, false)?.into_iter().enumerate();
-            let tops = peaks.filter_map(|(wheel, own)| self.top_of(own, wheel, &choice));
-            Ok(tops.collect())
+        let is_linear = |own: &&ContactCondition| own.normal_load_n().is_none();
+        let linear: Vec<ContactCondition> = conditions.iter().filter(is_linear).copied().collect();
+        let orders = self.forces.iter().map(|(order, _)| *order);
+        let limits = orders.flat_map(|order| linear.iter().map(move |&limit| (order, limit)));
+        let limits = self.with_sets(limits.map(|case| choice_of(case, &[1])).collect())?;
+        let peaks = limits.iter().chain(sets).flat_map(|set| {
+            let peaks = set.peaks.iter().enumerate();
+            peaks.map(move |(wheel, own)| (wheel, own, &set.choice))
         });
-        let tops: Vec<Vec<JudgedTop>> = tops.collect::<Result<_, TransformError>>()?;
-        Ok(tops.into_iter().flatten().collect())
+        let peaks: Vec<(usize, &JudgedPeak<'_>, &HarmonicChoice)> = peaks.collect();
+        let tops = peaks.into_par_iter();
+        let tops = tops.filter_map(|(wheel, own, choice)| self.top_of(own, wheel, choice));
+        Ok(tops.collect())
     }
 
     /// The top at a peak by the points that it is climbed by on other engines; none where there is none.
     fn top_of(
         &self,
-        (row, points, peak): JudgedPeak<'_>,
+        (row, points, peak): &JudgedPeak<'_>,
         wheel: usize,
         choice: &HarmonicChoice,
     ) -> Option<JudgedTop> {
-        let point = peak.point.filter(|_| peak.status == Status::Ok)?;
-        let envelope = receptance_plan(&row, self.window()).ok()?.envelope;
+        let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok)?;
+        let envelope = receptance_plan(row, self.window()).ok()?.envelope;
         let step_hz = NEIGHBOURS * envelope.linear_half_bandwidth_hz;
         Some(JudgedTop {
-            of: (wheel, choice.engine_order, choice.contact),
-            amplitude_m: receptance_top_m(&row, &points, &point, step_hz, COMPARED_TOLERANCE)?,
-            points,
-            point,
+            wheel,
+            of: (choice.engine_order, choice.contact),
+            amplitude_m: receptance_top_m(row, points, point, step_hz, COMPARED_TOLERANCE)?,
+            points: points.clone(),
+            point: point.clone(),
             step_hz,
         })
     }
 
-    /// Largest relative change of `tops` of other wheels to those of these, the same ones on another engine, each climbed from where it
-    /// was found; none where no top is found on both.
-    pub(super) fn change(&self, tops: &[JudgedTop]) -> Option<f64> {
+    /// Relative changes of `tops` of other wheels to those of these, the same ones on another engine, each climbed from where it was
+    /// found; of those that are found on both.
+    pub(super) fn changes(&self, tops: &[JudgedTop]) -> Vec<(TopOf, f64)> {
         let change = |own: &JudgedTop| {
-            let (wheel, engine_order, condition) = own.of;
-            let row = self.row(wheel, engine_order, condition)?;
+            let (engine_order, condition) = own.of;
+            let row = self.row(own.wheel, engine_order, condition)?;
             let top_m = receptance_top_m(
                 &row,
                 &own.points,
@@ -161,10 +183,9 @@ impl<'a> Judges<'a> {
                 own.step_hz,
                 COMPARED_TOLERANCE,
             );
-            Some((top_m? / own.amplitude_m - 1.0).abs())
+            Some((own.of, (top_m? / own.amplitude_m - 1.0).abs()))
         };
-        let changes: Vec<Option<f64>> = tops.par_iter().map(change).collect();
-        changes.into_iter().flatten().reduce(f64::max)
+        tops.par_iter().filter_map(change).collect()
     }
 
     fn row(
@@ -230,45 +251,36 @@ impl<'a> Judges<'a> {
         Ok(peaks)
     }
 
-    /// The set with what it leaves out of these wheels, none where that is not known of one of them; and whether all have a peak.
+    /// The set with what it leaves out of these wheels, none where that is not known of one of them.
     fn judged(
         &self,
         choice: HarmonicChoice,
         has_reserve: bool,
-    ) -> Result<(HarmonicChoice, bool), TransformError> {
+    ) -> Result<JudgedSet<'_>, TransformError> {
         let peaks = self.peaks(&choice, has_reserve)?;
-        let found = peaks.iter().all(|(.., peak)| peak.status == Status::Ok);
-        let errors = peaks.into_iter().map(|(row, points, peak)| {
+        let errors = peaks.iter().map(|(row, points, peak)| {
             let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok)?;
-            receptance_errors(&row, &points, point, PEAK_TOLERANCE)
+            receptance_errors(row, points, point, PEAK_TOLERANCE)
         });
         let errors: Option<Vec<ErrorEstimate>> = errors.collect();
         let largest = |of: fn(&ErrorEstimate) -> f64| {
             let errors = errors.as_ref()?.iter();
             Some(errors.map(of).fold(0.0, f64::max))
         };
-        let judged = HarmonicChoice {
+        let choice = HarmonicChoice {
             remainder: largest(|own| own.harmonics.abs() + own.unsettled),
             sampling: largest(|own| own.sampling.abs()),
             ..choice
         };
-        Ok((judged, found))
+        Ok(JudgedSet { choice, peaks })
     }
 }
 
-/// The linear limits, and of the loads the lowest, one in the middle and the highest.
-fn spread(conditions: &[ContactCondition]) -> Vec<ContactCondition> {
-    let is_linear = |own: &&ContactCondition| own.normal_load_n().is_none();
-    let mut spread: Vec<ContactCondition> = conditions.iter().filter(is_linear).copied().collect();
-    let loads = conditions.iter().filter(|own| !is_linear(own));
-    let loads: Vec<ContactCondition> = loads.copied().collect();
-    let places = [0, loads.len() / 2, loads.len().saturating_sub(1)];
-    for place in places {
-        if let Some(own) = loads.get(place).filter(|own| !spread.contains(own)) {
-            spread.push(*own);
-        }
+impl JudgedSet<'_> {
+    /// Whether a wheel has no peak with the set.
+    fn lacks_a_peak(&self) -> bool {
+        { self.peaks.iter() }.any(|(.., peak)| peak.status != Status::Ok)
     }
-    spread
 }
 
 /// A set not yet judged.
@@ -282,5 +294,6 @@ pub(super) fn choice_of(
         harmonics: harmonics.to_vec(),
         remainder: None,
         sampling: None,
+        reduced_model: None,
     }
 }

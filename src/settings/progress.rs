@@ -26,8 +26,8 @@ pub trait Progress: Sync {
     fn stage(&self, _stage: Stage) {}
     /// Rows are about to be solved: `planned` in all, of which `done` are stored already.
     fn begin_rows(&self, _planned: u64, _done: u64) {}
-    /// Of the rows that are about to be solved, `rows` are stored, but for other settings than the study now has.
-    fn solves_anew(&self, _rows: u64) {}
+    /// Of the rows that are about to be solved, `rows` are stored, but for other settings than the study now has: `why`.
+    fn solves_anew(&self, _rows: u64, _why: &str) {}
     /// A row has been solved.
     fn row(&self, _status: Status) {}
     /// Mean processor time of a surrogate and of a row of an estimate, as measured so far, s.

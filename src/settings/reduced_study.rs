@@ -41,6 +41,8 @@ pub(super) struct Stored {
     pub(super) fixed_interface: FixedInterface,
     harmonics: Vec<HarmonicChoice>,
     beyond: Option<StoredBeyond>,
+    /// What the model leaves out of peaks under linear limits, on tuned receptances; none where that is not known.
+    pub(super) of_limits: Option<f64>,
     /// What rows are solved on in the place of a basis, where the study asks for it.
     engine: Option<EngineModel>,
     /// The engine itself, where it was made a moment ago.
@@ -279,6 +281,7 @@ fn reduced(
         fixed_interface,
         harmonics: harmonics.concat(),
         beyond,
+        of_limits: None,
         engine: None,
         receptances: None,
     })
@@ -316,13 +319,17 @@ fn reduced_on_receptances(study: &Study, sector: &SectorModel) -> Result<Stored,
         fixed_interface,
         evidence,
         harmonics,
+        of_limits,
     } = refined(study, sector, &excitations, &patterns, |judges| {
         judges.harmonics(&study.contacts, &set, reserve.as_deref())
     })?;
     let harmonics = harmonics.concat();
     let of_reserve = |set: &Vec<u32>| {
         let choices = harmonics.iter();
-        let case = |own: &HarmonicChoice| choice_of((own.engine_order, own.contact), set);
+        let case = |own: &HarmonicChoice| HarmonicChoice {
+            reduced_model: own.reduced_model,
+            ..choice_of((own.engine_order, own.contact), set)
+        };
         choices.map(case).collect()
     };
     let modes = study.mistuning.cantilever_mode_count;
@@ -348,6 +355,7 @@ fn reduced_on_receptances(study: &Study, sector: &SectorModel) -> Result<Stored,
         evidence,
         fixed_interface,
         harmonics,
+        of_limits,
         engine: Some(engine.own),
         receptances: Some(engine.receptances),
     })
@@ -369,7 +377,11 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
     // Either part is measured on its own: what the basis leaves out of the Craig-Bampton model, and
     // what that model leaves out of the sector.
     let truncation = stored.fixed_interface.error.unwrap_or(f64::INFINITY);
-    let error = basis_error(&stored.evidence) + truncation;
+    // On tuned receptances every choice has the error under its load.
+    let error = match stored.of_limits.filter(|_| truncation.is_finite()) {
+        Some(of_limits) => of_limits,
+        None => basis_error(&stored.evidence) + truncation,
+    };
     let inexact = study.solver.rows_beyond_tolerance == RowsBeyondTolerance::Resolve;
     let nonlinear = study
         .contacts
@@ -412,12 +424,14 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
 }
 
 /// Digest of all that the rows of `study` are made from besides their harmonics: the reduced models, what the receptances are
-/// made for, and the errors that the rows state.
+/// made for, and the errors that all rows state. On tuned receptances errors are those of a load or of the linear limits, and not here.
 pub(super) fn models_digest(study: &Study, stored: &Stored) -> String {
     let mut hasher = blake3::Hasher::new();
     let mut add_model = |model: &ReducedModel, error: f64| {
         hasher.update(&written(model));
-        hasher.update(&error.to_bits().to_le_bytes());
+        if !stored.is_on_receptances() {
+            hasher.update(&error.to_bits().to_le_bytes());
+        }
     };
     add_model(&stored.model, basis_error(&stored.evidence));
     if let Some(beyond) = &stored.beyond {
@@ -426,7 +440,7 @@ pub(super) fn models_digest(study: &Study, stored: &Stored) -> String {
     if let Some(engine) = &stored.engine {
         hasher.update(&written(engine));
         let options = engine_options(study, &excitations(study), &engine.model);
-        hasher.update(format!("{options:?} {:?}", stored.fixed_interface.error).as_bytes());
+        hasher.update(format!("{options:?}").as_bytes());
     }
     hasher.finalize().to_hex().to_string()
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::basis_choice::{BasisError, BasisEvidence};
 use super::fixed_interface::{FixedInterface, ModesTried, expected_deviation, reduction_with};
-use super::harmonics_on_receptances::{JudgedTop, Judges};
+use super::harmonics_on_receptances::{JudgedSet, JudgedTop, Judges, TopOf};
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::{ModelError, SectorModel, StiffnessKind};
@@ -27,6 +27,9 @@ const WHEELS: u32 = 4;
 const SEED: u64 = 0x0062_6c69_736b;
 /// Factor on the number of shapes beyond which none are added.
 const MOST_SHAPES: usize = 16;
+/// Largest change of a judged peak with friction by twice as many shapes, over `reduction.error`, which linear peaks keep. The shapes of
+/// the harmonics above the first make rows slow, and every row states what they leave out under its load.
+pub(crate) const SHAPES_WITH_FRICTION: f64 = 5.0;
 /// Relative tolerance of their peaks.
 const PEAK_TOLERANCE: f64 = 1e-5;
 /// Fixed-interface modes per nodal diameter that are tried first.
@@ -136,12 +139,14 @@ pub(super) struct Refined<'a> {
     pub(super) evidence: BasisEvidence,
     /// Harmonic choices under each force vector.
     pub(super) harmonics: Vec<Vec<HarmonicChoice>>,
+    /// What the model leaves out of peaks under linear limits; none where that is not known.
+    pub(super) of_limits: Option<f64>,
 }
 
 /// As many fixed-interface modes as the study says, or the first of 60, 120, ... that half as many change no judged peak by more than
 /// `reduction.error`; their error is that change, which is larger than what is left of it, or a half more than what twice as many as the
-/// study says change. Blade shapes the first that twice as many change no judged peak by more, with friction among them: the shapes
-/// of the harmonics above the first show there alone. Harmonics by `chosen`, once.
+/// study says change. Blade shapes the first that twice as many change no linear peak by more, and none with friction by more than
+/// [`SHAPES_WITH_FRICTION`] times that: the shapes of the harmonics above the first show there alone. Harmonics by `chosen`, once.
 ///
 /// # Errors
 /// The model cannot be reduced, or samples cannot tell harmonics apart.
@@ -150,7 +155,7 @@ pub(super) fn refined<'a>(
     sector: &'a SectorModel,
     excitations: &[Excitation],
     patterns: &[Pattern],
-    chosen: impl Fn(&Judges<'_>) -> Result<Vec<HarmonicChoice>, TransformError>,
+    chosen: impl for<'j> Fn(&'j Judges<'_>) -> Result<Vec<JudgedSet<'j>>, TransformError>,
 ) -> Result<Refined<'a>, PipelineError> {
     let fixed = study.reduction.craig_bampton_modes;
     let mut modes = fixed.map_or(FIRST_MODES, |own| 2 * own);
@@ -171,21 +176,22 @@ pub(super) fn refined<'a>(
         let shaped = Shaped::new(study, engine, excitations, shape_factor)?;
         shape_factor = shaped.factor;
         let own = shaped.engine.judges(excitations, patterns);
-        let sets = match harmonics.take() {
-            Some(sets) => sets,
-            None => own.iter().map(&chosen).collect::<Result<_, _>>()?,
-        };
-        let tops = if other.is_none() && shaped.finer.is_none() {
-            Vec::new()
-        } else {
-            judged_tops(&own, &study.contacts, &sets)?
+        let is_exact = other.is_none() && shaped.finer.is_none();
+        let (mut sets, tops) = match harmonics.take() {
+            None => sets_and_tops(&own, study, !is_exact, |own, _| chosen(own))?,
+            Some(sets) if is_exact => (sets, Vec::new()),
+            Some(sets) => sets_and_tops(&own, study, true, |own, case| {
+                own.with_sets(sets[case].clone())
+            })?,
         };
         drop(own);
+        let mut of_modes = Vec::new();
         let change = match &other {
             None => Some(0.0),
             Some(other) => {
                 let other = Made::new(study, other, excitations, shape_factor)?;
-                change_of(&tops, &other.judges(excitations, patterns))
+                of_modes = changes_of(&tops, &other.judges(excitations, patterns));
+                largest(&of_modes)
             }
         };
         tried.push(ModesTried {
@@ -198,17 +204,31 @@ pub(super) fn refined<'a>(
             modes *= 2;
             continue;
         }
-        let of_shapes = shaped.change(&tops, excitations, patterns);
-        let mut shaped = shaped.with_change(of_shapes);
+        let mut of_shapes = shaped.changes(&tops, excitations, patterns);
+        let mut shaped = shaped.with_change(of_friction(&of_shapes));
         while shaped.lacks_shapes(study) {
             shaped = shaped.with_twice_the_shapes(study, excitations)?;
             let own = shaped.engine.judges(excitations, patterns);
-            let tops = judged_tops(&own, &study.contacts, &sets)?;
+            let (_, tops) = sets_and_tops(&own, study, true, |own, case| {
+                own.with_sets(sets[case].clone())
+            })?;
             drop(own);
-            let of_shapes = shaped.change(&tops, excitations, patterns);
-            shaped = shaped.with_change(of_shapes);
+            of_shapes = shaped.changes(&tops, excitations, patterns);
+            shaped = shaped.with_change(of_friction(&of_shapes));
         }
         let margin = if fixed.is_some() { FIXED_MARGIN } else { 1.0 };
+        let errors = ModelErrors {
+            linear: shaped.linear.filter(|_| change.is_some()),
+            shapes: &of_shapes,
+            modes: &of_modes,
+            margin,
+        };
+        for (case, sets) in sets.iter_mut().enumerate() {
+            for set in sets {
+                set.reduced_model = errors.under(case, (set.engine_order, set.contact));
+            }
+        }
+        let of_limits = errors.of_limits();
         return Ok(Refined {
             fixed_interface: FixedInterface {
                 modes: taken.fixed_interface_modes(),
@@ -223,27 +243,89 @@ pub(super) fn refined<'a>(
                 tried: shaped.tried,
             },
             harmonics: sets,
+            of_limits,
         });
     }
 }
 
-/// The tops of the wheels that judge, under each force vector.
-fn judged_tops(
-    own: &[Judges<'_>],
-    conditions: &[ContactCondition],
-    sets: &[Vec<HarmonicChoice>],
-) -> Result<Vec<Vec<JudgedTop>>, TransformError> {
-    let judges = own.iter().zip(sets);
-    judges
-        .map(|(own, sets)| own.judged_tops(conditions, sets))
-        .collect()
+/// Sets of harmonics, and the tops of the wheels that judge with them, under each force vector.
+type SetsAndTops = (Vec<Vec<HarmonicChoice>>, Vec<Vec<JudgedTop>>);
+
+/// The sets of harmonics under each force vector, and the tops of the wheels that judge with them, where these are asked for.
+fn sets_and_tops<'j>(
+    own: &'j [Judges<'_>],
+    study: &Study,
+    with_tops: bool,
+    judged: impl Fn(&'j Judges<'_>, usize) -> Result<Vec<JudgedSet<'j>>, TransformError>,
+) -> Result<SetsAndTops, TransformError> {
+    let (mut sets, mut tops) = (Vec::new(), Vec::new());
+    for (case, own) in own.iter().enumerate() {
+        let judged = judged(own, case)?;
+        if with_tops {
+            tops.push(own.judged_tops(&study.contacts, &judged)?);
+        }
+        sets.push(judged.into_iter().map(|own| own.choice).collect());
+    }
+    Ok((sets, tops))
 }
 
-/// Largest relative change of `tops` to the tops of the same wheels on another engine; none where no top is found on both.
-fn change_of(tops: &[Vec<JudgedTop>], others: &[Judges<'_>]) -> Option<f64> {
-    let cases = tops.iter().zip(others);
-    let changes = cases.filter_map(|(tops, other)| other.change(tops));
-    changes.reduce(f64::max)
+/// A relative change of a top, by force vector, engine order and condition.
+type Change = ((usize, TopOf), f64);
+
+/// Relative changes of `tops` to the tops of the same wheels on another engine, of those that are found on both.
+fn changes_of(tops: &[Vec<JudgedTop>], others: &[Judges<'_>]) -> Vec<Change> {
+    let cases = tops.iter().zip(others).enumerate();
+    let changes = cases.flat_map(|(case, (tops, other))| {
+        let changes = other.changes(tops).into_iter();
+        changes.map(move |(of, change)| ((case, of), change))
+    });
+    changes.collect()
+}
+
+/// The largest of the changes with friction; none of none.
+fn of_friction(changes: &[Change]) -> Option<f64> {
+    let own = changes
+        .iter()
+        .filter(|(of, _)| of.1.1.normal_load_n().is_some());
+    own.map(|own| own.1).reduce(f64::max)
+}
+
+/// The largest of some changes; none of none.
+fn largest(changes: &[Change]) -> Option<f64> {
+    changes.iter().map(|own| own.1).reduce(f64::max)
+}
+
+/// What the reduced model leaves out, by its blade shapes and by its fixed-interface modes.
+struct ModelErrors<'a> {
+    /// Of linear peaks, by the shapes; none where that of the modes is not known.
+    linear: Option<f64>,
+    shapes: &'a [Change],
+    modes: &'a [Change],
+    /// On the changes by the modes.
+    margin: f64,
+}
+
+impl ModelErrors<'_> {
+    /// Under one engine order and condition, so that it does not depend on the other loads of a study; where no top is known there, the
+    /// largest of all.
+    fn under(&self, case: usize, of: TopOf) -> Option<f64> {
+        let here = |own: &Change| own.0 == (case, of);
+        self.of(here)
+    }
+
+    /// Under the linear limits.
+    fn of_limits(&self) -> Option<f64> {
+        self.of(|(of, _)| of.1.1.normal_load_n().is_none())
+    }
+
+    fn of(&self, is_meant: impl Fn(&Change) -> bool) -> Option<f64> {
+        let largest_of = |all: &[Change]| -> f64 {
+            let meant: Vec<Change> = all.iter().filter(|own| is_meant(own)).copied().collect();
+            largest(&meant).or(largest(all)).unwrap_or(0.0)
+        };
+        let shapes = self.linear?.max(largest_of(self.shapes));
+        Some(shapes + self.margin * largest_of(self.modes))
+    }
 }
 
 /// An engine with enough blade shapes for linear peaks, and one with twice as many.
@@ -252,6 +334,10 @@ struct Shaped {
     /// None where no shape is left out.
     finer: Option<Made>,
     factor: usize,
+    /// What twice as many change of linear peaks; none where one is not found.
+    linear: Option<f64>,
+    /// What twice as many change of judged peaks with friction, where that is known.
+    with_friction: f64,
     /// What was tried, the engine last.
     tried: Vec<BasisError>,
 }
@@ -297,6 +383,8 @@ impl Shaped {
             engine,
             finer,
             factor,
+            linear: error,
+            with_friction: 0.0,
             tried,
         })
     }
@@ -314,26 +402,30 @@ impl Shaped {
 
     /// Whether twice as many change a peak by more than `reduction.error`, and may be taken.
     fn lacks_shapes(&self, study: &Study) -> bool {
-        let error = self.tried.last().and_then(|taken| taken.error);
-        let enough = error.is_some_and(|error| error <= study.reduction.error);
+        let wanted = study.reduction.error;
+        let enough = self.linear.is_some_and(|error| error <= wanted)
+            && self.with_friction <= SHAPES_WITH_FRICTION * wanted;
         !enough && self.finer.is_some() && self.factor < MOST_SHAPES
     }
 
     /// What twice as many change of `tops`, which are those of this engine.
-    fn change(
+    fn changes(
         &self,
         tops: &[Vec<JudgedTop>],
         excitations: &[Excitation],
         patterns: &[Pattern],
-    ) -> Option<f64> {
-        let finer = self.finer.as_ref()?.judges(excitations, patterns);
-        change_of(tops, &finer)
+    ) -> Vec<Change> {
+        let finer = self.finer.as_ref();
+        finer.map_or_else(Vec::new, |finer| {
+            changes_of(tops, &finer.judges(excitations, patterns))
+        })
     }
 
-    /// These shapes with a stated error of at least `change`, the change of the tops by twice as many shapes.
+    /// These shapes with `change`, that of the tops with friction by twice as many shapes.
     fn with_change(mut self, change: Option<f64>) -> Self {
+        self.with_friction = change.unwrap_or(0.0);
         if let Some(taken) = self.tried.last_mut() {
-            taken.error = taken.error.map(|own| own.max(change.unwrap_or(0.0)));
+            taken.error = taken.error.map(|own| own.max(self.with_friction));
         }
         self
     }

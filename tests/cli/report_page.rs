@@ -89,7 +89,7 @@ fn numbers_in(text: &str) -> Vec<f64> {
 #[test]
 fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
     let (_place, page, report) = reported(&study(), 0);
-    let [load, percentile, error] = &big_numbers(&page)[..] else {
+    let [load, percentile, _] = &big_numbers(&page)[..] else {
         panic!("three numbers: {page}");
     };
     let group = &report["groups"][0];
@@ -161,6 +161,27 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
         let bound = um(&of_p95["percentile"][end]);
         assert!((shown / bound - 1.0).abs() < 1e-3, "{shown} {bound}");
     }
+    // The main figure stands beside them, and what the answers rest on is folded.
+    let section = between(&page, "id=\"answer-0\"", "</section>");
+    assert!(section.contains("<figure id=\"amplitude-0\">"));
+    assert!(section.contains("<details class=\"answer\"><summary>"));
+    assert!(!section.contains("<details open"));
+    assert_eq!(page.matches("<figure id=\"amplitude-0\">").count(), 1);
+}
+
+#[test]
+fn the_first_screen_says_which_of_the_two_errors_matters_more() {
+    let (_place, page, report) = reported(&study(), 0);
+    let [_, percentile, error] = &big_numbers(&page)[..] else {
+        panic!("three numbers: {page}");
+    };
+    let group = &report["groups"][0];
+    let lowest = group["choices"][1]["lowest"].as_u64().expect("a scenario") as usize;
+    let scenario = &report["summary"]["scenarios"][lowest];
+    let of_p95 = &group["errors"][lowest]["percentiles"][1];
+    let um = |value: &Value| 1e6 * value.as_f64().expect("an amplitude");
+    let value = um(&of_p95["percentile"]["value"]);
+    let bounds = ["lower", "upper"].map(|end| um(&of_p95["percentile"][end]));
     // The larger side of what the rows state.
     let (low, high) = (um(&of_p95["lowest"]), um(&of_p95["highest"]));
     let largest = 100.0 * (1.0 - low / value).max(high / value - 1.0);
@@ -206,12 +227,6 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
         "{ratio} {tuned}"
     );
     assert_eq!(error[0], "Numerical error of that P95");
-    // The main figure stands beside them, and what the answers rest on is folded.
-    let section = between(&page, "id=\"answer-0\"", "</section>");
-    assert!(section.contains("<figure id=\"amplitude-0\">"));
-    assert!(section.contains("<details class=\"answer\"><summary>"));
-    assert!(!section.contains("<details open"));
-    assert_eq!(page.matches("<figure id=\"amplitude-0\">").count(), 1);
 }
 
 #[test]

@@ -467,3 +467,38 @@ fn a_search_for_the_best_load_does_not_go_into_the_results_of_a_study() {
     }
     assert_eq!(files(), before);
 }
+
+#[test]
+fn a_load_that_is_added_keeps_the_rows_of_the_others() {
+    let place = Place::new();
+    let written = place.run(&["init", "--example", "quickstart", "--out", "ring.toml"]);
+    assert_eq!(written.code, 0, "{}", written.stderr);
+    let study = std::fs::read_to_string(place.path("ring.toml")).expect("a study");
+    let loads = "[\"slide\", 240, 320, 480, 800, 1600, 4000, \"stuck\"]";
+    assert!(study.contains("patterns = 440") && study.contains(loads));
+    let study = study.replace("patterns = 440", "patterns = 2");
+    place.write("ring.toml", &study.replace(loads, "[\"slide\", 480, 1600]"));
+    let first = place.run(&["run", "ring.toml", "--out", "ring"]);
+    assert_eq!(first.code, 0, "{}", first.stderr);
+    // Between the others and beyond them; what is stated of the model is measured under each load by itself.
+    for (loads, reused) in [
+        ("[\"slide\", 480, 800, 1600]", 6),
+        ("[\"slide\", 480, 800, 1600, 4000, \"stuck\"]", 8),
+    ] {
+        let own = study.replace(
+            "[\"slide\", 240, 320, 480, 800, 1600, 4000, \"stuck\"]",
+            loads,
+        );
+        place.write("ring.toml", &own);
+        let more = place.run(&["run", "ring.toml", "--out", "ring"]);
+        assert_eq!(more.code, 0, "{}", more.stderr);
+        assert!(!more.stderr.contains("solved anew"), "{}", more.stderr);
+        let said = format!("reused {reused};");
+        assert!(more.stderr.contains(&said), "{said}: {}", more.stderr);
+    }
+    // All of them at once are the same rows.
+    let at_once = place.run(&["run", "ring.toml", "--out", "at-once"]);
+    assert_eq!(at_once.code, 0, "{}", at_once.stderr);
+    let rows = |folder: &str| std::fs::read(place.path(&format!("{folder}/responses.parquet")));
+    assert!(rows("ring").expect("a table") == rows("at-once").expect("a table"));
+}

@@ -139,7 +139,8 @@ struct Listening {
 }
 
 impl Progress for Listening {
-    fn solves_anew(&self, rows: u64) {
+    fn solves_anew(&self, rows: u64, why: &str) {
+        assert!(!why.is_empty());
         self.anew.fetch_add(rows, Ordering::SeqCst);
         let late = self.began.load(Ordering::SeqCst);
         self.late.store(late, Ordering::SeqCst);

@@ -212,6 +212,7 @@ fn a_basis_less_accurate_than_asked_for_is_a_warning_and_an_accurate_one_is_not(
             craig_bampton_reach: None,
             craig_bampton_error: None,
             wanted_error: 0.005,
+            wanted_peak_error: 0.005,
             is_replaced: false,
         };
         let context = SummaryContext {
@@ -240,6 +241,7 @@ fn a_short_reach_of_modes_is_a_warning() {
             craig_bampton_reach: Some(reach),
             craig_bampton_error: None,
             wanted_error: 0.001,
+            wanted_peak_error: 0.001,
             is_replaced: false,
         };
         basis.warnings()

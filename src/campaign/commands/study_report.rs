@@ -225,12 +225,20 @@ fn common_errors(columns: &ResultColumns, scenario: usize) -> CommonErrors {
             && own.contact.normal_load_n().is_some()
     };
     let harmonics = manifest.chosen["harmonics"].as_array();
-    let remainder = harmonics.and_then(|all| all.iter().find(of_load)?["remainder"].as_f64());
+    let choice = harmonics.and_then(|all| all.iter().find(of_load));
+    let of_limits = || {
+        let is_limit = own.contact.normal_load_n().is_none();
+        manifest.reduction["linear_limit_error"]
+            .as_f64()
+            .filter(|_| is_limit)
+    };
     // Where [accuracy] chose it, the tolerance is a level of the ladder, which is text.
     let chosen = manifest.chosen["accuracy"]["setting"]["peak_tolerance"].as_str();
     let chosen = chosen.and_then(|level| level.parse().ok());
     CommonErrors {
-        harmonics: remainder,
+        harmonics: choice.and_then(|choice| choice["remainder"].as_f64()),
+        reduced_model: { choice.and_then(|choice| choice["reduced_model"].as_f64()) }
+            .or_else(of_limits),
         peak: chosen.or(manifest.study["solver"]["peak_tolerance"].as_f64()),
     }
 }

@@ -313,7 +313,9 @@ impl Job<'_> {
         let held = self.held_rows(scenarios, ids.len() as u64);
         let anew = held.saturating_sub(reused);
         if anew > 0 {
-            self.progress.solves_anew(anew);
+            let why = { self.stored() }
+                .map_or_else(String::new, |own| why_anew(own, &tables.unfinished()));
+            self.progress.solves_anew(anew, &why);
         }
         self.progress.begin_rows(tables.planned(), reused);
         let rows = RowWork {
@@ -358,6 +360,26 @@ impl Job<'_> {
             rows_reused: tables.planned() - solved,
         };
         Ok(Some((outcome, manifest)))
+    }
+}
+
+/// Why rows that were stored with one manifest are not those of another.
+fn why_anew(before: &Manifest, now: &Manifest) -> String {
+    let modes = |own: &Manifest| own.reduction["craig_bampton_modes"].as_u64();
+    let vectors = |own: &Manifest| {
+        let tried = own.reduction["tuned_peak_errors"].as_array()?;
+        tried.last()?["vectors"].as_u64()
+    };
+    let changed =
+        |of: &dyn Fn(&Manifest) -> Option<u64>| of(before).zip(of(now)).filter(|(a, b)| a != b);
+    if let Some((before, now)) = changed(&modes) {
+        format!("the model of the study now has {now} fixed-interface modes, {before} before")
+    } else if let Some((before, now)) = changed(&vectors) {
+        format!(
+            "the model of the study now has {now} blade shapes or modes of its basis, {before} before"
+        )
+    } else {
+        "their loads now have other harmonics, another basis or another stated error".to_owned()
     }
 }
 

@@ -16,6 +16,7 @@ use crate::population::table::{
 use crate::report::{BasisSummary, NumericalError, RowTolerance, StudySummary, SummaryContext};
 use crate::response::forced_response::Harmonics;
 use crate::response::friction::ContactLaw;
+use crate::settings::SHAPES_WITH_FRICTION;
 use crate::study::PipelineError;
 
 /// The summary of what is stored of a study that is not finished.
@@ -189,12 +190,20 @@ fn basis_of(manifest: &Manifest) -> BasisSummary {
     let asked = &manifest.study["reduction"];
     let number = |key: &str| facts[key].as_f64();
     let truncation = number("craig_bampton_error");
+    let wanted = asked["error"].as_f64().unwrap_or(f64::INFINITY);
+    let on_receptances = facts["basis"] == TUNED_RECEPTANCES;
+    let of_peaks = if on_receptances {
+        SHAPES_WITH_FRICTION
+    } else {
+        1.0
+    };
     BasisSummary {
         name: facts["basis"].as_str().unwrap_or_default().to_owned(),
         tuned_peak_error: taken.and_then(|taken| taken["error"].as_f64()),
         craig_bampton_reach: number("craig_bampton_reach"),
         craig_bampton_error: truncation.filter(|_| asked["craig_bampton_modes"].is_u64()),
-        wanted_error: asked["error"].as_f64().unwrap_or(f64::INFINITY),
+        wanted_error: wanted,
+        wanted_peak_error: of_peaks * wanted,
         is_replaced: asked["basis"] == "stick_attachment" && facts["basis"] == TUNED_RECEPTANCES,
     }
 }

@@ -19,6 +19,8 @@ pub struct HarmonicChoice {
     /// The largest of [`crate::response::forced_response::ErrorEstimate::sampling`] there; none on a basis, whose rows are asked
     /// themselves.
     pub sampling: Option<f64>,
+    /// What the reduced model leaves out of the tops of the wheels that judge; none on a basis, whose error counts for all conditions.
+    pub reduced_model: Option<f64>,
 }
 
 /// Harmonics that intermittent contact excites first of all.

@@ -312,12 +312,21 @@ impl RowSolver {
         rows.top_beside(&coarse.on_basis, finer, pattern, scenario, frequency_hz)
     }
 
+    /// What the basis or the reduced model leaves out of the rows of a scenario.
+    #[must_use]
+    pub fn model_error(&self, scenario: &Scenario) -> f64 {
+        let points = &self.on_basis.points;
+        let choice = points.choice(scenario.engine_order, scenario.contact);
+        let own = choice.and_then(|choice| choice.reduced_model);
+        own.unwrap_or(self.basis_error)
+    }
+
     /// Errors that the rows of a scenario take over from it; a linear limit has no harmonics.
     fn scenario_error(&self, scenario: &Scenario) -> ScenarioError {
         let points = &self.on_basis.points;
         let choice = points.choice(scenario.engine_order, scenario.contact);
         ScenarioError {
-            basis: self.basis_error,
+            basis: self.model_error(scenario),
             // A remainder that could not be measured bounds nothing, but rows on tuned receptances are asked themselves.
             harmonics: match choice.map(|choice| choice.remainder) {
                 Some(None) if self.on_receptances.is_none() => f64::INFINITY,

@@ -1,9 +1,9 @@
 //! The motions at the contact of a mistuned wheel at one frequency: a preconditioned, accelerated iteration.
 //!
 //! A step is `-P r` with the inverse P of `I + A G'` for the mean tangent G' of the contact; Anderson's acceleration makes up for
-//! what the mean leaves out. What is approximate stands in P alone. Where no attempt of the [`LADDER`] by these steps ends with a
-//! solution, the next ones are Newton's method, and with few harmonics the last ones are Newton's method with every pair preconditioned by
-//! itself besides.
+//! what the mean leaves out. What is approximate stands in P alone. Where the first attempts of the [`LADDER`] by these steps end without
+//! a solution, Newton's method goes on from the best of them; the last ones are Newton's method too, and with few harmonics every pair is
+//! preconditioned by itself besides.
 
 use crate::linalg::gmres;
 use crate::response::harmonic_balance::{ContactShares, Status};
@@ -63,6 +63,15 @@ const BY_HARMONICS: NewtonPlan = NewtonPlan {
     least_factor: 1.0 / 128.0,
     decrease: 0.0,
 };
+/// From where the iteration has come to: few steps are left, which need not be solved closely.
+const FROM_THERE: NewtonPlan = NewtonPlan {
+    pairs: false,
+    step_error: 0.1,
+    products: 120,
+    products_in_all: 700,
+    least_factor: 1.0 / 128.0,
+    decrease: 0.0,
+};
 const BY_PAIRS: NewtonPlan = NewtonPlan {
     pairs: true,
     step_error: 1e-2,
@@ -79,6 +88,8 @@ enum Start {
     Known,
     /// The linear response.
     Linear,
+    /// The motions with the smallest residual of all attempts before.
+    Best,
 }
 
 /// One way to a solution.
@@ -88,9 +99,9 @@ enum Attempt {
 }
 
 /// What is tried, in this order, until an attempt ends with a solution. The tangent of a known start is near; that of the linear
-/// response says little, and is renewed. Harmonics above 1 near resonances that deviations split take the resonant shapes. Where pairs open,
+/// response says little, and is renewed. Where the iteration creeps, Newton's method ends what it began. Harmonics above 1 near resonances that deviations split take the resonant shapes. Where pairs open,
 /// their harmonics depend on each other, and pairs are preconditioned by themselves.
-const LADDER: [(Start, Attempt); 12] = [
+const LADDER: [(Start, Attempt); 13] = [
     (
         Start::Known,
         Attempt::Accelerated(plan(&[0], 100, FirstOfFundamental)),
@@ -107,6 +118,7 @@ const LADDER: [(Start, Attempt); 12] = [
         Start::Known,
         Attempt::Accelerated(plan(&[0, 10, 25], 160, FirstOfFundamental)),
     ),
+    (Start::Best, Attempt::Newton(FROM_THERE)),
     (
         Start::Known,
         Attempt::Accelerated(plan(&[0, 3], 80, Resonant)),
@@ -188,17 +200,19 @@ impl ContactEquation<'_> {
     pub(super) fn solve(&mut self, starts: &[Vec<f64>], tolerance: f64) -> Outcome {
         let linear = self.linear_start();
         let known = self.best_of(starts);
-        let begin = |start: &Start| match start {
-            Start::Known => known.as_ref(),
-            Start::Linear => Some(&linear),
-        };
         let attempts = LADDER.iter();
         let few = self.harmonics.len() <= MOST_HARMONICS;
         let attempts =
             attempts.filter(|(_, own)| few || !matches!(own, Attempt::Newton(plan) if plan.pairs));
-        let attempts = attempts.filter_map(|(start, attempt)| Some((begin(start)?, attempt)));
+        let attempts = attempts.filter(|(start, _)| known.is_some() || *start != Start::Known);
+        let mut best = (f64::INFINITY, linear.clone());
         let mut total = Outcome::none();
         for (rung, (start, attempt)) in attempts.enumerate() {
+            let start = match start {
+                Start::Known => known.as_ref().unwrap_or(&linear),
+                Start::Linear => &linear,
+                Start::Best => &best.1,
+            };
             self.buffers.motions.clone_from(start);
             let outcome = match attempt {
                 Attempt::Accelerated(plan) => self.accelerate(plan, tolerance),
@@ -207,6 +221,9 @@ impl ContactEquation<'_> {
             total = total.followed_by(outcome, rung);
             if total.status == Status::Ok {
                 break;
+            }
+            if outcome.residual < best.0 {
+                best = (outcome.residual, self.buffers.motions.clone());
             }
         }
         total

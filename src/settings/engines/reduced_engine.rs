@@ -17,6 +17,7 @@ use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
 use crate::response::forced_response::{ResponseTrace, SearchPlan};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
+use crate::settings::SHAPES_WITH_FRICTION;
 use crate::settings::basis_choice::BasisEvidence;
 use crate::settings::fixed_interface::FixedInterface;
 use crate::settings::reduced_study::{models_digest, solver_of, stored_digest, stored_for};
@@ -40,7 +41,9 @@ struct ReducedEngine {
     /// Whether the study names a basis whose place the receptances take.
     is_replaced: bool,
     digest: String,
-    /// Digest of the models that rows are solved on, with their errors.
+    /// What the model leaves out of peaks under linear limits, on tuned receptances.
+    linear_limit_error: Option<f64>,
+    /// Digest of the models that rows are solved on; on a basis with its error.
     models: String,
     sector_dofs: usize,
     observed: Vec<String>,
@@ -61,6 +64,7 @@ impl EngineSource for ReducedEngineSource {
         Ok(Box::new(ReducedEngine {
             evidence: stored.evidence.clone(),
             fixed_interface: stored.fixed_interface.clone(),
+            linear_limit_error: stored.of_limits,
             models: models_digest(study, &stored),
             load_cases: study
                 .excited_orders()
@@ -107,6 +111,11 @@ impl Engine for ReducedEngine {
             craig_bampton_reach,
             craig_bampton_error: self.fixed_interface.error.filter(|_| self.fixed_modes),
             wanted_error: self.wanted_error,
+            wanted_peak_error: if self.linear_limit_error.is_some() {
+                SHAPES_WITH_FRICTION * self.wanted_error
+            } else {
+                self.wanted_error
+            },
             is_replaced: self.is_replaced,
         };
         ModelReport {
@@ -152,6 +161,7 @@ impl Engine for ReducedEngine {
             "craig_bampton_error": self.fixed_interface.error,
             "craig_bampton_modes_tried": self.fixed_interface.tried,
             "craig_bampton_reach": self.evidence.craig_bampton_reach,
+            "linear_limit_error": self.linear_limit_error,
         })
     }
 
@@ -196,7 +206,13 @@ impl Engine for ReducedEngine {
                 .collect()
         };
         let fallback = own.fallback().map(of);
-        format!("{} {:?} {fallback:?}", self.models, of(own.rows()))
+        let is_limit = scenario.contact.normal_load_n().is_none();
+        let of_limit = is_limit.then(|| own.rows().model_error(scenario));
+        format!(
+            "{} {:?} {fallback:?} {of_limit:?}",
+            self.models,
+            of(own.rows())
+        )
     }
 
     fn tuned(&self, scenario: &Scenario) -> TunedReference {

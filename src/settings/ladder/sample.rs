@@ -246,6 +246,7 @@ mod tests {
     fn left_out(name: Option<&str>, of_loads: &[(f64, Option<f64>)]) -> Remainders {
         let choice = |&(normal_load_n, remainder): &(f64, Option<f64>)| HarmonicChoice {
             sampling: None,
+            reduced_model: None,
             engine_order: 1,
             contact: ContactCondition::Full { normal_load_n },
             harmonics: vec![1],

@@ -38,7 +38,10 @@ pub fn keys_below(name: &str) -> Vec<KeySpec> {
 pub fn keys_about(words: &str) -> Vec<KeySpec> {
     keys()
         .into_iter()
-        .filter(|key| mentions(&[&key.key, key.meaning], words))
+        .filter(|key| {
+            mentions(&[&key.key, key.meaning], words)
+                || key.accepted().contains(&format!("\"{words}\""))
+        })
         .collect()
 }
 
