@@ -228,19 +228,19 @@ impl Writer<'_> {
         let verdict = self.group.smallest_worst_peak().map_or_else(
             || "Not known: a wheel has no peak under every load.".to_owned(),
             |(worst, highest)| {
-                let here =
-                    { self.group.measured.iter() }.filter(|own| own.scenario == worst.scenario);
-                let lowest =
-                    { here.filter_map(|own| own.peak_amplitude_m) }.fold(highest, f64::min);
-                let (load, highest) = (self.load_of(worst.scenario), self.units.length(highest));
                 if self.report.summary.is_of_one_wheel() {
-                    format!("{highest} at {load}, its lowest.")
-                } else {
-                    format!(
-                        "{} to {highest} at {load}, where the worst is lowest.",
-                        self.units.number(lowest)
-                    )
+                    let load = self.load_of(worst.scenario);
+                    return format!("{} at {load}, its lowest.", self.units.length(highest));
                 }
+                let open = self.group.loads_left_open();
+                let ranges = std::iter::once((worst.scenario, highest)).chain(open.iter().copied());
+                let ranges: Vec<String> = ranges.map(|own| self.range_of_wheels(own)).collect();
+                let which = if open.is_empty() {
+                    "where the worst is lowest"
+                } else {
+                    "which load is better is open"
+                };
+                format!("{}: {which}.", ranges.join(", "))
             },
         );
         (!self.group.measured.is_empty()).then(|| Answer {
@@ -248,6 +248,14 @@ impl Writer<'_> {
             verdict,
             reasons: loads.map(of_load).collect(),
         })
+    }
+
+    /// From the lowest to the highest peak of the measured wheels under a scenario.
+    fn range_of_wheels(&self, (scenario, highest): (usize, f64)) -> String {
+        let here = { self.group.measured.iter() }.filter(|own| own.scenario == scenario);
+        let lowest = { here.filter_map(|own| own.peak_amplitude_m) }.fold(highest, f64::min);
+        let (lowest, highest) = (self.units.number(lowest), self.units.length(highest));
+        format!("{lowest} to {highest} at {}", self.load_of(scenario))
     }
 
     /// Which other loads could be the best, and how low the percentile of the best can be.

@@ -144,6 +144,25 @@ impl GroupReport {
         self.worst_peaks().min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
+    /// The other scenarios, with their worst peaks, that could have the smallest one by what the rows state, each wrong by all of it.
+    pub(super) fn loads_left_open(&self) -> Vec<(usize, f64)> {
+        let Some((of_wheel, peak)) = self.smallest_worst_peak() else {
+            return Vec::new();
+        };
+        let lowest = of_wheel.scenario;
+        let highest = { self.largest_stated_error(lowest) }.map(|error| peak * (1.0 + error));
+        let others = self.worst_peaks().map(|(own, peak)| (own.scenario, peak));
+        others
+            .filter(|&(own, peak)| {
+                let bound = { self.largest_stated_error(own) }.map(|error| peak * (1.0 - error));
+                let could = bound
+                    .zip(highest)
+                    .is_none_or(|(bound, highest)| bound < highest);
+                own != lowest && could
+            })
+            .collect()
+    }
+
     /// The largest error that a row of the scenario states.
     pub(super) fn largest_stated_error(&self, scenario: usize) -> Option<f64> {
         let errors = { self.errors.iter() }.find(|errors| errors.scenario == scenario)?;

@@ -273,7 +273,7 @@ impl Warning {
                 tolerance,
                 ..
             } => format!(
-                "{rows} of {planned} solutions less accurate than asked{} at {}",
+                "{rows} of {planned} solutions change by more than the tolerance when refined{} at {}",
                 tolerance.in_brackets(),
                 named(scenarios)
             ),

@@ -134,7 +134,8 @@ pub(super) fn by_load(
     frame.draw(&mut svg);
     x.ticks(&mut svg, &frame, &loads);
     if let Some((scenario, words)) = &lowest {
-        point_at(&mut svg, &frame, &x, &loads, (*scenario, words), pointed);
+        let could = could_be_lowest(group, pointed);
+        point_at(&mut svg, &frame, &x, &loads, (*scenario, words), &could);
     }
     curves(&mut svg, &frame, &x, &drawn);
     points(&mut svg, &frame, &x, &drawn);
@@ -142,7 +143,7 @@ pub(super) fn by_load(
     if let Some((_, words)) = &lowest {
         entries.push(LegendEntry::Point("lowest", Mark::Pointer, words));
     }
-    if pointed.is_some_and(|choice| loads.iter().any(|load| could_be_as_low(choice, load))) {
+    if lowest.is_some() && !could_be_lowest(group, pointed).is_empty() {
         entries.push(LegendEntry::Point("could", Mark::Pointer, "may be as low"));
     }
     legend(&mut svg, &entries);
@@ -237,6 +238,22 @@ fn lowest_of(group: &GroupReport, choice: Option<&LoadChoice>) -> Option<(usize,
     of_choice.or_else(of_wheels)
 }
 
+/// The other scenarios that could be the lowest: by the comparison of a choice, or by the errors of a few measured wheels.
+fn could_be_lowest(group: &GroupReport, choice: Option<&LoadChoice>) -> Vec<usize> {
+    let Some(choice) = choice else {
+        return group
+            .loads_left_open()
+            .into_iter()
+            .map(|own| own.0)
+            .collect();
+    };
+    let compared = choice.best.iter().flat_map(|best| &best.loads);
+    let could = compared
+        .filter(|own| own.could_be_best)
+        .map(|own| own.scenario.scenario);
+    could.filter(|own| choice.lowest != Some(*own)).collect()
+}
+
 /// Whether a load that has not the lowest percentile of the sample could be as low.
 fn could_be_as_low(choice: &LoadChoice, load: &ScenarioSummary) -> bool {
     let compared = choice.best.iter().flat_map(|best| &best.loads);
@@ -252,7 +269,7 @@ fn point_at(
     x: &LoadAxis,
     loads: &[&ScenarioSummary],
     (lowest, words): (usize, &str),
-    choice: Option<&LoadChoice>,
+    could: &[usize],
 ) {
     let (bottom, top) = frame.y.ends;
     for load in loads {
@@ -262,9 +279,8 @@ fn point_at(
             svg.line("aim", (at, top), (at, bottom));
             let words = format!("{words}: {name}");
             Mark::Pointer.draw(svg, "lowest", (at, top - 7.0), &words);
-        } else if let Some(choice) = choice.filter(|choice| could_be_as_low(choice, load)) {
-            let percent = percent_words(choice.percent);
-            let words = format!("P{percent} may be as low: {name}");
+        } else if could.contains(&load.scenario) {
+            let words = format!("may be as low: {name}");
             Mark::Pointer.draw(svg, "could", (at, top - 7.0), &words);
         }
     }
@@ -413,7 +429,9 @@ fn caption(
             "Percentiles over {patterns} patterns with distribution-free 95 % bounds, side by side at each load; numerical error is not drawn."
         )
     } else if measured {
-        "Each wheel of mistuning.file at each load; too few for a percentile.".to_owned()
+        "Each wheel of mistuning.file at each load; too few for a percentile. Pointer above: the smallest worst peak as computed; \
+         numerical error is not drawn."
+            .to_owned()
     } else {
         "No percentile has a value; the tuned wheel is drawn alone.".to_owned()
     };

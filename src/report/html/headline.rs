@@ -45,7 +45,10 @@ pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumb
     [
         number_of_load(report, group, choice, scenario),
         BigNumber {
-            label: format!("P{percent} of the peak amplitude"),
+            label: format!(
+                "P{percent} of the peak amplitude at {}",
+                short_load(scenario)
+            ),
             value: error
                 .and_then(|own| own.percentile.value)
                 .map_or_else(|| "not known".to_owned(), |value| units.length(value)),
@@ -70,7 +73,9 @@ fn number_of_load(
     let load = short_load(scenario);
     let (label, value, told) = if choice.is_of_a_design() {
         let label = format!("Normal load per sector with the lowest P{percent}");
-        (label, load, None)
+        let hidden = hidden_by_error(report, group);
+        let loads: Vec<String> = std::iter::once(load).chain(hidden).collect();
+        (label, loads.join(" or "), None)
     } else {
         let told = format!("lowest P{percent}: at {load}");
         let value = "No design load yet".to_owned();
@@ -84,7 +89,7 @@ fn number_of_load(
         more: other_settings(report),
         is_open: !choice.is_of_a_design()
             || at_the_end(report, group).is_some()
-            || hidden_by_error(report, group).is_some(),
+            || !hidden_by_error(report, group).is_empty(),
     }
 }
 
@@ -113,9 +118,11 @@ pub(super) fn beside(
     higher: Option<&ScenarioSummary>,
 ) -> Option<String> {
     match (lower.map(short_load), higher.map(short_load)) {
-        (Some(lower), Some(higher)) => Some(format!("next loads studied: {lower} and {higher}")),
-        (Some(next), None) => Some(format!("next load studied: {next}, none higher")),
-        (None, Some(next)) => Some(format!("next load studied: {next}, none lower")),
+        (Some(lower), Some(higher)) => {
+            Some(format!("neighbouring loads studied: {lower} and {higher}"))
+        }
+        (Some(next), None) => Some(format!("neighbouring load studied: {next}, none higher")),
+        (None, Some(next)) => Some(format!("neighbouring load studied: {next}, none lower")),
         (None, None) => None,
     }
 }
@@ -137,7 +144,7 @@ fn other_settings(report: &StudyReport) -> Option<(String, String)> {
 fn all_percentiles(report: &StudyReport, group: &GroupReport) -> (String, String) {
     let same = |other: &GroupReport| other.scenarios == group.scenarios;
     let place = report.groups.iter().position(same).unwrap_or(0);
-    let words = "all percentiles".to_owned();
+    let words = "see all percentiles".to_owned();
     (format!("numbers-{place}"), words)
 }
 
@@ -174,7 +181,15 @@ fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
 }
 
 /// Which loads, that by the patterns alone are higher, numerical error could make the lowest.
-pub(super) fn hidden_by_error(report: &StudyReport, group: &GroupReport) -> Option<String> {
+pub(super) fn hidden_by_error(report: &StudyReport, group: &GroupReport) -> Vec<String> {
+    let hidden = hidden_scenarios(group).unwrap_or_default();
+    let scenarios = &report.summary.scenarios;
+    { hidden.into_iter() }
+        .map(|own| short_load(&scenarios[own]))
+        .collect()
+}
+
+fn hidden_scenarios(group: &GroupReport) -> Option<Vec<usize>> {
     let (choice, lowest) = group.known_choice()?;
     let best = choice.best.as_ref()?;
     let is_higher = |own: &usize| {
@@ -182,17 +197,8 @@ pub(super) fn hidden_by_error(report: &StudyReport, group: &GroupReport) -> Opti
         loads.any(|load| load.scenario.scenario == *own && !load.could_be_best)
     };
     let rivals = group.numerical_rivals(lowest, choice.percent)?;
-    let hidden: Vec<String> = { rivals.could_be_lower.into_iter() }
-        .filter(is_higher)
-        .map(|own| short_load(&report.summary.scenarios[own]))
-        .collect();
-    let percent = percent_words(choice.percent);
-    (!hidden.is_empty()).then(|| {
-        format!(
-            "numerical error: could hide a lower P{percent} at {}",
-            hidden.join(", ")
-        )
-    })
+    let hidden = rivals.could_be_lower.into_iter().filter(is_higher);
+    Some(hidden.collect())
 }
 
 fn notes_of_load(
@@ -226,7 +232,7 @@ fn notes_of_load(
     if !others.is_empty() {
         let others = others.join(", ");
         notes.push(format!(
-            "statistics: may be as good: {others} (95 % confidence)"
+            "statistics: {others} may be as good (95 % confidence)"
         ));
     } else if choice.is_of_a_design() {
         notes.push(format!(
@@ -255,13 +261,15 @@ fn by_numerical_error(
     choice: &LoadChoice,
     lowest: usize,
 ) -> String {
-    if let Some(hidden) = hidden_by_error(report, group) {
-        return hidden;
+    let hidden = hidden_by_error(report, group);
+    if !hidden.is_empty() {
+        let (percent, loads) = (percent_words(choice.percent), hidden.join(", "));
+        return format!("numerical error leaves it open: {loads} may have a lower P{percent}");
     }
     match group.numerical_rivals(lowest, choice.percent) {
-        Some(rivals) if rivals.unknown.is_empty() => "numerical error: changes nothing of that",
-        Some(_) => "numerical error: changes nothing of that where loads have a value",
-        None => "numerical error: not bounded, so that it may change that",
+        Some(rivals) if rivals.unknown.is_empty() => "numerical error does not change this",
+        Some(_) => "numerical error does not change this where loads have a value",
+        None => "numerical error has no bound and may change this",
     }
     .to_owned()
 }
@@ -375,7 +383,7 @@ fn number_of_error(
             let is_seen = change.abs() > 0.25 * largest && change.abs() > LEAST_CORRECTION;
             is_seen.then(|| {
                 let (corrected, change) = (units.length(corrected), signed_share(change));
-                format!("corrected by its own errors: {corrected} ({change})")
+                format!("each solution corrected by its own errors: {corrected} ({change})")
             })
         }),
     );

@@ -1,7 +1,6 @@
 //! Whether anything is wrong with a study: the worst consequence, and the warnings in a few words.
 
 use super::headline::hidden_by_error;
-use super::measured_wheels::loads_left_open;
 use crate::report::study_report::{at_the_end, short_load};
 use crate::report::words::{scenarios_in_words, told_apart};
 use crate::report::{GroupReport, StudyReport, Warning};
@@ -108,11 +107,16 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
         );
         verdict = Some("The interval is wider than wanted.".to_owned());
     }
-    if let Some(hidden) = first.and_then(|group| hidden_by_error(report, group)) {
-        findings.insert(0, hidden);
+    let hidden = first.map_or_else(Vec::new, |group| hidden_by_error(report, group));
+    if !hidden.is_empty() {
+        let loads = hidden.join(", ");
+        findings.insert(
+            0,
+            format!("numerical error leaves it open whether {loads} is better"),
+        );
         verdict = Some("Numerical error could hide a better load.".to_owned());
     }
-    let open = first.map_or_else(Vec::new, |group| loads_left_open(report, group));
+    let open = first.map_or_else(Vec::new, GroupReport::loads_left_open);
     if let Some(end) = first.and_then(|group| at_the_end(report, group)) {
         findings.insert(0, end.headline);
         verdict = Some(sentence(&end.consequence));

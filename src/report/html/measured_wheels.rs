@@ -14,21 +14,16 @@ pub(super) fn of_measured_wheels(
     let (of_wheel, peak) = group.smallest_worst_peak()?;
     let lowest = of_wheel.scenario;
     let load = short_load(&summary.scenarios[lowest]);
-    let hidden = loads_left_open(report, group);
-    let between = neighbours(report, group, &summary.scenarios[lowest]);
-    let beyond = match between {
-        [None, Some(_)] => Some("below"),
-        [Some(_), None] => Some("above"),
-        _ => None,
-    };
-    let [lower, higher] = between;
-    let mut of_load = vec![beside(lower, higher).unwrap_or("the only load studied".to_owned())];
-    of_load.extend(beyond.map(|side| format!("the best load may be {side} {load}")));
+    let scenarios = &summary.scenarios;
+    let open = group.loads_left_open();
+    let mut of_load = Vec::new();
+    let [lower, higher] = neighbours(report, group, &scenarios[lowest]);
+    of_load.push(beside(lower, higher).unwrap_or("the only load studied".to_owned()));
     let units = LengthUnit::of_summary(summary);
-    if !hidden.is_empty() {
-        let peaks = hidden
-            .iter()
-            .map(|(load, peak)| format!("{} at {load}", units.length(*peak)));
+    if !open.is_empty() {
+        let peaks = { open.iter() }.map(|&(own, peak)| {
+            format!("{} at {}", units.length(peak), short_load(&scenarios[own]))
+        });
         let peaks: Vec<String> = peaks.collect();
         of_load.push(format!(
             "numerical error leaves it open: {} at {load}, {}",
@@ -36,8 +31,28 @@ pub(super) fn of_measured_wheels(
             peaks.join(", ")
         ));
     }
-    let or_hidden = hidden.iter().map(|(load, _)| load.as_str());
-    let loads: Vec<&str> = std::iter::once(load.as_str()).chain(or_hidden).collect();
+    // A load at the end of those studied, also where it is one that is left open.
+    let candidates: Vec<usize> = std::iter::once(lowest)
+        .chain(open.iter().map(|own| own.0))
+        .collect();
+    let beyond = candidates.iter().filter_map(|&own| {
+        let side = match neighbours(report, group, &scenarios[own]) {
+            [None, Some(_)] => "below",
+            [Some(_), None] => "above",
+            _ => return None,
+        };
+        Some(format!(
+            "the best load may be {side} {}",
+            short_load(&scenarios[own])
+        ))
+    });
+    let beyond: Vec<String> = beyond.collect();
+    let is_open = !beyond.is_empty() || !open.is_empty();
+    of_load.extend(beyond);
+    let loads: Vec<String> = candidates
+        .iter()
+        .map(|&own| short_load(&scenarios[own]))
+        .collect();
     let wheels = summary.patterns;
     let one = summary.is_of_one_wheel();
     let mut of_wheels = vec![if one {
@@ -56,10 +71,13 @@ pub(super) fn of_measured_wheels(
             own.needed_patterns
         )
     }));
-    let error = { group.largest_stated_error(lowest) }.map_or_else(
-        || "no bound".to_owned(),
-        |own| format!("at most {}", share_words(own)),
-    );
+    let error_at = |own: usize| {
+        let stated = group.largest_stated_error(own);
+        stated.map_or_else(
+            || "no bound".to_owned(),
+            |own| format!("at most {}", share_words(own)),
+        )
+    };
     let [of_lowest, of_peak, of_error, told] = if one {
         [
             "Normal load per sector with the lowest peak of the wheel".to_owned(),
@@ -75,7 +93,16 @@ pub(super) fn of_measured_wheels(
             "the largest that a solution there states".to_owned(),
         ]
     };
-    let is_open = beyond.is_some() || !hidden.is_empty();
+    let mut of_errors = vec![told];
+    of_errors.extend(
+        open.iter()
+            .map(|&(own, _)| format!("at {}: {}", short_load(&scenarios[own]), error_at(own))),
+    );
+    if !one {
+        of_errors.push(format!(
+            "no statistics beside it: {wheels} wheels give no interval"
+        ));
+    }
     let number = |label, value, notes, is_open| BigNumber {
         label,
         value,
@@ -87,30 +114,6 @@ pub(super) fn of_measured_wheels(
     Some([
         number(of_lowest, loads.join(" or "), of_load, is_open),
         number(of_peak, units.length(peak), of_wheels, false),
-        number(of_error, error, vec![told], !hidden.is_empty()),
+        number(of_error, error_at(lowest), of_errors, !open.is_empty()),
     ])
-}
-
-/// The other loads, with their worst peaks, that could have the smallest one by what the solutions state, each wrong by all of it.
-pub(super) fn loads_left_open(report: &StudyReport, group: &GroupReport) -> Vec<(String, f64)> {
-    let Some((of_wheel, peak)) = group.smallest_worst_peak() else {
-        return Vec::new();
-    };
-    let highest = group
-        .largest_stated_error(of_wheel.scenario)
-        .map(|own| peak * (1.0 + own));
-    let others = group
-        .worst_peaks()
-        .filter(|(own, _)| own.scenario != of_wheel.scenario);
-    others
-        .filter(|(own, peak)| {
-            let bound = group
-                .largest_stated_error(own.scenario)
-                .map(|error| peak * (1.0 - error));
-            bound
-                .zip(highest)
-                .is_none_or(|(bound, highest)| bound < highest)
-        })
-        .map(|(own, peak)| (short_load(&report.summary.scenarios[own.scenario]), peak))
-        .collect()
 }
