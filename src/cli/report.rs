@@ -89,7 +89,17 @@ pub(super) fn command(arguments: &ReportArguments) -> Result<ExitStatus, Failure
     if arguments.json {
         output::json_only(&found)?;
     } else if let Some(out) = &out {
-        output::text(&format!("{}wrote {}", in_words(&found), out.display()))?;
+        let warnings = found.warnings_in_words();
+        let warnings: Vec<String> = { warnings.iter() }
+            .map(|own| format!("warning: {own}\n"))
+            .collect();
+        let between = if warnings.is_empty() { "" } else { "\n" };
+        output::text(&format!(
+            "{}{}{between}wrote {}",
+            in_words(&found),
+            warnings.concat(),
+            out.display()
+        ))?;
     }
     Ok(ExitStatus::Done)
 }

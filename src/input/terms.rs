@@ -31,7 +31,7 @@ const TERMS: &[Term] = &[
     ),
     term(
         "slide (contact, load)",
-        "linear solution, a limit of friction: contact pairs slide without friction and stay closed; the limit of a small normal load. \
+        "linear solution, a limit of friction: contact pairs slide without friction and stay closed; the limit of small friction, not of a small normal load where pairs open. \
          Its share of slipping pairs is no result and shown as -",
     ),
     term(

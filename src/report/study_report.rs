@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::words::{excitation_and_deviation, percent_words, short_load_with_unit};
+use super::words::{
+    excitation_and_deviation, percent_words, scenarios_in_words, short_load_with_unit,
+};
 use super::{
     AccuracyTrials, BestLoads, CommonErrors, PercentileError, ScenarioSummary, ShownModel,
     StatedErrors, StudySummary, WheelReport,
@@ -76,6 +78,17 @@ pub struct GroupReport {
     /// Peak of each wheel of `mistuning.file` under each scenario, where it holds few.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measured: Vec<MeasuredPeak>,
+}
+
+impl StudyReport {
+    /// All warnings with what to do about them: first the settings whose load is at the end of those studied.
+    #[must_use]
+    pub fn warnings_in_words(&self) -> Vec<String> {
+        let named = |own: &[usize]| scenarios_in_words(&self.summary, own);
+        let ends = { self.groups.iter() }.filter_map(|group| at_the_end(self, group));
+        let warnings = { self.summary.warnings.iter() }.map(|warning| warning.in_words(&named));
+        ends.map(|end| end.in_words).chain(warnings).collect()
+    }
 }
 
 /// Scenarios beside the one with the lowest percentile, by what numerical error can do to them.

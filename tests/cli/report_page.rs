@@ -122,7 +122,9 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
     let lower = newtons().filter(|load| *load < own).reduce(f64::max);
     let higher = newtons().filter(|load| *load > own).reduce(f64::min);
     let next = match (lower, higher) {
-        (Some(lower), Some(higher)) => format!("neighbouring loads studied: {lower} N and {higher} N"),
+        (Some(lower), Some(higher)) => {
+            format!("neighbouring loads studied: {lower} N and {higher} N")
+        }
         (Some(lower), None) => format!("neighbouring load studied: {lower} N, none higher"),
         (None, higher) => format!(
             "neighbouring load studied: {} N, none lower",
@@ -145,7 +147,10 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
     let link = "P99 needs 368 patterns; <a href=\"#numbers-0\">see all percentiles</a>";
     assert!(percentile[2].contains(link), "{}", percentile[2]);
     // 80 patterns give no P99: the page says so, and how many do.
-    assert_eq!(percentile[0], format!("P95 of the peak amplitude at {own} N"));
+    assert_eq!(
+        percentile[0],
+        format!("P95 of the peak amplitude at {own} N")
+    );
     assert!(
         percentile[2].contains("P99 needs 368 patterns"),
         "{}",

@@ -6,8 +6,7 @@ use super::headline::{BigNumber, big_numbers, in_one_line};
 use super::health::health;
 use super::model::figure_html;
 use crate::report::plot::escaped;
-use crate::report::study_report::at_the_end;
-use crate::report::words::{scenarios_in_words, tied};
+use crate::report::words::tied;
 use crate::report::{Answer, FigureName, GroupReport, StudyReport, answers, figure, setting};
 
 /// Numbers, main figure and answers of a group.
@@ -101,14 +100,6 @@ fn health_of(report: &StudyReport) -> String {
     html
 }
 
-/// All warnings with what to do about them: first the settings whose load is at the end of those studied.
-pub(super) fn warnings_in_words(report: &StudyReport) -> Vec<String> {
-    let named = |own: &[usize]| scenarios_in_words(&report.summary, own);
-    let ends = { report.groups.iter() }.filter_map(|group| at_the_end(report, group));
-    let warnings = { report.summary.warnings.iter() }.map(|warning| warning.in_words(&named));
-    ends.map(|end| end.in_words).chain(warnings).collect()
-}
-
 /// The questions with their answers; what each rests on is folded.
 fn folded(report: &StudyReport, group: &GroupReport) -> String {
     let mut html = "<div class=\"answers\">\n".to_owned();
@@ -148,7 +139,7 @@ pub(super) fn contents(report: &StudyReport) -> String {
             escaped(&tied(words))
         );
     };
-    if !warnings_in_words(report).is_empty() {
+    if !report.warnings_in_words().is_empty() {
         entry("warnings", "Warnings");
     }
     entry("model", "The model");

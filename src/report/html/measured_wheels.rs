@@ -31,22 +31,10 @@ pub(super) fn of_measured_wheels(
             peaks.join(", ")
         ));
     }
-    // A load at the end of those studied, also where it is one that is left open.
     let candidates: Vec<usize> = std::iter::once(lowest)
         .chain(open.iter().map(|own| own.0))
         .collect();
-    let beyond = candidates.iter().filter_map(|&own| {
-        let side = match neighbours(report, group, &scenarios[own]) {
-            [None, Some(_)] => "below",
-            [Some(_), None] => "above",
-            _ => return None,
-        };
-        Some(format!(
-            "the best load may be {side} {}",
-            short_load(&scenarios[own])
-        ))
-    });
-    let beyond: Vec<String> = beyond.collect();
+    let beyond = ends_among(report, group, &candidates);
     let is_open = !beyond.is_empty() || !open.is_empty();
     of_load.extend(beyond);
     let loads: Vec<String> = candidates
@@ -116,4 +104,19 @@ pub(super) fn of_measured_wheels(
         number(of_peak, units.length(peak), of_wheels, false),
         number(of_error, error_at(lowest), of_errors, !open.is_empty()),
     ])
+}
+
+/// What follows where one of several loads is the last one studied on a side.
+fn ends_among(report: &StudyReport, group: &GroupReport, candidates: &[usize]) -> Vec<String> {
+    let scenarios = &report.summary.scenarios;
+    let beyond = candidates.iter().filter_map(|&own| {
+        let side = match neighbours(report, group, &scenarios[own]) {
+            [None, Some(_)] => "below",
+            [Some(_), None] => "above",
+            _ => return None,
+        };
+        let load = short_load(&scenarios[own]);
+        Some(format!("the best load may be {side} {load}"))
+    });
+    beyond.collect()
 }

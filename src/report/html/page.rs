@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::first_screen::{contents, first_screen, warnings_in_words};
+use super::first_screen::{contents, first_screen};
 use super::model::{figure_html, model};
 use super::table::Table;
 use super::tables;
@@ -91,7 +91,7 @@ fn header(report: &StudyReport) -> String {
 }
 
 fn warnings(report: &StudyReport) -> String {
-    let warnings = warnings_in_words(report);
+    let warnings = report.warnings_in_words();
     if warnings.is_empty() {
         return String::new();
     }
