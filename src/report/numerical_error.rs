@@ -4,7 +4,6 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::words::signed_share;
 use crate::population::statistics::Percentile;
 use crate::response::friction::ContactLaw;
 
@@ -57,14 +56,13 @@ impl Remedy {
         }
     }
 
-    /// Which of the two errors matters more, with the ends of the statistical interval over the percentile.
-    pub(super) fn beside_statistics(self, lower: f64, upper: f64) -> String {
+    /// Which of the two errors matters more, with the `interval` of the percentile in words.
+    pub(super) fn beside_statistics(self, interval: &str) -> String {
         let which = match self {
             Self::Finer => "more",
             Self::Patterns | Self::PatternsThenFiner => "less",
         };
-        let (lower, upper) = (signed_share(lower), signed_share(upper));
-        format!("matters {which} than statistics ({lower} to {upper})")
+        format!("matters {which} than statistics ({interval})")
     }
 
     /// In a few words.

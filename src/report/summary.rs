@@ -50,8 +50,7 @@ pub struct BasisSummary {
     pub tuned_peak_error: Option<f64>,
     /// Highest fixed-interface frequency over what it should be; 1 is enough.
     pub craig_bampton_reach: Option<f64>,
-    /// Largest relative change of a tuned peak by more fixed-interface modes than the study asks for;
-    /// none where the program chooses their number.
+    /// Largest relative change of a tuned peak by more modes than the study asks for; none where the program chooses.
     pub craig_bampton_error: Option<f64>,
     /// Error that the study asks for.
     pub wanted_error: f64,
@@ -77,13 +76,10 @@ impl BasisSummary {
             .craig_bampton_reach
             .filter(|&reach| reach < 1.0)
             .map(|reach| Warning::CraigBamptonModes { reach });
-        let truncation = self
-            .craig_bampton_error
-            .filter(|&error| error > self.wanted_error)
-            .map(|error| Warning::CraigBamptonError {
-                error,
-                wanted: self.wanted_error,
-            });
+        let wanted = self.wanted_error;
+        let truncation = { self.craig_bampton_error }
+            .filter(|&error| error > wanted)
+            .map(|error| Warning::CraigBamptonError { error, wanted });
         let replaced = self.is_replaced.then(|| Warning::ReplacedBasis {
             taken: self.name.clone(),
         });

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::headline::{BigNumber, big_numbers, in_one_line};
 use super::health::health;
+use super::measured_wheels::of_measured_wheels;
 use super::model::figure_html;
 use crate::report::plot::escaped;
 use crate::report::words::tied;
@@ -22,7 +23,7 @@ pub(super) fn first_screen(report: &StudyReport, group: &GroupReport, place: usi
         notes,
         more,
         is_open,
-    } in big_numbers(report, group)
+    } in of_measured_wheels(report, group).unwrap_or_else(|| big_numbers(report, group))
     {
         let class = if is_open { "number look" } else { "number" };
         // Writing to a String cannot fail.

@@ -1,6 +1,5 @@
 //! What the first screen says in large type: load, percentile and numerical error.
 
-use super::measured_wheels::of_measured_wheels;
 use crate::population::statistics::{CONFIDENCE, Percentile};
 use crate::report::numerical_error::Remedy;
 use crate::report::study_report::{at_the_end, neighbours, short_load};
@@ -33,9 +32,6 @@ pub(super) struct BigNumber {
 /// Load, percentile and numerical error of a group.
 pub(super) fn big_numbers(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
     let units = LengthUnit::of_summary(&report.summary);
-    if let Some(found) = of_measured_wheels(report, group) {
-        return found;
-    }
     let Some((choice, lowest)) = group.known_choice() else {
         return nothing_known(report, group);
     };
@@ -374,7 +370,8 @@ fn number_of_error(
     notes.extend({ remedy.zip(error) }.map(|(remedy, error)| {
         let found = error.percentile;
         let side = |end: Option<f64>| end.map_or(f64::NAN, |end| end / value - 1.0);
-        remedy.beside_statistics(side(found.lower), side(found.upper))
+        let sides = [side(found.lower), side(found.upper)];
+        remedy.beside_statistics(&sides.map(signed_share).join(" to "))
     }));
     notes.extend(remedy.map(|remedy| remedy.words().to_owned()));
     notes.extend(
