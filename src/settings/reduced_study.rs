@@ -15,6 +15,7 @@ use super::harmonics_on_basis::{choose_harmonics, with_separation};
 use super::harmonics_on_receptances::choice_of;
 use super::row_settings::{contact_stiffness, row_settings};
 use super::tuned_receptances::{COMPANION_MODES, Refined, engine_of, engine_options, refined};
+use crate::model::cyclic::pair_tangents;
 use crate::model::reduction::{Basis, BasisChoice, Reduction, WHOLE_SPACE_DOFS};
 use crate::model::sector::SectorModel;
 use crate::model::{ReducedModel, read_cached, reduction_digest, write_cached};
@@ -197,9 +198,13 @@ pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> Result<String
 /// are not, unless `[accuracy]` judges them on mistuned wheels: a set that suffices for the tuned wheel can be far from enough for others.
 pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
     let every_harmonic = study.solver.harmonics == Harmonics::Auto && study.accuracy.is_none();
+    // A law of constant normal load acts along the tangents alone.
+    let rubs = |own: [bool; 2]| own.contains(&true);
+    let can_rub = || pair_tangents(sector).into_iter().any(rubs);
     let ready = || {
         let contact = study.contact.as_ref();
         !sector.contact_pairs.is_empty()
+            && contact.is_none_or(|own| own.law.has_variable_load() || can_rub())
             && (sector.dofs.len() > WHOLE_SPACE_DOFS || every_harmonic)
             && contact.is_none_or(|own| own.in_place_of.is_none())
             && against_receptances(contact.map(|own| own.ring), &study.solver).is_empty()

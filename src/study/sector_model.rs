@@ -214,32 +214,25 @@ fn check_contact(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
     Ok(())
 }
 
-/// What is accepted in the place of a law that acts on no motion of a pair; none where it acts on all.
+/// What is accepted in the place of a law along the first tangent, where a pair rubs along the second alone; none for other laws, and
+/// where no pair does.
 fn law_for_tangents(law: ContactLaw, model: &SectorModel) -> Option<String> {
-    let rubs = |[first, second]: [bool; 2]| match law {
-        ContactLaw::MacroSlip1d => first,
-        _ => first || second,
-    };
+    if law != ContactLaw::MacroSlip1d {
+        return None;
+    }
     let tangents = pair_tangents(model);
-    let pair = tangents.iter().position(|own| !rubs(*own))?;
+    let pair = tangents.iter().position(|own| *own == [false, true])?;
     let own = &model.contact_pairs[pair];
     let name = |side: &ContactSide| {
         side.node()
             .map_or("the ground".to_owned(), |node| format!("node {node}"))
     };
-    let of = format!(
-        "contact pair {pair} ({} on {})",
+    Some(format!(
+        "\"macro_slip_2d\", because contact pair {pair} ({} on {}) does not move along its first tangent, on which \
+         this law acts",
         name(&own.first),
         name(&own.second)
-    );
-    let accepted = if tangents.iter().all(|[first, second]| *first || *second) {
-        format!(
-            "\"macro_slip_2d\", because {of} does not move along its first tangent, on which this law acts"
-        )
-    } else {
-        format!("none: {of} does not move along its surface, so that nothing rubs there")
-    };
-    Some(accepted)
+    ))
 }
 
 /// Refuses nodal diameters that the wheel does not have.

@@ -211,6 +211,16 @@ fn check_remarks_on_contact_pairs_in_which_nothing_can_rub() {
     let remarks = report["echo"]["remarks"].as_array().expect("remarks");
     let expected = serde_json::json!({ "remark": "no_friction", "pairs": 1, "contact_pairs": 1 });
     assert!(remarks.contains(&expected), "{remarks:?}");
+    // It is solved as a wheel without contact: no load changes anything.
+    let run = place.run(&["run", "study.toml", "--json"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let summary: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let scenarios = summary["scenarios"].as_array().expect("a list");
+    let tuned = |own: &Value| own["tuned_amplitude_m"].as_f64().expect("a peak");
+    for own in scenarios {
+        let ratio = tuned(own) / tuned(&scenarios[0]);
+        assert!((ratio - 1.0).abs() < 1e-5, "{own}");
+    }
 }
 
 /// Patterns enough for the percentile that its report opens with, and loads of one sector.
