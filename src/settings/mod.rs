@@ -23,4 +23,4 @@ pub use full_model::{FullModel, FullRow, FullSettings};
 pub use ladder::{HarmonicLevel, Knob, LadderSetting};
 pub use progress::{Progress, Stage};
 pub(crate) use row_settings::contact_stiffness;
-pub(crate) use tuned_receptances::SHAPES_WITH_FRICTION;
+pub(crate) use tuned_receptances::SHAPES_BETWEEN;

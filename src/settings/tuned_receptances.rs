@@ -27,9 +27,10 @@ const WHEELS: u32 = 4;
 const SEED: u64 = 0x0062_6c69_736b;
 /// Factor on the number of shapes beyond which none are added.
 const MOST_SHAPES: usize = 16;
-/// Largest change of a judged peak with friction by twice as many shapes, over `reduction.error`, which linear peaks keep. The shapes of
-/// the harmonics above the first make rows slow, and every row states what they leave out under its load.
-pub(crate) const SHAPES_WITH_FRICTION: f64 = 5.0;
+/// Largest change of a judged peak by twice as many shapes, over `reduction.error`, under loads between the lowest, the middle and the
+/// highest one, which keep that. The shapes of the harmonics above the first make rows slow, and every row states what they leave out
+/// under its load.
+pub(crate) const SHAPES_BETWEEN: f64 = 5.0;
 /// Relative tolerance of their peaks.
 const PEAK_TOLERANCE: f64 = 1e-5;
 /// Fixed-interface modes per nodal diameter that are tried first.
@@ -146,7 +147,7 @@ pub(super) struct Refined<'a> {
 /// As many fixed-interface modes as the study says, or the first of 60, 120, ... that half as many change no judged peak by more than
 /// `reduction.error`; their error is that change, which is larger than what is left of it, or a half more than what twice as many as the
 /// study says change. Blade shapes the first that twice as many change no linear peak by more, and none with friction by more than
-/// [`SHAPES_WITH_FRICTION`] times that: the shapes of the harmonics above the first show there alone. Harmonics by `chosen`, once.
+/// that, or [`SHAPES_BETWEEN`] times that under loads between: the shapes of the harmonics above the first show there alone. Harmonics by `chosen`, once.
 ///
 /// # Errors
 /// The model cannot be reduced, or samples cannot tell harmonics apart.
@@ -205,7 +206,7 @@ pub(super) fn refined<'a>(
             continue;
         }
         let mut of_shapes = shaped.changes(&tops, excitations, patterns);
-        let mut shaped = shaped.with_change(of_friction(&of_shapes));
+        let mut shaped = shaped.with_change(of_friction(&of_shapes, &study.contacts));
         while shaped.lacks_shapes(study) {
             shaped = shaped.with_twice_the_shapes(study, excitations)?;
             let own = shaped.engine.judges(excitations, patterns);
@@ -214,7 +215,7 @@ pub(super) fn refined<'a>(
             })?;
             drop(own);
             of_shapes = shaped.changes(&tops, excitations, patterns);
-            shaped = shaped.with_change(of_friction(&of_shapes));
+            shaped = shaped.with_change(of_friction(&of_shapes, &study.contacts));
         }
         let margin = if fixed.is_some() { FIXED_MARGIN } else { 1.0 };
         let errors = ModelErrors {
@@ -282,12 +283,21 @@ fn changes_of(tops: &[Vec<JudgedTop>], others: &[Judges<'_>]) -> Vec<Change> {
     changes.collect()
 }
 
-/// The largest of the changes with friction; none of none.
-fn of_friction(changes: &[Change]) -> Option<f64> {
-    let own = changes
+/// The largest of the changes with friction: under the lowest, the middle and the highest load, and under those between.
+fn of_friction(changes: &[Change], conditions: &[ContactCondition]) -> [f64; 2] {
+    let loads = conditions
         .iter()
-        .filter(|(of, _)| of.1.1.normal_load_n().is_some());
-    own.map(|own| own.1).reduce(f64::max)
+        .filter(|own| own.normal_load_n().is_some());
+    let loads: Vec<ContactCondition> = loads.copied().collect();
+    let places = [0, loads.len() / 2, loads.len().saturating_sub(1)];
+    let is_spread =
+        |own: ContactCondition| places.iter().any(|&place| loads.get(place) == Some(&own));
+    [true, false].map(|wanted| {
+        let own = { changes.iter() }.filter(|((_, (_, condition)), _)| {
+            condition.normal_load_n().is_some() && is_spread(*condition) == wanted
+        });
+        own.map(|own| own.1).fold(0.0, f64::max)
+    })
 }
 
 /// The largest of some changes; none of none.
@@ -336,7 +346,7 @@ struct Shaped {
     factor: usize,
     /// What twice as many change of linear peaks; none where one is not found.
     linear: Option<f64>,
-    /// What twice as many change of judged peaks with friction, where that is known.
+    /// What twice as many change of judged peaks with friction, as it counts for the choice.
     with_friction: f64,
     /// What was tried, the engine last.
     tried: Vec<BasisError>,
@@ -403,8 +413,8 @@ impl Shaped {
     /// Whether twice as many change a peak by more than `reduction.error`, and may be taken.
     fn lacks_shapes(&self, study: &Study) -> bool {
         let wanted = study.reduction.error;
-        let enough = self.linear.is_some_and(|error| error <= wanted)
-            && self.with_friction <= SHAPES_WITH_FRICTION * wanted;
+        let enough =
+            self.linear.is_some_and(|error| error <= wanted) && self.with_friction <= wanted;
         !enough && self.finer.is_some() && self.factor < MOST_SHAPES
     }
 
@@ -421,11 +431,11 @@ impl Shaped {
         })
     }
 
-    /// These shapes with `change`, that of the tops with friction by twice as many shapes.
-    fn with_change(mut self, change: Option<f64>) -> Self {
-        self.with_friction = change.unwrap_or(0.0);
+    /// These shapes with the changes of the tops with friction by twice as many shapes, under spread loads and under those between.
+    fn with_change(mut self, [spread, between]: [f64; 2]) -> Self {
+        self.with_friction = spread.max(between / SHAPES_BETWEEN);
         if let Some(taken) = self.tried.last_mut() {
-            taken.error = taken.error.map(|own| own.max(self.with_friction));
+            taken.error = taken.error.map(|own| own.max(spread).max(between));
         }
         self
     }

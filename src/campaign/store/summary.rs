@@ -16,7 +16,7 @@ use crate::population::table::{
 use crate::report::{BasisSummary, NumericalError, RowTolerance, StudySummary, SummaryContext};
 use crate::response::forced_response::Harmonics;
 use crate::response::friction::ContactLaw;
-use crate::settings::SHAPES_WITH_FRICTION;
+use crate::settings::SHAPES_BETWEEN;
 use crate::study::PipelineError;
 
 /// The summary of what is stored of a study that is not finished.
@@ -192,11 +192,7 @@ fn basis_of(manifest: &Manifest) -> BasisSummary {
     let truncation = number("craig_bampton_error");
     let wanted = asked["error"].as_f64().unwrap_or(f64::INFINITY);
     let on_receptances = facts["basis"] == TUNED_RECEPTANCES;
-    let of_peaks = if on_receptances {
-        SHAPES_WITH_FRICTION
-    } else {
-        1.0
-    };
+    let of_peaks = if on_receptances { SHAPES_BETWEEN } else { 1.0 };
     BasisSummary {
         name: facts["basis"].as_str().unwrap_or_default().to_owned(),
         tuned_peak_error: taken.and_then(|taken| taken["error"].as_f64()),

@@ -17,7 +17,7 @@ use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
 use crate::response::forced_response::{ResponseTrace, SearchPlan};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
-use crate::settings::SHAPES_WITH_FRICTION;
+use crate::settings::SHAPES_BETWEEN;
 use crate::settings::basis_choice::BasisEvidence;
 use crate::settings::fixed_interface::FixedInterface;
 use crate::settings::reduced_study::{models_digest, solver_of, stored_digest, stored_for};
@@ -112,7 +112,7 @@ impl Engine for ReducedEngine {
             craig_bampton_error: self.fixed_interface.error.filter(|_| self.fixed_modes),
             wanted_error: self.wanted_error,
             wanted_peak_error: if self.linear_limit_error.is_some() {
-                SHAPES_WITH_FRICTION * self.wanted_error
+                SHAPES_BETWEEN * self.wanted_error
             } else {
                 self.wanted_error
             },
