@@ -226,7 +226,7 @@ impl Writer<'_> {
             .measured
             .chunk_by(|a, b| a.scenario == b.scenario);
         let verdict = self.group.smallest_worst_peak().map_or_else(
-            || "Not known: a wheel has no peak under every load.".to_owned(),
+            || "Not known: under every load a wheel lacks a peak.".to_owned(),
             |(worst, highest)| {
                 if self.report.summary.is_of_one_wheel() {
                     let load = self.load_of(worst.scenario);

@@ -181,15 +181,10 @@ fn check_contact(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
     if let Some(law) = study.contact.as_ref().map(|contact| contact.law)
         && let Some(accepted) = law_for_tangents(law, model)
     {
-        let value = study.map.value("contact.law");
         return finding(
             "contact.law",
             Problem::NotAccepted {
-                value: if value.is_empty() {
-                    law.name().to_owned()
-                } else {
-                    value
-                },
+                value: study.map.value("contact.law"),
                 accepted,
                 suggestion: None,
             },

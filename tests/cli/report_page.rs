@@ -197,7 +197,11 @@ fn the_first_screen_says_which_of_the_two_errors_matters_more() {
     let shares = numbers_in(error[2].split_once("than statistics (").expect("shares").1);
     let sides = [value - bounds[0], bounds[1] - value].map(|side| 100.0 * side / value);
     for (shown, side) in shares.iter().zip(sides) {
-        assert!((shown - side).abs() < 0.1, "{shown} {side}: {}", error[2]);
+        assert!(
+            (shown / side - 1.0).abs() < 0.06,
+            "{shown} {side}: {}",
+            error[2]
+        );
     }
     let verdicts = if (high - low) > interval {
         [

@@ -240,25 +240,22 @@ fn lowest_of(group: &GroupReport, choice: Option<&LoadChoice>) -> Option<(usize,
 
 /// The other scenarios that could be the lowest: by the comparison of a choice, or by the errors of a few measured wheels.
 fn could_be_lowest(group: &GroupReport, choice: Option<&LoadChoice>) -> Vec<usize> {
-    let Some(choice) = choice else {
-        return group
+    let of_wheels = || {
+        group
             .loads_left_open()
             .into_iter()
             .map(|own| own.0)
-            .collect();
+            .collect()
     };
-    let compared = choice.best.iter().flat_map(|best| &best.loads);
-    let could = compared
-        .filter(|own| own.could_be_best)
-        .map(|own| own.scenario.scenario);
-    could.filter(|own| choice.lowest != Some(*own)).collect()
+    choice.map_or_else(of_wheels, could_be_as_low)
 }
 
-/// Whether a load that has not the lowest percentile of the sample could be as low.
-fn could_be_as_low(choice: &LoadChoice, load: &ScenarioSummary) -> bool {
+/// Scenarios that have not the lowest percentile of the sample and could be as low.
+fn could_be_as_low(choice: &LoadChoice) -> Vec<usize> {
     let compared = choice.best.iter().flat_map(|best| &best.loads);
-    let mut same = compared.filter(|other| other.scenario.scenario == load.scenario);
-    choice.lowest != Some(load.scenario) && same.any(|other| other.could_be_best)
+    let could = compared.filter(|own| own.could_be_best);
+    let could = could.map(|own| own.scenario.scenario);
+    could.filter(|own| choice.lowest != Some(*own)).collect()
 }
 
 /// Pointers above the plot at the load that is the lowest in this sample, and at those that could be: they have no
@@ -482,10 +479,10 @@ fn caption(
     if let Some(choice) = choice {
         let percent = percent_words(choice.percent);
         let _ = write!(words, " Pointer above: the load with the lowest P{percent}");
-        words.push_str(if loads.iter().any(|load| could_be_as_low(choice, load)) {
-            "; hollow: those that may be as low (95 % confidence)."
-        } else {
+        words.push_str(if could_be_as_low(choice).is_empty() {
             "."
+        } else {
+            "; hollow: those that may be as low (95 % confidence)."
         });
     }
     words
