@@ -98,12 +98,20 @@ impl Writer<'_> {
             };
         };
         let value = found.percentile.value.unwrap_or(f64::NAN);
-        let verdict = format!(
-            "{}: P{percent} = {}{}.",
-            self.load_per_sector_of(lowest),
-            self.units.length(value),
-            self.as_stress(value),
-        );
+        let amplitude = format!("{}{}", self.units.length(value), self.as_stress(value));
+        let open = self.group.hidden_by_error(choice, lowest);
+        let verdict = if open.is_empty() {
+            let load = self.load_per_sector_of(lowest);
+            format!("{load}: P{percent} = {amplitude}.")
+        } else {
+            let loads = std::iter::once(lowest).chain(open);
+            let loads: Vec<String> = loads.map(|own| self.load_of(own)).collect();
+            format!(
+                "{} per sector, which numerical error leaves open: P{percent} = {amplitude} at {}.",
+                loads.join(" or "),
+                loads[0]
+            )
+        };
         let mut reasons = vec![self.how_sure(lowest, &found.percentile)];
         match &choice.best {
             Some(best) => reasons.extend(self.could_be_best(best, lowest, choice)),

@@ -62,15 +62,15 @@ impl Remedy {
             Self::Finer => "more",
             Self::Patterns | Self::PatternsThenFiner => "less",
         };
-        format!("matters {which} than statistics ({interval})")
+        format!("{which} than statistics ({interval})")
     }
 
     /// In a few words.
     pub(super) fn words(self) -> &'static str {
         match self {
-            Self::Patterns => "to be surer: more patterns before more accuracy",
-            Self::PatternsThenFiner => "to be surer: more patterns, and more accuracy",
-            Self::Finer => "to be surer: more accuracy before more patterns",
+            Self::Patterns => "to be surer: more patterns first",
+            Self::PatternsThenFiner => "to be surer: more patterns and accuracy",
+            Self::Finer => "to be surer: more accuracy first",
         }
     }
 }

@@ -137,6 +137,27 @@ impl GroupReport {
             unknown,
         })
     }
+
+    /// Which scenarios, that by the patterns alone have a higher percentile than the lowest, numerical error could make the
+    /// lowest.
+    pub(super) fn hidden_by_error(&self, choice: &LoadChoice, lowest: usize) -> Vec<usize> {
+        let rivals = choice
+            .best
+            .as_ref()
+            .zip(self.numerical_rivals(lowest, choice.percent));
+        let Some((best, rivals)) = rivals else {
+            return Vec::new();
+        };
+        let is_higher = |own: &usize| {
+            let mut loads = best.loads.iter();
+            loads.any(|load| load.scenario.scenario == *own && !load.could_be_best)
+        };
+        rivals
+            .could_be_lower
+            .into_iter()
+            .filter(is_higher)
+            .collect()
+    }
 }
 
 /// What a few measured wheels say.

@@ -123,11 +123,11 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
     let higher = newtons().filter(|load| *load > own).reduce(f64::min);
     let next = match (lower, higher) {
         (Some(lower), Some(higher)) => {
-            format!("neighbouring loads studied: {lower} N and {higher} N")
+            format!("next loads studied: {lower} N and {higher} N")
         }
-        (Some(lower), None) => format!("neighbouring load studied: {lower} N, none higher"),
+        (Some(lower), None) => format!("next load studied: {lower} N, none higher"),
         (None, higher) => format!(
-            "neighbouring load studied: {} N, none lower",
+            "next load studied: {} N, none lower",
             higher.expect("another load")
         ),
     };
@@ -141,10 +141,10 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
         assert!(!first.contains(sign), "{sign}");
     }
     // Of two loads that were calculated one is lower, with 95 % confidence unless others could be as low.
-    let sure = "statistics: no other load studied has a lower P95 (95 % confidence)";
+    let sure = "95 % confidence: no other has a lower P95";
     assert_eq!(load[2].contains(sure), others == 0, "{}", load[2]);
     // The other percentiles are a link away, which has the name of the section for a reader on paper.
-    let link = "P99 needs 368 patterns; <a href=\"#numbers-0\">see all percentiles</a>";
+    let link = "P99 needs 368 patterns; <a href=\"#numbers-0\">all percentiles</a>";
     assert!(percentile[2].contains(link), "{}", percentile[2]);
     // 80 patterns give no P99: the page says so, and how many do.
     assert_eq!(
@@ -204,21 +204,15 @@ fn the_first_screen_says_which_of_the_two_errors_matters_more() {
         );
     }
     let verdicts = if (high - low) > interval {
-        [
-            "matters more than statistics",
-            "to be surer: more accuracy before more patterns",
-        ]
+        ["more than statistics", "to be surer: more accuracy first"]
     } else {
-        [
-            "matters less than statistics",
-            "to be surer: more patterns before more accuracy",
-        ]
+        ["less than statistics", "to be surer: more patterns first"]
     };
     for verdict in verdicts {
         assert!(error[2].contains(verdict), "{}", error[2]);
     }
     // Both together, and the percentile beside the tuned wheel.
-    let with = percentile[2].split_once("with numerical error about ");
+    let with = percentile[2].split_once("with numerical error ");
     let with = &numbers_in(with.expect("both").1)[..2];
     for (shown, both) in with
         .iter()
@@ -228,7 +222,7 @@ fn the_first_screen_says_which_of_the_two_errors_matters_more() {
     }
     let tuned = um(&scenario["tuned_amplitude_m"]);
     let ratio = percentile[2]
-        .split_once(" times the tuned wheel there")
+        .split_once(" times the tuned wheel")
         .expect("a ratio");
     let ratio = numbers_in(ratio.0).pop().expect("a ratio");
     assert!(
@@ -316,8 +310,9 @@ fn a_load_at_the_end_of_those_studied_is_the_first_warning() {
         let [of_load, of_percentile, _] = looks(between(&page, "id=\"answer-0\"", "</section>"));
         assert!(of_load && !of_percentile);
         // The card of the load says so before how sure the load is the lowest.
-        let open = load[2].find(&format!("best load may be {beyond}"));
-        let sure = load[2].find("(95 % confidence)");
+        let (studied, _) = advice.split_once(": ").expect("what to do");
+        let open = load[2].find(studied);
+        let sure = load[2].find("95 % confidence");
         assert!(
             open.is_some_and(|open| sure.is_none_or(|sure| open < sure)),
             "{}",
@@ -391,6 +386,14 @@ fn the_first_screen_says_where_numerical_error_could_hide_a_better_load() {
         // They stand beside the load that is the lowest as computed.
         let or = load[1].split(" or ").skip(1).collect::<Vec<_>>();
         assert_eq!(or, hidden, "{}", load[1]);
+        // So they do in the answer in words.
+        let loads = format!("{} per sector", load[1]);
+        let which = if hides {
+            format!("{loads}, which numerical error leaves open: P95 = ")
+        } else {
+            format!("{loads}: P95 = ")
+        };
+        assert!(section.contains(&which), "{which}: {section}");
         // The error is yellow where its bounds are the wider ones.
         let lowest = report["groups"][0]["choices"][1]["lowest"]
             .as_u64()

@@ -114,11 +114,9 @@ pub(super) fn beside(
     higher: Option<&ScenarioSummary>,
 ) -> Option<String> {
     match (lower.map(short_load), higher.map(short_load)) {
-        (Some(lower), Some(higher)) => {
-            Some(format!("neighbouring loads studied: {lower} and {higher}"))
-        }
-        (Some(next), None) => Some(format!("neighbouring load studied: {next}, none higher")),
-        (None, Some(next)) => Some(format!("neighbouring load studied: {next}, none lower")),
+        (Some(lower), Some(higher)) => Some(format!("next loads studied: {lower} and {higher}")),
+        (Some(next), None) => Some(format!("next load studied: {next}, none higher")),
+        (None, Some(next)) => Some(format!("next load studied: {next}, none lower")),
         (None, None) => None,
     }
 }
@@ -140,7 +138,7 @@ fn other_settings(report: &StudyReport) -> Option<(String, String)> {
 fn all_percentiles(report: &StudyReport, group: &GroupReport) -> (String, String) {
     let same = |other: &GroupReport| other.scenarios == group.scenarios;
     let place = report.groups.iter().position(same).unwrap_or(0);
-    let words = "see all percentiles".to_owned();
+    let words = "all percentiles".to_owned();
     (format!("numbers-{place}"), words)
 }
 
@@ -178,23 +176,12 @@ fn nothing_known(report: &StudyReport, group: &GroupReport) -> [BigNumber; 3] {
 
 /// Which loads, that by the patterns alone are higher, numerical error could make the lowest.
 pub(super) fn hidden_by_error(report: &StudyReport, group: &GroupReport) -> Vec<String> {
-    let hidden = hidden_scenarios(group).unwrap_or_default();
     let scenarios = &report.summary.scenarios;
-    { hidden.into_iter() }
+    let hidden = group.known_choice().into_iter();
+    hidden
+        .flat_map(|(choice, lowest)| group.hidden_by_error(choice, lowest))
         .map(|own| short_load(&scenarios[own]))
         .collect()
-}
-
-fn hidden_scenarios(group: &GroupReport) -> Option<Vec<usize>> {
-    let (choice, lowest) = group.known_choice()?;
-    let best = choice.best.as_ref()?;
-    let is_higher = |own: &usize| {
-        let mut loads = best.loads.iter();
-        loads.any(|load| load.scenario.scenario == *own && !load.could_be_best)
-    };
-    let rivals = group.numerical_rivals(lowest, choice.percent)?;
-    let hidden = rivals.could_be_lower.into_iter().filter(is_higher);
-    Some(hidden.collect())
 }
 
 fn notes_of_load(
@@ -215,8 +202,7 @@ fn notes_of_load(
     };
     // What makes the load no optimum comes before how sure it is the lowest.
     let is_at_the_end = at_the_end(report, group);
-    notes
-        .extend({ is_at_the_end.as_ref() }.map(|end| format!("{}: {}", end.what, end.consequence)));
+    notes.extend({ is_at_the_end.as_ref() }.map(|end| end.what.clone()));
     let others: Vec<String> = { best.loads.iter() }
         .filter(|own| own.could_be_best && own.scenario.scenario != scenario.scenario)
         .map(|own| {
@@ -227,13 +213,9 @@ fn notes_of_load(
     let percent = percent_words(choice.percent);
     if !others.is_empty() {
         let others = others.join(", ");
-        notes.push(format!(
-            "statistics: {others} may be as good (95 % confidence)"
-        ));
+        notes.push(format!("95 % confidence: {others} may be as good"));
     } else if choice.is_of_a_design() {
-        notes.push(format!(
-            "statistics: no other load studied has a lower P{percent} (95 % confidence)"
-        ));
+        notes.push(format!("95 % confidence: no other has a lower P{percent}"));
     }
     if choice.is_of_a_design() {
         notes.push(by_numerical_error(report, group, choice, scenario.scenario));
@@ -319,7 +301,7 @@ fn with_numerical_error(error: &PercentileError, units: LengthUnit) -> Option<St
     let found = error.percentile;
     let (low, high) = (error.lowest? / found.value?, error.highest? / found.value?);
     Some(format!(
-        "with numerical error about {} to {}",
+        "with numerical error {} to {}",
         units.number(low * found.lower?),
         units.length(high * found.upper?)
     ))
@@ -335,7 +317,7 @@ fn beside_tuned(
     let ratio = found?.value? / tuned;
     let tuned = LengthUnit::of_summary(summary).length(tuned);
     Some(format!(
-        "{} times the tuned wheel there ({tuned})",
+        "{} times the tuned wheel ({tuned})",
         four_digits(ratio)
     ))
 }

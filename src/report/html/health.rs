@@ -6,7 +6,7 @@ use crate::report::words::{scenarios_in_words, told_apart};
 use crate::report::{GroupReport, StudyReport, Warning};
 
 /// Warnings that the first screen names.
-const NAMED: usize = 5;
+const NAMED: usize = 4;
 
 /// Whether anything is wrong, with a study or with the setting that the page opens with.
 #[derive(Debug, Clone, PartialEq, Eq)]
