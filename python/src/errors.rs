@@ -90,9 +90,8 @@ fn described(path: &Path, finding: &Finding) -> Value {
 
 /// What is raised where the program is at fault; the place has been written to the error output.
 pub fn of_panic(py: Python<'_>) -> PyErr {
-    let message =
-        "the program is at fault, not the study: please report the lines above with the study";
-    raised(py, ExitStatus::InternalError, message, None)
+    let failure = Failure::of_panic();
+    raised(py, failure.status, &failure.message, None)
 }
 
 /// `InputError` where there are findings, else `BliskError`; both stand in Python.

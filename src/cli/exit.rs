@@ -122,6 +122,15 @@ pub struct Failure {
 }
 
 impl Failure {
+    /// The program panicked; its hook has said where.
+    #[must_use]
+    pub fn of_panic() -> Self {
+        Self {
+            status: ExitStatus::InternalError,
+            message: "the program is at fault, not the study: please report the lines above with the study".to_owned(),
+        }
+    }
+
     pub(super) fn usage(message: String) -> Self {
         Self {
             status: ExitStatus::Usage,

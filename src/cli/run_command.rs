@@ -31,14 +31,8 @@ pub fn main_of(program: &Path, arguments: impl IntoIterator<Item = OsString>) ->
             message: format!("cannot watch for signals: {error}"),
         });
     }
-    // The hook has already said where it panicked.
     let work = || carry_out(program, arguments.command);
-    let ended = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
-        Err(Failure {
-            status: ExitStatus::InternalError,
-            message: "the program is at fault, not the study: please report the lines above with the study".to_owned(),
-        })
-    });
+    let ended = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(Failure::of_panic()));
     ended.unwrap_or_else(|failure| failed(&failure))
 }
 

@@ -104,12 +104,20 @@ impl Writer<'_> {
             let load = self.load_per_sector_of(lowest);
             format!("{load}: P{percent} = {amplitude}.")
         } else {
-            let loads = std::iter::once(lowest).chain(open);
-            let loads: Vec<String> = loads.map(|own| self.load_of(own)).collect();
+            let others: Vec<String> = { open.into_iter() }
+                .map(|scenario| {
+                    let error = self.group.error_of(scenario, choice.percent);
+                    let value = error.and_then(|error| error.1.percentile.value);
+                    let value = value.map_or(String::new(), |value| {
+                        format!("{} at ", self.units.length(value))
+                    });
+                    format!("{value}{}", self.load_of(scenario))
+                })
+                .collect();
             format!(
-                "{} per sector, which numerical error leaves open: P{percent} = {amplitude} at {}.",
-                loads.join(" or "),
-                loads[0]
+                "Numerical error leaves it open: P{percent} = {amplitude} at {}, {}.",
+                self.load_per_sector_of(lowest),
+                listed(&others)
             )
         };
         let mut reasons = vec![self.how_sure(lowest, &found.percentile)];
@@ -204,7 +212,7 @@ impl Writer<'_> {
             lower.find_map(|other| Some((other.percent, other.lowest?)))
         {
             reasons.push(format!(
-                "The lowest P{} is that of {}.",
+                "The lowest P{}, as computed, is that of {}.",
                 percent_words(percent),
                 self.load_of(lowest)
             ));
@@ -296,13 +304,13 @@ impl Writer<'_> {
         }];
         match best.lower.zip(best.upper) {
             Some((lower, upper)) => reasons.push(format!(
-                "At the truly best of these loads, whichever it is, the P{percent} lies between {} and {} (95 %, the choice \
-                 allowed for).",
+                "Whichever of these loads is truly the best, its P{percent} lies between {} and {} (95 %, wider because the same \
+                 patterns chose the load).",
                 self.units.number(lower),
                 self.units.length(upper)
             )),
             None if self.report.summary.patterns < choice.patterns_of_best => reasons.push(format!(
-                "Bounds on the P{percent} at the truly best of these loads, the choice allowed for, need {} patterns.",
+                "Bounds on the P{percent} of whichever of these loads is truly the best need {} patterns.",
                 choice.patterns_of_best
             )),
             None => {}
@@ -331,11 +339,12 @@ impl Writer<'_> {
         };
         let by_error = if could.is_empty() {
             format!(
-                "By what the rows state, numerical error cannot make the P{words} of another load the lowest."
+                "Even if every solution is off by its full error bound, {} keeps the lowest P{words}.",
+                self.load_of(lowest)
             )
         } else {
             format!(
-                "By what the rows state, numerical error could hide a lower P{words} at {}: more accurate solutions decide.",
+                "If every solution is off by its full error bound, P{words} may be lower at {}: more accurate solutions decide.",
                 listed(&could)
             )
         };
@@ -357,7 +366,7 @@ impl Writer<'_> {
         };
         let verdict = match around(found.lowest, found.highest) {
             Some((low, high)) => format!(
-                "Between {low} and {high} of the P{percent} at {}, by what the rows state.",
+                "Between {low} and {high} of the P{percent} at {}, if every solution is off by its full error bound.",
                 self.load_of(lowest)
             ),
             None => format!(
@@ -386,7 +395,7 @@ impl Writer<'_> {
             ));
         }
         reasons.push(format!(
-            "The bound takes every row as wrong by all that it states, and all in the same direction. {}",
+            "The bound takes all solutions as off in the same direction. {}",
             stated(rows)
         ));
         if let Some(corrected) = found.corrected {

@@ -192,7 +192,7 @@ pub(super) fn common_words(basis: &BasisSummary, common: &CommonErrors) -> Optio
         // The tuned wheel judges harmonics too, mistuned ones alone the modes.
         (
             HARMONIC_SAFETY_ON_RECEPTANCES,
-            "the worst of the wheels that judge",
+            "the worst of some tuned and mistuned wheels",
             "mistuned wheels",
         )
     } else {
@@ -202,7 +202,7 @@ pub(super) fn common_words(basis: &BasisSummary, common: &CommonErrors) -> Optio
         (
             common.harmonics.map(|change| safety * change),
             format!(
-                "harmonics left out, whatever its own change ({safety} times what they change on {judged_by})"
+                "harmonics left out, whatever its own change ({safety} times their change on {judged_by})"
             ),
         ),
         (common.peak, "the peak search".to_owned()),
@@ -218,7 +218,7 @@ pub(super) fn common_words(basis: &BasisSummary, common: &CommonErrors) -> Optio
         .into_iter()
         .filter_map(|(error, of)| Some(format!("{} for {of}", share_words(error?))))
         .collect();
-    (!parts.is_empty()).then(|| format!("Every row here states at least {}.", listed(&parts)))
+    (!parts.is_empty()).then(|| format!("Every solution here states at least {}.", listed(&parts)))
 }
 
 /// What was measured of the error before the settings were chosen by it.
@@ -253,7 +253,7 @@ pub(super) fn measured(error: NumericalError) -> String {
 pub(super) fn stated(rows: &StatedErrors) -> String {
     let mut parts = Vec::new();
     let sources = [
-        ("all that it states", &rows.stated),
+        ("full error bound", &rows.stated),
         ("change by finer sampling", &rows.sampling),
         ("change by the next harmonics", &rows.harmonics),
     ];
@@ -267,10 +267,10 @@ pub(super) fn stated(rows: &StatedErrors) -> String {
         }
     }
     if parts.is_empty() {
-        "These rows state no errors.".to_owned()
+        "These solutions state no errors.".to_owned()
     } else {
         format!(
-            "Median of the single rows: {}. A row may be further off than a percentile, which few rows make.",
+            "Median of the single solutions: {}. A solution may be further off than the percentile, which depends on few of them.",
             parts.join(", ")
         )
     }

@@ -184,11 +184,11 @@ impl GroupReport {
             return Vec::new();
         };
         let lowest = of_wheel.scenario;
-        let highest = { self.largest_stated_error(lowest) }.map(|error| peak * (1.0 + error));
+        let highest = { self.largest_stated_error(lowest) }.and_then(|error| within(peak, error).1);
         let others = self.worst_peaks().map(|(own, peak)| (own.scenario, peak));
         others
             .filter(|&(own, peak)| {
-                let bound = { self.largest_stated_error(own) }.map(|error| peak * (1.0 - error));
+                let bound = { self.largest_stated_error(own) }.map(|error| within(peak, error).0);
                 let could = bound
                     .zip(highest)
                     .is_none_or(|(bound, highest)| bound < highest);
@@ -202,6 +202,13 @@ impl GroupReport {
         let errors = { self.errors.iter() }.find(|errors| errors.scenario == scenario)?;
         Some(errors.rows.stated?.largest)
     }
+}
+
+/// Between which values the truth lies that an amplitude is off by a stated error of: that is relative to the truth. None above
+/// where it is as large as the truth.
+pub(super) fn within(amplitude_m: f64, stated: f64) -> (f64, Option<f64>) {
+    let above = (stated < 1.0).then(|| amplitude_m / (1.0 - stated));
+    (amplitude_m / (1.0 + stated), above)
 }
 
 /// The peak of one wheel of `mistuning.file` under one scenario.
@@ -339,7 +346,9 @@ pub(super) struct AtTheEnd {
     pub(super) what: String,
     /// What is wrong, in a few words.
     pub(super) headline: String,
-    /// The same, and where loads are added.
+    /// On which side of a load in newtons loads are missing; none where that is not one side.
+    pub(super) side: Option<&'static str>,
+    /// The headline, and where loads are added.
     pub(super) in_words: String,
 }
 
@@ -358,6 +367,17 @@ pub(super) fn at_the_end_by(
     if choice.best.is_none() || choice.enclosed {
         return None;
     }
+    let of = format!("P{}", percent_words(choice.percent));
+    end_at(report, group, lowest, &of)
+}
+
+/// What follows from a scenario with the lowest value `of` something being the last one studied on a side.
+pub(super) fn end_at(
+    report: &StudyReport,
+    group: &GroupReport,
+    lowest: usize,
+    of: &str,
+) -> Option<AtTheEnd> {
     let all = in_newtons(report, group);
     let (least, most) = (short_load(all.first()?.1), short_load(all.last()?.1));
     let own = &report.summary.scenarios[lowest];
@@ -371,7 +391,7 @@ pub(super) fn at_the_end_by(
         _ => ("more", "another one".to_owned()),
     };
     let what = match (own.normal_load_n, side) {
-        (None, _) => format!("{name} has the lowest P{}", percent_words(choice.percent)),
+        (None, _) => format!("{name} has the lowest {of}"),
         (_, "higher") => format!("{name} is the highest load studied"),
         (_, "lower") => format!("{name} is the lowest load studied"),
         _ => format!("{name} is the only load studied"),
@@ -389,6 +409,9 @@ pub(super) fn at_the_end_by(
     Some(AtTheEnd {
         consequence: format!("the best load may be {beyond}"),
         headline: format!("{what}: add {side} {loads}"),
+        side: ["lower", "higher"]
+            .into_iter()
+            .find(|&only| only == side && own.normal_load_n.is_some()),
         in_words: format!(
             "{of_setting}{what}, so that the optimum may lie beyond: add {side} {loads} to {key} and run again"
         ),

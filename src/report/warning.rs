@@ -270,11 +270,9 @@ impl Warning {
                 rows,
                 planned,
                 scenarios,
-                tolerance,
                 ..
             } => format!(
-                "{rows} of {planned} solutions change by more than the tolerance when refined{} at {}",
-                tolerance.in_brackets(),
+                "{rows} of {planned} solutions miss the accuracy asked for, at {}",
                 named(scenarios)
             ),
             Self::ReplacedBasis { .. } => "the basis of the study is replaced".to_owned(),

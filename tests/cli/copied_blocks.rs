@@ -6,10 +6,11 @@ use crate::blisk::{GOOD, Place};
 use crate::documentation::pages;
 
 /// Pages whose blocks are parts of a study, and how many each has.
-const PAGES: [(&str, usize); 3] = [
+const PAGES: [(&str, usize); 4] = [
     ("docs/study-file.md", 6),
     ("docs/reading-results.md", 1),
     ("docs/statistics.md", 1),
+    ("docs/sector-bundle.md", 1),
 ];
 
 /// Blocks of code of a page, fenced as `language` or, for TOML, indented.
@@ -47,7 +48,9 @@ fn blocks(page: &str, language: &str) -> Vec<String> {
         open = false;
     }
     // Indented are commands and formulas, too.
-    found.retain(|block| language != "toml" || block.starts_with('['));
+    found.retain(|block| {
+        language != "toml" || ["[", "schema"].iter().any(|start| block.starts_with(start))
+    });
     found
 }
 
@@ -100,6 +103,18 @@ fn blocks_of_the_pages_are_accepted_in_a_study() {
                     let said = format!("`{at}.{key}`");
                     assert!(page.contains(&said), "{name} says nothing of {said}");
                     table(&mut study, at).remove(key);
+                }
+            }
+            if block.contains("source = \"bundle\"") {
+                // A whole study of the bundle that the page begins with.
+                study = block.parse().expect("TOML");
+                let first = [
+                    "init --example lumped24 --out lumped24.toml",
+                    "model lumped24.toml --export bundle",
+                ];
+                for command in first {
+                    let words: Vec<&str> = command.split(' ').collect();
+                    assert_eq!(place.run(&words).code, 0, "{command}");
                 }
             }
             if block.contains("forces/cruise.csv") {

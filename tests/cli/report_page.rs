@@ -123,11 +123,11 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
     let higher = newtons().filter(|load| *load > own).reduce(f64::min);
     let next = match (lower, higher) {
         (Some(lower), Some(higher)) => {
-            format!("next loads studied: {lower} N and {higher} N")
+            format!("neighbours studied: {lower} N and {higher} N")
         }
-        (Some(lower), None) => format!("next load studied: {lower} N, none higher"),
+        (Some(lower), None) => format!("neighbour studied: {lower} N, none higher"),
         (None, higher) => format!(
-            "next load studied: {} N, none lower",
+            "neighbour studied: {} N, none lower",
             higher.expect("another load")
         ),
     };
@@ -141,7 +141,7 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
         assert!(!first.contains(sign), "{sign}");
     }
     // Of two loads that were calculated one is lower, with 95 % confidence unless others could be as low.
-    let sure = "95 % confidence: no other has a lower P95";
+    let sure = "lowest P95 studied (95 % confidence)";
     assert_eq!(load[2].contains(sure), others == 0, "{}", load[2]);
     // The other percentiles are a link away, which has the name of the section for a reader on paper.
     let link = "P99 needs 368 patterns; <a href=\"#numbers-0\">all percentiles</a>";
@@ -194,7 +194,7 @@ fn the_first_screen_says_which_of_the_two_errors_matters_more() {
     assert!((shown / largest - 1.0).abs() < 0.06, "{shown} {largest}");
     // The interval beside it in percent, and one verdict on both.
     let interval = bounds[1] - bounds[0];
-    let shares = numbers_in(error[2].split_once("than statistics (").expect("shares").1);
+    let shares = numbers_in(error[2].split_once(" the statistical ").expect("shares").1);
     let sides = [value - bounds[0], bounds[1] - value].map(|side| 100.0 * side / value);
     for (shown, side) in shares.iter().zip(sides) {
         assert!(
@@ -204,9 +204,9 @@ fn the_first_screen_says_which_of_the_two_errors_matters_more() {
         );
     }
     let verdicts = if (high - low) > interval {
-        ["more than statistics", "to be surer: more accuracy first"]
+        ["above the statistical", "to be surer: more accuracy first"]
     } else {
-        ["less than statistics", "to be surer: more patterns first"]
+        ["below the statistical", "to be surer: more patterns first"]
     };
     for verdict in verdicts {
         assert!(error[2].contains(verdict), "{}", error[2]);
@@ -306,7 +306,14 @@ fn a_load_at_the_end_of_those_studied_is_the_first_warning() {
         let [load, ..] = &big_numbers(&page)[..] else {
             panic!("three numbers: {page}");
         };
-        assert_eq!(load[1].split(" or ").next(), Some(own));
+        let is_load = own.ends_with(" N");
+        let side = match beyond.split_once(' ') {
+            Some(("above", _)) if is_load => vec![own, "higher"],
+            Some(("below", _)) if is_load => vec![own, "lower"],
+            _ => vec![own],
+        };
+        let words: Vec<&str> = load[1].split(" or ").take(side.len()).collect();
+        assert_eq!(words, side);
         let [of_load, of_percentile, _] = looks(between(&page, "id=\"answer-0\"", "</section>"));
         assert!(of_load && !of_percentile);
         // The card of the load says so before how sure the load is the lowest.
@@ -378,22 +385,22 @@ fn the_first_screen_says_where_numerical_error_could_hide_a_better_load() {
         let loads = hidden.join(", ");
         let section = between(&page, "id=\"answer-0\"", "</section>");
         let health = between(section, "<div class=\"health", "</div>");
-        let on_card = format!("numerical error leaves it open: {loads} may have a lower P95");
+        let on_card = format!("but numerical error: {loads} may have a lower P95");
         let in_box = format!("numerical error leaves it open whether {loads} is better");
         for (text, said) in [(load[2].as_str(), on_card), (health, in_box)] {
             assert_eq!(text.contains(&said), hides, "{said}: {text}");
         }
         // They stand beside the load that is the lowest as computed.
-        let or = load[1].split(" or ").skip(1).collect::<Vec<_>>();
+        let or = load[1].split(" or ").skip(1);
+        let or: Vec<&str> = or.filter(|word| word.ends_with(" N")).collect();
         assert_eq!(or, hidden, "{}", load[1]);
         // So they do in the answer in words.
-        let loads = format!("{} per sector", load[1]);
-        let which = if hides {
-            format!("{loads}, which numerical error leaves open: P95 = ")
-        } else {
-            format!("{loads}: P95 = ")
-        };
-        assert!(section.contains(&which), "{which}: {section}");
+        let answer = between(section, "<span class=\"verdict\">", "</span>");
+        let open = answer.starts_with("Numerical error leaves it open: P95 = ");
+        assert_eq!(open, hides, "{answer}");
+        for load in &hidden {
+            assert!(answer.contains(&format!(" µm at {load}")), "{answer}");
+        }
         // The error is yellow where its bounds are the wider ones.
         let lowest = report["groups"][0]["choices"][1]["lowest"]
             .as_u64()
@@ -448,8 +455,10 @@ fn a_load_of_a_speed_has_four_digits_and_its_speed() {
     let scenario = &report["summary"]["scenarios"][lowest as usize];
     let newtons = scenario["normal_load_n"].as_f64().expect("a load");
     let shown = numbers_in(&load[1])[0];
+    // It is the last of the speeds: a higher load may be better.
+    let own = load[1].strip_suffix(" or higher").expect("an open end");
     assert!(
-        (shown / newtons - 1.0).abs() < 1e-3 && load[1].len() <= 8,
+        (shown / newtons - 1.0).abs() < 1e-3 && own.len() <= 8,
         "{load:?}"
     );
     let speed = scenario["speed_rpm"].as_f64().expect("a speed");
@@ -458,7 +467,6 @@ fn a_load_of_a_speed_has_four_digits_and_its_speed() {
         "{load:?}"
     );
     // Loads follow from speeds, and have one rounding on the first screen.
-    let own = &load[1];
     let section = between(&page, "id=\"answer-0\"", "</section>").replace('\u{a0}', " ");
     let end = format!("{own} is the highest load studied: add higher speeds");
     assert!(section.contains(&end), "{section}");

@@ -133,8 +133,8 @@ pub(super) fn by_load(
     let mut svg = Svg::default();
     frame.draw(&mut svg);
     x.ticks(&mut svg, &frame, &loads);
+    let could = could_be_lowest(group, pointed);
     if let Some((scenario, words)) = &lowest {
-        let could = could_be_lowest(group, pointed);
         point_at(&mut svg, &frame, &x, &loads, (*scenario, words), &could);
     }
     curves(&mut svg, &frame, &x, &drawn);
@@ -143,7 +143,7 @@ pub(super) fn by_load(
     if let Some((_, words)) = &lowest {
         entries.push(LegendEntry::Point("lowest", Mark::Pointer, words));
     }
-    if lowest.is_some() && !could_be_lowest(group, pointed).is_empty() {
+    if lowest.is_some() && !could.is_empty() {
         entries.push(LegendEntry::Point("could", Mark::Pointer, "may be as low"));
     }
     legend(&mut svg, &entries);
@@ -157,7 +157,7 @@ pub(super) fn by_load(
         title: format!("{what} against damper normal load"),
         setting: setting(group),
         caption: caption(
-            pointed,
+            pointed.map(|choice| (choice, !could.is_empty())),
             report.summary.patterns,
             &drawn,
             amplitude.then_some(units),
@@ -247,15 +247,17 @@ fn could_be_lowest(group: &GroupReport, choice: Option<&LoadChoice>) -> Vec<usiz
             .map(|own| own.0)
             .collect()
     };
-    choice.map_or_else(of_wheels, could_be_as_low)
+    choice.map_or_else(of_wheels, |choice| could_be_as_low(group, choice))
 }
 
-/// Scenarios that have not the lowest percentile of the sample and could be as low.
-fn could_be_as_low(choice: &LoadChoice) -> Vec<usize> {
+/// Scenarios that have not the lowest percentile of the sample and could be as low, by statistics or by numerical error.
+fn could_be_as_low(group: &GroupReport, choice: &LoadChoice) -> Vec<usize> {
     let compared = choice.best.iter().flat_map(|best| &best.loads);
     let could = compared.filter(|own| own.could_be_best);
     let could = could.map(|own| own.scenario.scenario);
-    could.filter(|own| choice.lowest != Some(*own)).collect()
+    let could = could.filter(|own| choice.lowest != Some(*own));
+    let hidden = { choice.lowest }.map(|lowest| group.hidden_by_error(choice, lowest));
+    could.chain(hidden.into_iter().flatten()).collect()
 }
 
 /// Pointers above the plot at the load that is the lowest in this sample, and at those that could be: they have no
@@ -408,8 +410,9 @@ fn tuned_limits(loads: &[&ScenarioSummary], units: LengthUnit) -> String {
     }
 }
 
+/// What the figure shows; with a choice, whether other loads may be as low.
 fn caption(
-    choice: Option<&LoadChoice>,
+    choice: Option<(&LoadChoice, bool)>,
     patterns: u64,
     drawn: &[Load<'_>],
     amplitudes: Option<LengthUnit>,
@@ -476,13 +479,13 @@ fn caption(
         );
         return words;
     }
-    if let Some(choice) = choice {
+    if let Some((choice, others)) = choice {
         let percent = percent_words(choice.percent);
         let _ = write!(words, " Pointer above: the load with the lowest P{percent}");
-        words.push_str(if could_be_as_low(choice).is_empty() {
-            "."
+        words.push_str(if others {
+            "; hollow: those that may be as low, by statistics (95 % confidence) or numerical error."
         } else {
-            "; hollow: those that may be as low (95 % confidence)."
+            "."
         });
     }
     words

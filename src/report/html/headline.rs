@@ -1,6 +1,6 @@
 //! What the first screen says in large type: load, percentile and numerical error.
 
-use crate::population::statistics::{CONFIDENCE, Percentile};
+use crate::population::statistics::CONFIDENCE;
 use crate::report::numerical_error::Remedy;
 use crate::report::study_report::{at_the_end, neighbours, short_load};
 use crate::report::words::{LengthUnit, four_digits, percent_words, share_words, signed_share};
@@ -69,9 +69,12 @@ fn number_of_load(
     let load = short_load(scenario);
     let (label, value, told) = if choice.is_of_a_design() {
         let label = format!("Normal load per sector with the lowest P{percent}");
+        let beyond = at_the_end(report, group).and_then(|end| end.side);
         let hidden = hidden_by_error(report, group);
-        let loads: Vec<String> = std::iter::once(load).chain(hidden).collect();
-        (label, loads.join(" or "), None)
+        let loads = std::iter::once(load)
+            .chain(beyond.map(str::to_owned))
+            .chain(hidden);
+        (label, loads.collect::<Vec<_>>().join(" or "), None)
     } else {
         let told = format!("lowest P{percent}: at {load}");
         let value = "No design load yet".to_owned();
@@ -114,9 +117,9 @@ pub(super) fn beside(
     higher: Option<&ScenarioSummary>,
 ) -> Option<String> {
     match (lower.map(short_load), higher.map(short_load)) {
-        (Some(lower), Some(higher)) => Some(format!("next loads studied: {lower} and {higher}")),
-        (Some(next), None) => Some(format!("next load studied: {next}, none higher")),
-        (None, Some(next)) => Some(format!("next load studied: {next}, none lower")),
+        (Some(lower), Some(higher)) => Some(format!("neighbours studied: {lower} and {higher}")),
+        (Some(next), None) => Some(format!("neighbour studied: {next}, none higher")),
+        (None, Some(next)) => Some(format!("neighbour studied: {next}, none lower")),
         (None, None) => None,
     }
 }
@@ -215,7 +218,12 @@ fn notes_of_load(
         let others = others.join(", ");
         notes.push(format!("95 % confidence: {others} may be as good"));
     } else if choice.is_of_a_design() {
-        notes.push(format!("95 % confidence: no other has a lower P{percent}"));
+        notes.push(if hidden_by_error(report, group).is_empty() {
+            format!("lowest P{percent} studied (95 % confidence)")
+        } else {
+            let load = short_load(scenario);
+            format!("by statistics alone {load} (95 % confidence)")
+        });
     }
     if choice.is_of_a_design() {
         notes.push(by_numerical_error(report, group, choice, scenario.scenario));
@@ -242,7 +250,7 @@ fn by_numerical_error(
     let hidden = hidden_by_error(report, group);
     if !hidden.is_empty() {
         let (percent, loads) = (percent_words(choice.percent), hidden.join(", "));
-        return format!("numerical error leaves it open: {loads} may have a lower P{percent}");
+        return format!("but numerical error: {loads} may have a lower P{percent}");
     }
     match group.numerical_rivals(lowest, choice.percent) {
         Some(rivals) if rivals.unknown.is_empty() => "numerical error does not change this",
@@ -279,7 +287,23 @@ fn notes_of_percentile(
         _ => "no interval".to_owned(),
     });
     notes.extend(error.and_then(|own| with_numerical_error(own, units)));
-    notes.extend(beside_tuned(summary, choice, found));
+    let open = choice
+        .lowest
+        .map_or_else(Vec::new, |lowest| group.hidden_by_error(choice, lowest));
+    notes.extend(open.into_iter().filter_map(|scenario| {
+        let value = group
+            .error_of(scenario, choice.percent)?
+            .1
+            .percentile
+            .value?;
+        let load = short_load(&summary.scenarios[scenario]);
+        Some(format!("{} at {load}", units.length(value)))
+    }));
+    let value = found.and_then(|percentile| percentile.value);
+    notes.extend(
+        { choice.lowest.zip(value) }
+            .and_then(|(lowest, value)| beside_tuned(summary, lowest, value)),
+    );
     let stress = summary.stress_pa_per_m.zip(found.and_then(|own| own.value));
     notes.extend(stress.map(|(pa_per_m, value)| {
         format!("= {} MPa peak stress", four_digits(1e-6 * pa_per_m * value))
@@ -307,14 +331,14 @@ fn with_numerical_error(error: &PercentileError, units: LengthUnit) -> Option<St
     ))
 }
 
-/// The percentile beside the peak of the tuned wheel under the same load.
-fn beside_tuned(
+/// An amplitude beside the peak of the tuned wheel under the same load.
+pub(super) fn beside_tuned(
     summary: &StudySummary,
-    choice: &LoadChoice,
-    found: Option<Percentile>,
+    scenario: usize,
+    amplitude_m: f64,
 ) -> Option<String> {
-    let tuned = summary.scenarios[choice.lowest?].tuned_amplitude_m?;
-    let ratio = found?.value? / tuned;
+    let tuned = summary.scenarios[scenario].tuned_amplitude_m?;
+    let ratio = amplitude_m / tuned;
     let tuned = LengthUnit::of_summary(summary).length(tuned);
     Some(format!(
         "{} times the tuned wheel ({tuned})",

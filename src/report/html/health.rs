@@ -1,6 +1,7 @@
 //! Whether anything is wrong with a study: the worst consequence, and the warnings in a few words.
 
 use super::headline::hidden_by_error;
+use super::measured_wheels::{candidates, ends_among};
 use crate::report::study_report::{at_the_end, short_load};
 use crate::report::words::{scenarios_in_words, told_apart};
 use crate::report::{GroupReport, StudyReport, Warning};
@@ -141,6 +142,13 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
         }
         None if few => verdict = Some("Too few patterns for any percentile.".to_owned()),
         _ => {}
+    }
+    if let Some(group) = first {
+        let ends = ends_among(report, group, &candidates(group));
+        for end in ends.into_iter().rev() {
+            findings.insert(0, end.headline);
+            verdict = Some(sentence(&end.consequence));
+        }
     }
     if !open.is_empty() {
         findings.insert(

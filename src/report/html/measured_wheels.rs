@@ -1,7 +1,7 @@
 //! What the first screen says in large type of a few measured wheels, which have no percentile to design by.
 
-use super::headline::{BigNumber, beside};
-use crate::report::study_report::{neighbours, short_load};
+use super::headline::{BigNumber, beside, beside_tuned};
+use crate::report::study_report::{AtTheEnd, end_at, neighbours, short_load, within};
 use crate::report::words::{LengthUnit, percent_words, share_words};
 use crate::report::{GroupReport, StudyReport};
 
@@ -31,15 +31,13 @@ pub(super) fn of_measured_wheels(
             peaks.join(", ")
         ));
     }
-    let candidates: Vec<usize> = std::iter::once(lowest)
-        .chain(open.iter().map(|own| own.0))
-        .collect();
+    let candidates = candidates(group);
     let beyond = ends_among(report, group, &candidates);
     let is_open = !beyond.is_empty() || !open.is_empty();
-    of_load.extend(beyond);
-    let loads: Vec<String> = candidates
-        .iter()
-        .map(|&own| short_load(&scenarios[own]))
+    of_load.extend(beyond.iter().map(|end| end.consequence.clone()));
+    let loads: Vec<String> = { candidates.iter() }
+        .map(|&scenario| short_load(&scenarios[scenario]))
+        .chain(beyond.iter().filter_map(|end| end.side.map(str::to_owned)))
         .collect();
     let wheels = summary.patterns;
     let one = summary.is_of_one_wheel();
@@ -51,6 +49,14 @@ pub(super) fn of_measured_wheels(
             of_wheel.pattern
         )
     }];
+    let bound = group
+        .largest_stated_error(lowest)
+        .map(|error| within(peak, error));
+    if let Some((low, Some(high))) = bound {
+        let (low, high) = (units.number(low), units.length(high));
+        of_wheels.push(format!("with numerical error {low} to {high}"));
+    }
+    of_wheels.extend(beside_tuned(summary, lowest, peak));
     let mut designs = group.choices.iter().filter(|_| !one);
     of_wheels.extend(designs.rfind(|own| own.is_of_a_design()).map(|own| {
         let percent = percent_words(own.percent);
@@ -78,7 +84,7 @@ pub(super) fn of_measured_wheels(
             "Normal load per sector with the smallest worst peak".to_owned(),
             format!("Worst peak of the {wheels} wheels at {load}"),
             format!("Numerical error of the peaks at {load}"),
-            "the largest that a solution there states".to_owned(),
+            format!("the largest bound of the {wheels} solutions"),
         ]
     };
     let mut of_errors = vec![told];
@@ -87,9 +93,7 @@ pub(super) fn of_measured_wheels(
             .map(|&(own, _)| format!("at {}: {}", short_load(&scenarios[own]), error_at(own))),
     );
     if !one {
-        of_errors.push(format!(
-            "no statistics beside it: {wheels} wheels give no interval"
-        ));
+        of_errors.push(format!("{wheels} wheels give no statistical interval"));
     }
     let number = |label, value, notes, is_open| BigNumber {
         label,
@@ -106,17 +110,28 @@ pub(super) fn of_measured_wheels(
     ])
 }
 
-/// What follows where one of several loads is the last one studied on a side.
-fn ends_among(report: &StudyReport, group: &GroupReport, candidates: &[usize]) -> Vec<String> {
+/// What follows where the load of the wheels, or one that is left open, is the last one studied on a side.
+pub(super) fn ends_among(
+    report: &StudyReport,
+    group: &GroupReport,
+    candidates: &[usize],
+) -> Vec<AtTheEnd> {
     let scenarios = &report.summary.scenarios;
-    let beyond = candidates.iter().filter_map(|&own| {
-        let side = match neighbours(report, group, &scenarios[own]) {
-            [None, Some(_)] => "below",
-            [Some(_), None] => "above",
-            _ => return None,
-        };
-        let load = short_load(&scenarios[own]);
-        Some(format!("the best load may be {side} {load}"))
-    });
-    beyond.collect()
+    let is_last = |scenario: usize| {
+        let beside = neighbours(report, group, &scenarios[scenario]);
+        beside.iter().flatten().count() == 1
+    };
+    let last = candidates.iter().filter(|&&scenario| is_last(scenario));
+    last.filter_map(|&scenario| end_at(report, group, scenario, "worst peak"))
+        .collect()
+}
+
+/// The scenario with the smallest worst peak of the wheels, and those that the errors of the peaks leave open.
+pub(super) fn candidates(group: &GroupReport) -> Vec<usize> {
+    let lowest = group.smallest_worst_peak().map(|worst| worst.0.scenario);
+    let open = group.loads_left_open();
+    lowest
+        .into_iter()
+        .chain(open.iter().map(|load| load.0))
+        .collect()
 }

@@ -98,7 +98,7 @@ impl Axis {
         }
     }
 
-    /// Powers of ten, and 2 and 5 times them where there is room.
+    /// Powers of ten, and 2 and 5 times them where there is room; where those are few, numbers between them too.
     fn decades(&self, count: u32) -> Vec<(f64, String)> {
         if !(self.low > 0.0 && self.high.is_finite()) {
             return Vec::new();
@@ -116,6 +116,10 @@ impl Axis {
                 .collect()
         };
         let all = named(&[1.0, 2.0, 5.0]);
+        let between = named(&[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0]);
+        if all.len() <= 3 && between.len() as u32 <= count + 3 {
+            return between;
+        }
         let powers = named(&[1.0]);
         if all.len() as u32 <= count + 3 || powers.len() < 2 {
             all
@@ -204,6 +208,10 @@ mod tests {
         assert_eq!(
             names(&axis(Scale::Logarithmic, 3.0, 60.0), 6),
             ["5", "10", "20", "50"]
+        );
+        assert_eq!(
+            names(&axis(Scale::Logarithmic, 190.0, 1100.0), 6),
+            ["200", "300", "400", "500", "700", "1000"]
         );
         assert_eq!(
             names(&axis(Scale::Logarithmic, 0.01, 1e7), 5),
