@@ -151,10 +151,7 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
         }
     }
     if !open.is_empty() {
-        findings.insert(
-            0,
-            "more accuracy decides which load has the smallest worst peak".to_owned(),
-        );
+        findings.insert(0, "more accuracy decides between these loads".to_owned());
         verdict = Some("Numerical error leaves the load open.".to_owned());
     }
     let class = if verdict.is_some() { "look" } else { "good" };

@@ -16,21 +16,20 @@ pub(super) fn of_measured_wheels(
     let load = short_load(&summary.scenarios[lowest]);
     let scenarios = &summary.scenarios;
     let open = group.loads_left_open();
-    let mut of_load = Vec::new();
-    let [lower, higher] = neighbours(report, group, &scenarios[lowest]);
-    of_load.push(beside(lower, higher).unwrap_or("the only load studied".to_owned()));
     let units = LengthUnit::of_summary(summary);
-    if !open.is_empty() {
-        let peaks = { open.iter() }.map(|&(own, peak)| {
-            format!("{} at {}", units.length(peak), short_load(&scenarios[own]))
-        });
-        let peaks: Vec<String> = peaks.collect();
-        of_load.push(format!(
-            "numerical error leaves it open: {} at {load}, {}",
-            units.length(peak),
-            peaks.join(", ")
-        ));
-    }
+    let mut of_load = vec![if open.is_empty() {
+        let [lower, higher] = neighbours(report, group, &scenarios[lowest]);
+        beside(lower, higher).unwrap_or("the only load studied".to_owned())
+    } else {
+        let peaks = std::iter::once((lowest, peak)).chain(open.iter().copied());
+        let peaks: Vec<String> = peaks
+            .map(|(scenario, peak)| {
+                let load = short_load(&scenarios[scenario]);
+                format!("{} at {load}", units.length(peak))
+            })
+            .collect();
+        format!("open: {}", peaks.join(", "))
+    }];
     let candidates = candidates(group);
     let beyond = ends_among(report, group, &candidates);
     let is_open = !beyond.is_empty() || !open.is_empty();
@@ -44,10 +43,7 @@ pub(super) fn of_measured_wheels(
     let mut of_wheels = vec![if one {
         "the one wheel of mistuning.file: no percentile".to_owned()
     } else {
-        format!(
-            "wheel {}; another wheel may be higher than these {wheels}",
-            of_wheel.pattern
-        )
+        format!("wheel {}; other wheels may be higher", of_wheel.pattern)
     }];
     let bound = group
         .largest_stated_error(lowest)
@@ -60,10 +56,7 @@ pub(super) fn of_measured_wheels(
     let mut designs = group.choices.iter().filter(|_| !one);
     of_wheels.extend(designs.rfind(|own| own.is_of_a_design()).map(|own| {
         let percent = percent_words(own.percent);
-        format!(
-            "no percentile to design by: P{percent} needs {} wheels",
-            own.needed_patterns
-        )
+        format!("P{percent} needs {} wheels", own.needed_patterns)
     }));
     let error_at = |own: usize| {
         let stated = group.largest_stated_error(own);
