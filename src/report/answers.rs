@@ -291,9 +291,14 @@ impl Writer<'_> {
             { best.loads.iter() }.map(|load| self.scenario(load.scenario.scenario));
         let count = loads_and_limits(compared_loads);
         let compared = "all were compared on the same patterns";
+        let with = if self.group.hidden_by_error(choice, lowest).is_empty() {
+            "With"
+        } else {
+            "By statistics alone, with"
+        };
         let mut reasons = vec![if others.is_empty() {
             format!(
-                "With 95 % confidence none of the {count} studied has a lower P{percent}; {compared}."
+                "{with} 95 % confidence none of the {count} studied has a lower P{percent}; {compared}."
             )
         } else {
             format!(
@@ -304,8 +309,8 @@ impl Writer<'_> {
         }];
         match best.lower.zip(best.upper) {
             Some((lower, upper)) => reasons.push(format!(
-                "Whichever of these loads is truly the best, its P{percent} lies between {} and {} (95 %, wider because the same \
-                 patterns chose the load).",
+                "Whichever of these loads is truly the best, its P{percent} lies between {} and {} (95 %; that the same patterns \
+                 chose the load is allowed for, numerical error is not).",
                 self.units.number(lower),
                 self.units.length(upper)
             )),

@@ -59,10 +59,10 @@ impl Remedy {
     /// Which of the two errors matters more, with the `interval` of the percentile in words.
     pub(super) fn beside_statistics(self, interval: &str) -> String {
         let which = match self {
-            Self::Finer => "above",
-            Self::Patterns | Self::PatternsThenFiner => "below",
+            Self::Finer => "larger",
+            Self::Patterns | Self::PatternsThenFiner => "smaller",
         };
-        format!("{which} the statistical {interval}")
+        format!("{which} than statistics ({interval})")
     }
 
     /// In a few words.

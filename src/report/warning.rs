@@ -267,12 +267,9 @@ impl Warning {
                 named(scenarios)
             ),
             Self::BeyondTolerance {
-                rows,
-                planned,
-                scenarios,
-                ..
+                rows, scenarios, ..
             } => format!(
-                "{rows} of {planned} solutions miss the accuracy asked for, at {}",
+                "{rows} solutions miss the accuracy asked for, at {}",
                 named(scenarios)
             ),
             Self::ReplacedBasis { .. } => "the basis of the study is replaced".to_owned(),

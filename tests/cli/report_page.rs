@@ -141,7 +141,7 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
         assert!(!first.contains(sign), "{sign}");
     }
     // Of two loads that were calculated one is lower, with 95 % confidence unless others could be as low.
-    let sure = "lowest P95 studied (95 % confidence)";
+    let sure = "95 % sure that no other has a lower P95";
     assert_eq!(load[2].contains(sure), others == 0, "{}", load[2]);
     // The other percentiles are a link away, which has the name of the section for a reader on paper.
     let link = "P99 needs 368 patterns; <a href=\"#numbers-0\">all percentiles</a>";
@@ -194,7 +194,7 @@ fn the_first_screen_says_which_of_the_two_errors_matters_more() {
     assert!((shown / largest - 1.0).abs() < 0.06, "{shown} {largest}");
     // The interval beside it in percent, and one verdict on both.
     let interval = bounds[1] - bounds[0];
-    let shares = numbers_in(error[2].split_once(" the statistical ").expect("shares").1);
+    let shares = numbers_in(error[2].split_once(" than statistics (").expect("shares").1);
     let sides = [value - bounds[0], bounds[1] - value].map(|side| 100.0 * side / value);
     for (shown, side) in shares.iter().zip(sides) {
         assert!(
@@ -204,9 +204,12 @@ fn the_first_screen_says_which_of_the_two_errors_matters_more() {
         );
     }
     let verdicts = if (high - low) > interval {
-        ["above the statistical", "to be surer: more accuracy first"]
+        ["larger than statistics", "to be surer: more accuracy first"]
     } else {
-        ["below the statistical", "to be surer: more patterns first"]
+        [
+            "smaller than statistics",
+            "to be surer: more patterns first",
+        ]
     };
     for verdict in verdicts {
         assert!(error[2].contains(verdict), "{}", error[2]);
@@ -306,20 +309,19 @@ fn a_load_at_the_end_of_those_studied_is_the_first_warning() {
         let [load, ..] = &big_numbers(&page)[..] else {
             panic!("three numbers: {page}");
         };
-        let is_load = own.ends_with(" N");
-        let side = match beyond.split_once(' ') {
-            Some(("above", _)) if is_load => vec![own, "higher"],
-            Some(("below", _)) if is_load => vec![own, "lower"],
-            _ => vec![own],
+        let sign = match beyond.split_once(' ') {
+            Some(("above", _)) if own.ends_with(" N") => "≥ ",
+            Some(("below", _)) if own.ends_with(" N") => "≤ ",
+            _ => "",
         };
-        let words: Vec<&str> = load[1].split(" or ").take(side.len()).collect();
-        assert_eq!(words, side);
+        let first = load[1].split(" or ").next();
+        assert_eq!(first, Some(&*format!("{sign}{own}")));
         let [of_load, of_percentile, _] = looks(between(&page, "id=\"answer-0\"", "</section>"));
         assert!(of_load && !of_percentile);
         // The card of the load says so before how sure the load is the lowest.
         let (studied, _) = advice.split_once(": ").expect("what to do");
         let open = load[2].find(studied);
-        let sure = load[2].find("95 % confidence");
+        let sure = load[2].find("95 % ");
         assert!(
             open.is_some_and(|open| sure.is_none_or(|sure| open < sure)),
             "{}",
@@ -391,8 +393,7 @@ fn the_first_screen_says_where_numerical_error_could_hide_a_better_load() {
             assert_eq!(text.contains(&said), hides, "{said}: {text}");
         }
         // They stand beside the load that is the lowest as computed.
-        let or = load[1].split(" or ").skip(1);
-        let or: Vec<&str> = or.filter(|word| word.ends_with(" N")).collect();
+        let or: Vec<&str> = load[1].split(" or ").skip(1).collect();
         assert_eq!(or, hidden, "{}", load[1]);
         // So they do in the answer in words.
         let answer = between(section, "<span class=\"verdict\">", "</span>");
@@ -456,7 +457,7 @@ fn a_load_of_a_speed_has_four_digits_and_its_speed() {
     let newtons = scenario["normal_load_n"].as_f64().expect("a load");
     let shown = numbers_in(&load[1])[0];
     // It is the last of the speeds: a higher load may be better.
-    let own = load[1].strip_suffix(" or higher").expect("an open end");
+    let own = load[1].strip_prefix("≥ ").expect("an open end");
     assert!(
         (shown / newtons - 1.0).abs() < 1e-3 && own.len() <= 8,
         "{load:?}"

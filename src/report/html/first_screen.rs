@@ -75,6 +75,10 @@ fn marked_up(notes: &[String], more: Option<(String, String)>) -> Vec<String> {
     lines
 }
 
+/// Findings that are named, and on a telephone.
+const NAMED: usize = 4;
+const NAMED_NARROW: usize = 2;
+
 fn health_of(report: &StudyReport) -> String {
     let mut html = String::new();
     for (place, found) in health(report).into_iter().enumerate() {
@@ -86,8 +90,19 @@ fn health_of(report: &StudyReport) -> String {
         );
         if !found.findings.is_empty() {
             html.push_str("<ul>");
-            for finding in &found.findings {
-                let _ = write!(html, "<li>{}</li>", escaped(&tied(finding)));
+            let all = found.findings.len();
+            for (place, finding) in found.findings.iter().take(NAMED).enumerate() {
+                let class = if place < NAMED_NARROW {
+                    ""
+                } else {
+                    " class=\"spacious\""
+                };
+                let _ = write!(html, "<li{class}>{}</li>", escaped(&tied(finding)));
+            }
+            for (named, class) in [(NAMED, "spacious"), (NAMED_NARROW, "narrow")] {
+                if all > named {
+                    let _ = write!(html, "<li class=\"{class}\">and {} more</li>", all - named);
+                }
             }
             html.push_str("</ul>");
         }

@@ -2,7 +2,7 @@
 
 use crate::population::statistics::CONFIDENCE;
 use crate::report::numerical_error::Remedy;
-use crate::report::study_report::{at_the_end, neighbours, short_load};
+use crate::report::study_report::{AtTheEnd, at_the_end, neighbours, short_load};
 use crate::report::words::{LengthUnit, four_digits, percent_words, share_words, signed_share};
 use crate::report::{
     GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, StudySummary, Warning,
@@ -69,11 +69,9 @@ fn number_of_load(
     let load = short_load(scenario);
     let (label, value, told) = if choice.is_of_a_design() {
         let label = format!("Normal load per sector with the lowest P{percent}");
-        let beyond = at_the_end(report, group).and_then(|end| end.side);
-        let hidden = hidden_by_error(report, group);
-        let loads = std::iter::once(load)
-            .chain(beyond.map(str::to_owned))
-            .chain(hidden);
+        let end = at_the_end(report, group);
+        let load = with_end(load, end.as_ref());
+        let loads = std::iter::once(load).chain(hidden_by_error(report, group));
         (label, loads.collect::<Vec<_>>().join(" or "), None)
     } else {
         let told = format!("lowest P{percent}: at {load}");
@@ -89,6 +87,14 @@ fn number_of_load(
         is_open: !choice.is_of_a_design()
             || at_the_end(report, group).is_some()
             || !hidden_by_error(report, group).is_empty(),
+    }
+}
+
+/// A load, and the side of it where a better one may lie.
+pub(super) fn with_end(load: String, end: Option<&AtTheEnd>) -> String {
+    match end.and_then(|end| end.sign) {
+        Some(sign) => format!("{sign} {load}"),
+        None => load,
     }
 }
 
@@ -219,10 +225,10 @@ fn notes_of_load(
         notes.push(format!("95 % confidence: {others} may be as good"));
     } else if choice.is_of_a_design() {
         notes.push(if hidden_by_error(report, group).is_empty() {
-            format!("lowest P{percent} studied (95 % confidence)")
+            format!("95 % sure that no other has a lower P{percent}")
         } else {
             let load = short_load(scenario);
-            format!("by statistics alone {load} (95 % confidence)")
+            format!("by statistics alone {load} (95 % sure)")
         });
     }
     if choice.is_of_a_design() {
@@ -286,24 +292,24 @@ fn notes_of_percentile(
         }
         _ => "no interval".to_owned(),
     });
-    notes.extend(error.and_then(|own| with_numerical_error(own, units)));
-    let open = choice
-        .lowest
-        .map_or_else(Vec::new, |lowest| group.hidden_by_error(choice, lowest));
-    notes.extend(open.into_iter().filter_map(|scenario| {
-        let value = group
-            .error_of(scenario, choice.percent)?
-            .1
-            .percentile
-            .value?;
-        let load = short_load(&summary.scenarios[scenario]);
-        Some(format!("{} at {load}", units.length(value)))
-    }));
+    let between = error.and_then(|error| interval_with_error(error, units));
+    notes.extend(between.map(|between| format!("with numerical error {between}")));
     let value = found.and_then(|percentile| percentile.value);
     notes.extend(
         { choice.lowest.zip(value) }
             .and_then(|(lowest, value)| beside_tuned(summary, lowest, value)),
     );
+    let open = choice
+        .lowest
+        .map_or_else(Vec::new, |lowest| group.hidden_by_error(choice, lowest));
+    notes.extend(open.into_iter().filter_map(|scenario| {
+        let error = group.error_of(scenario, choice.percent)?.1;
+        let value = units.length(error.percentile.value?);
+        let load = short_load(&summary.scenarios[scenario]);
+        let between = interval_with_error(error, units);
+        let between = between.map_or(String::new(), |between| format!(", {between}"));
+        Some(format!("at {load}: {value}{between}"))
+    }));
     let stress = summary.stress_pa_per_m.zip(found.and_then(|own| own.value));
     notes.extend(stress.map(|(pa_per_m, value)| {
         format!("= {} MPa peak stress", four_digits(1e-6 * pa_per_m * value))
@@ -321,11 +327,11 @@ fn notes_of_percentile(
 }
 
 /// About how far the interval goes with the numerical error of the percentile at its ends.
-fn with_numerical_error(error: &PercentileError, units: LengthUnit) -> Option<String> {
+fn interval_with_error(error: &PercentileError, units: LengthUnit) -> Option<String> {
     let found = error.percentile;
     let (low, high) = (error.lowest? / found.value?, error.highest? / found.value?);
     Some(format!(
-        "with numerical error {} to {}",
+        "{} to {}",
         units.number(low * found.lower?),
         units.length(high * found.upper?)
     ))

@@ -6,9 +6,6 @@ use crate::report::study_report::{at_the_end, short_load};
 use crate::report::words::{scenarios_in_words, told_apart};
 use crate::report::{GroupReport, StudyReport, Warning};
 
-/// Warnings that the first screen names.
-const NAMED: usize = 4;
-
 /// Whether anything is wrong, with a study or with the setting that the page opens with.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Health {
@@ -16,7 +13,7 @@ pub(super) struct Health {
     pub(super) class: &'static str,
     /// The worst consequence.
     pub(super) verdict: String,
-    /// What there is to see, a line each.
+    /// What there is to see, what weighs most first.
     pub(super) findings: Vec<String>,
 }
 
@@ -40,7 +37,7 @@ pub(super) fn health(report: &StudyReport) -> Vec<Health> {
         return vec![Health {
             class: "bad",
             verdict: missing_here(report, shown),
-            findings: named(lines(report, &ordered)),
+            findings: lines(report, &ordered),
         }];
     }
     // Failed rows are those of the setting that lacks results, or hardly matter beside it.
@@ -50,7 +47,7 @@ pub(super) fn health(report: &StudyReport) -> Vec<Health> {
     let mut found = vec![Health {
         class: "bad",
         verdict: missing_elsewhere(report, &scenarios),
-        findings: named(lines(report, &elsewhere)),
+        findings: lines(report, &elsewhere),
     }];
     // The percentile says by itself how many patterns the next one needs.
     let few = |own: &&Warning| matches!(own, Warning::TooFewPatterns { .. });
@@ -79,16 +76,6 @@ fn capital(words: &str) -> String {
     let mut letters = words.chars();
     let head = letters.next().map(char::to_uppercase);
     head.into_iter().flatten().chain(letters).collect()
-}
-
-/// The first findings, and how many more there are.
-fn named(mut findings: Vec<String>) -> Vec<String> {
-    let more = findings.len().saturating_sub(NAMED);
-    findings.truncate(NAMED);
-    if more > 0 {
-        findings.push(format!("and {more} more"));
-    }
-    findings
 }
 
 /// What there is to say of the setting that the page opens with, where it lacks no result.
@@ -120,7 +107,10 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
     let open = first.map_or_else(Vec::new, GroupReport::loads_left_open);
     if let Some(end) = first.and_then(|group| at_the_end(report, group)) {
         findings.insert(0, end.headline);
-        verdict = Some(sentence(&end.consequence));
+        let words = hidden
+            .iter()
+            .fold(end.consequence, |words, load| words + ", or " + load);
+        verdict = Some(sentence(&words));
     }
     let others = report.groups.iter().skip(1);
     let others = others.filter(|group| at_the_end(report, group).is_some());
@@ -145,7 +135,7 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
     }
     if let Some(group) = first {
         let ends = ends_among(report, group, &candidates(group));
-        for end in ends.into_iter().rev() {
+        for (_, end) in ends.into_iter().rev() {
             findings.insert(0, end.headline);
             verdict = Some(sentence(&end.consequence));
         }
@@ -167,7 +157,7 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
                 }
             )
         }),
-        findings: named(findings),
+        findings,
     }
 }
 

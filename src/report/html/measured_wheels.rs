@@ -1,6 +1,6 @@
 //! What the first screen says in large type of a few measured wheels, which have no percentile to design by.
 
-use super::headline::{BigNumber, beside, beside_tuned};
+use super::headline::{BigNumber, beside, beside_tuned, with_end};
 use crate::report::study_report::{AtTheEnd, end_at, neighbours, short_load, within};
 use crate::report::words::{LengthUnit, percent_words, share_words};
 use crate::report::{GroupReport, StudyReport};
@@ -33,17 +33,22 @@ pub(super) fn of_measured_wheels(
     let candidates = candidates(group);
     let beyond = ends_among(report, group, &candidates);
     let is_open = !beyond.is_empty() || !open.is_empty();
-    of_load.extend(beyond.iter().map(|end| end.consequence.clone()));
+    of_load.extend(beyond.iter().map(|end| end.1.consequence.clone()));
     let loads: Vec<String> = { candidates.iter() }
-        .map(|&scenario| short_load(&scenarios[scenario]))
-        .chain(beyond.iter().filter_map(|end| end.side.map(str::to_owned)))
+        .map(|&scenario| {
+            let end = beyond.iter().find(|end| end.0 == scenario);
+            with_end(short_load(&scenarios[scenario]), end.map(|end| &end.1))
+        })
         .collect();
     let wheels = summary.patterns;
     let one = summary.is_of_one_wheel();
     let mut of_wheels = vec![if one {
         "the one wheel of mistuning.file: no percentile".to_owned()
     } else {
-        format!("wheel {}; other wheels may be higher", of_wheel.pattern)
+        format!(
+            "wheel {}; those not in the file may be higher",
+            of_wheel.pattern
+        )
     }];
     let bound = group
         .largest_stated_error(lowest)
@@ -56,13 +61,18 @@ pub(super) fn of_measured_wheels(
     let mut designs = group.choices.iter().filter(|_| !one);
     of_wheels.extend(designs.rfind(|own| own.is_of_a_design()).map(|own| {
         let percent = percent_words(own.percent);
-        format!("P{percent} needs {} wheels", own.needed_patterns)
+        format!(
+            "no statistics: P{percent} needs {} wheels",
+            own.needed_patterns
+        )
     }));
     let error_at = |own: usize| {
+        // Beside the peak, as the bounds in micrometres are.
         let stated = group.largest_stated_error(own);
-        stated.map_or_else(
+        let above = stated.and_then(|error| within(1.0, error).1);
+        above.map_or_else(
             || "no bound".to_owned(),
-            |own| format!("at most {}", share_words(own)),
+            |above| format!("at most {}", share_words(above - 1.0)),
         )
     };
     let [of_lowest, of_peak, of_error, told] = if one {
@@ -85,9 +95,6 @@ pub(super) fn of_measured_wheels(
         open.iter()
             .map(|&(own, _)| format!("at {}: {}", short_load(&scenarios[own]), error_at(own))),
     );
-    if !one {
-        of_errors.push(format!("{wheels} wheels give no statistical interval"));
-    }
     let number = |label, value, notes, is_open| BigNumber {
         label,
         value,
@@ -103,19 +110,19 @@ pub(super) fn of_measured_wheels(
     ])
 }
 
-/// What follows where the load of the wheels, or one that is left open, is the last one studied on a side.
+/// Which of the load of the wheels and those that are left open is the last one studied on a side, and what follows.
 pub(super) fn ends_among(
     report: &StudyReport,
     group: &GroupReport,
     candidates: &[usize],
-) -> Vec<AtTheEnd> {
+) -> Vec<(usize, AtTheEnd)> {
     let scenarios = &report.summary.scenarios;
     let is_last = |scenario: usize| {
         let beside = neighbours(report, group, &scenarios[scenario]);
         beside.iter().flatten().count() == 1
     };
     let last = candidates.iter().filter(|&&scenario| is_last(scenario));
-    last.filter_map(|&scenario| end_at(report, group, scenario, "worst peak"))
+    last.filter_map(|&scenario| Some((scenario, end_at(report, group, scenario, "worst peak")?)))
         .collect()
 }
 
