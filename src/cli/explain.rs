@@ -148,7 +148,7 @@ fn of_results(name: &str) -> Vec<Meaning> {
                 "" | "1" => column.description.to_owned(),
                 unit => format!("{}; unit {unit}", column.description),
             };
-            match found.iter_mut().find(|own| own.meaning == meaning) {
+            match found.iter_mut().find(|known| known.meaning == meaning) {
                 Some(same) => same.word = same.word.replace(')', &format!(", {table})")),
                 None => found.push(Meaning {
                     word: format!("{name} (column of {table})"),

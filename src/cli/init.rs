@@ -61,8 +61,8 @@ impl fmt::Display for WrittenStudy {
 /// # Errors
 /// There is no such study, a file exists already, or one cannot be written.
 pub fn write_example(name: &str, out: &Path) -> Result<WrittenStudy, Failure> {
-    let Some((_, example)) = EXAMPLES.iter().find(|(own, _)| *own == name) else {
-        let names = EXAMPLES.map(|(own, _)| own).join(", ");
+    let Some((_, example)) = EXAMPLES.iter().find(|(known, _)| *known == name) else {
+        let names = EXAMPLES.map(|(known, _)| known).join(", ");
         return Err(Failure::usage(format!(
             "example = {name} is not accepted; accepted: {names}"
         )));

@@ -91,7 +91,7 @@ pub(super) fn command(arguments: &ReportArguments) -> Result<ExitStatus, Failure
     } else if let Some(out) = &out {
         let warnings = found.warnings_in_words();
         let warnings: Vec<String> = { warnings.iter() }
-            .map(|own| format!("warning: {own}\n"))
+            .map(|warning| format!("warning: {warning}\n"))
             .collect();
         let between = if warnings.is_empty() { "" } else { "\n" };
         output::text(&format!(
@@ -151,7 +151,7 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<ExitStatus, Failure> {
 
 fn has_ending(path: &Path, ending: &str) -> bool {
     path.extension()
-        .is_some_and(|own| own.eq_ignore_ascii_case(ending))
+        .is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
 /// The group that the arguments name, or the only one.

@@ -300,7 +300,12 @@ fn in_words(curve: &TracedCurve) -> String {
         ended(curve.status[0]),
         ended(curve.status[1])
     )];
-    let unit = LengthUnit::of(curve.largest.as_ref().and_then(|own| own.amplitude_m));
+    let unit = LengthUnit::of(
+        curve
+            .largest
+            .as_ref()
+            .and_then(|largest| largest.amplitude_m),
+    );
     lines.extend(curve.folds.iter().map(|fold| {
         format!(
             "fold at {} Hz, {} ({})",

@@ -52,10 +52,10 @@ impl<'a> Check<'a> {
     fn table(&mut self, place: &str, name: &str, table: &Table) {
         let children = self.children(name);
         for (key, value) in table {
-            let own = join(place, key);
+            let full_place = join(place, key);
             let full = join(name, key);
             if let Some(child) = children.iter().find(|child| child.key == full) {
-                self.value(&own, child, value);
+                self.value(&full_place, child, value);
                 continue;
             }
             let accepted: Vec<String> = children
@@ -66,7 +66,7 @@ impl<'a> Check<'a> {
                 suggestion: nearest(key, &accepted),
                 accepted,
             };
-            self.add(&own, problem);
+            self.add(&full_place, problem);
         }
         for child in children {
             let key = split(&child.key).1;

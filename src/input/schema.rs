@@ -23,9 +23,9 @@ pub(crate) fn schema_of(title: &str, keys: &[KeySpec]) -> Json {
     // What has all its keys by now is also what a list is made of.
     for key in keys.iter().filter(|key| key.value == Value::TableOrTables) {
         let (table, name) = place(&mut schema, &key.key);
-        let own = &mut table["properties"][name];
-        let one = own.take();
-        *own = json!({
+        let property = &mut table["properties"][name];
+        let one = property.take();
+        *property = json!({
             "description": one["description"],
             "anyOf": [one, { "type": "array", "items": one, "minItems": 1 }],
         });

@@ -127,7 +127,9 @@ impl Problem {
                     ("seed", seed),
                     ("patterns", JUDGED.into()),
                 ]);
-                let deviations = standard_deviations.iter().map(|&own| Value::Float(own));
+                let deviations = standard_deviations
+                    .iter()
+                    .map(|&deviation| Value::Float(deviation));
                 sweep.insert(
                     "standard_deviation".to_owned(),
                     Value::Array(deviations.collect()),
@@ -177,7 +179,7 @@ impl Problem {
             "contact",
             self.contact
                 .as_ref()
-                .and_then(|own| Value::try_from(own).ok()),
+                .and_then(|contact| Value::try_from(contact).ok()),
         );
         put(study, "damping", Some(table(vec![damping])));
         put(study, "excitation", Some(table(excitation)));
@@ -196,6 +198,8 @@ pub(super) fn put(table: &mut Table, key: &str, value: Option<impl Into<Value>>)
 
 /// Whole numbers as a list.
 pub(super) fn list(numbers: &[u32]) -> Value {
-    let numbers = numbers.iter().map(|&own| Value::Integer(i64::from(own)));
+    let numbers = numbers
+        .iter()
+        .map(|&number| Value::Integer(i64::from(number)));
     Value::Array(numbers.collect())
 }

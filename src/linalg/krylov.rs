@@ -23,10 +23,13 @@ pub fn gmres(
         let mut vector = product(&basis[triangle.len()]);
         let mut column = vec![0.0; basis.len()];
         for _ in 0..2 {
-            for (share, own) in column.iter_mut().zip(&basis) {
-                let part = dot(own, &vector);
+            for (share, direction) in column.iter_mut().zip(&basis) {
+                let part = dot(direction, &vector);
                 *share += part;
-                vector.iter_mut().zip(own).for_each(|(v, o)| *v -= part * o);
+                vector
+                    .iter_mut()
+                    .zip(direction)
+                    .for_each(|(v, o)| *v -= part * o);
             }
         }
         let norm = dot(&vector, &vector).sqrt();
@@ -59,8 +62,10 @@ pub fn gmres(
         shares[row] = (shares[row] - known) / triangle[row][row];
     }
     let mut x = vec![0.0; right.len()];
-    for (share, own) in shares.iter().zip(&basis) {
-        x.iter_mut().zip(own).for_each(|(x, o)| *x += share * o);
+    for (share, direction) in shares.iter().zip(&basis) {
+        x.iter_mut()
+            .zip(direction)
+            .for_each(|(x, o)| *x += share * o);
     }
     (x, count)
 }
@@ -79,8 +84,8 @@ mod tests {
         let (x, products) = gmres(&[1.0, 2.0, 3.0], 1e-3, 120, product);
         let back = product(&x);
         assert!(products <= 3);
-        for (b, own) in [1.0, 2.0, 3.0].iter().zip(&back) {
-            assert!((b - own).abs() < 4e-3, "{back:?}");
+        for (b, component) in [1.0, 2.0, 3.0].iter().zip(&back) {
+            assert!((b - component).abs() < 4e-3, "{back:?}");
         }
     }
 }

@@ -127,14 +127,14 @@ impl Loops for Orthogonalised<'_> {
         let [mut share] = dots([self.columns.column(0)], self.vector);
         for at in 0..=last {
             self.shares[at] += share;
-            let own = self.columns.column(at);
+            let column = self.columns.column(at);
             if at == last {
-                for (v, o) in self.vector.iter_mut().zip(own) {
+                for (v, o) in self.vector.iter_mut().zip(column) {
                     *v -= share * o;
                 }
                 return;
             }
-            share = take_off(self.vector, share, own, self.columns.column(at + 1));
+            share = take_off(self.vector, share, column, self.columns.column(at + 1));
         }
     }
 }
@@ -241,12 +241,12 @@ mod tests {
         });
         for (at, share) in shares.iter().enumerate() {
             let column = columns.column(at);
-            let own = dot(column, &plain);
-            assert!(share.total_cmp(&(0.5 + own)).is_eq());
+            let product = dot(column, &plain);
+            assert!(share.total_cmp(&(0.5 + product)).is_eq());
             plain
                 .iter_mut()
                 .zip(column)
-                .for_each(|(p, c)| *p -= own * c);
+                .for_each(|(p, c)| *p -= product * c);
         }
         assert_eq!(left, plain);
     }

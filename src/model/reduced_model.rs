@@ -124,7 +124,7 @@ impl ReducedModel {
     /// Factor on the force vector under an engine order.
     #[must_use]
     pub fn force_factor(&self, engine_order: u32) -> f64 {
-        let of = |&&(own, _): &&(u32, f64)| own == engine_order;
+        let of = |&&(order, _): &&(u32, f64)| order == engine_order;
         self.force_factors
             .iter()
             .find(of)

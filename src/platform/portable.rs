@@ -55,13 +55,16 @@ mod tests {
 
     #[test]
     fn without_proc_a_living_process_lives_and_one_that_has_ended_does_not() {
-        let own = std::process::id();
-        assert!(process_start(own).is_some_and(|start| start > 0));
-        assert_eq!(process_start(own), process_start(own));
+        let current_id = std::process::id();
+        assert!(process_start(current_id).is_some_and(|start| start > 0));
+        assert_eq!(process_start(current_id), process_start(current_id));
         let mut child = sleeper();
         let number = child.id();
         let start = process_start(number).expect("it lives");
-        assert!(Some(start) >= process_start(own), "it was started later");
+        assert!(
+            Some(start) >= process_start(current_id),
+            "it was started later"
+        );
         child.kill().expect("killed");
         child.wait().expect("ended");
         assert_eq!(process_start(number), None);

@@ -122,15 +122,15 @@ pub(super) fn choose_basis_under(
         let errors = of_cases(&models)?;
         let errors = errors.iter().zip(&reference);
         let error = errors
-            .map(|(own, reference)| own.error(reference))
+            .map(|(peaks, reference)| peaks.error(reference))
             .try_fold(0.0, |largest: f64, error| Some(largest.max(error?)));
-        let own = BasisError {
+        let tried_choice = BasisError {
             basis: choice.to_string(),
             vectors: vectors(reduction, choice),
             error,
         };
         let error = error.unwrap_or(f64::INFINITY);
-        tried.push((choice, own, error));
+        tried.push((choice, tried_choice, error));
         if error <= options.error {
             break;
         }
@@ -155,7 +155,10 @@ pub(super) fn choose_basis_under(
                 .zip(cases)
                 .filter_map(|(peaks, (_, judged))| peaks.reach(reduction, *judged))
                 .min_by(f64::total_cmp),
-            tried: tried.into_iter().map(|(_, own, _)| own).collect(),
+            tried: tried
+                .into_iter()
+                .map(|(_, tried_choice, _)| tried_choice)
+                .collect(),
         },
     ))
 }
@@ -230,8 +233,8 @@ impl Peaks {
         self.0
             .iter()
             .zip(&reference.0)
-            .map(|(own, reference)| {
-                Some((own.amplitude_m()? / reference.amplitude_m()? - 1.0).abs())
+            .map(|(peak, reference)| {
+                Some((peak.amplitude_m()? / reference.amplitude_m()? - 1.0).abs())
             })
             .try_fold(0.0, |largest: f64, error| Some(largest.max(error?)))
     }

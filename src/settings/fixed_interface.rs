@@ -182,11 +182,12 @@ struct TunedPeak {
 }
 
 /// Largest relative difference of the peaks that both have; none without any.
-fn largest_change(own: &[Option<TunedPeak>], other: &[Option<TunedPeak>]) -> Option<f64> {
-    own.iter()
+fn largest_change(peaks: &[Option<TunedPeak>], other: &[Option<TunedPeak>]) -> Option<f64> {
+    peaks
+        .iter()
         .zip(other)
-        .filter_map(|(own, other)| Some((own.as_ref()?, other.as_ref()?)))
-        .map(|(own, other)| (other.amplitude_m / own.amplitude_m - 1.0).abs())
+        .filter_map(|(peak, other)| Some((peak.as_ref()?, other.as_ref()?)))
+        .map(|(peak, other)| (other.amplitude_m / peak.amplitude_m - 1.0).abs())
         .reduce(f64::max)
 }
 
@@ -220,8 +221,8 @@ impl ComparedCases {
     ) -> Result<Vec<Option<TunedPeak>>, PipelineError> {
         let mut peaks = Vec::new();
         for (case, compared) in &self.0 {
-            let own = peaks.len()..peaks.len() + compared.cases.len();
-            let known = known.map(|known| &known[own]);
+            let places = peaks.len()..peaks.len() + compared.cases.len();
+            let known = known.map(|known| &known[places]);
             peaks.extend(compared.peaks(&Arc::new(case.of(model)), known)?);
         }
         Ok(peaks)

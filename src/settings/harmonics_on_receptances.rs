@@ -63,8 +63,13 @@ impl<'a> Judges<'a> {
         patterns: &[Pattern],
     ) -> Self {
         let study = &excitation.study;
-        let own = excitation.of(model);
-        let force = |&order: &u32| (order, WaveForce::new(&own, order, study.amplitude_n));
+        let loaded_model = excitation.of(model);
+        let force = |&order: &u32| {
+            (
+                order,
+                WaveForce::new(&loaded_model, order, study.amplitude_n),
+            )
+        };
         let tuned = (
             EngineWheel::new(None, model.sectors),
             ContactFactors::default(),
@@ -93,7 +98,7 @@ impl<'a> Judges<'a> {
         set: &[u32],
         reserve: Option<&[u32]>,
     ) -> Result<Vec<JudgedSet<'_>>, TransformError> {
-        let nonlinear = |own: &&ContactCondition| own.normal_load_n().is_some();
+        let nonlinear = |condition: &&ContactCondition| condition.normal_load_n().is_some();
         let conditions: Vec<ContactCondition> =
             conditions.iter().filter(nonlinear).copied().collect();
         let cases: Vec<(u32, ContactCondition)> = self
@@ -135,18 +140,18 @@ impl<'a> Judges<'a> {
         conditions: &[ContactCondition],
         sets: &[JudgedSet<'_>],
     ) -> Result<Vec<JudgedTop>, TransformError> {
-        let is_linear = |own: &&ContactCondition| own.normal_load_n().is_none();
+        let is_linear = |condition: &&ContactCondition| condition.normal_load_n().is_none();
         let linear: Vec<ContactCondition> = conditions.iter().filter(is_linear).copied().collect();
         let orders = self.forces.iter().map(|(order, _)| *order);
         let limits = orders.flat_map(|order| linear.iter().map(move |&limit| (order, limit)));
         let limits = self.with_sets(limits.map(|case| choice_of(case, &[1])).collect())?;
         let peaks = limits.iter().chain(sets).flat_map(|set| {
             let peaks = set.peaks.iter().enumerate();
-            peaks.map(move |(wheel, own)| (wheel, own, &set.choice))
+            peaks.map(move |(wheel, peak)| (wheel, peak, &set.choice))
         });
         let peaks: Vec<(usize, &JudgedPeak<'_>, &HarmonicChoice)> = peaks.collect();
         let tops = peaks.into_par_iter();
-        let tops = tops.filter_map(|(wheel, own, choice)| self.top_of(own, wheel, choice));
+        let tops = tops.filter_map(|(wheel, peak, choice)| self.top_of(peak, wheel, choice));
         Ok(tops.collect())
     }
 
@@ -173,17 +178,17 @@ impl<'a> Judges<'a> {
     /// Relative changes of `tops` of other wheels to those of these, the same ones on another engine, each climbed from where it was
     /// found; of those that are found on both.
     pub(super) fn changes(&self, tops: &[JudgedTop]) -> Vec<(TopOf, f64)> {
-        let change = |own: &JudgedTop| {
-            let (engine_order, condition) = own.of;
-            let row = self.row(own.wheel, engine_order, condition)?;
+        let change = |top: &JudgedTop| {
+            let (engine_order, condition) = top.of;
+            let row = self.row(top.wheel, engine_order, condition)?;
             let top_m = receptance_top_m(
                 &row,
-                &own.points,
-                &own.point,
-                own.step_hz,
+                &top.points,
+                &top.point,
+                top.step_hz,
                 COMPARED_TOLERANCE,
             );
-            Some((own.of, (top_m? / own.amplitude_m - 1.0).abs()))
+            Some((top.of, (top_m? / top.amplitude_m - 1.0).abs()))
         };
         tops.par_iter().filter_map(change).collect()
     }
@@ -268,8 +273,8 @@ impl<'a> Judges<'a> {
             Some(errors.map(of).fold(0.0, f64::max))
         };
         let choice = HarmonicChoice {
-            remainder: largest(|own| own.harmonics.abs() + own.unsettled),
-            sampling: largest(|own| own.sampling.abs()),
+            remainder: largest(|estimate| estimate.harmonics.abs() + estimate.unsettled),
+            sampling: largest(|estimate| estimate.sampling.abs()),
             ..choice
         };
         Ok(JudgedSet { choice, peaks })

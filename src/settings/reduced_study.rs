@@ -77,14 +77,17 @@ impl Stored {
 
     /// Whether sectors, contact and harmonic sets are as many as `study` and `sector` have.
     pub(super) fn fits(&self, study: &Study, sector: &SectorModel) -> bool {
-        let orders: usize = study.excited_orders().iter().map(|own| own.1.len()).sum();
+        let orders: usize = study.excited_orders().iter().map(|case| case.1.len()).sum();
         let nonlinear = study.contacts.iter();
         let loads = nonlinear
-            .filter(|own| own.normal_load_n().is_some())
+            .filter(|contact| contact.normal_load_n().is_some())
             .count();
         let beyond = self.beyond.as_ref();
-        let models = [Some(&self.model), beyond.map(|own| &own.model)];
-        let sets = [Some(&self.harmonics), beyond.map(|own| &own.harmonics)];
+        let models = [Some(&self.model), beyond.map(|beyond| &beyond.model)];
+        let sets = [
+            Some(&self.harmonics),
+            beyond.map(|beyond| &beyond.harmonics),
+        ];
         self.model.contact.weights.len() == sector.contact_pairs.len()
             && models
                 .into_iter()
@@ -199,15 +202,15 @@ pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> Result<String
 pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
     let every_harmonic = study.solver.harmonics == Harmonics::Auto && study.accuracy.is_none();
     // A law of constant normal load acts along the tangents alone.
-    let rubs = |own: [bool; 2]| own.contains(&true);
+    let rubs = |tangents: [bool; 2]| tangents.contains(&true);
     let can_rub = || pair_tangents(sector).into_iter().any(rubs);
     let ready = || {
         let contact = study.contact.as_ref();
         !sector.contact_pairs.is_empty()
-            && contact.is_none_or(|own| own.law.has_variable_load() || can_rub())
+            && contact.is_none_or(|contact| contact.law.has_variable_load() || can_rub())
             && (sector.dofs.len() > WHOLE_SPACE_DOFS || every_harmonic)
-            && contact.is_none_or(|own| own.in_place_of.is_none())
-            && against_receptances(contact.map(|own| own.ring), &study.solver).is_empty()
+            && contact.is_none_or(|contact| contact.in_place_of.is_none())
+            && against_receptances(contact.map(|contact| contact.ring), &study.solver).is_empty()
     };
     match study.reduction.basis {
         Basis::TunedReceptances => true,
@@ -229,7 +232,7 @@ fn reduced(
     let excitations = excitations(study);
     let cases: Vec<Case<'_>> = excitations
         .iter()
-        .map(|own| Case::new(own, &full))
+        .map(|excitation| Case::new(excitation, &full))
         .collect();
     let sets = |tolerance| -> Result<Vec<Sets>, PipelineError> {
         cases.iter().map(|case| case.sets(tolerance)).collect()
@@ -331,9 +334,9 @@ fn reduced_on_receptances(study: &Study, sector: &SectorModel) -> Result<Stored,
     let harmonics = harmonics.concat();
     let of_reserve = |set: &Vec<u32>| {
         let choices = harmonics.iter();
-        let case = |own: &HarmonicChoice| HarmonicChoice {
-            reduced_model: own.reduced_model,
-            ..choice_of((own.engine_order, own.contact), set)
+        let case = |choice: &HarmonicChoice| HarmonicChoice {
+            reduced_model: choice.reduced_model,
+            ..choice_of((choice.engine_order, choice.contact), set)
         };
         choices.map(case).collect()
     };
@@ -391,15 +394,19 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
     let nonlinear = study
         .contacts
         .iter()
-        .filter(|own| own.normal_load_n().is_some());
+        .filter(|contact| contact.normal_load_n().is_some());
     let loads = nonlinear.count();
     let mut first = 0;
     let excitations = excitations(study);
-    let engine = stored.engine.as_ref().map(|own| {
+    let engine = stored.engine.as_ref().map(|engine_model| {
         let made = stored.receptances.clone().map(Ok);
-        let engine = made
-            .unwrap_or_else(|| engine_of(own, &engine_options(study, &excitations, &own.model)));
-        Ok::<_, PipelineError>((own, engine?))
+        let engine = made.unwrap_or_else(|| {
+            engine_of(
+                engine_model,
+                &engine_options(study, &excitations, &engine_model.model),
+            )
+        });
+        Ok::<_, PipelineError>((engine_model, engine?))
     });
     let engine = engine.transpose()?;
     solver_under(&excitations, |case| {
@@ -410,9 +417,9 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
         let solver = RowSolver::new(Arc::new(case.of(&stored.model)), settings.clone())?
             .with_choices(stored.harmonics[sets.clone()].to_vec(), error)?;
         let on_engine = |solver: RowSolver| match &engine {
-            Some((own, engine)) => {
+            Some((engine_model, engine)) => {
                 let orders = &case.study.engine_orders;
-                solver.with_engine(Arc::clone(engine), &case.of(&own.model), orders)
+                solver.with_engine(Arc::clone(engine), &case.of(&engine_model.model), orders)
             }
             None => Ok(solver),
         };

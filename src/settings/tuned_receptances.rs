@@ -66,15 +66,15 @@ pub(super) fn engine_options(
     }
 }
 
-/// The engine on `own`.
+/// The engine on `engine_model`.
 ///
 /// # Errors
 /// The modes of a nodal diameter are not found.
 pub(super) fn engine_of(
-    own: &EngineModel,
+    engine_model: &EngineModel,
     options: &EngineOptions,
 ) -> Result<Arc<ReceptanceEngine>, PipelineError> {
-    let engine = ReceptanceEngine::new(own, options);
+    let engine = ReceptanceEngine::new(engine_model, options);
     Ok(Arc::new(engine.ok_or_else(no_modes)?))
 }
 
@@ -159,7 +159,7 @@ pub(super) fn refined<'a>(
     chosen: impl for<'j> Fn(&'j Judges<'_>) -> Result<Vec<JudgedSet<'j>>, TransformError>,
 ) -> Result<Refined<'a>, PipelineError> {
     let fixed = study.reduction.craig_bampton_modes;
-    let mut modes = fixed.map_or(FIRST_MODES, |own| 2 * own);
+    let mut modes = fixed.map_or(FIRST_MODES, |modes| 2 * modes);
     let mut harmonics: Option<Vec<Vec<HarmonicChoice>>> = None;
     let mut tried = Vec::new();
     let mut shape_factor = 1;
@@ -176,16 +176,16 @@ pub(super) fn refined<'a>(
         let engine = Made::new(study, &taken, excitations, shape_factor)?;
         let shaped = Shaped::new(study, engine, excitations, shape_factor)?;
         shape_factor = shaped.factor;
-        let own = shaped.engine.judges(excitations, patterns);
+        let judges = shaped.engine.judges(excitations, patterns);
         let is_exact = other.is_none() && shaped.finer.is_none();
         let (mut sets, tops) = match harmonics.take() {
-            None => sets_and_tops(&own, study, !is_exact, |own, _| chosen(own))?,
+            None => sets_and_tops(&judges, study, !is_exact, |of_case, _| chosen(of_case))?,
             Some(sets) if is_exact => (sets, Vec::new()),
-            Some(sets) => sets_and_tops(&own, study, true, |own, case| {
-                own.with_sets(sets[case].clone())
+            Some(sets) => sets_and_tops(&judges, study, true, |of_case, case| {
+                of_case.with_sets(sets[case].clone())
             })?,
         };
-        drop(own);
+        drop(judges);
         let mut of_modes = Vec::new();
         let change = match &other {
             None => Some(0.0),
@@ -209,11 +209,11 @@ pub(super) fn refined<'a>(
         let mut shaped = shaped.with_change(of_friction(&of_shapes, &study.contacts));
         while shaped.lacks_shapes(study) {
             shaped = shaped.with_twice_the_shapes(study, excitations)?;
-            let own = shaped.engine.judges(excitations, patterns);
-            let (_, tops) = sets_and_tops(&own, study, true, |own, case| {
-                own.with_sets(sets[case].clone())
+            let judges = shaped.engine.judges(excitations, patterns);
+            let (_, tops) = sets_and_tops(&judges, study, true, |of_case, case| {
+                of_case.with_sets(sets[case].clone())
             })?;
-            drop(own);
+            drop(judges);
             of_shapes = shaped.changes(&tops, excitations, patterns);
             shaped = shaped.with_change(of_friction(&of_shapes, &study.contacts));
         }
@@ -254,18 +254,18 @@ type SetsAndTops = (Vec<Vec<HarmonicChoice>>, Vec<Vec<JudgedTop>>);
 
 /// The sets of harmonics under each force vector, and the tops of the wheels that judge with them, where these are asked for.
 fn sets_and_tops<'j>(
-    own: &'j [Judges<'_>],
+    judges: &'j [Judges<'_>],
     study: &Study,
     with_tops: bool,
     judged: impl Fn(&'j Judges<'_>, usize) -> Result<Vec<JudgedSet<'j>>, TransformError>,
 ) -> Result<SetsAndTops, TransformError> {
     let (mut sets, mut tops) = (Vec::new(), Vec::new());
-    for (case, own) in own.iter().enumerate() {
-        let judged = judged(own, case)?;
+    for (case, of_case) in judges.iter().enumerate() {
+        let judged = judged(of_case, case)?;
         if with_tops {
-            tops.push(own.judged_tops(&study.contacts, &judged)?);
+            tops.push(of_case.judged_tops(&study.contacts, &judged)?);
         }
-        sets.push(judged.into_iter().map(|own| own.choice).collect());
+        sets.push(judged.into_iter().map(|set| set.choice).collect());
     }
     Ok((sets, tops))
 }
@@ -287,22 +287,22 @@ fn changes_of(tops: &[Vec<JudgedTop>], others: &[Judges<'_>]) -> Vec<Change> {
 fn of_friction(changes: &[Change], conditions: &[ContactCondition]) -> [f64; 2] {
     let loads = conditions
         .iter()
-        .filter(|own| own.normal_load_n().is_some());
+        .filter(|condition| condition.normal_load_n().is_some());
     let loads: Vec<ContactCondition> = loads.copied().collect();
     let places = [0, loads.len() / 2, loads.len().saturating_sub(1)];
     let is_spread =
-        |own: ContactCondition| places.iter().any(|&place| loads.get(place) == Some(&own));
+        |load: ContactCondition| places.iter().any(|&place| loads.get(place) == Some(&load));
     [true, false].map(|wanted| {
-        let own = { changes.iter() }.filter(|((_, (_, condition)), _)| {
+        let wanted_changes = { changes.iter() }.filter(|((_, (_, condition)), _)| {
             condition.normal_load_n().is_some() && is_spread(*condition) == wanted
         });
-        own.map(|own| own.1).fold(0.0, f64::max)
+        wanted_changes.map(|change| change.1).fold(0.0, f64::max)
     })
 }
 
 /// The largest of some changes; none of none.
 fn largest(changes: &[Change]) -> Option<f64> {
-    changes.iter().map(|own| own.1).reduce(f64::max)
+    changes.iter().map(|change| change.1).reduce(f64::max)
 }
 
 /// What the reduced model leaves out, by its blade shapes and by its fixed-interface modes.
@@ -319,7 +319,7 @@ impl ModelErrors<'_> {
     /// Under one engine order and condition, so that it does not depend on the other loads of a study; where no top is known there, the
     /// largest of all.
     fn under(&self, case: usize, of: TopOf) -> Option<f64> {
-        let here = |own: &Change| own.0 == (case, of);
+        let here = |change: &Change| change.0 == (case, of);
         self.of(here)
     }
 
@@ -330,7 +330,8 @@ impl ModelErrors<'_> {
 
     fn of(&self, is_meant: impl Fn(&Change) -> bool) -> Option<f64> {
         let largest_of = |all: &[Change]| -> f64 {
-            let meant: Vec<Change> = all.iter().filter(|own| is_meant(own)).copied().collect();
+            let meant = all.iter().filter(|change| is_meant(change));
+            let meant: Vec<Change> = meant.copied().collect();
             largest(&meant).or(largest(all)).unwrap_or(0.0)
         };
         let shapes = self.linear?.max(largest_of(self.shapes));
@@ -362,11 +363,11 @@ impl Shaped {
         factor: usize,
     ) -> Result<Self, PipelineError> {
         let tried = Vec::new();
-        let mut own = Self::judged(study, engine, excitations, factor, tried)?;
-        while own.lacks_shapes(study) {
-            own = own.with_twice_the_shapes(study, excitations)?;
+        let mut shaped = Self::judged(study, engine, excitations, factor, tried)?;
+        while shaped.lacks_shapes(study) {
+            shaped = shaped.with_twice_the_shapes(study, excitations)?;
         }
-        Ok(own)
+        Ok(shaped)
     }
 
     /// `engine` of so many shapes, with what twice as many change of linear peaks.
@@ -435,7 +436,7 @@ impl Shaped {
     fn with_change(mut self, [spread, between]: [f64; 2]) -> Self {
         self.with_friction = spread.max(between / SHAPES_BETWEEN);
         if let Some(taken) = self.tried.last_mut() {
-            taken.error = taken.error.map(|own| own.max(spread).max(between));
+            taken.error = taken.error.map(|error| error.max(spread).max(between));
         }
         self
     }
@@ -445,27 +446,27 @@ impl Shaped {
 /// is not found.
 fn linear_change(
     study: &Study,
-    own: &Made,
+    made: &Made,
     finer: &Made,
     excitations: &[Excitation],
 ) -> Result<Option<f64>, PipelineError> {
-    let engines = [&own.receptances, &finer.receptances];
+    let engines = [&made.receptances, &finer.receptances];
     let source = PatternSource::Random {
         seed: SEED,
         count: WHEELS,
-        sectors: own.receptances.sectors(),
+        sectors: made.receptances.sectors(),
         distribution: Distribution::Normal,
     };
     let sigma = expected_deviation(study);
     let patterns = (0..WHEELS).filter_map(|id| source.pattern(id, Some(sigma)));
     let patterns: Vec<Pattern> = patterns.collect();
     let mut error = Some(0.0_f64);
-    let points = linear_points(study, &own.own.model)?;
+    let points = linear_points(study, &made.own.model)?;
     let window = Window {
         resonances_hz: None,
         band: study.solver.frequency_band,
     };
-    for force in &engine_options(study, excitations, &own.own.model).forces {
+    for force in &engine_options(study, excitations, &made.own.model).forces {
         for condition in [ContactCondition::Stuck, ContactCondition::Slide] {
             for pattern in &patterns {
                 let peaks = engines.map(|engine| {

@@ -25,7 +25,7 @@ pub fn echo(study: &Study, sector: &SectorModel) -> StudyEcho {
     let scenarios = study.scenarios();
     let friction = scenarios
         .iter()
-        .filter(|own| own.contact.normal_load_n().is_some());
+        .filter(|scenario| scenario.contact.normal_load_n().is_some());
     let patterns = u64::from(study.patterns);
     let sectors = sector.sectors;
     let excitations = echoed_excitations(study, sector);
@@ -67,10 +67,10 @@ fn echoed_excitations(study: &Study, sector: &SectorModel) -> Vec<EchoedExcitati
     };
     let mut found = Vec::new();
     for (place, case) in excitations(study).iter().enumerate() {
-        let own = &case.study;
+        let case_study = &case.study;
         let force = sector.load_case_forces.get(place).unwrap_or(&sector.force);
-        let force_n = own.amplitude_n * norm(force);
-        for (order, &engine_order) in own.engine_orders.iter().enumerate() {
+        let force_n = case_study.amplitude_n * norm(force);
+        for (order, &engine_order) in case_study.engine_orders.iter().enumerate() {
             let wave = nodal_diameter_of(1, engine_order, sector.sectors);
             let travels = if wave.index == 0 || 2 * wave.index == sector.sectors {
                 Travel::Standing
@@ -82,7 +82,7 @@ fn echoed_excitations(study: &Study, sector: &SectorModel) -> Vec<EchoedExcitati
             found.push(EchoedExcitation {
                 load_case: case.name,
                 engine_order,
-                force_n: force_n * own.amplitudes_n.get(order).copied().unwrap_or(1.0),
+                force_n: force_n * case_study.amplitudes_n.get(order).copied().unwrap_or(1.0),
                 nodal_diameter: wave.index,
                 travels,
             });
@@ -170,19 +170,19 @@ fn settings(study: &Study) -> String {
 fn remarks(study: &Study, sector: &SectorModel, excitations: &[EchoedExcitation]) -> Vec<Remark> {
     let sectors = sector.sectors;
     let mut remarks: Vec<Remark> = Vec::new();
-    for own in excitations {
+    for excitation in excitations {
         let remark = Remark::AliasedEngineOrder {
-            engine_order: own.engine_order,
+            engine_order: excitation.engine_order,
             sectors,
-            nodal_diameter: own.nodal_diameter,
-            travels: own.travels,
+            nodal_diameter: excitation.nodal_diameter,
+            travels: excitation.travels,
         };
-        let aliased = 2 * u64::from(own.engine_order) > sectors as u64;
+        let aliased = 2 * u64::from(excitation.engine_order) > sectors as u64;
         if aliased && !remarks.contains(&remark) {
             remarks.push(remark);
         }
     }
-    let forces = excitations.iter().map(|own| own.force_n);
+    let forces = excitations.iter().map(|excitation| excitation.force_n);
     let largest_force_n = forces.clone().fold(0.0, f64::max);
     let loads = study.contacts.iter();
     let loads = loads.filter_map(|condition| condition.normal_load_n());

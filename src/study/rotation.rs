@@ -41,7 +41,10 @@ pub(super) fn pressed_by(
         return Err(no_rotation(&study, KEY, &reason));
     }
     let mut normal_loads_n = Vec::new();
-    let loads = study.contacts.iter().filter_map(|own| own.normal_load_n());
+    let loads = study
+        .contacts
+        .iter()
+        .filter_map(|condition| condition.normal_load_n());
     let mut seen: BTreeSet<u64> = loads.map(f64::to_bits).collect();
     for speed_rpm in &options.speeds_rpm {
         let omega = TAU * speed_rpm / 60.0;

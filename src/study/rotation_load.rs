@@ -56,7 +56,7 @@ impl RotationLoad {
         let load_n = contact.normal_load_n()?;
         let loads = self.normal_loads_n.iter().zip(&self.options.speeds_rpm);
         loads
-            .filter(|(own, _)| own.total_cmp(&load_n).is_eq())
+            .filter(|(known_n, _)| known_n.total_cmp(&load_n).is_eq())
             .map(|(_, &speed)| speed)
             .next()
     }

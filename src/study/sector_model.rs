@@ -216,8 +216,8 @@ fn law_for_tangents(law: ContactLaw, model: &SectorModel) -> Option<String> {
         return None;
     }
     let tangents = pair_tangents(model);
-    let pair = tangents.iter().position(|own| *own == [false, true])?;
-    let own = &model.contact_pairs[pair];
+    let pair = tangents.iter().position(|moves| *moves == [false, true])?;
+    let contact_pair = &model.contact_pairs[pair];
     let name = |side: &ContactSide| {
         side.node()
             .map_or("the ground".to_owned(), |node| format!("node {node}"))
@@ -225,8 +225,8 @@ fn law_for_tangents(law: ContactLaw, model: &SectorModel) -> Option<String> {
     Some(format!(
         "\"macro_slip_2d\", because contact pair {pair} ({} on {}) does not move along its first tangent, on which \
          this law acts",
-        name(&own.first),
-        name(&own.second)
+        name(&contact_pair.first),
+        name(&contact_pair.second)
     ))
 }
 

@@ -33,7 +33,10 @@ pub fn campbell(request: &CampbellRequest<'_>) -> Result<CampbellReport, Pipelin
             reason: "there is no model; accepted: one, or one per speed".to_owned(),
         });
     };
-    if let Some((_, other)) = models.iter().find(|(_, own)| own.sectors != first.sectors) {
+    if let Some((_, other)) = models
+        .iter()
+        .find(|(_, model)| model.sectors != first.sectors)
+    {
         return Err(PipelineError::NoCampbell {
             reason: format!(
                 "models of {} and of {} sectors are no one wheel; accepted: the same wheel at several speeds",
@@ -60,13 +63,13 @@ pub fn campbell(request: &CampbellRequest<'_>) -> Result<CampbellReport, Pipelin
             .map(|(_, model)| natural_frequencies_hz(model, springs, request.modes))
             .collect::<Result<Vec<_>, _>>()?;
         for nodal_diameter in 0..=first.sectors / 2 {
-            let own = || of_models.iter().map(|model| &model[nodal_diameter]);
-            let count = own().map(Vec::len).min().unwrap_or(0);
+            let found = || of_models.iter().map(|model| &model[nodal_diameter]);
+            let count = found().map(Vec::len).min().unwrap_or(0);
             modes.extend((0..count).map(|place| CampbellMode {
                 contact,
                 nodal_diameter,
                 mode: place + 1,
-                frequency_hz: own().map(|frequencies| frequencies[place]).collect(),
+                frequency_hz: found().map(|frequencies| frequencies[place]).collect(),
             }));
         }
     }

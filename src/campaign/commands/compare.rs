@@ -122,8 +122,8 @@ impl Comparison<'_> {
                         .position(|other| same_keys(other, candidate)),
                 };
                 match of_candidate {
-                    Some(own) if folder == 0 && own == index => {}
-                    Some(own) => pairs.push(((0, own), (folder, index))),
+                    Some(place) if folder == 0 && place == index => {}
+                    Some(place) => pairs.push(((0, place), (folder, index))),
                     None => unmatched.push((folder, index)),
                 }
             }
@@ -136,13 +136,13 @@ impl Comparison<'_> {
     fn lowest_beside(&self, scenario: &ScenarioColumns) -> Option<usize> {
         let of_group = self.folders[0].scenarios.iter().enumerate();
         let of_group = of_group.filter(|(_, other)| same_group(other, scenario));
-        let value = |own: &ScenarioColumns| {
-            let (sorted, failed) = sorted_values(own.values(Quantity::PeakAmplitudeM));
+        let value = |scenario: &ScenarioColumns| {
+            let (sorted, failed) = sorted_values(scenario.values(Quantity::PeakAmplitudeM));
             let found = percentile(&sorted, failed, self.percent);
             found.value.unwrap_or(f64::INFINITY)
         };
         of_group
-            .map(|(index, own)| (index, value(own)))
+            .map(|(index, scenario)| (index, value(scenario)))
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(index, _)| index)
     }
@@ -251,7 +251,10 @@ pub(super) fn best_loads(
     seed: u64,
 ) -> Option<BestLoads> {
     let values: Vec<&[Option<f64>]> = loads.iter().map(|(_, values)| *values).collect();
-    let samples: Vec<(Vec<f64>, u64)> = values.iter().map(|own| sorted_values(own)).collect();
+    let samples: Vec<(Vec<f64>, u64)> = values
+        .iter()
+        .map(|load_values| sorted_values(load_values))
+        .collect();
     let (first, failed) = samples.first()?;
     percentile(first, *failed, percent).achieved_coverage?;
     let estimator = PercentileEstimator::of(&values);

@@ -84,7 +84,9 @@ impl LoadRange {
         let next = vertex.map_or(golden, |vertex| apart(vertex, [a, b, c], delta));
         let next = four_digits(next.exp());
         // Closer than four digits can tell.
-        let known = solved.iter().any(|own| own.0.total_cmp(&next).is_eq());
+        let known = solved
+            .iter()
+            .any(|known_load| known_load.0.total_cmp(&next).is_eq());
         (!known && left < next && next < right).then_some(next)
     }
 
@@ -94,14 +96,14 @@ impl LoadRange {
         let mut modelled = solved.to_vec();
         let middle = self.guess(solved);
         let value = |load: f64| (load.ln() - middle).powi(2);
-        for own in &mut modelled {
-            own.1 = value(own.0);
+        for load in &mut modelled {
+            load.1 = value(load.0);
         }
         let mut count = 0;
         while count < most
             && let Some(next) = self.next(&modelled)
         {
-            let place = modelled.partition_point(|own| own.0 < next);
+            let place = modelled.partition_point(|modelled_load| modelled_load.0 < next);
             modelled.insert(place, (next, value(next)));
             count += 1;
         }
@@ -176,7 +178,7 @@ mod tests {
                 return solved;
             };
             assert!(range.contains(next));
-            let place = solved.partition_point(|own| own.0 < next);
+            let place = solved.partition_point(|solved_load| solved_load.0 < next);
             solved.insert(place, (next, f(next)));
         }
         panic!("no end: {solved:?}");
@@ -237,7 +239,7 @@ mod tests {
         let whole = searched(range, Vec::new(), valley);
         let mut solved: Vec<(f64, f64)> = Vec::new();
         while let Some(next) = range.next(&solved) {
-            let place = solved.partition_point(|own| own.0 < next);
+            let place = solved.partition_point(|solved_load| solved_load.0 < next);
             solved.insert(place, (next, valley(next)));
             assert_eq!(searched(range, solved.clone(), valley), whole);
         }

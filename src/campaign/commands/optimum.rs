@@ -294,7 +294,7 @@ impl Search<'_> {
         let found = percentile(&sorted, failed, self.request.percent);
         let place = self
             .loads
-            .partition_point(|own| own.normal_load_n < normal_load_n);
+            .partition_point(|load| load.normal_load_n < normal_load_n);
         self.loads.insert(
             place,
             Load {
@@ -369,10 +369,10 @@ impl Search<'_> {
             .collect();
         let best = best_loads(&columns, request.percent, request.study.seed)
             .ok_or_else(no_patterns_in_common)?;
-        let own = &self.loads[0].columns.scenarios[scenario].scenario;
+        let excitation = &self.loads[0].columns.scenarios[scenario].scenario;
         Ok(OptimumExcitation {
-            load_case: own.load_case,
-            engine_order: own.engine_order,
+            load_case: excitation.load_case,
+            engine_order: excitation.engine_order,
             normal_load_n: best.lowest.map(|place| self.loads[place].normal_load_n),
             best,
         })
@@ -380,18 +380,18 @@ impl Search<'_> {
 
     /// A scenario of the load at `place`, named by that place.
     fn name(&self, place: usize, scenario: usize) -> ComparedScenario {
-        let own = &self.loads[place].columns.scenarios[scenario].scenario;
+        let compared = &self.loads[place].columns.scenarios[scenario].scenario;
         ComparedScenario {
             scenario: place,
-            ..ComparedScenario::new(place, own)
+            ..ComparedScenario::new(place, compared)
         }
     }
 }
 
 /// The first of the excitations with the highest percentile at the load at `place`; failures leave it infinite.
 fn highest_at(place: usize, excitations: &[OptimumExcitation]) -> usize {
-    let value = |own: &OptimumExcitation| {
-        let percentile = &own.best.loads[place].percentile;
+    let value = |excitation: &OptimumExcitation| {
+        let percentile = &excitation.best.loads[place].percentile;
         percentile.value.unwrap_or(f64::INFINITY)
     };
     (0..excitations.len())

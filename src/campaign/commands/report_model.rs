@@ -82,7 +82,9 @@ fn picture(sector: &SectorModel) -> SectorPicture {
     let position = |node: usize| sector.place_of(node).map(|(_, position_m)| position_m);
     let side = |side: ContactSide| match side {
         ContactSide::Node(node) => position(node),
-        ContactSide::NextSector(node) => position(node).map(|own| advanced(own, sector.sectors)),
+        ContactSide::NextSector(node) => {
+            position(node).map(|position_m| advanced(position_m, sector.sectors))
+        }
         ContactSide::Ground => None,
     };
     let contacts = { sector.contact_pairs.iter() }
@@ -114,7 +116,7 @@ fn picture(sector: &SectorModel) -> SectorPicture {
         contacts,
         forced_m: forced.into_iter().filter_map(position).collect(),
         observed_m: { sector.observed.iter() }
-            .filter_map(|own| position(own.node))
+            .filter_map(|observed| position(observed.node))
             .collect(),
     }
 }
@@ -153,8 +155,8 @@ fn neighbours(nodes: &[PictureNode], coupled: &[(usize, usize)]) -> Vec<(usize, 
     };
     let between = |a: usize, b: usize| {
         // Rounding must not part the sides of a cube.
-        let own = (1.0 - 1e-6) * distance(a, b);
-        { beside[a].iter() }.any(|&c| c != b && distance(a, c) < own && distance(b, c) < own)
+        let length = (1.0 - 1e-6) * distance(a, b);
+        { beside[a].iter() }.any(|&c| c != b && distance(a, c) < length && distance(b, c) < length)
     };
     let kept = coupled.iter().filter(|&&(a, b)| !between(a, b));
     kept.copied().collect()
@@ -176,7 +178,7 @@ mod tests {
         let options = ParametricOptions::default();
         let sector = parametric::build(&options).expect("a sector");
         let found = masses(&sector);
-        let ring = found.iter().find(|own| own.body == Body::Ring);
+        let ring = found.iter().find(|body_mass| body_mass.body == Body::Ring);
         let outer_m = options.rim_radius_m - options.flange_thickness_m;
         let inner_m = outer_m - options.ring_thickness_m;
         let section_m2 = std::f64::consts::PI * (outer_m.powi(2) - inner_m.powi(2));

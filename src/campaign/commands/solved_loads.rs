@@ -28,11 +28,11 @@ pub(super) enum Holding {
 
 /// The study of a search at one load.
 pub(super) fn study_at(study: &Study, normal_load_n: f64) -> Study {
-    let mut own = study.clone();
-    own.contacts = vec![ContactCondition::Full { normal_load_n }];
+    let mut loaded = study.clone();
+    loaded.contacts = vec![ContactCondition::Full { normal_load_n }];
     // Loads are compared over the same patterns, so that none may stop before the others.
-    own.stop = None;
-    own
+    loaded.stop = None;
+    loaded
 }
 
 /// The loads of the folder `results` that are rows of `study` on all of its patterns.
@@ -63,7 +63,7 @@ pub(super) fn solved_loads(study: &Study, results: &Path) -> Result<Holding, Pip
     let mut loads: Vec<f64> = columns
         .scenarios
         .iter()
-        .filter_map(|own| own.scenario.contact.normal_load_n())
+        .filter_map(|scenario| scenario.scenario.contact.normal_load_n())
         .collect();
     loads.sort_by(f64::total_cmp);
     loads.dedup();
@@ -71,8 +71,9 @@ pub(super) fn solved_loads(study: &Study, results: &Path) -> Result<Holding, Pip
         let wanted = study_at(study, normal_load_n).scenarios();
         let found = wanted.iter().map(|scenario| {
             let mut all = columns.scenarios.iter();
-            let same = |own: &&crate::campaign::store::ScenarioColumns| {
-                own.scenario.same_group(scenario) && own.scenario.contact == scenario.contact
+            let same = |candidate: &&crate::campaign::store::ScenarioColumns| {
+                candidate.scenario.same_group(scenario)
+                    && candidate.scenario.contact == scenario.contact
             };
             all.find(same).cloned()
         });
@@ -104,7 +105,7 @@ pub(super) fn cpu_s_per_row(results: &Path, columns: &ResultColumns) -> Option<f
     let entries = &columns.manifest.scenarios;
     let friction = entries
         .iter()
-        .filter(|own| own.keys().contact.normal_load_n().is_some());
+        .filter(|entry| entry.keys().contact.normal_load_n().is_some());
     let share = friction.count() as f64 / entries.len().max(1) as f64;
     (rows > 0).then(|| busy_s / (rows as f64 * share))
 }

@@ -217,17 +217,18 @@ fn measured_peaks(patterns: &[u32], scenarios: &[ScenarioColumns]) -> Vec<Measur
 /// What every row of a scenario states of errors that are not measured on the row itself, besides the basis.
 fn common_errors(columns: &ResultColumns, scenario: usize) -> CommonErrors {
     let manifest = &columns.manifest;
-    let own = &columns.scenarios[scenario].scenario;
+    let of_scenario = &columns.scenarios[scenario].scenario;
     let of_load = |choice: &&Value| {
-        choice["load_case"].as_str() == own.load_case.as_ref().map(LoadCaseName::as_str)
-            && choice["engine_order"] == own.engine_order
-            && choice["contact"]["full"]["normal_load_n"].as_f64() == own.contact.normal_load_n()
-            && own.contact.normal_load_n().is_some()
+        choice["load_case"].as_str() == of_scenario.load_case.as_ref().map(LoadCaseName::as_str)
+            && choice["engine_order"] == of_scenario.engine_order
+            && choice["contact"]["full"]["normal_load_n"].as_f64()
+                == of_scenario.contact.normal_load_n()
+            && of_scenario.contact.normal_load_n().is_some()
     };
     let harmonics = manifest.chosen["harmonics"].as_array();
     let choice = harmonics.and_then(|all| all.iter().find(of_load));
     let of_limits = || {
-        let is_limit = own.contact.normal_load_n().is_none();
+        let is_limit = of_scenario.contact.normal_load_n().is_none();
         manifest.reduction["linear_limit_error"]
             .as_f64()
             .filter(|_| is_limit)

@@ -28,7 +28,11 @@ pub fn fit_result_tails(results: &Path) -> Result<Vec<TailFitRecord>, PipelineEr
             });
         }
     }
-    let scenarios: Vec<_> = columns.scenarios.iter().map(|own| own.scenario).collect();
+    let scenarios: Vec<_> = columns
+        .scenarios
+        .iter()
+        .map(|scenario| scenario.scenario)
+        .collect();
     let compression = columns.manifest.study["output"]["compression"].clone();
     let header = TableHeader {
         study_digest: columns.manifest.study_digest.clone(),

@@ -149,9 +149,9 @@ impl Trade {
         let mut settings: Vec<Measured> = Vec::new();
         let levels = search.levels().iter();
         // The best levels of single knobs are parts of the reference.
-        let of_reference = |own: &&Measured| {
+        let of_reference = |level: &&Measured| {
             let parts = reference.parts.iter();
-            parts.clone().all(|part| part.setting != own.setting)
+            parts.clone().all(|part| part.setting != level.setting)
         };
         settings.extend(levels.filter(of_reference).cloned());
         settings.extend(combinations);
@@ -168,13 +168,17 @@ impl Trade {
     fn all(&self) -> Vec<(&'static str, &Measured)> {
         let parts = self.reference.parts.iter().map(|part| ("reference", part));
         let base = &self.reference.base.setting;
-        let role = |own: &Measured| match own.knob {
+        let role = |measured: &Measured| match measured.knob {
             Some(_) => "knob",
-            None if own.setting == *base => "base",
+            None if measured.setting == *base => "base",
             None => "combination",
         };
         parts
-            .chain(self.settings.iter().map(|own| (role(own), own)))
+            .chain(
+                self.settings
+                    .iter()
+                    .map(|measured| (role(measured), measured)),
+            )
             .collect()
     }
 
@@ -193,10 +197,12 @@ impl Trade {
         };
         let costs: Vec<(f64, f64)> = records.iter().map(cost).collect();
         for (place, record) in records.iter_mut().enumerate() {
-            let (own, error) = costs[place];
+            let (record_cost, error) = costs[place];
             // Of two alike the first.
             let better = |(at, &(cost, upper)): (usize, &(f64, f64))| {
-                cost <= own && upper <= error && (cost < own || upper < error || at < place)
+                cost <= record_cost
+                    && upper <= error
+                    && (cost < record_cost || upper < error || at < place)
             };
             record.on_front = error.is_finite() && !costs.iter().enumerate().any(better);
         }
@@ -228,7 +234,7 @@ impl Trade {
             contact_law: setting.law.name(),
             projection: projection_name(setting.projection),
             amplitude,
-            amplitude_worst_upper: amplitude.map(|own| own.worst_upper(setting.peak_tolerance)),
+            amplitude_worst_upper: amplitude.map(|bound| bound.worst_upper(setting.peak_tolerance)),
             frequency: bound(Compared::Frequency),
             amplification_factor: bound(Compared::AmplificationFactor),
             knob_amplitude: self.knob_error(measured),
@@ -326,8 +332,8 @@ impl Trade {
             TradeoffChoice {
                 accepted_error: accepted,
                 setting: chosen.map(|place| records[place].setting),
-                load_cases: measured.map_or_else(Vec::new, |own| {
-                    errors_of_load_cases(&own.rows, &reference.values, &self.sample)
+                load_cases: measured.map_or_else(Vec::new, |measured| {
+                    errors_of_load_cases(&measured.rows, &reference.values, &self.sample)
                 }),
             }
         });
@@ -338,12 +344,17 @@ impl Trade {
             version: identity::VERSION.to_owned(),
             seed: study.seed,
             patterns: self.sample.patterns.clone(),
-            scenarios: self.sample.scenarios.iter().map(|own| own.index).collect(),
+            scenarios: self
+                .sample
+                .scenarios
+                .iter()
+                .map(|scenario| scenario.index)
+                .collect(),
             normal_loads_n: self
                 .sample
                 .scenarios
                 .iter()
-                .filter_map(|own| own.contact.normal_load_n())
+                .filter_map(|scenario| scenario.contact.normal_load_n())
                 .collect(),
             load_cases: TableHeader::load_cases_of(&self.sample.scenarios),
             reference: TradeoffReference {
@@ -363,7 +374,7 @@ impl Trade {
             choices,
             operations: all
                 .iter()
-                .flat_map(|(_, own)| &own.rows)
+                .flat_map(|(_, measured)| &measured.rows)
                 .map(|row| row.operations)
                 .sum(),
             settings: records,
@@ -400,7 +411,7 @@ impl Trade {
                 ..wheel
             });
             let reference = &self.reference.values[place];
-            let change = |own: Option<f64>, full: Option<f64>| Some(own? / full? - 1.0);
+            let change = |reduced: Option<f64>, full: Option<f64>| Some(reduced? / full? - 1.0);
             let factor = change(found.amplitude_m, tuned.amplitude_m).map(|change| change + 1.0);
             Ok(FullContactCheck {
                 scenario: scenario.index,
@@ -429,7 +440,7 @@ fn combinations(
     most_operations: f64,
 ) -> Result<Vec<Measured>, PipelineError> {
     let mut proposals = search.proposals();
-    proposals.retain(|own| own.operations <= most_operations);
+    proposals.retain(|proposal| proposal.operations <= most_operations);
     let mut measured: Vec<Measured> = Vec::new();
     for target in PROPOSED {
         let mut promised = target;
@@ -443,13 +454,13 @@ fn combinations(
             let known = measured.iter().chain(search.levels());
             let known = known
                 .into_iter()
-                .find(|own| own.setting == proposal.setting);
+                .find(|known| known.setting == proposal.setting);
             let error = if let Some(known) = known {
                 search.error_of(known)
             } else {
-                let own = search.measure(&proposal.setting)?;
-                let error = search.error_of(&own);
-                measured.push(own);
+                let found = search.measure(&proposal.setting)?;
+                let error = search.error_of(&found);
+                measured.push(found);
                 error
             };
             if error.is_some_and(|error| error.p95_upper <= target) {

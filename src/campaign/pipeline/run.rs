@@ -269,13 +269,13 @@ impl Job<'_> {
         let Found::Finished(manifest) = self.found else {
             return 0;
         };
-        let has = |own: &&Scenario| {
+        let has = |scenario: &&Scenario| {
             let mut held = manifest.scenarios.iter();
             held.any(|held| {
-                held.load_case == own.load_case
-                    && held.engine_order == own.engine_order
-                    && held.standard_deviation == own.standard_deviation
-                    && held.contact == own.contact
+                held.load_case == scenario.load_case
+                    && held.engine_order == scenario.engine_order
+                    && held.standard_deviation == scenario.standard_deviation
+                    && held.contact == scenario.contact
             })
         };
         let rows_of_each = manifest.counts.planned / (manifest.scenarios.len().max(1) as u64);
@@ -314,7 +314,7 @@ impl Job<'_> {
         let anew = held.saturating_sub(reused);
         if anew > 0 {
             let why = { self.stored() }
-                .map_or_else(String::new, |own| why_anew(own, &tables.unfinished()));
+                .map_or_else(String::new, |stored| why_anew(stored, &tables.unfinished()));
             self.progress.solves_anew(anew, &why);
         }
         self.progress.begin_rows(tables.planned(), reused);
@@ -365,9 +365,9 @@ impl Job<'_> {
 
 /// Why rows that were stored with one manifest are not those of another.
 fn why_anew(before: &Manifest, now: &Manifest) -> String {
-    let modes = |own: &Manifest| own.reduction["craig_bampton_modes"].as_u64();
-    let vectors = |own: &Manifest| {
-        let tried = own.reduction["tuned_peak_errors"].as_array()?;
+    let modes = |manifest: &Manifest| manifest.reduction["craig_bampton_modes"].as_u64();
+    let vectors = |manifest: &Manifest| {
+        let tried = manifest.reduction["tuned_peak_errors"].as_array()?;
         tried.last()?["vectors"].as_u64()
     };
     let changed =

@@ -189,7 +189,7 @@ impl<'a> TableWork<'a> {
         let tuned = &self.facts.tuned;
         let scenarios = &self.schema.scenarios;
         let found: Vec<_> = (0..scenarios.len())
-            .map(|own| stability.of_scenario(own))
+            .map(|scenario| stability.of_scenario(scenario))
             .collect();
         let records = records_of(scenarios, (tuned, &found), accumulators, confidence);
         let counts: Vec<Accounting> = records

@@ -26,7 +26,7 @@ pub fn checked_table(results: &Path, name: &str) -> Result<PathBuf, PipelineErro
                 folder: results.to_owned(),
             });
         }
-        manifest.tables.retain(|own, _| own == name);
+        manifest.tables.retain(|table, _| table == name);
         verify_tables(results, &manifest)?;
         !manifest.tables.is_empty()
     } else if SIDE_FILES.contains(&name) {

@@ -189,15 +189,15 @@ impl Work {
     /// Takes over what was found in `folder`, which lies in this one.
     fn below(&mut self, folder: &Path, found: Integrity) {
         self.build = self.build.take().or(found.build);
-        let of = |own: &CheckedFile| {
-            let path = folder.join(&own.file);
+        let of = |file: &CheckedFile| {
+            let path = folder.join(&file.file);
             path.strip_prefix(&self.results)
                 .map_or_else(|_| folder.to_owned(), Path::to_owned)
         };
         let files = found.files.into_iter();
-        let named = files.map(|own| CheckedFile {
-            file: of(&own),
-            ..own
+        let named = files.map(|checked| CheckedFile {
+            file: of(&checked),
+            ..checked
         });
         self.files.extend(named);
     }
@@ -352,10 +352,10 @@ impl Work {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let written = SIDE_FILES.iter().chain(&TABLES).chain(&["report.html"]);
             let is_load = loads.iter().any(|(_, folder)| *folder == path);
-            if is_load || folders.iter().any(|own| **own == name) {
+            if is_load || folders.iter().any(|known| **known == name) {
                 continue;
             }
-            if written.into_iter().any(|own| *own == name) {
+            if written.into_iter().any(|known| *known == name) {
                 self.note(
                     &path,
                     FileState::Unverified,

@@ -62,7 +62,10 @@ impl ResultColumns {
     #[must_use]
     pub(in crate::campaign) fn largest(&self, quantity: Quantity) -> Vec<Option<f64>> {
         let largest = |place: usize| {
-            let values = self.scenarios.iter().map(|own| own.values(quantity)[place]);
+            let values = self
+                .scenarios
+                .iter()
+                .map(|scenario| scenario.values(quantity)[place]);
             values
                 .reduce(|largest, value| Some(largest?.max(value?)))
                 .flatten()

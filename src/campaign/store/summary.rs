@@ -220,6 +220,6 @@ fn numerical_error_of(manifest: &Manifest) -> Option<NumericalError> {
 fn simpler_law_of(manifest: &Manifest) -> Option<[ContactLaw; 2]> {
     let taken = &manifest.chosen["accuracy"]["setting"]["contact_law"];
     let laws = [taken, &manifest.study["contact"]["law"]];
-    let [taken, own] = laws.map(|law| ContactLaw::deserialize(law).ok());
-    Some([taken?, own?]).filter(|[taken, own]| taken != own)
+    let [taken, stated] = laws.map(|law| ContactLaw::deserialize(law).ok());
+    Some([taken?, stated?]).filter(|[taken, stated]| taken != stated)
 }

@@ -34,8 +34,8 @@ impl ComplexCholesky {
     fn assemble(&mut self, matrix: &ComplexSymmetric<'_>) {
         let columns = self.columns();
         let count = columns / LANES;
-        let (own, border) = self.lower.split_at_mut(count * columns);
-        for (block, entries) in own.chunks_exact_mut(columns).enumerate() {
+        let (blocks, border) = self.lower.split_at_mut(count * columns);
+        for (block, entries) in blocks.chunks_exact_mut(columns).enumerate() {
             let width = (block + 1) * LANES;
             let part = |of: &'_ RowBlocks| block * of.columns()..block * of.columns() + width;
             let real = &matrix.real.lanes()[part(matrix.real)];
@@ -54,13 +54,13 @@ impl ComplexCholesky {
                 let column = block * LANES + lane;
                 let [real, imaginary] = &mut entries[column];
                 // What fills up are unknowns by themselves.
-                let (own, shift) = if column < self.size {
+                let (diagonal, shift) = if column < self.size {
                     (real[lane], matrix.shift)
                 } else {
                     (1.0, 0.0)
                 };
-                real[lane] = own - shift;
-                self.terms[block][lane] = own.abs() + shift.abs() + imaginary[lane].abs();
+                real[lane] = diagonal - shift;
+                self.terms[block][lane] = diagonal.abs() + shift.abs() + imaginary[lane].abs();
             }
         }
         for (entry, &real) in border.iter_mut().zip(self.border.lanes()) {
@@ -77,12 +77,12 @@ impl ComplexCholesky {
             *squares = [0.0; LANES];
             let start = block * LANES;
             let (above, below) = self.lower.split_at_mut((block + 1) * columns);
-            let (own, rest) = above[block * columns..].split_at_mut(start);
-            let own = &*own;
+            let (before, rest) = above[block * columns..].split_at_mut(start);
+            let before = &*before;
             let Some(diagonal) = rest.first_chunk_mut::<LANES>() else {
                 return;
             };
-            subtract_products(diagonal, own, own);
+            subtract_products(diagonal, before, before);
             let inverse = &mut self.inverse[start..start + LANES];
             factor_diagonal(diagonal, inverse);
             let (across, _) = self.upper[block * height..][..height].as_chunks_mut();
@@ -95,7 +95,7 @@ impl ComplexCholesky {
                 if let Some(tile) = rest.first_chunk_mut::<LANES>()
                     && first <= start
                 {
-                    subtract_products(tile, &done[first..], &own[first..]);
+                    subtract_products(tile, &done[first..], &before[first..]);
                     divide(tile, diagonal, inverse);
                     transpose(tile, across);
                 }

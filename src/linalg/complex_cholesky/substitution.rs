@@ -62,18 +62,18 @@ impl Loops for Forward<'_> {
             .take(x.len())
         {
             let (done, rest) = x.split_at_mut(block);
-            let own = &mut rest[0];
+            let unknowns = &mut rest[0];
             let (tiles, _) = row.as_chunks::<LANES>();
             for (tile, x) in tiles.iter().zip(&*done) {
                 for (q, column) in tile.iter().enumerate() {
-                    subtract(own, column, [x[0][q], x[1][q]]);
+                    subtract(unknowns, column, [x[0][q], x[1][q]]);
                 }
             }
             for (p, column) in tiles[block].iter().enumerate() {
                 let inverse = factors.inverse[block * LANES + p];
-                let x = times([own[0][p], own[1][p]], inverse);
-                subtract(own, column, x);
-                [own[0][p], own[1][p]] = x;
+                let x = times([unknowns[0][p], unknowns[1][p]], inverse);
+                subtract(unknowns, column, x);
+                [unknowns[0][p], unknowns[1][p]] = x;
             }
         }
     }
@@ -93,18 +93,18 @@ impl Loops for Backward<'_> {
         let Self(factors, BlockVector(x)) = self;
         for block in (0..x.len()).rev() {
             let (rest, done) = x.split_at_mut(block + 1);
-            let own = &mut rest[block];
+            let unknowns = &mut rest[block];
             let tiles = factors.across(block);
             for (tile, x) in tiles[block + 1..].iter().zip(&*done) {
                 for (q, column) in tile.iter().enumerate() {
-                    subtract(own, column, [x[0][q], x[1][q]]);
+                    subtract(unknowns, column, [x[0][q], x[1][q]]);
                 }
             }
             for (p, column) in tiles[block].iter().enumerate().rev() {
                 let inverse = factors.inverse[block * LANES + p];
-                let x = times([own[0][p], own[1][p]], inverse);
-                subtract(own, column, x);
-                [own[0][p], own[1][p]] = x;
+                let x = times([unknowns[0][p], unknowns[1][p]], inverse);
+                subtract(unknowns, column, x);
+                [unknowns[0][p], unknowns[1][p]] = x;
             }
         }
     }

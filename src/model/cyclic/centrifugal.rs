@@ -156,11 +156,11 @@ impl Equilibrium {
         for &(low, high) in &model.cyclic_pairs {
             low_of_high[high] = Some(low);
         }
-        let mut own = vec![0; model.dofs.len()];
+        let mut place_of_dof = vec![0; model.dofs.len()];
         let mut size = 0;
         for (dof, low) in low_of_high.iter().enumerate() {
             if low.is_none() {
-                own[dof] = size;
+                place_of_dof[dof] = size;
                 size += 1;
             }
         }
@@ -171,7 +171,7 @@ impl Equilibrium {
             .zip(&model.dofs)
             .enumerate()
             .map(|(index, (low, dof))| {
-                let mut places = vec![(own[low.unwrap_or(index)], 1.0)];
+                let mut places = vec![(place_of_dof[low.unwrap_or(index)], 1.0)];
                 let by_parting = match dof.component {
                     Component::Tangential => dof.position_m[0].hypot(dof.position_m[1]),
                     Component::RotationAxial => 1.0,
@@ -278,7 +278,7 @@ impl Equilibrium {
                 .flat_map(|entry| {
                     // In nodal diameter 0 the next sector moves as this one.
                     let places = self.coordinates[entry.dof].iter();
-                    places.map(move |&(place, own)| (place, own * entry.factor))
+                    places.map(move |&(place, weight)| (place, weight * entry.factor))
                 })
                 .collect();
         }

@@ -175,7 +175,7 @@ pub fn ring_free(model: &SectorModel) -> [bool; 2] {
 
 /// Displacement of a node or of a point of a rigid body along `vector`, over the dofs of the sector.
 fn displacement(model: &SectorModel, node: usize, vector: [f64; 3]) -> Vec<(usize, f64)> {
-    let own = |node: usize, component: Component, factor: f64| {
+    let entry = |node: usize, component: Component, factor: f64| {
         let dof = model.dof_of(node, component).filter(|_| factor != 0.0)?;
         Some((dof, factor))
     };
@@ -185,12 +185,12 @@ fn displacement(model: &SectorModel, node: usize, vector: [f64; 3]) -> Vec<(usiz
         Some((point, (_, reference_m))) => Component::RIGID
             .into_iter()
             .zip(rigid_motion(point.position_m, reference_m, vector))
-            .filter_map(|(component, factor)| own(point.reference, component, factor))
+            .filter_map(|(component, factor)| entry(point.reference, component, factor))
             .collect(),
         None => Component::DISPLACEMENTS
             .into_iter()
             .zip(vector)
-            .filter_map(|(component, factor)| own(node, component, factor))
+            .filter_map(|(component, factor)| entry(node, component, factor))
             .collect(),
     }
 }

@@ -104,7 +104,10 @@ impl CraigBampton {
             let inertia = mass.block(&interior, &boundary);
             let (vectors, combinations) =
                 held.residual_vectors(&inertia, &constraint, &fixed, h)?;
-            let eigenvalues = eigenvalues.iter().map(|own| own - held.shift).collect();
+            let eigenvalues = eigenvalues
+                .iter()
+                .map(|eigenvalue| eigenvalue - held.shift)
+                .collect();
             let residual = Residual {
                 combinations,
                 eigenvalues,
@@ -423,8 +426,8 @@ impl HeldInterior {
         nodal_diameter: usize,
     ) -> Result<(Matrix<Complex64>, Matrix<Complex64>), ModelError> {
         let mut right = self.mass.times(constraint);
-        for (entry, &own) in right.as_mut_slice().iter_mut().zip(inertia.as_slice()) {
-            *entry += own;
+        for (entry, &added) in right.as_mut_slice().iter_mut().zip(inertia.as_slice()) {
+            *entry += added;
         }
         let mut response = self.factor.solve(&right);
         for _ in 0..2 {
@@ -437,7 +440,7 @@ impl HeldInterior {
         let gram = response.adjoint_times(&self.mass.times(&response));
         let count = gram.columns();
         let scales: Vec<f64> = (0..count)
-            .map(|own| gram[(own, own)].re.max(f64::MIN_POSITIVE).sqrt().recip())
+            .map(|i| gram[(i, i)].re.max(f64::MIN_POSITIVE).sqrt().recip())
             .collect();
         let scaled = Matrix::from_fn(count, count, |i, j| gram[(i, j)] * (scales[i] * scales[j]));
         let (sizes, directions) = pencil(&scaled, &Matrix::identity(count), nodal_diameter)?;

@@ -139,11 +139,11 @@ impl<'a> Reduction<'a> {
     #[must_use]
     pub fn with_fewer_modes(&self, modes: usize) -> Self {
         let fewer = |model: &OnceLock<CraigBampton>| {
-            let own = OnceLock::new();
+            let fewer_modes = OnceLock::new();
             if let Some(model) = model.get() {
-                own.get_or_init(|| model.with_fewer_modes(modes));
+                fewer_modes.get_or_init(|| model.with_fewer_modes(modes));
             }
-            own
+            fewer_modes
         };
         Self {
             name: self.name,

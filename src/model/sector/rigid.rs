@@ -62,12 +62,12 @@ pub(super) fn with_rigid_damper(mut model: SectorModel, grounding: f64) -> Secto
         }
     }
     let rest = |matrix: &SymmetricSparse, factor: f64| {
-        let own = matrix
+        let of_rest = matrix
             .lower_entries()
             .filter_map(|(row, column, value)| Some((kept[row]?, kept[column]?, value)));
         let of_body = inertia.iter().filter(|_| factor != 0.0);
         let of_body = of_body.map(|&(row, column, value)| (row, column, factor * value));
-        let triplets: Vec<_> = own.chain(of_body).collect();
+        let triplets: Vec<_> = of_rest.chain(of_body).collect();
         SymmetricSparse::from_lower_triplets(count + motions.len(), &triplets)
     };
     model.stiffness = rest(&model.stiffness, grounding);

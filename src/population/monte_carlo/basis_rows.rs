@@ -168,7 +168,7 @@ impl BasisRows {
                 .cantilever_stiffness_change(|blade, _| values[blade]),
             (Deviations::PerMode { modes, values }, _) => {
                 self.basis.cantilever_stiffness_change(|blade, mode| {
-                    let place = modes.iter().position(|&own| own as usize == mode);
+                    let place = modes.iter().position(|&number| number as usize == mode);
                     place.map_or(0.0, |place| values[blade * modes.len() + place])
                 })
             }
@@ -211,8 +211,8 @@ impl BasisRows {
         let pairs = self.basis.model().contact.weights.len();
         let factors = ContactFactors::new(vec![means; pairs]);
         let varied = self.tuned_waves(&factors, engine_order, contact, &[1]);
-        let own = tuned_span(&varied, contact, None).ok_or(Status::NotBracketed)?;
-        Ok((span.0.min(own.0), span.1.max(own.1)))
+        let varied_span = tuned_span(&varied, contact, None).ok_or(Status::NotBracketed)?;
+        Ok((span.0.min(varied_span.0), span.1.max(varied_span.1)))
     }
 
     /// Settings of a search with fewer harmonics, where rows with `points` have one.

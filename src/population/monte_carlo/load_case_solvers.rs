@@ -79,8 +79,10 @@ impl LoadCaseSolver {
     #[must_use]
     pub fn solver_of(&self, scenario: &Scenario, row: &ResponseRow) -> &RowSolver {
         let harmonics = harmonics_name(self.rows.points(scenario).harmonics());
-        let own = row.harmonics == harmonics && row.basis == self.rows.basis_name();
-        self.fallback().filter(|_| !own).unwrap_or(&self.rows)
+        let is_by_rows = row.harmonics == harmonics && row.basis == self.rows.basis_name();
+        self.fallback()
+            .filter(|_| !is_by_rows)
+            .unwrap_or(&self.rows)
     }
 
     /// The row by the fallback, if it has to be and can be.
@@ -208,9 +210,9 @@ impl LoadCaseSolvers {
             .into_iter()
             .flatten();
         let is_of_the_row =
-            |own: &&RowSolver| harmonics_name(own.points(scenario).harmonics()) == harmonics;
+            |solver: &&RowSolver| harmonics_name(solver.points(scenario).harmonics()) == harmonics;
         let coarse = solvers.find(is_of_the_row)?;
-        let own = &self.under(scenario).rows;
-        own.top_beside(coarse, pattern, scenario, frequency_hz)
+        let rows = &self.under(scenario).rows;
+        rows.top_beside(coarse, pattern, scenario, frequency_hz)
     }
 }

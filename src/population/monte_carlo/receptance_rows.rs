@@ -62,8 +62,8 @@ impl ReceptanceRows {
     }
 
     pub(super) fn force(&self, engine_order: u32) -> Option<&WaveForce> {
-        let own = self.forces.iter().find(|(order, _)| *order == engine_order);
-        own.map(|(_, force)| force)
+        let found = self.forces.iter().find(|(order, _)| *order == engine_order);
+        found.map(|(_, force)| force)
     }
 
     /// The wheel of a pattern.
@@ -173,7 +173,7 @@ impl ReceptanceRows {
         let here = finer.0.row(wheel.as_ref(), case.0, case.1)?;
         let window = self.window(basis, pattern, case, Some(frequency_hz));
         let envelope = receptance_plan(&there, window.ok()?).ok()?.envelope;
-        let [before, points] = [basis, finer.1].map(|own| own.points.of(pattern, case.0, case.1));
+        let [before, points] = [basis, finer.1].map(|rows| rows.points.of(pattern, case.0, case.1));
         let (point, _) = receptance_state(&there, &before, frequency_hz).ok()?;
         let start = embedded(&point.solution, before.harmonics(), points.harmonics());
         let tolerance = BESIDE_SHARE * basis.points.settings.solver.peak_tolerance;

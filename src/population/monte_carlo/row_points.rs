@@ -45,9 +45,9 @@ impl RowSettings {
 
     /// In the column `shortcut`: what the law leaves out of the one in whose place it is taken.
     pub(super) fn simpler_law(&self) -> Option<&'static str> {
-        let (own, _) = self.contact?;
+        let (law, _) = self.contact?;
         let varies = self.in_place_of?.has_variable_load();
-        if varies && !own.has_variable_load() {
+        if varies && !law.has_variable_load() {
             Some("constant_normal_load")
         } else {
             Some("uncoupled_tangents")

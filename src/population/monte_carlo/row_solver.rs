@@ -78,8 +78,8 @@ impl RowSolver {
         let points = &mut self.on_basis.points;
         points.search_with_samples(SEARCH_SAMPLES)?;
         let amplitude_n = points.settings.amplitude_n;
-        let own = ReceptanceRows::new(engine, model, engine_orders, amplitude_n);
-        self.on_receptances = Some(own);
+        let rows = ReceptanceRows::new(engine, model, engine_orders, amplitude_n);
+        self.on_receptances = Some(rows);
         Ok(self)
     }
 
@@ -148,8 +148,8 @@ impl RowSolver {
     /// Tuned reference of a scenario.
     #[must_use]
     pub fn tuned(&self, scenario: &Scenario) -> TunedReference {
-        let own = self.on_receptances.as_ref();
-        let tuned = own.and_then(|rows| rows.tuned(&self.on_basis, scenario));
+        let on_receptances = self.on_receptances.as_ref();
+        let tuned = on_receptances.and_then(|rows| rows.tuned(&self.on_basis, scenario));
         tuned.unwrap_or_else(|| self.on_basis.tuned(scenario))
     }
 
@@ -169,8 +169,10 @@ impl RowSolver {
             let wheel = Box::new(rows.wheel(pattern));
             return Ok(MistunedWheel::OnReceptances(wheel));
         }
-        let conditions: Vec<ContactCondition> =
-            scenarios.iter().map(|(own, _)| own.contact).collect();
+        let conditions: Vec<ContactCondition> = scenarios
+            .iter()
+            .map(|(scenario, _)| scenario.contact)
+            .collect();
         let limits = LimitsWanted::of(&conditions);
         let wheel = self.on_basis.mistuned(pattern, limits)?;
         Ok(MistunedWheel::InModes(Box::new(wheel)))
@@ -241,8 +243,10 @@ impl RowSolver {
             return Err(Status::InvalidPattern);
         }
         let case = (engine_order, contact);
-        let own = self.on_receptances.as_ref();
-        match own.and_then(|rows| rows.curve(&self.on_basis, case, pattern, frequencies_hz)) {
+        let on_receptances = self.on_receptances.as_ref();
+        match on_receptances
+            .and_then(|rows| rows.curve(&self.on_basis, case, pattern, frequencies_hz))
+        {
             Some(curve) => Ok(curve),
             None => self
                 .on_basis
@@ -277,8 +281,9 @@ impl RowSolver {
         pattern: Option<&Pattern>,
         tuned_hz: Option<f64>,
     ) -> Result<SearchPlan, Status> {
-        let own = self.on_receptances.as_ref();
-        own.and_then(|rows| rows.search_plan(&self.on_basis, scenario, pattern, tuned_hz))
+        let on_receptances = self.on_receptances.as_ref();
+        on_receptances
+            .and_then(|rows| rows.search_plan(&self.on_basis, scenario, pattern, tuned_hz))
             .unwrap_or_else(|| self.on_basis.search_plan(scenario, pattern, tuned_hz))
     }
 
@@ -292,8 +297,9 @@ impl RowSolver {
         scenario: &Scenario,
         frequency_hz: f64,
     ) -> Result<WheelState, Status> {
-        let own = self.on_receptances.as_ref();
-        own.and_then(|rows| rows.wheel_state(&self.on_basis, pattern, scenario, frequency_hz))
+        let on_receptances = self.on_receptances.as_ref();
+        on_receptances
+            .and_then(|rows| rows.wheel_state(&self.on_basis, pattern, scenario, frequency_hz))
             .unwrap_or_else(|| self.on_basis.wheel_state(pattern, scenario, frequency_hz))
     }
 
@@ -317,8 +323,8 @@ impl RowSolver {
     pub fn model_error(&self, scenario: &Scenario) -> f64 {
         let points = &self.on_basis.points;
         let choice = points.choice(scenario.engine_order, scenario.contact);
-        let own = choice.and_then(|choice| choice.reduced_model);
-        own.unwrap_or(self.basis_error)
+        let error = choice.and_then(|choice| choice.reduced_model);
+        error.unwrap_or(self.basis_error)
     }
 
     /// Errors that the rows of a scenario take over from it; a linear limit has no harmonics.
@@ -405,7 +411,7 @@ impl RowSolver {
 /// `linear` for a linear limit; `stuck` where every pair sticks at the peak, so that the linear
 /// solution is the exact one; else `none`; where a simpler law is taken this first.
 fn shortcut(contact: ContactCondition, point: Option<&Point>, simpler_law: Option<&str>) -> String {
-    let own = match (contact, point) {
+    let solution = match (contact, point) {
         (ContactCondition::Full { .. }, Some(point))
             if point.shares.slipping == 0.0 && point.shares.separated == 0.0 =>
         {
@@ -415,8 +421,8 @@ fn shortcut(contact: ContactCondition, point: Option<&Point>, simpler_law: Optio
         _ => return "linear".to_owned(),
     };
     match simpler_law {
-        Some(law) if own == "none" => law.to_owned(),
-        Some(law) => format!("{law}, {own}"),
-        None => own.to_owned(),
+        Some(law) if solution == "none" => law.to_owned(),
+        Some(law) => format!("{law}, {solution}"),
+        None => solution.to_owned(),
     }
 }

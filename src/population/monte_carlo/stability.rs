@@ -63,8 +63,8 @@ fn stays(
         return None;
     }
     let of_basis;
-    let (engine, force) = if let Some(own) = &solver.on_receptances {
-        (own.receptances(), own.force(scenario.engine_order)?)
+    let (engine, force) = if let Some(rows) = &solver.on_receptances {
+        (rows.receptances(), rows.force(scenario.engine_order)?)
     } else {
         of_basis = engine_at(solver, pattern, scenario.engine_order, hz)?;
         (&of_basis.0, &of_basis.1)
@@ -128,6 +128,6 @@ fn engine_at(
             .max(DEVIATION),
         band_hz: Some((hz * (1.0 - BAND_MARGIN), hz * (1.0 + BAND_MARGIN))),
     };
-    let own = EngineModel::new(model, &options)?;
-    Some((ReceptanceEngine::new(&own, &options)?, force))
+    let engine_model = EngineModel::new(model, &options)?;
+    Some((ReceptanceEngine::new(&engine_model, &options)?, force))
 }

@@ -152,7 +152,7 @@ impl Surrogate<'_> {
         let full = self.solver.basis().size();
         let springs = self.contact_stiffness.len() as f64;
         let (n, m) = (full as f64, vectors as f64);
-        let own = SystemSize {
+        let system = SystemSize {
             coordinates: vectors,
             coefficients: 2,
             samples: SAMPLES,
@@ -163,7 +163,7 @@ impl Surrogate<'_> {
         springs * time_of_eigenproblem(full)
             + time_of_eigenproblem(vectors)
             + projection
-            + own.search(work)
+            + system.search(work)
     }
 
     /// Orthonormal basis of the modes near the tuned peak, of all linear springs together.
@@ -199,8 +199,8 @@ impl Surrogate<'_> {
         }
         let (eigenvalues, shapes) = hermitian_eigen(&stiffness).ok()?;
         let share = |eigenvalue: f64| eigenvalue.max(0.0).sqrt() / TAU / self.tuned_hz - 1.0;
-        let first = eigenvalues.partition_point(|&own| share(own) <= -reach);
-        let end = eigenvalues.partition_point(|&own| share(own) < reach);
+        let first = eigenvalues.partition_point(|&eigenvalue| share(eigenvalue) <= -reach);
+        let end = eigenvalues.partition_point(|&eigenvalue| share(eigenvalue) < reach);
         Some(shapes.column_range(first, end.max(first)))
     }
 }

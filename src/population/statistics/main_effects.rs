@@ -66,8 +66,8 @@ pub fn main_effects(inputs: &[Vec<f64>], result: &[f64]) -> Option<MainEffects> 
         .collect::<Option<_>>()?;
     let mut bounded = whole.iter().enumerate().map(|(place, &share)| {
         let groups = GROUPS as f64;
-        let mean = without.iter().map(|own| own[place]).sum::<f64>() / groups;
-        let squares = without.iter().map(|own| (own[place] - mean).powi(2));
+        let mean = without.iter().map(|shares| shares[place]).sum::<f64>() / groups;
+        let squares = without.iter().map(|shares| (shares[place] - mean).powi(2));
         let error = ((groups - 1.0) / groups * squares.sum::<f64>()).sqrt();
         let clamped = |value: f64| value.clamp(0.0, 1.0);
         VarianceShare {
@@ -91,9 +91,9 @@ fn share(input: &[f64], result: &[f64], rows: &[usize], classes: usize) -> Optio
     let mean =
         |rows: &[usize]| rows.iter().map(|&row| result[row]).sum::<f64>() / rows.len() as f64;
     let squares = |rows: &[usize]| {
-        let own = mean(rows);
+        let mean_of_rows = mean(rows);
         rows.iter()
-            .map(|&row| (result[row] - own).powi(2))
+            .map(|&row| (result[row] - mean_of_rows).powi(2))
             .sum::<f64>()
     };
     let total = squares(&ranked);

@@ -8,7 +8,9 @@ use super::percentile_resamples::PercentileResamples;
 #[must_use]
 pub fn holm(p_values: &[Option<f64>]) -> Vec<Option<f64>> {
     let adjusted = holm_with_origins(p_values).into_iter();
-    adjusted.map(|own| own.map(|(value, _)| value)).collect()
+    adjusted
+        .map(|adjusted| adjusted.map(|(value, _)| value))
+        .collect()
 }
 
 /// Probabilities adjusted by the method of Holm, each with the place of the probability that it is a
@@ -24,9 +26,9 @@ pub fn holm_with_origins(p_values: &[Option<f64>]) -> Vec<Option<(f64, usize)>> 
     let mut largest = (0.0, 0);
     for (step, &place) in order.iter().enumerate() {
         let factor = (order.len() - step) as f64;
-        let own = (factor * value(place)).min(1.0);
-        if step == 0 || own > largest.0 {
-            largest = (own, place);
+        let value_of_step = (factor * value(place)).min(1.0);
+        if step == 0 || value_of_step > largest.0 {
+            largest = (value_of_step, place);
         }
         adjusted[place] = Some(largest);
     }
@@ -52,20 +54,20 @@ pub fn best_set_at(columns: &[PercentileResamples], confidence: f64) -> Vec<bool
 }
 
 fn is_worse(columns: &[PercentileResamples], judged: usize, confidence: f64) -> bool {
-    let own = &columns[judged];
-    let count = own.low_resamples.len();
+    let column = &columns[judged];
+    let count = column.low_resamples.len();
     let mut statistic = f64::NEG_INFINITY;
     let mut largest = vec![f64::NEG_INFINITY; count];
     for (place, other) in columns.iter().enumerate() {
         if place == judged {
             continue;
         }
-        let difference = own.low - other.high;
-        let resampled: Vec<f64> = own
+        let difference = column.low - other.high;
+        let resampled: Vec<f64> = column
             .low_resamples
             .iter()
             .zip(&other.high_resamples)
-            .map(|(own, other)| own - other)
+            .map(|(low, high)| low - high)
             .collect();
         let mean = resampled.iter().sum::<f64>() / count as f64;
         let squares: f64 = resampled.iter().map(|value| (value - mean).powi(2)).sum();

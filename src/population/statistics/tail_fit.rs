@@ -182,7 +182,8 @@ fn simulate<R: rand::Rng>(
             let fitted = refit(&drawn, law, bounded)?;
             Some(match shrunk {
                 None => fitted,
-                Some(share) => fitted.map(|(own, distance)| (between(law, &own, share), distance)),
+                Some(share) => fitted
+                    .map(|(parameters, distance)| (between(law, &parameters, share), distance)),
             })
         })
         .collect()

@@ -184,8 +184,8 @@ impl TwoPhaseSample {
             flat().map(|&(w, s, y)| w * of(s, y)).sum::<f64>() / total
         };
         let (s, y) = (weighted(&|s, _| s), weighted(&|_, y| y));
-        let ss = weighted(&|own, _| (own - s).powi(2));
-        let sy = weighted(&|own, value| (own - s) * (value - y));
+        let ss = weighted(&|surrogate, _| (surrogate - s).powi(2));
+        let sy = weighted(&|surrogate, value| (surrogate - s) * (value - y));
         let yy = weighted(&|_, value| (value - y).powi(2));
         let coefficient = if ss > 0.0 { sy / ss } else { 0.0 };
         let value = y + coefficient * (control - all_surrogate / all_weight);

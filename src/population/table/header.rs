@@ -50,7 +50,11 @@ impl TableHeader {
     /// Place of the column `load_case` in a table of `columns`, if it has one.
     pub(super) fn place_of_load_case(&self, columns: &[ColumnSpec]) -> Option<usize> {
         let has_load_cases = !self.load_cases.is_empty() && columns.contains(&key::SCENARIO);
-        let engine_order = || columns.iter().position(|own| *own == key::ENGINE_ORDER);
+        let engine_order = || {
+            columns
+                .iter()
+                .position(|column| *column == key::ENGINE_ORDER)
+        };
         has_load_cases.then(engine_order).flatten()
     }
 }

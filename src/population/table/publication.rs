@@ -112,8 +112,8 @@ pub(super) fn discard(results: &Path) -> Result<(), TableError> {
         let path = entry.map_err(TableError::io("read", &next))?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let mut written = TABLES.iter().chain(&SIDE_FILES).chain(&[MANIFEST]);
-        let own = written.any(|own| *own == name) || writer_of_temporary(&name).is_some();
-        if own && stands(&path)? != Standing::Folder {
+        let is_ours = written.any(|known| *known == name) || writer_of_temporary(&name).is_some();
+        if is_ours && stands(&path)? != Standing::Folder {
             std::fs::remove_file(&path).map_err(TableError::io("remove", &path))?;
         }
     }

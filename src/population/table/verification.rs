@@ -71,8 +71,8 @@ impl VerificationRecord {
     }
 }
 
-fn relative(own: Option<f64>, reference: Option<f64>) -> Option<f64> {
-    Some(own? / reference? - 1.0)
+fn relative(value: Option<f64>, reference: Option<f64>) -> Option<f64> {
+    Some(value? / reference? - 1.0)
 }
 
 impl InScenario for VerificationRecord {

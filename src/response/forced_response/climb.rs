@@ -30,14 +30,14 @@ pub(super) struct Climb {
 
 impl Climb {
     /// Points of the last set so far.
-    pub(super) fn own(&self) -> &[Known] {
+    pub(super) fn last_set(&self) -> &[Known] {
         self.known.last().map_or(&[], Vec::as_slice)
     }
 
     /// The highest point of the last set so far.
     pub(super) fn best(&self) -> &Known {
         let highest = |a: &&Known, b: &&Known| a.height_m.total_cmp(&b.height_m);
-        let best = self.own().iter().max_by(highest);
+        let best = self.last_set().iter().max_by(highest);
         best.expect("a climb begins with a point")
     }
 
@@ -45,9 +45,9 @@ impl Climb {
     /// last one may meet a resonance of its own on the side that the sets before it have not shown.
     pub(super) fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
         let is_unseen = |side: &f64| {
-            let way = |own: &Known| (own.frequency_hz - top_hz) / side;
-            let serves = |own: &Known| (SERVES.0..=SERVES.1).contains(&way(own));
-            !self.own().iter().any(serves)
+            let way = |known: &Known| (known.frequency_hz - top_hz) / side;
+            let serves = |known: &Known| (SERVES.0..=SERVES.1).contains(&way(known));
+            !self.last_set().iter().any(serves)
         };
         let unseen = [-self.beside_hz, self.beside_hz]
             .into_iter()
@@ -65,7 +65,7 @@ impl Climb {
                 .map(|blade| {
                     nodes
                         .iter()
-                        .map(|(share, own)| share * own.growth[blade])
+                        .map(|(share, node)| share * node.growth[blade])
                         .sum()
                 })
                 .collect();
@@ -75,9 +75,9 @@ impl Climb {
                 growth
                     .iter_mut()
                     .zip(of_set)
-                    .for_each(|(all, own)| *all *= own);
+                    .for_each(|(all, factor)| *all *= factor);
             }
-            forces.extend(nodes.into_iter().map(|(share, own)| (share, &own.force)));
+            forces.extend(nodes.into_iter().map(|(share, node)| (share, &node.force)));
         }
         Some((ContactForces::combined(&forces)?, growth))
     }
@@ -85,15 +85,15 @@ impl Climb {
     /// The nearest known points to a frequency, Hz, each with its share in the polynomial through them there.
     fn nodes<'a>(&self, known: &'a [Known], frequency_hz: f64) -> Vec<(f64, &'a Known)> {
         let mut near: Vec<&Known> = known.iter().collect();
-        let distance = |own: &Known| (own.frequency_hz - frequency_hz).abs();
+        let distance = |known: &Known| (known.frequency_hz - frequency_hz).abs();
         near.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         let mut nodes: Vec<&Known> = Vec::new();
-        for own in near {
+        for candidate in near {
             let apart = |node: &&Known| {
-                (node.frequency_hz - own.frequency_hz).abs() >= APART * self.beside_hz
+                (node.frequency_hz - candidate.frequency_hz).abs() >= APART * self.beside_hz
             };
             if nodes.len() < NODES && nodes.iter().all(apart) {
-                nodes.push(own);
+                nodes.push(candidate);
             }
         }
         let share = |at: usize| -> f64 {

@@ -80,7 +80,7 @@ pub(super) fn corrected_peak(
     let mut few = ReceptancePoints::new(row, of_few);
     let tops = tops_of_few(plan, &mut few, peak_tolerance, MADE_UP)?;
     // What samples change jumps over frequency, and is no part of what harmonics leave.
-    let as_fine = sets.first().map(|own| own.search_at_own_samples());
+    let as_fine = sets.first().map(|set| set.search_at_own_samples());
     let Some(Ok(Some(as_fine))) = as_fine else {
         return Err(few.work());
     };
@@ -92,7 +92,7 @@ pub(super) fn corrected_peak(
         uncorrected: few,
         sets: sets
             .iter()
-            .map(|own| ReceptancePoints::new(row, own))
+            .map(|set| ReceptancePoints::new(row, set))
             .collect(),
         envelope: plan.envelope,
         tolerance: peak_tolerance,
@@ -158,20 +158,20 @@ impl Highest {
 impl CorrectedSearch<'_> {
     fn work(&self) -> Work {
         let few = self.few.work().plus(self.uncorrected.work());
-        self.sets.iter().fold(few, |sum, own| sum.plus(own.work()))
+        self.sets.iter().fold(few, |sum, set| sum.plus(set.work()))
     }
 
     /// The point with all harmonics, to the tolerance of the residual but where several sets led to it and none was asked for; an error
     /// where a contact opens beside it.
     fn finished(&mut self, frequency_hz: f64) -> Result<Point, Status> {
-        let mut points = self.sets.iter().flat_map(|own| &own.points);
+        let mut points = self.sets.iter().flat_map(|set| &set.points);
         if points.any(|point| point.shares.separated > 0.0) {
             return Err(Status::SweepIncomplete);
         }
         let is_guided = self.sets.len() > 1;
         let all = self.sets.last_mut().ok_or(Status::NotBracketed)?;
         if is_guided && !all.residual_is_stated() {
-            let same = |own: &&Point| own.frequency_hz.total_cmp(&frequency_hz).is_eq();
+            let same = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
             return all
                 .points
                 .iter()
@@ -193,8 +193,8 @@ impl CorrectedSearch<'_> {
         let found = tops_of_few(plan, &mut self.uncorrected, self.tolerance, lower);
         let mut further = found.map_err(|_| Status::SweepIncomplete)?;
         let apart = self.envelope.linear_half_bandwidth_hz;
-        further.retain(|own| {
-            let is_new = |top: &Top| (top.frequency_hz - own.frequency_hz).abs() > apart;
+        further.retain(|candidate| {
+            let is_new = |top: &Top| (top.frequency_hz - candidate.frequency_hz).abs() > apart;
             tops.iter().all(is_new)
         });
         self.highest_beside(Some(highest), &further)
@@ -207,12 +207,12 @@ impl CorrectedSearch<'_> {
         tops: &[Top],
     ) -> Result<Highest, Status> {
         for top in tops {
-            if let Some(own) = self.heights(top, best.as_ref())?
+            if let Some(found) = self.heights(top, best.as_ref())?
                 && best
                     .as_ref()
-                    .is_none_or(|best| own.height_m() > best.height_m())
+                    .is_none_or(|best| found.height_m() > best.height_m())
             {
-                best = Some(own);
+                best = Some(found);
             }
         }
         best.ok_or(Status::NotBracketed)
@@ -233,14 +233,14 @@ impl CorrectedSearch<'_> {
             known: Vec::new(),
             beside_hz: self.distance_beside(top),
         };
-        let mut own = Highest {
+        let mut highest = Highest {
             frequency_hz: top.frequency_hz,
             heights_m: vec![top.amplitude_m],
         };
         let reach_hz = NEIGHBOURS * top.half_bandwidth_hz;
         for set in 0..self.sets.len() {
             climb.known.push(Vec::new());
-            self.solve(&mut climb, own.frequency_hz, self.care.at_top)?;
+            self.solve(&mut climb, highest.frequency_hz, self.care.at_top)?;
             if set == 0 {
                 let is_top =
                     |point: &Point| point.frequency_hz.total_cmp(&top.frequency_hz).is_eq();
@@ -251,10 +251,10 @@ impl CorrectedSearch<'_> {
             }
             let floor_m = best.map_or(0.0, |best| best.heights_m[set + 1]);
             let (height_m, frequency_hz) = self.climb(&mut climb, reach_hz, floor_m)?;
-            own.frequency_hz = frequency_hz;
-            own.heights_m.push(height_m);
+            highest.frequency_hz = frequency_hz;
+            highest.heights_m.push(height_m);
         }
-        Ok(Some(own))
+        Ok(Some(highest))
     }
 
     fn distance_beside(&self, top: &Top) -> f64 {
@@ -281,8 +281,12 @@ impl CorrectedSearch<'_> {
             extensions: EXTENSIONS,
             rivals_from: 1.0,
         };
-        while climb.own().len() < POINTS {
-            let starts: Vec<f64> = climb.own().iter().map(|own| own.frequency_hz).collect();
+        while climb.last_set().len() < POINTS {
+            let starts: Vec<f64> = climb
+                .last_set()
+                .iter()
+                .map(|known| known.frequency_hz)
+                .collect();
             let found = find_peak(band, &starts, self.envelope, settings, |hz| {
                 self.corrected(climb, hz)
             });
@@ -310,7 +314,11 @@ impl CorrectedSearch<'_> {
     /// Amplitudes at a frequency, Hz, as few harmonics have them under the forces of the sets of the climb.
     fn corrected(&mut self, climb: &Climb, frequency_hz: f64) -> Option<Vec<f64>> {
         let same = |hz: f64| hz.total_cmp(&frequency_hz).is_eq();
-        if climb.own().iter().any(|own| same(own.frequency_hz)) {
+        if climb
+            .last_set()
+            .iter()
+            .any(|known| same(known.frequency_hz))
+        {
             return self.sets[climb.known.len() - 1].amplitudes_at(frequency_hz);
         }
         self.few.points.retain(|point| !same(point.frequency_hz));
@@ -329,9 +337,9 @@ impl CorrectedSearch<'_> {
         let few = between(&self.few.points, frequency_hz).into_iter().next()?;
         let few_set = self.few.solver.harmonics();
         let (mut start, mut set) = (few.clone(), few_set);
-        for own in &self.sets[..sets] {
-            let larger = own.solver.harmonics();
-            let known = between(&own.points, frequency_hz).into_iter().next();
+        for points in &self.sets[..sets] {
+            let larger = points.solver.harmonics();
+            let known = between(&points.points, frequency_hz).into_iter().next();
             start = if let Some(mut known) = known {
                 overlay(&mut known, &few, few_set, larger);
                 known
@@ -352,14 +360,14 @@ impl CorrectedSearch<'_> {
     ) -> Result<(), Status> {
         let sets = climb.known.len();
         let start = self.start(sets, frequency_hz).ok_or(Status::NotBracketed)?;
-        let own = &mut self.sets[sets - 1];
-        let tolerance = (precision * self.tolerance).max(own.least_tolerance());
-        let point = own.solve_from(frequency_hz, &[start], tolerance)?;
-        let force = own.solver.contact_forces();
-        let mut growth = own.growth_over(&self.few);
+        let last_set = &mut self.sets[sets - 1];
+        let tolerance = (precision * self.tolerance).max(last_set.least_tolerance());
+        let point = last_set.solve_from(frequency_hz, &[start], tolerance)?;
+        let force = last_set.solver.contact_forces();
+        let mut growth = last_set.growth_over(&self.few);
         let part = embedded(
             &point.solution,
-            own.solver.harmonics(),
+            last_set.solver.harmonics(),
             self.few.solver.harmonics(),
         );
         let few_force = self.few.solver.contact_forces_at(&part);
@@ -370,7 +378,7 @@ impl CorrectedSearch<'_> {
             growth
                 .iter_mut()
                 .zip(grown)
-                .for_each(|(own, before)| *own /= before);
+                .for_each(|(factor, before)| *factor /= before);
         }
         let known = Known {
             frequency_hz,
@@ -378,13 +386,13 @@ impl CorrectedSearch<'_> {
             force,
             growth,
         };
-        let same = |own: &Point| own.frequency_hz.total_cmp(&frequency_hz).is_eq();
-        self.few.points.retain(|own| !same(own));
+        let same = |known_point: &Point| known_point.frequency_hz.total_cmp(&frequency_hz).is_eq();
+        self.few.points.retain(|known_point| !same(known_point));
         self.few.points.push(Point {
             solution: part,
             ..point.clone()
         });
-        own.points.push(point);
+        last_set.points.push(point);
         climb.known[sets - 1].push(known);
         Ok(())
     }

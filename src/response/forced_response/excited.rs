@@ -217,15 +217,15 @@ impl Excited {
         let blocks = harmonics
             .iter()
             .map(|&harmonic| {
-                let own = if harmonic == 1 {
+                let excited = if harmonic == 1 {
                     linear.clone()
                 } else {
                     structure(harmonic)
                 };
                 HarmonicBlock {
                     harmonic,
-                    structure: own.structure,
-                    stuck: own.stuck,
+                    structure: excited.structure,
+                    stuck: excited.stuck,
                 }
             })
             .collect();
@@ -242,10 +242,10 @@ impl Excited {
     /// Copy of this structure under its excitation with some of its harmonics alone, 1 among them.
     #[must_use]
     pub fn in_harmonics(&self, harmonics: &[u32]) -> Self {
-        let mut own = self.clone();
-        own.blocks
+        let mut copy = self.clone();
+        copy.blocks
             .retain(|block| harmonics.contains(&block.harmonic));
-        own
+        copy
     }
 
     /// Copy of this structure with viscous damping that is equal to its damping at the angular frequency

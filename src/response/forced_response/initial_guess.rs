@@ -78,11 +78,11 @@ fn embedded(from: &Excited, to: &Excited, solution: &[f64]) -> Vec<f64> {
     for block in &to.blocks {
         let mut at = 0;
         let mut found = None;
-        for own in &from.blocks {
-            if own.harmonic == block.harmonic {
-                found = Some(at..at + size(own));
+        for known_block in &from.blocks {
+            if known_block.harmonic == block.harmonic {
+                found = Some(at..at + size(known_block));
             }
-            at += size(own);
+            at += size(known_block);
         }
         match found {
             Some(place) => all.extend_from_slice(&solution[place]),

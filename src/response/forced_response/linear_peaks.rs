@@ -103,8 +103,8 @@ impl LinearModes {
     fn damping(&self, structure: &Structure) -> Vec<f64> {
         let Some(shapes) = &self.shapes else {
             let modes = self.omega.iter().enumerate();
-            let own = modes.map(|(mode, &omega)| structure.damping_diagonal(mode, omega));
-            return own.collect();
+            let diagonal = modes.map(|(mode, &omega)| structure.damping_diagonal(mode, omega));
+            return diagonal.collect();
         };
         let mut damping = structure.damping_of(&shapes.real, &self.omega);
         if let Some(imaginary) = &shapes.imaginary {
@@ -126,8 +126,8 @@ fn coupled_modes(
     let lambda = structure.eigenvalues();
     if let Some(imaginary) = &contact.imaginary {
         let stiffness = Matrix::from_fn(lambda.len(), lambda.len(), |i, j| {
-            let own = if i == j { lambda[i] } else { 0.0 };
-            Complex64::new(contact.real[(i, j)] + own, imaginary[(i, j)])
+            let diagonal = if i == j { lambda[i] } else { 0.0 };
+            Complex64::new(contact.real[(i, j)] + diagonal, imaginary[(i, j)])
         });
         let (eigenvalues, shapes) = hermitian_eigen(&stiffness).ok()?;
         let rows = ModalRows {
@@ -137,8 +137,8 @@ fn coupled_modes(
         return Some((eigenvalues, rows));
     }
     let mut stiffness = contact.real.clone();
-    for (i, own) in lambda.iter().enumerate() {
-        stiffness[(i, i)] += own;
+    for (i, eigenvalue) in lambda.iter().enumerate() {
+        stiffness[(i, i)] += eigenvalue;
     }
     let (eigenvalues, shapes) = hermitian_eigen(&stiffness).ok()?;
     let rows = ModalRows {

@@ -135,8 +135,8 @@ impl ObservedAmplitude {
         (0..blades).all(|blade| {
             let changed: f64 = change
                 .iter()
-                .filter(|own| own.harmonic == 1 || self.time_grid.is_some())
-                .map(|own| length(&own.displacement[3 * blade..3 * blade + 3]))
+                .filter(|observed| observed.harmonic == 1 || self.time_grid.is_some())
+                .map(|observed| length(&observed.displacement[3 * blade..3 * blade + 3]))
                 .sum();
             changed <= share * largest
         })
@@ -222,8 +222,10 @@ fn observed(blocks: &[ObservedBlock<'_>], solution: &[f64]) -> Vec<ObservedHarmo
 fn fundamental(harmonics: &[ObservedHarmonic], blade: usize) -> &[Complex64] {
     harmonics
         .iter()
-        .find(|own| own.harmonic == 1)
-        .map_or(&[], |own| &own.displacement[3 * blade..3 * blade + 3])
+        .find(|observed| observed.harmonic == 1)
+        .map_or(&[], |observed| {
+            &observed.displacement[3 * blade..3 * blade + 3]
+        })
 }
 
 /// `|u|` and how it changes where u changes by `rates`.
@@ -249,8 +251,8 @@ fn channels(grid: &HarmonicTransform, harmonics: &[ObservedHarmonic], blade: usi
         for &harmonic in grid.harmonics() {
             let found = harmonics
                 .iter()
-                .find(|own| own.harmonic as usize == harmonic);
-            let value = found.map_or(Complex64::default(), |own| own.displacement[row]);
+                .find(|observed| observed.harmonic as usize == harmonic);
+            let value = found.map_or(Complex64::default(), |observed| observed.displacement[row]);
             channels.push(value.re);
             if harmonic > 0 {
                 channels.push(value.im);

@@ -378,7 +378,7 @@ fn beginning_with(points: &[Point], plan: &SearchPlan) -> ((f64, f64), Vec<f64>)
         .fold(plan.band_hz, |(low, high), f| (low.min(f), high.max(f)));
     let mut starts_hz: Vec<f64> = Vec::new();
     for start in known.chain(plan.starts_hz.iter().copied()) {
-        let apart = |own: &f64| (own - start).abs() > plan.envelope.resolution_hz();
+        let apart = |known_hz: &f64| (known_hz - start).abs() > plan.envelope.resolution_hz();
         if starts_hz.iter().all(apart) {
             starts_hz.push(start);
         }

@@ -63,9 +63,9 @@ impl PointSettings {
         let guided = options.harmonics == Harmonics::Auto && contact.is_some();
         let guided = guided && search.is_some() && is_everything(harmonics);
         let guide = guided.then(|| {
-            let own = Self::new(options, &GUIDE, contact, geometry.clone())?;
+            let settings = Self::new(options, &GUIDE, contact, geometry.clone())?;
             let (share, whole) = SAMPLES_OF_GUIDE;
-            own.at_samples(share * options.samples_per_period / whole)
+            settings.at_samples(share * options.samples_per_period / whole)
         });
         Ok(Self {
             search,
@@ -86,7 +86,9 @@ impl PointSettings {
     /// These settings with what a free ring does under mean friction; it is locked at first.
     #[must_use]
     pub fn with_ring(self, ring: Ring) -> Self {
-        let same = |own: Option<Box<Self>>| own.map(|own| Box::new(own.with_ring(ring)));
+        let same = |settings: Option<Box<Self>>| {
+            settings.map(|settings| Box::new(settings.with_ring(ring)))
+        };
         Self {
             ring,
             search: same(self.search),
@@ -98,9 +100,9 @@ impl PointSettings {
     /// Copy of these settings for a wheel whose contact differs from the nominal one by `factors`.
     #[must_use]
     pub fn with_factors(&self, factors: &ContactFactors) -> Self {
-        let same = |own: &Option<Box<Self>>| {
-            let own = own.as_ref();
-            own.map(|own| Box::new(own.with_factors(factors)))
+        let same = |settings: &Option<Box<Self>>| {
+            let settings = settings.as_ref();
+            settings.map(|settings| Box::new(settings.with_factors(factors)))
         };
         Self {
             factors: factors.clone(),
@@ -229,8 +231,8 @@ fn sought(search: &SearchHarmonics, harmonics: &[u32]) -> Option<Vec<u32>> {
         SearchHarmonics::All => return None,
         SearchHarmonics::Auto => vec![1],
         SearchHarmonics::Set(set) => {
-            let own = harmonics.iter().filter(|harmonic| set.contains(harmonic));
-            own.copied().collect()
+            let counted = harmonics.iter().filter(|harmonic| set.contains(harmonic));
+            counted.copied().collect()
         }
     };
     (sought.len() < harmonics.len()).then_some(sought)

@@ -100,7 +100,7 @@ fn vertex([low, middle, high]: [f64; 3]) -> (f64, f64) {
         .into_iter()
         .fold(
             (0.0, middle),
-            |best, own| if own.1 > best.1 { own } else { best },
+            |best, sample| if sample.1 > best.1 { sample } else { best },
         )
 }
 
@@ -174,10 +174,10 @@ fn in_harmonics(
             harmonic,
             displacement: observed
                 .iter()
-                .find(|own| own.harmonic == harmonic)
+                .find(|known| known.harmonic == harmonic)
                 .map_or_else(
                     || vec![Complex64::default(); 3 * blades],
-                    |own| own.displacement.clone(),
+                    |known| known.displacement.clone(),
                 ),
         })
         .collect()

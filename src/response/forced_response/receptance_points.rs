@@ -110,7 +110,7 @@ impl<'a> EngineRow<'a> {
         let load_n = self.condition.normal_load_n();
         let contact = settings.contact.filter(|_| load_n.is_some() || varied);
         contact.map(|(law, sector)| {
-            let own = settings.factors.springs(springs, &settings.geometry.rows);
+            let own_springs = settings.factors.springs(springs, &settings.geometry.rows);
             let law = in_place_of.unwrap_or(law);
             let interface = settings.interface(law, sector, load_n.unwrap_or(0.0));
             let sectors = self.engine.sectors();
@@ -118,7 +118,7 @@ impl<'a> EngineRow<'a> {
             if load_n.is_some() {
                 contact
             } else {
-                contact.linear(&own, springs)
+                contact.linear(&own_springs, springs)
             }
         })
     }
@@ -206,14 +206,17 @@ impl<'a> ReceptancePoints<'a> {
 
     /// Amplitude of every blade at the solution last solved, over what `few` take for it in the harmonics that they count.
     pub(super) fn growth_over(&mut self, few: &Self) -> Vec<f64> {
-        let own = observed(&mut self.solver, &self.settings.amplitude);
-        let counted = own
+        let of_all = observed(&mut self.solver, &self.settings.amplitude);
+        let counted = of_all
             .iter()
-            .filter(|own| few.solver.harmonics().contains(&own.harmonic));
+            .filter(|observed| few.solver.harmonics().contains(&observed.harmonic));
         let counted: Vec<ObservedHarmonic> = counted.cloned().collect();
         let of_few = few.settings.amplitude.of_observed(&counted);
-        let amplitudes = self.settings.amplitude.of_observed(&own).into_iter();
-        amplitudes.zip(of_few).map(|(own, few)| own / few).collect()
+        let amplitudes = self.settings.amplitude.of_observed(&of_all).into_iter();
+        amplitudes
+            .zip(of_few)
+            .map(|(amplitude, few)| amplitude / few)
+            .collect()
     }
 
     pub(super) fn residual_is_stated(&self) -> bool {
@@ -278,7 +281,7 @@ impl PointSource for ReceptancePoints<'_> {
         let same = |point: &Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
         let tolerance = self.settings.bounds.residual_tolerance;
         let point = self.solve(frequency_hz, tolerance)?;
-        self.points.retain(|own| !same(own));
+        self.points.retain(|known| !same(known));
         self.points.push(point.clone());
         Ok(point)
     }

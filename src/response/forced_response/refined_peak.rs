@@ -237,7 +237,7 @@ fn looked_into(
             return found;
         };
         let band = (first.frequency_hz, last.frequency_hz);
-        let all: Vec<f64> = samples.0.iter().map(|own| own.frequency_hz).collect();
+        let all: Vec<f64> = samples.0.iter().map(|sample| sample.frequency_hz).collect();
         found = find_peak(band, &all, envelope, settings, &mut evaluate);
     }
     found
@@ -291,7 +291,7 @@ fn highest(
     solver.set_precision(REFINED_PRECISION * tolerance);
     let mut highest = (height, None);
     for found in searched {
-        if summit_of(&found).is_none_or(|own| own.largest < (1.0 - HUMP) * height) {
+        if summit_of(&found).is_none_or(|summit| summit.largest < (1.0 - HUMP) * height) {
             continue;
         }
         let looked = looked_into(found, envelope, settings, |hz| solver.amplitudes_at(hz));

@@ -50,8 +50,8 @@ impl HarmonicTransform {
         let components = coefficients
             .chunks_exact(count)
             .zip(rates.chunks_exact(count));
-        let products =
-            components.map(|(own, rates)| self.at(own, instant) * self.at(rates, instant));
+        let products = components
+            .map(|(component, rates)| self.at(component, instant) * self.at(rates, instant));
         (norm, products.sum::<f64>() / norm)
     }
 
@@ -67,7 +67,7 @@ impl HarmonicTransform {
         let first = usize::from(self.has_mean());
         let components = coefficients.chunks_exact(self.n_coefficients().max(1));
         let moving: Vec<&[f64]> = components
-            .filter(|own| own[first..].iter().any(|&value| value != 0.0))
+            .filter(|component| component[first..].iter().any(|&value| value != 0.0))
             .collect();
         let mut ranges = self.instants_of_largest(&moving);
         ranges.sort_by_key(|range| range.start);
@@ -133,7 +133,7 @@ impl HarmonicTransform {
             let at = first + 2 * place;
             let parts = moving
                 .iter()
-                .map(|own| Complex64::new(own[at], own[at + 1]));
+                .map(|component| Complex64::new(component[at], component[at + 1]));
             if harmonic == 1 {
                 for u in parts {
                     p += 0.5 * u.norm_sqr();
@@ -146,7 +146,10 @@ impl HarmonicTransform {
         let highest = -0.5 * q.arg();
         let n = self.n_samples() as f64;
         let instant = (highest * n / TAU).round().rem_euclid(n) as usize;
-        let square: f64 = moving.iter().map(|own| self.at(own, instant).powi(2)).sum();
+        let square: f64 = moving
+            .iter()
+            .map(|component| self.at(component, instant).powi(2))
+            .sum();
         let least = square.sqrt() * (1.0 - ROUNDING) - others;
         let cosine = (least * least - p) / q.norm();
         // Not a number where harmonic 1 does not move, or moves on a circle.
@@ -163,7 +166,7 @@ mod tests {
         let count = transform.n_coefficients();
         let square = |instant: usize| -> f64 {
             let components = coefficients.chunks_exact(count);
-            let squares = components.map(|own| transform.at(own, instant).powi(2));
+            let squares = components.map(|component| transform.at(component, instant).powi(2));
             squares.sum()
         };
         (0..transform.n_samples())

@@ -167,11 +167,11 @@ impl WheelBasis {
             (scale, Complex64::new(0.0, sign * scale))
         };
         let mut coordinates = vec![Complex64::default(); self.size()];
-        let own = self
+        let waves = self
             .waves
             .iter()
             .filter(|wave| wave.nodal_diameter == nodal_diameter.index);
-        for (wave, factor) in own.zip([Complex64::from(cosine), sine]) {
+        for (wave, factor) in waves.zip([Complex64::from(cosine), sine]) {
             for (mode, amplitude) in amplitudes.iter().enumerate() {
                 coordinates[wave.start + mode] = factor * amplitude;
             }

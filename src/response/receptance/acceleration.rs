@@ -125,13 +125,13 @@ impl Acceleration {
         for (along, product) in self.along.iter_mut().zip(&row) {
             *along += length * product;
         }
-        let mut own = [0.0];
+        let mut square = [0.0];
         vectorized(Products {
             columns: change,
             vector: step,
-            into: &mut own,
+            into: &mut square,
         });
-        self.along.extend(own);
+        self.along.extend(square);
         row.push(1.0);
         self.products.push(row);
         self.columns += 1;
@@ -181,8 +181,8 @@ impl Acceleration {
                 0.0
             };
         }
-        for (share, own) in self.shares.iter_mut().rev().zip(&left) {
-            *share = *own;
+        for (share, share_left) in self.shares.iter_mut().rev().zip(&left) {
+            *share = *share_left;
         }
     }
 }

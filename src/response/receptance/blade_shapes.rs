@@ -36,15 +36,19 @@ pub(super) fn strain_coordinates(
     let sizes: Vec<usize> = diameters.iter().map(TunedDiameter::size).collect();
     let mut weights = vec![0.0_f64; gram.rows()];
     for &band in bands {
-        let mut own = Vec::with_capacity(gram.rows());
+        let mut answers_of_band = Vec::with_capacity(gram.rows());
         for diameter in diameters {
             let answers = diameter.free_answers(band);
-            own.extend_from_slice(&answers);
-            own.extend_from_slice(&answers);
+            answers_of_band.extend_from_slice(&answers);
+            answers_of_band.extend_from_slice(&answers);
         }
         let strain = |(at, answer): (usize, &f64)| answer * gram[(at, at)].max(0.0).sqrt();
-        let largest = own.iter().enumerate().map(strain).fold(0.0, f64::max);
-        for (weight, answer) in weights.iter_mut().zip(own) {
+        let largest = answers_of_band
+            .iter()
+            .enumerate()
+            .map(strain)
+            .fold(0.0, f64::max);
+        for (weight, answer) in weights.iter_mut().zip(answers_of_band) {
             *weight = weight.max(answer / largest);
         }
     }
@@ -58,15 +62,17 @@ pub(super) fn strain_coordinates(
         let (pivot, &largest) =
             left.iter().enumerate().fold(
                 (0, &0.0),
-                |best, own| if own.1 > best.1 { own } else { best },
+                |best, entry| if entry.1 > best.1 { entry } else { best },
             );
         if largest <= DROPPED * whole {
             break;
         }
         let mut row: Vec<f64> = gram.column(pivot).to_vec();
-        for own in &coordinates {
-            let share = own[pivot];
-            row.iter_mut().zip(own).for_each(|(a, b)| *a -= share * b);
+        for coordinate in &coordinates {
+            let share = coordinate[pivot];
+            row.iter_mut()
+                .zip(coordinate)
+                .for_each(|(a, b)| *a -= share * b);
         }
         let energy = row[pivot];
         left[pivot] = 0.0;
@@ -85,12 +91,12 @@ pub(super) fn strain_coordinates(
     }
     let mut first = 0;
     let participation = sizes.iter().map(|&size| {
-        let own = Matrix::from_fn(coordinates.len(), size, |i, mode| {
+        let wave_participation = Matrix::from_fn(coordinates.len(), size, |i, mode| {
             let row = &coordinates[i];
             Complex64::new(row[first + mode], row[first + size + mode])
         });
         first += 2 * size;
-        own
+        wave_participation
     });
     participation.collect()
 }
@@ -98,15 +104,18 @@ pub(super) fn strain_coordinates(
 /// `V^T` times the strain coordinates: participation of the modes in the shapes V, `r x q`.
 pub(super) fn in_shapes(strain: &Participation, shapes: &Matrix<f64>) -> Participation {
     let transposed = shapes.to_complex().adjoint();
-    strain.iter().map(|own| transposed.times(own)).collect()
+    strain
+        .iter()
+        .map(|participation| transposed.times(participation))
+        .collect()
 }
 
 /// Participation in the cantilever modes, `K_blade`-orthonormal; none where the model has none.
 pub(super) fn in_cantilever_modes(model: &ReducedModel) -> Option<Participation> {
     let cantilever = model.cantilever.as_ref()?;
-    let scaled = |own: &Matrix<Complex64>| {
-        Matrix::from_fn(own.rows(), own.columns(), |i, j| {
-            own[(i, j)] * cantilever.eigenvalues[i].sqrt()
+    let scaled = |participation: &Matrix<Complex64>| {
+        Matrix::from_fn(participation.rows(), participation.columns(), |i, j| {
+            participation[(i, j)] * cantilever.eigenvalues[i].sqrt()
         })
     };
     Some(cantilever.participation.iter().map(scaled).collect())
@@ -137,9 +146,9 @@ pub(super) fn blade_shapes(
     let mut motions_of_forces = Snapshots::new(count);
     // Strain by unit strain forces, with the number of waves that it stands for.
     let mut strain_receptances: Vec<(f64, Matrix<Complex64>)> = Vec::new();
-    for (h, (diameter, own)) in diameters.iter().zip(strain).enumerate() {
+    for (h, (diameter, participation)) in diameters.iter().zip(strain).enumerate() {
         let waves = diameter.waves as f64;
-        let motions = diameter.motions(own);
+        let motions = diameter.motions(participation);
         for &s in wanted.frequencies {
             let receptance = if s > 0.0 {
                 diameter.receptance(s, &motions)?
@@ -152,7 +161,8 @@ pub(super) fn blade_shapes(
             }
             let excitations = wanted.excitations.iter();
             for force in excitations.filter(|force| force.diameter.index == h) {
-                let motion = diameter.response(s, own, &force.modal, force.diameter.conjugate)?;
+                let motion =
+                    diameter.response(s, participation, &force.modal, force.diameter.conjugate)?;
                 motions_of_forces.add(1.0, &motion);
             }
             let block = Matrix::from_fn(count, count, |i, j| {
@@ -188,7 +198,7 @@ pub(super) fn blade_shapes(
         let entries = both.as_mut_slice().iter_mut();
         entries
             .zip(covariance.as_slice())
-            .for_each(|(sum, own)| *sum += own);
+            .for_each(|(sum, entry)| *sum += entry);
         decomposed = hermitian_eigen(&both).ok()?;
     }
     Some(kept(wanted.count, decomposed).1)

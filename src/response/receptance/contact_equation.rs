@@ -64,7 +64,7 @@ impl Buffers {
     pub(super) fn resize(&mut self, harmonics: usize, rows: usize, sectors: usize) {
         let entries = rows * padded(sectors);
         let fits = |fields: &Vec<Field>| {
-            fields.len() == harmonics && fields.iter().all(|own| own.re.len() == entries)
+            fields.len() == harmonics && fields.iter().all(|field| field.re.len() == entries)
         };
         if !fits(&self.motions) {
             let fields = || vec![Field::zeros(rows, sectors); harmonics];
@@ -79,10 +79,10 @@ impl ContactEquation<'_> {
     /// The motions of the linear response.
     pub(super) fn linear_start(&self) -> Vec<Field> {
         let mut start = vec![Field::default(); self.harmonics.len()];
-        for (place, own) in start.iter_mut().enumerate() {
-            own.clone_from(self.linear);
+        for (place, motion) in start.iter_mut().enumerate() {
+            motion.clone_from(self.linear);
             if place != self.fundamental {
-                own.fill(0.0);
+                motion.fill(0.0);
             }
         }
         start
@@ -179,8 +179,8 @@ impl ContactEquation<'_> {
     /// The residual turned into a step by the preconditioners, but for its sign.
     pub(super) fn precondition(&mut self, preconditioners: &mut [Preconditioner]) {
         let residual = self.buffers.residual.iter_mut();
-        for (own, residual) in preconditioners.iter_mut().zip(residual) {
-            own.apply(self.transform, residual);
+        for (preconditioner, residual) in preconditioners.iter_mut().zip(residual) {
+            preconditioner.apply(self.transform, residual);
         }
     }
 

@@ -16,10 +16,13 @@ impl ContactForces {
     pub fn beyond(&self, others: &Self) -> Self {
         let fields = others.harmonics.iter().zip(&others.fields);
         let beyond = fields.map(|(harmonic, other)| {
-            let own = self.harmonics.iter().position(|own| own == harmonic);
+            let place = self
+                .harmonics
+                .iter()
+                .position(|of_field| of_field == harmonic);
             let mut field = Field::zeros_like(other);
             field.add(-1.0, other);
-            if let Some(place) = own {
+            if let Some(place) = place {
                 field.add(1.0, &self.fields[place]);
             }
             field

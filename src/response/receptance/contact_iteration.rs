@@ -202,8 +202,8 @@ impl ContactEquation<'_> {
         let known = self.best_of(starts);
         let attempts = LADDER.iter();
         let few = self.harmonics.len() <= MOST_HARMONICS;
-        let attempts =
-            attempts.filter(|(_, own)| few || !matches!(own, Attempt::Newton(plan) if plan.pairs));
+        let attempts = attempts
+            .filter(|(_, attempt)| few || !matches!(attempt, Attempt::Newton(plan) if plan.pairs));
         let attempts = attempts.filter(|(start, _)| known.is_some() || *start != Start::Known);
         let mut best = (f64::INFINITY, linear.clone());
         let mut total = Outcome::none();

@@ -15,9 +15,9 @@ impl Places {
     pub(super) fn of(contact: &WheelContact) -> Self {
         let mut first = 0;
         let harmonics = contact.transform().harmonics().iter().map(|&k| {
-            let own = (k, first);
+            let harmonic = (k, first);
             first += if k == 0 { 1 } else { 2 };
-            own
+            harmonic
         });
         Self {
             harmonics: harmonics.collect(),

@@ -93,7 +93,7 @@ impl Elimination {
     }
 
     fn find_resonant(&mut self, receptance: &WaveMatrix) {
-        let largest = self.deviations.iter().map(|own| own.norm());
+        let largest = self.deviations.iter().map(|deviation| deviation.norm());
         let largest = largest.fold(0.0, f64::max);
         let answer = |shape: usize| {
             let place = self.contact + shape;
@@ -239,8 +239,8 @@ impl Elimination {
         transform.to_sectors(&one.waves, &mut one.sectors);
         self.unknowns.clear();
         for shape in 0..self.leading {
-            let own = (0..sectors).map(|n| one.sectors.at(shape * stride + n));
-            self.unknowns.extend(own);
+            let blades = (0..sectors).map(|n| one.sectors.at(shape * stride + n));
+            self.unknowns.extend(blades);
         }
         self.factors.solve(&mut self.unknowns);
         for (at, z) in self.unknowns.iter().enumerate() {
@@ -284,14 +284,15 @@ pub(super) fn fill_circulant(
         transform.to_sectors(&waves, &mut circulant);
         for m in 0..sectors {
             let deviation = deviations[column * sectors + m];
-            let own = &mut matrix[(column * sectors + m) * size..][..size];
+            let column_of_sector = &mut matrix[(column * sectors + m) * size..][..size];
             for row in 0..shapes {
                 for n in 0..sectors {
                     let apart = if n >= m { n - m } else { n + sectors - m };
-                    own[row * sectors + n] = circulant.at(row * stride + apart) * deviation;
+                    column_of_sector[row * sectors + n] =
+                        circulant.at(row * stride + apart) * deviation;
                 }
             }
-            own[column * sectors + m] += 1.0;
+            column_of_sector[column * sectors + m] += 1.0;
         }
     }
 }
@@ -312,8 +313,8 @@ mod tests {
         for h in 0..sectors {
             for row in 0..shapes + 4 {
                 for column in 0..=shapes {
-                    let own = if row == 1 && column == 1 { 40.0 } else { 0.4 };
-                    let size = own / (1.0 + row.abs_diff(column) as f64);
+                    let scale = if row == 1 && column == 1 { 40.0 } else { 0.4 };
+                    let size = scale / (1.0 + row.abs_diff(column) as f64);
                     receptance.set(h, row, column, size * number(31 * h + 7 * row + column));
                 }
             }

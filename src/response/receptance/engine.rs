@@ -152,8 +152,8 @@ const HIGHEST_OF_SHAPES: u32 = 15;
 impl ReceptanceEngine {
     /// An engine on `model`; none where modes are not found.
     #[must_use]
-    pub fn new(own: &EngineModel, options: &EngineOptions) -> Option<Self> {
-        let model = &own.model;
+    pub fn new(engine_model: &EngineModel, options: &EngineOptions) -> Option<Self> {
+        let model = &engine_model.model;
         let loss_factor = match options.damping {
             Damping::StructuralLossFactor(eta) => eta,
             Damping::ModalRatio(_) | Damping::Rayleigh { .. } => 0.0,
@@ -162,7 +162,7 @@ impl ReceptanceEngine {
             Projection::Exact => None,
             Projection::CantileverModes => Some(in_cantilever_modes(model)?),
         };
-        let strain = exact.as_ref().unwrap_or(&own.strain);
+        let strain = exact.as_ref().unwrap_or(&engine_model.strain);
         let diameters = under_limits(model, options.damping)?;
         let band = band(&diameters, model.sectors, options);
         let pencils = diameters.map(|diameters| Pencil {
@@ -172,7 +172,7 @@ impl ReceptanceEngine {
             band,
             forces: options.forces.clone(),
             deviation: options.deviation,
-            shape_factor: own.shape_factor,
+            shape_factor: engine_model.shape_factor,
             sectors: model.sectors,
             modes: None,
             tables: (0..=HIGHEST_HARMONIC).map(|_| OnceLock::new()).collect(),
@@ -209,9 +209,9 @@ impl ReceptanceEngine {
     #[must_use]
     pub fn table_error(&self) -> f64 {
         let tables = self.pencils.iter().flat_map(|pencil| &pencil.tables);
-        let tables = tables.filter_map(|own| own.get()?.as_ref());
+        let tables = tables.filter_map(|table| table.get()?.as_ref());
         tables
-            .map(|own| own.receptances.error())
+            .map(|table| table.receptances.error())
             .fold(0.0, f64::max)
     }
 
@@ -220,7 +220,7 @@ impl ReceptanceEngine {
     pub fn shape_count(&self, limit: Limit, harmonic: u32) -> usize {
         self.pencil(limit)
             .tables(harmonic)
-            .map_or(0, |own| own.shapes)
+            .map_or(0, |tables| tables.shapes)
     }
 
     /// Springs of the contact rows of a sector under a limit, N/m; empty where there are none.
@@ -263,11 +263,11 @@ impl ReceptanceEngine {
             Limit::Slide => 1,
             Limit::Free => 2,
         };
-        let own = wheel.modes[place].get_or_init(|| {
+        let mistuned = wheel.modes[place].get_or_init(|| {
             let shapes = self.shape_count(limit, 1);
             modes.mistuned(&wheel.deviations(shapes))
         });
-        Some(modes.peaks(&pencil.diameters, own.as_ref()?, force))
+        Some(modes.peaks(&pencil.diameters, mistuned.as_ref()?, force))
     }
 }
 
@@ -300,7 +300,7 @@ impl EngineWheel {
             .map(|(shape, n)| match &self.pattern {
                 Deviations::PerBlade(values) => values[n],
                 Deviations::PerMode { modes, values } => {
-                    let place = modes.iter().position(|&own| own as usize == shape);
+                    let place = modes.iter().position(|&mode| mode as usize == shape);
                     place.map_or(0.0, |place| values[n * modes.len() + place])
                 }
             })
@@ -331,8 +331,8 @@ impl Pencil {
 
     /// Shapes and receptances of a harmonic, made when first asked for.
     pub(super) fn tables(&self, harmonic: u32) -> Option<&HarmonicTables> {
-        let own = self.tables.get(harmonic as usize)?;
-        let made = own.get_or_init(|| {
+        let cell = self.tables.get(harmonic as usize)?;
+        let made = cell.get_or_init(|| {
             let participation = self.shapes(harmonic)?;
             Some(HarmonicTables {
                 shapes: participation[0].rows(),
@@ -424,7 +424,7 @@ fn tuned_span(
     for diameters in diameters {
         let none: Participation = diameters
             .iter()
-            .map(|own| Matrix::zeros(0, own.size()))
+            .map(|diameter| Matrix::zeros(0, diameter.size()))
             .collect();
         let all = BandModes::new(
             diameters,
@@ -466,8 +466,8 @@ fn contact_forces(diameters: &[TunedDiameter], band: (f64, f64), forces: &[WaveF
         for s in inside.chain([band.0, band.1]).filter(|&s| s > 0.0) {
             let motion =
                 diameter.response(s, &diameter.contact, &force.modal, force.diameter.conjugate);
-            for (largest, own) in largest.iter_mut().zip(motion.into_iter().flatten()) {
-                *largest = largest.max(own.norm());
+            for (largest, value) in largest.iter_mut().zip(motion.into_iter().flatten()) {
+                *largest = largest.max(value.norm());
             }
         }
     }

@@ -63,11 +63,11 @@ impl Field {
 
     /// Adds `factor` times another field.
     pub(super) fn add(&mut self, factor: f64, other: &Self) {
-        for (sum, own) in self.re.iter_mut().zip(&other.re) {
-            *sum += factor * own;
+        for (sum, value) in self.re.iter_mut().zip(&other.re) {
+            *sum += factor * value;
         }
-        for (sum, own) in self.im.iter_mut().zip(&other.im) {
-            *sum += factor * own;
+        for (sum, value) in self.im.iter_mut().zip(&other.im) {
+            *sum += factor * value;
         }
     }
 }
@@ -176,8 +176,8 @@ impl Loops for Turned<'_> {
 
 /// Sector after sector, in it row after row, from row after row of padded sectors.
 pub(super) fn turned(from: &[f64], stride: usize, rows: usize, to: &mut [f64]) {
-    for (row, own) in from.chunks_exact(stride).enumerate() {
-        for (to, value) in to[row..].iter_mut().step_by(rows).zip(own) {
+    for (row, row_values) in from.chunks_exact(stride).enumerate() {
+        for (to, value) in to[row..].iter_mut().step_by(rows).zip(row_values) {
             *to = *value;
         }
     }
@@ -185,8 +185,8 @@ pub(super) fn turned(from: &[f64], stride: usize, rows: usize, to: &mut [f64]) {
 
 /// The way back of [`turned`].
 pub(super) fn returned(from: &[f64], stride: usize, rows: usize, to: &mut [f64]) {
-    for (row, own) in to.chunks_exact_mut(stride).enumerate() {
-        for (to, value) in own.iter_mut().zip(from[row..].iter().step_by(rows)) {
+    for (row, row_values) in to.chunks_exact_mut(stride).enumerate() {
+        for (to, value) in row_values.iter_mut().zip(from[row..].iter().step_by(rows)) {
             *to = *value;
         }
     }

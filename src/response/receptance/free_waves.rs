@@ -61,10 +61,10 @@ impl ReceptanceEngine {
         Some(FreeWheel {
             sectors: self.sectors(),
             waves: waves
-                .map(|(own, strain)| FreeWave {
-                    eigenvalues: own.eigenvalues().to_vec(),
-                    viscous: own.viscous().to_vec(),
-                    contact: own.contact.clone(),
+                .map(|(diameter, strain)| FreeWave {
+                    eigenvalues: diameter.eigenvalues().to_vec(),
+                    viscous: diameter.viscous().to_vec(),
+                    contact: diameter.contact.clone(),
                     strain,
                 })
                 .collect(),

@@ -32,12 +32,15 @@ impl PairPreconditioner {
         let rows = contact.pair_rows();
         let places = Places::of(contact);
         // By harmonic, then by pair of a sector.
-        let answers: Vec<Vec<[Complex64; 9]>> =
-            harmonics.iter().map(|own| own.pair_answers(rows)).collect();
+        let answers: Vec<Vec<[Complex64; 9]>> = harmonics
+            .iter()
+            .map(|harmonic| harmonic.pair_answers(rows))
+            .collect();
         let pairs = (0..contact.sectors() * rows.len()).filter(|&pair| contact.is_active(pair));
         let factors = pairs.filter_map(|pair| {
-            let own: Vec<[Complex64; 9]> = answers.iter().map(|of| of[pair % rows.len()]).collect();
-            PairFactors::new(contact, &places, pair, &own)
+            let pair_answers: Vec<[Complex64; 9]> =
+                answers.iter().map(|of| of[pair % rows.len()]).collect();
+            PairFactors::new(contact, &places, pair, &pair_answers)
         });
         Self {
             pairs: factors.collect(),
@@ -52,8 +55,8 @@ impl PairPreconditioner {
             self.unknowns
                 .extend(places.iter().map(|&place| motions[place]));
             factors.solve(&mut self.unknowns);
-            for (&place, own) in places.iter().zip(&self.unknowns) {
-                motions[place] = *own;
+            for (&place, motion) in places.iter().zip(&self.unknowns) {
+                motions[place] = *motion;
             }
         }
     }
@@ -69,8 +72,9 @@ impl PairFactors {
     ) -> Option<Self> {
         let coefficients = contact.transform().n_coefficients();
         let (rows, sector_rows) = (contact.pair_rows(), contact.sector_rows());
-        let (sector, own) = (pair / rows.len(), rows[pair % rows.len()]);
-        let directions: Vec<(usize, usize)> = (0..3).filter_map(|d| Some((d, own[d]?))).collect();
+        let (sector, pair_rows) = (pair / rows.len(), rows[pair % rows.len()]);
+        let directions: Vec<(usize, usize)> =
+            (0..3).filter_map(|d| Some((d, pair_rows[d]?))).collect();
         let size = directions.len() * coefficients;
         let mut factors = LuWorkspace::new(size);
         let matrix = factors.matrix_mut();

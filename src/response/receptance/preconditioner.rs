@@ -109,8 +109,8 @@ impl MistunedShapes {
             })
             .collect();
         let left = |row: usize, column: usize, h: usize| {
-            let own = receptance.at(h, contact + shapes[row], contact + shapes[column]);
-            own - taken[row * shapes.len() + column].at(h)
+            let answer = receptance.at(h, contact + shapes[row], contact + shapes[column]);
+            answer - taken[row * shapes.len() + column].at(h)
         };
         let of_shape = |shape: &usize| &harmonic.deviations[shape * sectors..][..sectors];
         let deviations: Vec<Complex64> = shapes.iter().flat_map(of_shape).copied().collect();
@@ -132,21 +132,22 @@ impl MistunedShapes {
         let count = self.strains.len();
         let mut waves = Field::zeros(count, sectors);
         for (shape, strain) in self.strains.iter().enumerate() {
-            let mut own = Field::zeros(1, sectors);
-            add_channels(strain, residual, &mut own, stride);
-            waves.re[shape * stride..][..stride].copy_from_slice(&own.re);
-            waves.im[shape * stride..][..stride].copy_from_slice(&own.im);
+            let mut channel = Field::zeros(1, sectors);
+            add_channels(strain, residual, &mut channel, stride);
+            waves.re[shape * stride..][..stride].copy_from_slice(&channel.re);
+            waves.im[shape * stride..][..stride].copy_from_slice(&channel.im);
         }
-        let mut own = Field::zeros(count, sectors);
-        transform.to_sectors(&waves, &mut own);
+        let mut blades = Field::zeros(count, sectors);
+        transform.to_sectors(&waves, &mut blades);
         let place = |at: usize| at / sectors * stride + at % sectors;
-        let mut unknowns: Vec<Complex64> =
-            (0..count * sectors).map(|at| own.at(place(at))).collect();
+        let mut unknowns: Vec<Complex64> = (0..count * sectors)
+            .map(|at| blades.at(place(at)))
+            .collect();
         self.factors.solve(&mut unknowns);
         for (at, (z, deviation)) in unknowns.iter().zip(&self.deviations).enumerate() {
-            own.set(place(at), z * deviation);
+            blades.set(place(at), z * deviation);
         }
-        transform.to_waves(&own, &mut waves);
+        transform.to_waves(&blades, &mut waves);
         for (shape, motion) in self.motions.iter().enumerate() {
             let forces = (
                 &waves.re[shape * stride..][..stride],

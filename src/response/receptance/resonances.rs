@@ -69,14 +69,14 @@ impl BandModes {
                 }
                 let turned = |motion: Complex64| if conjugate { motion.conj() } else { motion };
                 let shape = shapes.column(place);
-                let own = strain[index].times_vector(shape);
+                let participation = strain[index].times_vector(shape);
                 let observed = diameter.observed.times_vector(shape);
                 modes.push(BandMode {
                     wave,
                     place,
                     omega,
                     damping: diameter.damping_of(place),
-                    strain: own.into_iter().map(turned).collect(),
+                    strain: participation.into_iter().map(turned).collect(),
                     observed: [0, 1, 2].map(|row| turned(observed[row])),
                 });
             }
@@ -93,10 +93,10 @@ impl BandModes {
         let sectors = self.sectors;
         let shapes = deviations.len() / sectors;
         let mut spectrum = vec![Complex64::default(); deviations.len()];
-        for (shape, own) in deviations.chunks_exact(sectors).enumerate() {
+        for (shape, shape_deviations) in deviations.chunks_exact(sectors).enumerate() {
             for m in 0..sectors {
                 let turned = |(n, delta): (usize, &f64)| phase(m, n, sectors).conj() * delta;
-                let sum: Complex64 = own.iter().enumerate().map(turned).sum();
+                let sum: Complex64 = shape_deviations.iter().enumerate().map(turned).sum();
                 spectrum[shape * sectors + m] = sum / sectors as f64;
             }
         }
@@ -107,8 +107,8 @@ impl BandModes {
             let of_shape = |shape: usize| {
                 a.strain[shape].conj() * spectrum[shape * sectors + apart] * b.strain[shape]
             };
-            let own = if i == j { a.omega * a.omega } else { 0.0 };
-            (0..shapes).map(of_shape).sum::<Complex64>() + own
+            let diagonal = if i == j { a.omega * a.omega } else { 0.0 };
+            (0..shapes).map(of_shape).sum::<Complex64>() + diagonal
         });
         let (eigenvalues, shares) = hermitian_eigen(&stiffness).ok()?;
         Some(MistunedModes {
@@ -210,16 +210,16 @@ impl BandModes {
         let sectors = self.sectors;
         let mut waves = vec![[Complex64::default(); 3]; sectors];
         for (v, mode) in shares.iter().zip(&self.modes) {
-            for (sum, own) in waves[mode.wave].iter_mut().zip(&mode.observed) {
-                *sum += v * own;
+            for (sum, component) in waves[mode.wave].iter_mut().zip(&mode.observed) {
+                *sum += v * component;
             }
         }
         let of_blade = |n: usize| {
             let mut displacement = [Complex64::default(); 3];
-            for (h, own) in waves.iter().enumerate() {
+            for (h, motion) in waves.iter().enumerate() {
                 let turn = phase(h, n, sectors);
-                for (sum, own) in displacement.iter_mut().zip(own) {
-                    *sum += own * turn;
+                for (sum, component) in displacement.iter_mut().zip(motion) {
+                    *sum += component * turn;
                 }
             }
             displacement.iter().map(Complex64::norm_sqr).sum::<f64>()

@@ -87,7 +87,7 @@ impl Receptances {
             .collect();
         Self {
             sectors,
-            inputs: motions.first().map_or(0, |own| own.rows() - 3),
+            inputs: motions.first().map_or(0, |matrix| matrix.rows() - 3),
             motions,
             panels: RwLock::new(HashMap::new()),
             static_ones: OnceLock::new(),
@@ -103,18 +103,18 @@ impl Receptances {
     pub(super) fn summed(&self, diameters: &[TunedDiameter], s: f64) -> Option<WaveMatrix> {
         let mut all = WaveMatrix::zeros(self.inputs + 3, self.inputs, self.sectors);
         for (index, (diameter, motions)) in diameters.iter().zip(&self.motions).enumerate() {
-            let own = if s > 0.0 {
+            let receptance = if s > 0.0 {
                 diameter.receptance(s, motions)?
             } else {
                 diameter.static_receptance(motions)?
             };
             for column in 0..self.inputs {
                 for row in 0..self.inputs + 3 {
-                    all.set(index, row, column, own[(row, column)]);
+                    all.set(index, row, column, receptance[(row, column)]);
                     if diameter.waves == 2 {
                         // The conjugate wave of a reciprocal sector.
                         let other = self.sectors - index;
-                        all.set(other, row, column, own[(column, row)]);
+                        all.set(other, row, column, receptance[(column, row)]);
                     }
                 }
             }
@@ -129,7 +129,9 @@ impl Receptances {
         s: f64,
         into: &mut WaveMatrix,
     ) -> Option<()> {
-        let small = diameters.iter().all(|own| own.size() <= LARGEST_SUMMED);
+        let small = diameters
+            .iter()
+            .all(|diameter| diameter.size() <= LARGEST_SUMMED);
         if s <= 0.0 {
             let known = self.static_ones.get_or_init(|| self.summed(diameters, 0.0));
             into.clone_from(known.as_ref()?);
@@ -203,16 +205,17 @@ impl Receptances {
             let exact = self.summed(diameters, s)?;
             panel.evaluate(s, &mut found);
             let of_row = |row: usize| {
-                let own = (0..self.sectors).flat_map(|h| (0..self.inputs).map(move |j| (h, j)));
-                own.map(|(h, j)| exact.at(h, row, j).norm())
+                let entries = (0..self.sectors).flat_map(|h| (0..self.inputs).map(move |j| (h, j)));
+                entries
+                    .map(|(h, j)| exact.at(h, row, j).norm())
                     .fold(0.0, f64::max)
             };
             for row in 0..self.inputs + 3 {
                 let largest = of_row(row);
                 for h in 0..self.sectors {
                     for j in 0..self.inputs {
-                        let own = (exact.at(h, row, j) - found.at(h, row, j)).norm();
-                        error = error.max(own / largest.max(f64::MIN_POSITIVE));
+                        let deviation = (exact.at(h, row, j) - found.at(h, row, j)).norm();
+                        error = error.max(deviation / largest.max(f64::MIN_POSITIVE));
                     }
                 }
             }
@@ -228,7 +231,7 @@ impl Receptances {
                 let modes = (0..diameter.size()).filter(|&mode| near(diameter.natural.0[mode]));
                 let mut poles: Vec<Pole> = Vec::new();
                 for pole in modes.filter_map(|mode| diameter.pole(mode)) {
-                    let apart = |own: &Pole| (own.s - pole.s).norm() > 1e-9 * pole.s.norm();
+                    let apart = |known: &Pole| (known.s - pole.s).norm() > 1e-9 * pole.s.norm();
                     if poles.iter().all(apart) {
                         poles.push(pole);
                     }
@@ -338,8 +341,8 @@ impl Panel {
             .iter()
             .position(|node| (node - s).abs() < 1e-14 * s);
         let mut shares: Vec<f64> = if let Some(at) = exact {
-            let own = |i| f64::from(u8::from(i == at));
-            (0..self.nodes.len()).map(own).collect()
+            let share = |i| f64::from(u8::from(i == at));
+            (0..self.nodes.len()).map(share).collect()
         } else {
             let both = self.weights.iter().zip(&self.nodes);
             both.map(|(weight, node)| weight / (s - node)).collect()
@@ -386,9 +389,9 @@ fn interpolate(sum: &mut [f64], shares: &[f64], nodes: &[f64]) {
     let nodes = nodes.as_chunks::<LANES>().0.chunks_exact(shares.len());
     for (sum, nodes) in sum.as_chunks_mut::<LANES>().0.iter_mut().zip(nodes) {
         let mut lanes = [0.0; LANES];
-        for (own, share) in nodes.iter().zip(shares) {
+        for (node_values, share) in nodes.iter().zip(shares) {
             for lane in 0..LANES {
-                lanes[lane] += share * own[lane];
+                lanes[lane] += share * node_values[lane];
             }
         }
         *sum = lanes;

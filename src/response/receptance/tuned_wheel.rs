@@ -270,13 +270,17 @@ impl TunedDiameter {
         if count == 0 {
             return Some(weighted);
         }
-        let mut own = self.contact.clone();
-        for (column, d) in own.as_mut_slice().chunks_exact_mut(count).zip(&free) {
+        let mut weighted_contact = self.contact.clone();
+        for (column, d) in weighted_contact
+            .as_mut_slice()
+            .chunks_exact_mut(count)
+            .zip(&free)
+        {
             for entry in column {
                 *entry *= d;
             }
         }
-        let contact_contact = own.times(&self.contact.adjoint());
+        let contact_contact = weighted_contact.times(&self.contact.adjoint());
         let mut factors = LuWorkspace::<Complex64>::new(count);
         for j in 0..count {
             for i in 0..count {
@@ -411,12 +415,12 @@ mod tests {
     }
 
     /// `Z(s)`.
-    fn stiffness(own: &TunedDiameter, s: Complex64) -> Matrix<Complex64> {
-        let sprung = Matrix::from_fn(own.springs.len(), own.size(), |i, j| {
-            own.contact[(i, j)] * own.springs[i]
+    fn stiffness(diameter: &TunedDiameter, s: Complex64) -> Matrix<Complex64> {
+        let sprung = Matrix::from_fn(diameter.springs.len(), diameter.size(), |i, j| {
+            diameter.contact[(i, j)] * diameter.springs[i]
         });
-        let mut z = own.contact.adjoint_times(&sprung);
-        for (mode, d) in own.free(s).into_iter().enumerate() {
+        let mut z = diameter.contact.adjoint_times(&sprung);
+        for (mode, d) in diameter.free(s).into_iter().enumerate() {
             z[(mode, mode)] += d;
         }
         z
@@ -425,17 +429,17 @@ mod tests {
     #[test]
     fn receptances_are_those_of_the_whole_matrix() {
         for damping in dampings() {
-            let own = diameter(damping);
+            let diameter = diameter(damping);
             let motions = Matrix::from_fn(6, 7, |i, j| {
                 if i < 3 {
-                    own.contact[(i, j)]
+                    diameter.contact[(i, j)]
                 } else {
-                    own.observed[(i - 3, j)]
+                    diameter.observed[(i - 3, j)]
                 }
             });
             for s in [0.5, 1.9, 3.3] {
-                let found = own.receptance(s, &motions).expect("regular");
-                let z = stiffness(&own, Complex64::from(s));
+                let found = diameter.receptance(s, &motions).expect("regular");
+                let z = stiffness(&diameter, Complex64::from(s));
                 let mut lu = LuWorkspace::<Complex64>::new(7);
                 lu.matrix_mut().copy_from_slice(z.as_slice());
                 assert!(lu.factor());
@@ -446,9 +450,11 @@ mod tests {
                     assert!((a - b).norm() < 1e-11 * b.norm().max(1.0), "{a} {b}");
                 }
                 let force: Vec<Complex64> = motions.adjoint().column(4).to_vec();
-                let response = own.response(s, &motions, &force, false).expect("regular");
-                for (i, own) in response.iter().enumerate() {
-                    assert!((own - whole[(i, 4)]).norm() < 1e-11 * own.norm().max(1.0));
+                let response = diameter
+                    .response(s, &motions, &force, false)
+                    .expect("regular");
+                for (i, value) in response.iter().enumerate() {
+                    assert!((value - whole[(i, 4)]).norm() < 1e-11 * value.norm().max(1.0));
                 }
             }
         }
@@ -458,11 +464,11 @@ mod tests {
     fn poles_are_zeros_of_the_matrix_and_their_residues_those_of_its_inverse() {
         let with = dampings().map(diameter);
         let without = dampings().map(|damping| with_springs(damping, &[]));
-        for own in with.into_iter().chain(without) {
+        for diameter in with.into_iter().chain(without) {
             for mode in 0..7 {
-                let pole = own.pole(mode).expect("a pole");
+                let pole = diameter.pole(mode).expect("a pole");
                 assert!(pole.s.im > 0.0, "{}", pole.s);
-                let z = stiffness(&own, pole.s);
+                let z = stiffness(&diameter, pole.s);
                 let left = z.times_vector(&pole.right);
                 let size = pole.right.iter().map(|x| x.norm()).fold(0.0, f64::max);
                 assert!(left.iter().all(|r| r.norm() < 1e-9 * size));
@@ -470,7 +476,7 @@ mod tests {
                 let near = pole.s + Complex64::new(1e-5, 0.0);
                 let mut lu = LuWorkspace::<Complex64>::new(7);
                 lu.matrix_mut()
-                    .copy_from_slice(stiffness(&own, near).as_slice());
+                    .copy_from_slice(stiffness(&diameter, near).as_slice());
                 assert!(lu.factor());
                 for j in 0..7 {
                     let mut column = vec![Complex64::default(); 7];

@@ -98,8 +98,8 @@ impl WaveMatrix {
 
     /// Adds 1 to the diagonal of every wave.
     pub(super) fn add_identity(&mut self) {
-        let own = self.rows * self.columns * LANES;
-        for chunk in self.re.chunks_exact_mut(own) {
+        let chunk_length = self.rows * self.columns * LANES;
+        for chunk in self.re.chunks_exact_mut(chunk_length) {
             for row in 0..self.rows {
                 let place = (row * self.columns + row) * LANES;
                 chunk[place..place + LANES]
@@ -290,8 +290,8 @@ impl Loops for Inverted<'_> {
         let im = self.0.im.as_chunks_mut::<LANES>().0.chunks_exact_mut(n * n);
         for (re, im) in re.zip(im) {
             for pivot in 0..n {
-                let own = pivot * n;
-                let (a, b) = (re[own + pivot], im[own + pivot]);
+                let pivot_row = pivot * n;
+                let (a, b) = (re[pivot_row + pivot], im[pivot_row + pivot]);
                 let (mut p, mut q) = ([0.0; LANES], [0.0; LANES]);
                 for lane in 0..LANES {
                     let square = a[lane] * a[lane] + b[lane] * b[lane];
@@ -300,9 +300,9 @@ impl Loops for Inverted<'_> {
                     p[lane] = a[lane] * inverse;
                     q[lane] = -b[lane] * inverse;
                 }
-                (re[own + pivot], im[own + pivot]) = ([1.0; LANES], [0.0; LANES]);
+                (re[pivot_row + pivot], im[pivot_row + pivot]) = ([1.0; LANES], [0.0; LANES]);
                 for column in 0..n {
-                    let (x, y) = (&mut re[own + column], &mut im[own + column]);
+                    let (x, y) = (&mut re[pivot_row + column], &mut im[pivot_row + column]);
                     for lane in 0..LANES {
                         let (u, v) = (x[lane], y[lane]);
                         x[lane] = u * p[lane] - v * q[lane];
@@ -313,7 +313,7 @@ impl Loops for Inverted<'_> {
                     let (f, g) = (re[row * n + pivot], im[row * n + pivot]);
                     (re[row * n + pivot], im[row * n + pivot]) = ([0.0; LANES], [0.0; LANES]);
                     for column in 0..n {
-                        let (x, y) = (re[own + column], im[own + column]);
+                        let (x, y) = (re[pivot_row + column], im[pivot_row + column]);
                         let to_re = &mut re[row * n + column];
                         let to_im = &mut im[row * n + column];
                         for lane in 0..LANES {
@@ -379,8 +379,8 @@ mod tests {
                 let mut column = vec![Complex64::default(); n];
                 column[j] = Complex64::from(1.0);
                 lu.solve(&mut column);
-                for (i, own) in column.iter().enumerate() {
-                    assert!((own - inverse.at(h, i, j)).norm() < 1e-12);
+                for (i, value) in column.iter().enumerate() {
+                    assert!((value - inverse.at(h, i, j)).norm() < 1e-12);
                 }
             }
         }

@@ -61,7 +61,7 @@ impl WheelHarmonic {
         self.deviations.clear();
         self.deviations.extend(deviations);
         self.excited.fill(0.0);
-        let deviates = |own: &Complex64| own.norm_sqr() != 0.0;
+        let deviates = |deviation: &Complex64| deviation.norm_sqr() != 0.0;
         self.is_mistuned = self.deviations.iter().any(deviates);
         !self.is_mistuned
             || self
@@ -89,13 +89,13 @@ impl WheelHarmonic {
     /// What each of `pairs` answers to its own forces in the tuned wheel, m/N: a `3 x 3` matrix over its rows, row after row.
     pub(super) fn pair_answers(&self, pairs: &[[Option<usize>; 3]]) -> Vec<[Complex64; 9]> {
         let share = 1.0 / self.sectors as f64;
-        let own = |row: usize, column: usize| {
+        let answer = |row: usize, column: usize| {
             let waves = (0..self.sectors).map(|wave| self.receptance.at(wave, row, column));
             waves.sum::<Complex64>() * share
         };
         let of = |rows: &[Option<usize>; 3]| {
             std::array::from_fn(|place| match (rows[place / 3], rows[place % 3]) {
-                (Some(row), Some(column)) => own(row, column),
+                (Some(row), Some(column)) => answer(row, column),
                 _ => Complex64::default(),
             })
         };
@@ -123,8 +123,8 @@ impl WheelHarmonic {
     ) {
         let stride = padded(self.sectors);
         motion.fill(0.0);
-        let (own, rest) = response.split_at(self.contact);
-        for (row, u) in own.iter().enumerate() {
+        let (contact_rows, rest) = response.split_at(self.contact);
+        for (row, u) in contact_rows.iter().enumerate() {
             motion.set(row * stride + wave, *u);
         }
         self.strain.fill(0.0);

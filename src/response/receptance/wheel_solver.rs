@@ -180,18 +180,19 @@ impl<'a> WheelSolver<'a> {
                 return false;
             };
             if self.harmonics.len() == place {
-                let own = WheelHarmonic::new(sectors, contact_rows, tables.shapes);
-                self.harmonics.push(own);
+                let wheel_harmonic = WheelHarmonic::new(sectors, contact_rows, tables.shapes);
+                self.harmonics.push(wheel_harmonic);
             }
-            let own = &mut self.harmonics[place];
+            let wheel_harmonic = &mut self.harmonics[place];
             let s = angular(harmonic, frequency_hz);
-            let filled = tables
-                .receptances
-                .at(&pencil.diameters, s, &mut own.receptance);
+            let filled =
+                tables
+                    .receptances
+                    .at(&pencil.diameters, s, &mut wheel_harmonic.receptance);
             let deviations = self.wheel.deviations(tables.shapes).into_iter();
             let loss = self.engine.loss_factor;
             let deviations = deviations.map(|delta| damped(delta, loss, harmonic));
-            if filled.is_none() || !own.mistune(transform, deviations) {
+            if filled.is_none() || !wheel_harmonic.mistune(transform, deviations) {
                 return false;
             }
             if harmonic == 1 {
@@ -206,7 +207,7 @@ impl<'a> WheelSolver<'a> {
                 self.excited = excited;
                 self.linear = Field::zeros(contact_rows, sectors);
                 let wave = self.force.wave(sectors);
-                own.excite(transform, wave, &self.excited, &mut self.linear);
+                wheel_harmonic.excite(transform, wave, &self.excited, &mut self.linear);
             }
         }
         true
@@ -307,8 +308,8 @@ impl<'a> WheelSolver<'a> {
 /// Puts motions in the harmonics `from` in the place of those of a solution in `to`.
 pub fn overlay(all: &mut [f64], motions: &[f64], from: &[u32], to: &[u32]) {
     let size = motions.len() / from.len().max(1);
-    for (own, part) in from.iter().zip(motions.chunks_exact(size.max(1))) {
-        if let Some(place) = to.iter().position(|k| k == own) {
+    for (harmonic, part) in from.iter().zip(motions.chunks_exact(size.max(1))) {
+        if let Some(place) = to.iter().position(|k| k == harmonic) {
             all[place * size..][..size].copy_from_slice(part);
         }
     }

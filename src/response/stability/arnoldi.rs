@@ -56,10 +56,12 @@ impl Arnoldi {
         let mut column = vec![0.0; self.vectors.len() + 1];
         // Twice is enough (Kahan & Parlett).
         for _ in 0..2 {
-            for (own, sum) in self.vectors.iter().zip(&mut column) {
-                let share = dot(own, &next);
+            for (vector, sum) in self.vectors.iter().zip(&mut column) {
+                let share = dot(vector, &next);
                 *sum += share;
-                next.iter_mut().zip(own).for_each(|(x, v)| *x -= share * v);
+                next.iter_mut()
+                    .zip(vector)
+                    .for_each(|(x, v)| *x -= share * v);
             }
         }
         let left = dot(&next, &next).sqrt();
@@ -146,7 +148,7 @@ mod tests {
         };
         let mut arnoldi = Arnoldi::new((0..82).map(|i| 1.0 + f64::from(i % 7)).collect());
         let error = |found: &[RitzValue]| {
-            let apart = |own: &RitzValue| (own.value - Complex64::from_polar(1.01, 0.9)).norm();
+            let apart = |ritz: &RitzValue| (ritz.value - Complex64::from_polar(1.01, 0.9)).norm();
             found.iter().map(apart).fold(f64::INFINITY, f64::min)
         };
         // Of a normal map an eigenvalue lies within the residual (Bauer & Fike 1960).

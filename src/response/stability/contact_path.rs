@@ -120,7 +120,7 @@ impl ContactPath {
     pub(super) fn at_rest(&self) -> Vec<StepChange> {
         let last = &self.changes[(self.steps - 1) * self.pairs()..];
         let held = |change: &StepChange| StepChange {
-            friction: change.friction.map(|own| match own {
+            friction: change.friction.map(|tangent| match tangent {
                 FrictionChange::None => FrictionChange::None,
                 FrictionChange::Stick | FrictionChange::Moves(_) => FrictionChange::Stick,
             }),

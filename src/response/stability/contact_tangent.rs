@@ -175,7 +175,7 @@ fn differenced(
         [0, 1].map(|tangent| (up[tangent] - down[tangent]) / (2.0 * step))
     });
     [0, 1].map(|tangent| {
-        let [w1, w2, a0, a1, a2, b0, b1, b2] = slopes.map(|own| own[tangent]);
+        let [w1, w2, a0, a1, a2, b0, b1, b2] = slopes.map(|slope| slope[tangent]);
         FrictionSlopes {
             memory: [w1, w2],
             after: [a0, a1, a2],

@@ -101,7 +101,8 @@ pub fn multipliers(
         let size = value.norm();
         let near = CLEAR * options.growth.max((size - 1.0).abs());
         let mut earlier = seen.iter().rev().take(LOOKS);
-        let stays = seen.len() >= LOOKS && earlier.all(|own| (own - size).abs() <= near);
+        let stays =
+            seen.len() >= LOOKS && earlier.all(|earlier_size| (earlier_size - size).abs() <= near);
         seen.push(size);
         let grows = size > 1.0 + options.growth && residual <= CLEAR * (size - 1.0);
         let decays = size + residual <= 1.0 + options.growth && (stays || arnoldi.is_closed());

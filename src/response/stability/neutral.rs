@@ -64,9 +64,9 @@ impl PeriodMap {
             .filter(|(_, share)| **share <= FREE)
         {
             let mut state = vec![0.0; self.size()];
-            for ((own, moving), all) in vectors.column(at).iter().zip(&mut moved).zip(&all) {
+            for ((entry, moving), all) in vectors.column(at).iter().zip(&mut moved).zip(&all) {
                 self.take_sliders_along(moving);
-                let weight = own / all.sqrt().max(f64::MIN_POSITIVE);
+                let weight = entry / all.sqrt().max(f64::MIN_POSITIVE);
                 for (sum, x) in state.iter_mut().zip(self.packed(moving)) {
                     *sum += weight * x;
                 }

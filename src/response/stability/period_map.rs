@@ -83,8 +83,8 @@ impl PeriodMap {
         let (waves, compliances): (Vec<WaveStep>, Vec<Compliance>) = steps.unzip();
         let transform = SectorWaves::new(wheel.sectors);
         let mut map = Self {
-            step: Instant::of(compliances.iter().map(|own| &own.of_step)),
-            rest: Instant::of(compliances.iter().map(|own| &own.at_rest)),
+            step: Instant::of(compliances.iter().map(|compliance| &compliance.of_step)),
+            rest: Instant::of(compliances.iter().map(|compliance| &compliance.at_rest)),
             scale: Vec::new(),
             deviations: wheel.deviations.clone(),
             damping_s: wheel.loss_factor / omega,
@@ -114,8 +114,8 @@ impl PeriodMap {
         for wave in &self.waves {
             let parts = if wave.real { 1 } else { 2 };
             for _ in 0..parts {
-                let stiffness = wave.eigenvalues.iter().map(|own| own.max(0.0));
-                scale.extend(stiffness.map(|own| (own + omega * omega).sqrt()));
+                let stiffness = wave.eigenvalues.iter().map(|lambda| lambda.max(0.0));
+                scale.extend(stiffness.map(|lambda| (lambda + omega * omega).sqrt()));
             }
             scale.extend(std::iter::repeat_n(1.0, parts * wave.size()));
         }
@@ -129,24 +129,24 @@ impl PeriodMap {
         let rest = self.contact.at_rest();
         let pairs = self.contact.pair_rows.len();
         for sector in 0..self.transform.sectors() {
-            let own = &rest[sector * pairs..][..pairs];
-            let inverse = self.inverse(own, sector, &self.rest)?;
+            let changes = &rest[sector * pairs..][..pairs];
+            let inverse = self.inverse(changes, sector, &self.rest)?;
             self.rest.places.push(self.rest.inverses.len());
             self.rest.inverses.push(inverse);
         }
         let mut last: Vec<Option<(Vec<StepChange>, usize)>> = vec![None; self.transform.sectors()];
         for step in 0..self.contact.steps {
             for (sector, last) in last.iter_mut().enumerate() {
-                let own = self.contact.of_sector(step, sector);
+                let changes = self.contact.of_sector(step, sector);
                 let place = match last {
-                    Some((before, place)) if same_end(before, own) => *place,
+                    Some((before, place)) if same_end(before, changes) => *place,
                     _ => {
-                        let inverse = self.inverse(own, sector, &self.step)?;
+                        let inverse = self.inverse(changes, sector, &self.step)?;
                         let place = self.step.inverses.len();
                         if place * inverse.as_slice().len() > MOST_KEPT {
                             return None;
                         }
-                        *last = Some((own.to_vec(), place));
+                        *last = Some((changes.to_vec(), place));
                         self.step.inverses.push(inverse);
                         place
                     }
@@ -217,7 +217,7 @@ impl PeriodMap {
         let first = sector * pairs.len();
         for (place, (change, rows)) in pairs.iter().zip(&self.contact.pair_rows).enumerate() {
             let kt = self.contact.tangential[first + place];
-            let own = [0, 1].map(|tangent| sliders[2 * (first + place) + tangent]);
+            let pair_sliders = [0, 1].map(|tangent| sliders[2 * (first + place) + tangent]);
             let at = rows.map(|row| row.map_or(0.0, |row| before[row]));
             for tangent in 0..2 {
                 let Some(row) = rows[1 + tangent] else {
@@ -225,9 +225,9 @@ impl PeriodMap {
                 };
                 force[row] = match change.friction[tangent] {
                     FrictionChange::None => 0.0,
-                    FrictionChange::Stick => kt * own[tangent],
+                    FrictionChange::Stick => kt * pair_sliders[tangent],
                     FrictionChange::Moves(slopes) => {
-                        -product(&slopes.memory, &own) - product(&slopes.before, &at)
+                        -product(&slopes.memory, &pair_sliders) - product(&slopes.before, &at)
                     }
                 };
             }
@@ -277,13 +277,18 @@ impl PeriodMap {
             add_times_vector(to, 1.0, inverse.as_slice(), force);
         };
         let mut right = vec![0.0; sectors * forces];
-        let mut own = vec![0.0; forces];
+        let mut sector_force = vec![0.0; forces];
         for (sector, right) in right.chunks_exact_mut(forces).enumerate() {
             let motion = &moving.motion[sector * motions..][..motions];
             let before = &moving.before[sector * motions..][..motions];
-            self.memory(of(sector), sector, (&moving.sliders, before), &mut own);
-            self.tangent(of(sector), sector, motion, &mut own);
-            precondition(sector, &own, right);
+            self.memory(
+                of(sector),
+                sector,
+                (&moving.sliders, before),
+                &mut sector_force,
+            );
+            self.tangent(of(sector), sector, motion, &mut sector_force);
+            precondition(sector, &sector_force, right);
         }
         let mut motion = vec![0.0; sectors * motions];
         let Moving {
@@ -295,17 +300,17 @@ impl PeriodMap {
             self.yields(at, force, (wave_force, wave_motion), &mut motion);
             let mut left = vec![0.0; force.len()];
             for (sector, left) in left.chunks_exact_mut(forces).enumerate() {
-                own.fill(0.0);
+                sector_force.fill(0.0);
                 self.tangent(
                     of(sector),
                     sector,
                     &motion[sector * motions..][..motions],
-                    &mut own,
+                    &mut sector_force,
                 );
-                for (own, force) in own.iter_mut().zip(&force[sector * forces..]) {
-                    *own = force - *own;
+                for (entry, force) in sector_force.iter_mut().zip(&force[sector * forces..]) {
+                    *entry = force - *entry;
                 }
-                precondition(sector, &own, left);
+                precondition(sector, &sector_force, left);
             }
             left
         });
@@ -314,8 +319,8 @@ impl PeriodMap {
         }
         self.yields(at, &force, (wave_force, wave_motion), &mut motion);
         moving.force = force;
-        for (sum, own) in moving.motion.iter_mut().zip(&motion) {
-            *sum += own;
+        for (sum, added) in moving.motion.iter_mut().zip(&motion) {
+            *sum += added;
         }
         Some(())
     }
@@ -409,9 +414,9 @@ impl PeriodMap {
             let n = wave.size();
             let given = if wave.real { n } else { 2 * n };
             for field in [&mut position, &mut velocity] {
-                let mut own: Vec<f64> = parts.by_ref().take(given).collect();
-                own.resize(2 * n, 0.0);
-                field.push(own);
+                let mut coordinates: Vec<f64> = parts.by_ref().take(given).collect();
+                coordinates.resize(2 * n, 0.0);
+                field.push(coordinates);
             }
         }
         let sliders = parts.collect();
@@ -419,7 +424,7 @@ impl PeriodMap {
         let (forces, motions) = self.channels();
         let waves = self.waves.len();
         Moving {
-            modal: position.iter().map(|own| vec![0.0; own.len()]).collect(),
+            modal: position.iter().map(|wave| vec![0.0; wave.len()]).collect(),
             position,
             velocity,
             sliders,
@@ -452,10 +457,10 @@ impl PeriodMap {
 
 impl Instant {
     fn of<'a>(compliances: impl Iterator<Item = &'a Matrix<crate::linalg::Complex64>>) -> Self {
-        let waves = compliances.map(|own| {
-            let (rows, columns) = (own.rows(), own.columns());
+        let waves = compliances.map(|compliance| {
+            let (rows, columns) = (compliance.rows(), compliance.columns());
             Matrix::from_fn(2 * rows, 2 * columns, |i, j| {
-                let entry = own[(i % rows, j % columns)];
+                let entry = compliance[(i % rows, j % columns)];
                 match (i < rows, j < columns) {
                     (true, true) | (false, false) => entry.re,
                     (true, false) => -entry.im,
@@ -473,7 +478,7 @@ impl Instant {
 
 /// Whether two steps of a sector answer what is after them alike.
 fn same_end(a: &[StepChange], b: &[StepChange]) -> bool {
-    let slopes = |own: &FrictionChange| match own {
+    let slopes = |friction: &FrictionChange| match friction {
         FrictionChange::None => None,
         FrictionChange::Stick => Some(None),
         FrictionChange::Moves(slopes) => Some(Some(slopes.after)),

@@ -109,9 +109,9 @@ mod tests {
                 let turned = (0..sectors).map(|n| {
                     phase(h, n, sectors).conj() * field[n * channels] / (sectors as f64).sqrt()
                 });
-                let own = turned.fold(crate::linalg::Complex64::default(), |a, b| a + b);
-                assert!((own.re - waves[2 * h * channels]).abs() < 1e-14);
-                assert!((own.im - waves[(2 * h + 1) * channels]).abs() < 1e-14);
+                let wave = turned.fold(crate::linalg::Complex64::default(), |a, b| a + b);
+                assert!((wave.re - waves[2 * h * channels]).abs() < 1e-14);
+                assert!((wave.im - waves[(2 * h + 1) * channels]).abs() < 1e-14);
             }
         }
     }

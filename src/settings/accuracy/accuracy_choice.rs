@@ -126,7 +126,8 @@ fn on_the_ladder(
             evidence: None,
         });
     };
-    let of_measured = |own: &Measured| own.rows.iter().map(|row| row.operations).sum::<f64>();
+    let of_measured =
+        |measured: &Measured| measured.rows.iter().map(|row| row.operations).sum::<f64>();
     let of_reference = reference.parts.iter().chain([&reference.base]);
     let values = measured.values();
     let bound = |quantity| error_bound(&values, &reference.values, quantity);

@@ -84,12 +84,12 @@ impl AccuracyChoice {
     pub fn applied_to(&self, study: &Study) -> Study {
         match &self.setting {
             ChosenSetting::Ladder(setting) => {
-                let mut own = setting.applied_to(study);
-                own.reduction.craig_bampton_modes = Some(self.craig_bampton_modes);
+                let mut applied = setting.applied_to(study);
+                applied.reduction.craig_bampton_modes = Some(self.craig_bampton_modes);
                 if study.states("solver.rows_beyond_tolerance") {
-                    own.solver.rows_beyond_tolerance = study.solver.rows_beyond_tolerance;
+                    applied.solver.rows_beyond_tolerance = study.solver.rows_beyond_tolerance;
                 }
-                own
+                applied
             }
             ChosenSetting::Receptances(setting) => setting.applied_to(study),
         }

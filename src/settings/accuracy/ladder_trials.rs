@@ -111,9 +111,9 @@ impl Trials {
         most_operations: f64,
     ) -> Result<(), PipelineError> {
         let mut proposals = search.proposals();
-        proposals.retain(|own| {
-            let stated = own.setting.clone().but_for_those_of(study);
-            own.operations <= most_operations && own.setting == stated
+        proposals.retain(|proposal| {
+            let stated = proposal.setting.clone().but_for_those_of(study);
+            proposal.operations <= most_operations && proposal.setting == stated
         });
         let mut of_laws: Vec<TriedUnder> = Vec::new();
         for proposal in &proposals {
@@ -122,7 +122,7 @@ impl Trials {
                 break;
             }
             let law = proposal.setting.law;
-            let place = of_laws.iter().position(|own| own.law == law);
+            let place = of_laws.iter().position(|tried| tried.law == law);
             let place = place.unwrap_or_else(|| {
                 of_laws.push(TriedUnder {
                     law,
@@ -131,18 +131,18 @@ impl Trials {
                 });
                 of_laws.len() - 1
             });
-            let own = &mut of_laws[place];
+            let tried = &mut of_laws[place];
             let predicted = proposal.predicted.map(|bound| bound.worst);
-            let promised = [0, 1].map(|kind| predicted[kind] <= own.beyond[kind]);
-            if own.measured >= MOST_MEASURED || promised == [false; 2] {
+            let promised = [0, 1].map(|kind| predicted[kind] <= tried.beyond[kind]);
+            if tried.measured >= MOST_MEASURED || promised == [false; 2] {
                 continue;
             }
-            own.measured += 1;
+            tried.measured += 1;
             if let Some(reached) = self.reached(search, proposal)? {
                 // As much better as this one was too bad, and a little more.
                 let ratio = BETTER.min(BETTER * self.accepted / reached);
                 for kind in (0..2).filter(|&kind| promised[kind]) {
-                    own.beyond[kind] = ratio * predicted[kind];
+                    tried.beyond[kind] = ratio * predicted[kind];
                 }
             }
         }
@@ -151,7 +151,7 @@ impl Trials {
         }
         // None is accepted: the one that is nearest to the best levels together.
         let best = proposals.iter().min_by(|a, b| {
-            let [a, b] = [a, b].map(|own| own.predicted[1].worst);
+            let [a, b] = [a, b].map(|proposal| proposal.predicted[1].worst);
             a.total_cmp(&b)
         });
         if let Some(best) = best {
@@ -180,8 +180,8 @@ impl Trials {
         if errors.p95_upper > self.accepted {
             return Ok(Some(errors.p95_upper));
         }
-        let own = measured.operations();
-        let cheaper = |(taken, _): &(Measured, ErrorBound)| own < taken.operations();
+        let operations = measured.operations();
+        let cheaper = |(taken, _): &(Measured, ErrorBound)| operations < taken.operations();
         if self.taken.as_ref().is_none_or(cheaper) {
             self.taken = Some((measured, errors));
         }
@@ -239,8 +239,8 @@ mod tests {
                 ..AccuracyOptions::within(0.01)
             };
             let levels = levels(&study, &space, &base, accuracy, 0.002);
-            let own = levels.iter().filter(|(knob, _)| *knob == Knob::ContactLaw);
-            own.map(|(_, level)| level.law).collect::<Vec<_>>()
+            let of_law = levels.iter().filter(|(knob, _)| *knob == Knob::ContactLaw);
+            of_law.map(|(_, level)| level.law).collect::<Vec<_>>()
         };
         assert_eq!(laws(false), [law]);
         assert_eq!(
@@ -260,8 +260,9 @@ mod tests {
             levels(&study, &space(law), &base, accuracy, 0.002)
         };
         let harmonics = |levels: &[(Knob, LadderSetting)]| {
-            let own = levels.iter().filter(|(knob, _)| *knob == Knob::Harmonics);
-            own.map(|(_, level)| level.harmonics.to_string())
+            let of_harmonics = levels.iter().filter(|(knob, _)| *knob == Knob::Harmonics);
+            of_harmonics
+                .map(|(_, level)| level.harmonics.to_string())
                 .collect::<Vec<_>>()
         };
         assert!(harmonics(&levels_of("")).len() > 1);

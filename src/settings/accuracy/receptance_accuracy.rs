@@ -93,15 +93,17 @@ impl Rows {
         patterns: &PatternSource,
         ids: &[u32],
     ) -> Result<Self, PipelineError> {
-        let own = setting.applied_to(study);
-        let solver = solver_of(&own, stored)?;
-        let load_cases = own.excited_orders().into_iter().map(|case| case.0);
-        let choices = solver.all().map(|own| own.rows().choices().cloned());
+        let applied = setting.applied_to(study);
+        let solver = solver_of(&applied, stored)?;
+        let load_cases = applied.excited_orders().into_iter().map(|case| case.0);
+        let choices = solver
+            .all()
+            .map(|of_case| of_case.rows().choices().cloned());
         let remainders: Vec<Remainders> = load_cases
             .zip(choices.map(Iterator::collect::<Vec<_>>))
             .collect();
         let sample = LadderSample {
-            scenarios: sampled_scenarios(&in_contact(own, &solver), &remainders),
+            scenarios: sampled_scenarios(&in_contact(applied, &solver), &remainders),
             patterns: ids.to_vec(),
         };
         let harmonics = enlarged_harmonics(study);
@@ -141,8 +143,8 @@ impl Rows {
     }
 
     fn bound(&self, quantity: Compared) -> Option<ErrorBound> {
-        let own: Vec<LadderValues> = self.own.iter().map(|row| row.values).collect();
-        error_bound(&own, &self.enlarged, quantity)
+        let values: Vec<LadderValues> = self.own.iter().map(|row| row.values).collect();
+        error_bound(&values, &self.enlarged, quantity)
     }
 
     fn operations(&self) -> f64 {
@@ -186,21 +188,21 @@ fn in_contact(study: Study, solver: &LoadCaseSolvers) -> Study {
     let scenarios = study.scenarios();
     let excited: Vec<&Scenario> = scenarios
         .iter()
-        .filter(|own| own.contact.normal_load_n().is_some())
-        .filter(|own| own.standard_deviation == scenarios[0].standard_deviation)
+        .filter(|scenario| scenario.contact.normal_load_n().is_some())
+        .filter(|scenario| scenario.standard_deviation == scenarios[0].standard_deviation)
         .collect();
-    let separates = excited.par_iter().map(|own| {
-        let tuned = solver.tuned(own);
+    let separates = excited.par_iter().map(|scenario| {
+        let tuned = solver.tuned(scenario);
         tuned.separated_fraction.is_none_or(|share| share > 0.0)
     });
     let separates: Vec<bool> = separates.collect();
     let lost = |contact: &ContactCondition| {
-        let mut own = excited.iter().zip(&separates);
-        own.any(|(own, &separates)| separates && own.contact == *contact)
+        let mut separations = excited.iter().zip(&separates);
+        separations.any(|(scenario, &separates)| separates && scenario.contact == *contact)
     };
-    let mut own = study.clone();
-    own.contacts.retain(|contact| !lost(contact));
-    if own.has_friction() { own } else { study }
+    let mut loaded = study.clone();
+    loaded.contacts.retain(|contact| !lost(contact));
+    if loaded.has_friction() { loaded } else { study }
 }
 
 fn mean_operations(rows: &[LadderRow]) -> f64 {

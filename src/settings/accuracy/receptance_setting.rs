@@ -103,10 +103,10 @@ impl ReceptanceSetting {
     /// `study` solved at these settings. What they do not say stays.
     #[must_use]
     pub fn applied_to(&self, study: &Study) -> Study {
-        let mut own = study.clone();
-        own.accuracy = None;
-        own.reduction.error = self.reduction_error;
-        let solver = &mut own.solver;
+        let mut applied = study.clone();
+        applied.accuracy = None;
+        applied.reduction.error = self.reduction_error;
+        let solver = &mut applied.solver;
         solver.harmonics = match &self.harmonics {
             None => Harmonics::Auto,
             Some(set) => Harmonics::Set(set.clone()),
@@ -117,15 +117,15 @@ impl ReceptanceSetting {
         }
         solver.samples_per_period = self.samples_per_period;
         solver.peak_tolerance = self.peak_tolerance;
-        own
+        applied
     }
 
     /// `study` as rows at these settings are held against.
     pub(super) fn enlarged(&self, study: &Study, harmonics: &[u32]) -> Study {
-        let mut own = self.applied_to(study);
-        own.solver.harmonics = Harmonics::Set(harmonics.to_vec());
-        own.solver.samples_per_period = ENLARGED_SAMPLES.max(2 * self.samples_per_period);
-        own
+        let mut enlarged = self.applied_to(study);
+        enlarged.solver.harmonics = Harmonics::Set(harmonics.to_vec());
+        enlarged.solver.samples_per_period = ENLARGED_SAMPLES.max(2 * self.samples_per_period);
+        enlarged
     }
 
     /// `top` where it is known well enough to tell an error by.
@@ -222,7 +222,11 @@ mod tests {
         assert_eq!(free[2].samples_per_period, 256);
         assert_eq!(free[2].peak_tolerance.to_bits(), 2.5e-4_f64.to_bits());
         let coarse = tried(&study("[solver]\nsamples_per_period = 40"));
-        assert!(coarse.iter().all(|own| own.samples_per_period == 40));
+        assert!(
+            coarse
+                .iter()
+                .all(|tried_setting| tried_setting.samples_per_period == 40)
+        );
         let stated = study(
             "[reduction]\nerror = 3e-3\n[solver]\nharmonics = [1, 3, 5]\nharmonic_tolerance = 0.1\npeak_tolerance = 2e-4\nsamples_per_period = 64",
         );
@@ -238,8 +242,8 @@ mod tests {
             [3e-3, 0.1, 2e-4].map(f64::to_bits)
         );
         let resolves = study("[solver]\nrows_beyond_tolerance = \"resolve\"");
-        let own = free[0].applied_to(&resolves).solver.rows_beyond_tolerance;
-        assert_eq!(own, RowsBeyondTolerance::Resolve);
+        let stated = free[0].applied_to(&resolves).solver.rows_beyond_tolerance;
+        assert_eq!(stated, RowsBeyondTolerance::Resolve);
     }
 
     #[test]

@@ -69,7 +69,7 @@ impl EngineSource for ReducedEngineSource {
             load_cases: study
                 .excited_orders()
                 .into_iter()
-                .map(|own| own.0)
+                .map(|case| case.0)
                 .collect(),
             fixed_modes: study.reduction.craig_bampton_modes.is_some(),
             solver: solver_of(study, &stored)?,
@@ -194,7 +194,7 @@ impl Engine for ReducedEngine {
     }
 
     fn rows_made_from(&self, scenario: &Scenario) -> String {
-        let own = self.solver.under(scenario);
+        let of_case = self.solver.under(scenario);
         let of = |solver: &RowSolver| -> Vec<String> {
             solver
                 .choices()
@@ -205,13 +205,13 @@ impl Engine for ReducedEngine {
                 .map(|choice| format!("{choice:?}"))
                 .collect()
         };
-        let fallback = own.fallback().map(of);
+        let fallback = of_case.fallback().map(of);
         let is_limit = scenario.contact.normal_load_n().is_none();
-        let of_limit = is_limit.then(|| own.rows().model_error(scenario));
+        let of_limit = is_limit.then(|| of_case.rows().model_error(scenario));
         format!(
             "{} {:?} {fallback:?} {of_limit:?}",
             self.models,
-            of(own.rows())
+            of(of_case.rows())
         )
     }
 

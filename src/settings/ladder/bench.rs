@@ -101,12 +101,12 @@ impl<'a> LadderBench<'a> {
         progress: &'a dyn Progress,
     ) -> Result<Self, PipelineError> {
         // These modes cost nothing per row, so they are not traded.
-        let mut own = study.clone();
-        own.reduction.error = own.reduction.error.min(FIXED_INTERFACE_ERROR);
-        let (reduction, fixed_interface) = reduce_sector(&own, sector)?;
+        let mut bench_study = study.clone();
+        bench_study.reduction.error = bench_study.reduction.error.min(FIXED_INTERFACE_ERROR);
+        let (reduction, fixed_interface) = reduce_sector(&bench_study, sector)?;
         let mut bench = Self {
             reductions: vec![(contact_stiffness(study.contact.as_ref()), reduction)],
-            study: own,
+            study: bench_study,
             sector,
             sample: LadderSample {
                 scenarios: Vec::new(),
@@ -248,7 +248,7 @@ impl<'a> LadderBench<'a> {
         if let Some(place) = self
             .reductions
             .iter()
-            .position(|(own, _)| *own == stiffness)
+            .position(|(known, _)| *known == stiffness)
         {
             return Ok(place);
         }
@@ -265,7 +265,7 @@ impl<'a> LadderBench<'a> {
     }
 
     fn model(&mut self, key: ModelKey) -> Result<Arc<ReducedModel>, PipelineError> {
-        if let Some((_, model)) = self.models.iter().find(|(own, _)| *own == key) {
+        if let Some((_, model)) = self.models.iter().find(|(known, _)| *known == key) {
             return Ok(Arc::clone(model));
         }
         let (place, basis, modes) = key;
@@ -419,7 +419,7 @@ impl<'a> LadderEngine<'a> {
 
 /// The study with harmonic 1 alone.
 fn alone(study: &Study) -> Study {
-    let mut own = study.clone();
-    own.solver.harmonics = Harmonics::Set(vec![1]);
-    own
+    let mut single = study.clone();
+    single.solver.harmonics = Harmonics::Set(vec![1]);
+    single
 }

@@ -112,10 +112,11 @@ impl LadderPlan<'_> {
         let vectors = |basis: BasisChoice| bench.space(basis).most_vectors as f64;
         let ratio = match (setting.basis, base.basis) {
             (BasisChoice::CraigBampton, _) | (_, BasisChoice::CraigBampton) => 1.0,
-            (own, base) => vectors(own) / vectors(base),
+            (basis, base) => vectors(basis) / vectors(base),
         };
         let samples = setting.samples_per_period as f64 / base.samples_per_period as f64;
-        let automatic = |own: &LadderSetting| matches!(own.harmonics, HarmonicLevel::Automatic(_));
+        let automatic =
+            |candidate: &LadderSetting| matches!(candidate.harmonics, HarmonicLevel::Automatic(_));
         let harmonics = if automatic(setting) && !automatic(base) {
             AUTOMATIC
         } else {

@@ -137,9 +137,9 @@ pub fn relative_errors(
     values
         .iter()
         .zip(reference)
-        .filter_map(|(own, reference)| {
+        .filter_map(|(values, reference)| {
             let reference = quantity.of(reference)?;
-            Some(quantity.of(own).map(|own| own / reference - 1.0))
+            Some(quantity.of(values).map(|value| value / reference - 1.0))
         })
         .collect()
 }

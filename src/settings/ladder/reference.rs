@@ -199,9 +199,9 @@ impl LadderReference {
             }
         }
         let of_parts = |row: usize| {
-            let own = base.rows[row].values;
-            parts.iter().fold(own, |product, part| {
-                product.changed(&part.rows[row].values, &own)
+            let of_base = base.rows[row].values;
+            parts.iter().fold(of_base, |product, part| {
+                product.changed(&part.rows[row].values, &of_base)
             })
         };
         let by_ratios: Vec<LadderValues> = (0..base.rows.len()).map(of_parts).collect();

@@ -96,10 +96,12 @@ pub(in crate::settings) fn most_scenarios(study: &Study) -> usize {
 /// `study` with the engine orders, load cases and loads of `scenarios` alone. A load case that has none of them keeps
 /// its place, by which its force vector is known to the model, and has no engine order.
 pub(super) fn of_sample(study: &Study, scenarios: &[Scenario]) -> Study {
-    let mut own = study.clone();
-    own.contacts = distinct(scenarios.iter().map(|scenario| scenario.contact));
+    let mut selected = study.clone();
+    selected.contacts = distinct(scenarios.iter().map(|scenario| scenario.contact));
     let orders_of = |load_case: Option<LoadCaseName>| -> Vec<u32> {
-        let of_case = scenarios.iter().filter(|own| own.load_case == load_case);
+        let of_case = scenarios
+            .iter()
+            .filter(|scenario| scenario.load_case == load_case);
         distinct(of_case.map(|scenario| scenario.engine_order))
     };
     let amplitudes_of = |orders: &[u32], amplitudes: &[f64], sampled: &[u32]| -> Vec<f64> {
@@ -108,19 +110,20 @@ pub(super) fn of_sample(study: &Study, scenarios: &[Scenario]) -> Study {
             .map(|(_, &amplitude)| amplitude)
             .collect()
     };
-    if own.load_cases.is_empty() {
+    if selected.load_cases.is_empty() {
         let sampled = orders_of(None);
-        own.amplitudes_n = amplitudes_of(&own.engine_orders, &own.amplitudes_n, &sampled);
-        own.engine_orders = sampled;
-        return own;
+        selected.amplitudes_n =
+            amplitudes_of(&selected.engine_orders, &selected.amplitudes_n, &sampled);
+        selected.engine_orders = sampled;
+        return selected;
     }
-    for case in &mut own.load_cases {
+    for case in &mut selected.load_cases {
         let sampled = orders_of(Some(case.name));
         case.amplitudes_n = amplitudes_of(&case.engine_orders, &case.amplitudes_n, &sampled);
         case.engine_orders = sampled;
     }
-    own.engine_orders = distinct(scenarios.iter().map(|scenario| scenario.engine_order));
-    own
+    selected.engine_orders = distinct(scenarios.iter().map(|scenario| scenario.engine_order));
+    selected
 }
 
 /// Every value once, in the order of its first appearance.
@@ -261,13 +264,17 @@ mod tests {
         let scenarios = sampled_scenarios(study, remainders);
         assert!(scenarios.len() <= most_scenarios(study));
         let all = study.scenarios();
-        assert!(scenarios.iter().all(|own| all[own.index] == *own));
-        let of = |own: &Scenario| {
-            let name = own
+        assert!(
+            scenarios
+                .iter()
+                .all(|scenario| all[scenario.index] == *scenario)
+        );
+        let of = |scenario: &Scenario| {
+            let name = scenario
                 .load_case
-                .map_or_else(String::new, |own| own.to_string());
-            let load_n = own.contact.normal_load_n().expect("friction");
-            (name, own.engine_order, load_n)
+                .map_or_else(String::new, |name| name.to_string());
+            let load_n = scenario.contact.normal_load_n().expect("friction");
+            (name, scenario.engine_order, load_n)
         };
         scenarios.iter().map(of).collect()
     }
@@ -283,14 +290,14 @@ mod tests {
             .collect();
         assert_eq!(sampled(&study, &remainders), expected);
         assert_eq!(most_scenarios(&study), 9);
-        let own = of_sample(&study, &sampled_scenarios(&study, &remainders));
+        let reduced = of_sample(&study, &sampled_scenarios(&study, &remainders));
         // Each engine order keeps the amplitude that is its own.
-        assert_eq!(own.force_factors(), [(4, 40.0), (1, 10.0), (2, 20.0)]);
-        assert_eq!(own.contacts.len(), 3);
+        assert_eq!(reduced.force_factors(), [(4, 40.0), (1, 10.0), (2, 20.0)]);
+        assert_eq!(reduced.contacts.len(), 3);
         // One load case is what the study would be without.
         let one = cases(&["one"]);
         let of_one = sampled(&one, &[left_out(Some("one"), &[(20.0, Some(0.2))])]);
-        let without_name = of_one.into_iter().map(|own| (String::new(), own.1, own.2));
+        let without_name = of_one.into_iter().map(|row| (String::new(), row.1, row.2));
         assert_eq!(without_name.collect::<Vec<_>>(), expected);
     }
 
@@ -304,19 +311,19 @@ mod tests {
             left_out(Some("d"), &[(20.0, Some(0.2))]),
         ];
         let sample = sampled(&study, &remainders);
-        let names = distinct(sample.iter().map(|own| own.0.clone()));
+        let names = distinct(sample.iter().map(|row| row.0.clone()));
         assert_eq!(names, ["a", "b", "c"]);
-        let orders = distinct(sample.iter().map(|own| own.1));
+        let orders = distinct(sample.iter().map(|row| row.1));
         assert_eq!(orders, [4, 1]);
-        let loads = distinct(sample.iter().map(|own| own.2));
+        let loads = distinct(sample.iter().map(|row| row.2));
         assert_eq!(loads, [10.0, 5.0, 40.0]);
         assert_eq!((sample.len(), most_scenarios(&study)), (18, 18));
         // The fourth keeps its place among the force vectors.
-        let own = of_sample(&study, &sampled_scenarios(&study, &remainders));
-        assert_eq!(own.load_cases.len(), 4);
-        assert!(own.load_cases[3].engine_orders.is_empty());
-        assert_eq!(own.load_cases[0].engine_orders, [4, 1]);
-        assert_eq!(own.load_cases[0].amplitudes_n, [40.0, 10.0]);
+        let reduced = of_sample(&study, &sampled_scenarios(&study, &remainders));
+        assert_eq!(reduced.load_cases.len(), 4);
+        assert!(reduced.load_cases[3].engine_orders.is_empty());
+        assert_eq!(reduced.load_cases[0].engine_orders, [4, 1]);
+        assert_eq!(reduced.load_cases[0].amplitudes_n, [40.0, 10.0]);
         // A difference that rounding can make is none.
         let alike = |name, last| left_out(Some(name), &[(20.0, Some(0.1 + last))]);
         let one = [
@@ -326,7 +333,7 @@ mod tests {
             alike("d", 0.0),
         ];
         let sample = sampled(&study, &one);
-        let names = distinct(sample.into_iter().map(|own| own.0));
+        let names = distinct(sample.into_iter().map(|row| row.0));
         assert_eq!(names, ["a", "b", "d"]);
     }
 }

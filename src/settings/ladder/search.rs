@@ -70,9 +70,11 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
 
     /// A measured setting with the rows of the probe alone.
     fn on_probe(&self, measured: &Measured) -> Measured {
-        let mut own = measured.clone();
-        own.rows.retain(|row| self.probe.contains(&row.pattern));
-        own
+        let mut on_probe = measured.clone();
+        on_probe
+            .rows
+            .retain(|row| self.probe.contains(&row.pattern));
+        on_probe
     }
 
     fn add(&mut self, knob: Knob, level: Measured) {
@@ -169,9 +171,9 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
                 .iter()
                 .flat_map(|before| {
                     of_knob.iter().map(move |&level| {
-                        let mut own = before.clone();
-                        own.push(level);
-                        own
+                        let mut longer = before.clone();
+                        longer.push(level);
+                        longer
                     })
                 })
                 .collect();
@@ -196,9 +198,9 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
         }
         let predicted: Vec<LadderValues> = (0..base.rows.len())
             .map(|row| {
-                let own = base.rows[row].values;
-                levels.iter().fold(own, |product, &level| {
-                    product.changed(&self.levels[level].rows[row].values, &own)
+                let of_base = base.rows[row].values;
+                levels.iter().fold(of_base, |product, &level| {
+                    product.changed(&self.levels[level].rows[row].values, &of_base)
                 })
             })
             .collect();
@@ -227,11 +229,11 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
             ..base.sizes[scenario]
         };
         let product = |count: fn(&RowWork) -> f64| {
-            let own = count(&base.rows[row].work);
-            levels.iter().fold(own, |product, &level| {
+            let of_base = count(&base.rows[row].work);
+            levels.iter().fold(of_base, |product, &level| {
                 let level = count(&self.levels[level].rows[row].work);
-                if own > 0.0 {
-                    product * level / own
+                if of_base > 0.0 {
+                    product * level / of_base
                 } else {
                     product.max(level)
                 }
@@ -274,11 +276,14 @@ mod tests {
         let rows = engine.rows(&patterns, &[0]);
         let base = Measured::new(ends.base.clone(), None, &engine, rows);
         let times = |factor: f64| {
-            let mut own = base.clone();
-            for row in &mut own.rows {
-                row.values.amplitude_m = row.values.amplitude_m.map(|own| factor * own);
+            let mut scaled = base.clone();
+            for row in &mut scaled.rows {
+                row.values.amplitude_m = row
+                    .values
+                    .amplitude_m
+                    .map(|amplitude_m| factor * amplitude_m);
             }
-            own
+            scaled
         };
         let part = |knob, factor| Measured {
             knob: Some(knob),
@@ -297,14 +302,18 @@ mod tests {
         let [best] = &search.proposals()[..] else {
             panic!("one level of each knob")
         };
-        let [beside_reference, beside_ratios] = best.predicted.map(|own| own.worst);
+        let [beside_reference, beside_ratios] = best.predicted.map(|bound| bound.worst);
         let together = 1.0 - 0.98 * 1.03 / 1.05;
         assert!(
             (beside_reference - together).abs() < 1e-12,
             "{beside_reference:e}"
         );
         assert!(beside_ratios < 1e-12, "{beside_ratios:e}");
-        let own = search.error_of(&base).expect("an error");
-        assert!((own.worst - 0.05 / 1.05).abs() < 1e-12, "{:e}", own.worst);
+        let error = search.error_of(&base).expect("an error");
+        assert!(
+            (error.worst - 0.05 / 1.05).abs() < 1e-12,
+            "{:e}",
+            error.worst
+        );
     }
 }

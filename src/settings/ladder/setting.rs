@@ -102,17 +102,17 @@ impl LadderSetting {
     /// This setting with one knob at the level of `other`.
     #[must_use]
     pub fn with(&self, knob: Knob, other: &Self) -> Self {
-        let mut own = self.clone();
+        let mut changed = self.clone();
         match knob {
-            Knob::Basis => own.basis = other.basis,
-            Knob::Harmonics => own.harmonics.clone_from(&other.harmonics),
-            Knob::SamplesPerPeriod => own.samples_per_period = other.samples_per_period,
-            Knob::ResidualTolerance => own.residual_tolerance = other.residual_tolerance,
-            Knob::PeakTolerance => own.peak_tolerance = other.peak_tolerance,
-            Knob::ContactLaw => own.law = other.law,
-            Knob::Projection => own.projection = other.projection,
+            Knob::Basis => changed.basis = other.basis,
+            Knob::Harmonics => changed.harmonics.clone_from(&other.harmonics),
+            Knob::SamplesPerPeriod => changed.samples_per_period = other.samples_per_period,
+            Knob::ResidualTolerance => changed.residual_tolerance = other.residual_tolerance,
+            Knob::PeakTolerance => changed.peak_tolerance = other.peak_tolerance,
+            Knob::ContactLaw => changed.law = other.law,
+            Knob::Projection => changed.projection = other.projection,
         }
-        own
+        changed
     }
 
     /// The level of one knob, in words.
@@ -166,9 +166,9 @@ impl LadderSetting {
     /// `study` solved at this setting. What the setting does not say stays.
     #[must_use]
     pub fn applied_to(&self, study: &Study) -> Study {
-        let mut own = study.clone();
-        own.accuracy = None;
-        let reduction = &mut own.reduction;
+        let mut applied = study.clone();
+        applied.accuracy = None;
+        let reduction = &mut applied.reduction;
         (reduction.stick_modes, reduction.slide_modes) = (None, None);
         match self.basis {
             BasisChoice::StickSlide { stick, slide } => {
@@ -182,7 +182,7 @@ impl LadderSetting {
             // Sectors in their whole space, as they were measured; `Auto` could take tuned receptances.
             BasisChoice::CraigBampton => reduction.basis = Basis::StickSlide,
         }
-        let solver = &mut own.solver;
+        let solver = &mut applied.solver;
         match &self.harmonics {
             HarmonicLevel::Set(set) => solver.harmonics = Harmonics::Set(set.clone()),
             HarmonicLevel::Automatic(tolerance) => {
@@ -195,18 +195,18 @@ impl LadderSetting {
         solver.residual_tolerance = self.residual_tolerance;
         solver.residual_is_stated = true;
         solver.peak_tolerance = self.peak_tolerance;
-        if let Some(contact) = &mut own.contact {
+        if let Some(contact) = &mut applied.contact {
             // Errors beside a law with other springs would be those of another equation.
             let same_springs = contact.law.tangents() == self.law.tangents();
             contact.in_place_of = (contact.law != self.law && same_springs).then_some(contact.law);
             contact.law = self.law;
         }
-        own.mistuning.projection = self.projection;
+        applied.mistuning.projection = self.projection;
         if self.projection == Projection::CantileverModes {
-            let modes = &mut own.mistuning.cantilever_mode_count;
+            let modes = &mut applied.mistuning.cantilever_mode_count;
             *modes = modes.or(Some(CANTILEVER_MODES));
         }
-        own
+        applied
     }
 }
 
@@ -302,7 +302,9 @@ impl LadderSpace {
             &ODD_SETS
         };
         let sets = sets.iter().map(|set| HarmonicLevel::Set(set.to_vec()));
-        let automatic = AUTOMATIC.into_iter().filter(|&own| own > finest);
+        let automatic = AUTOMATIC
+            .into_iter()
+            .filter(|&tolerance| tolerance > finest);
         sets.chain(automatic.map(HarmonicLevel::Automatic))
             .collect()
     }
@@ -316,8 +318,8 @@ impl LadderSpace {
             ContactLaw::Simplified3d,
             ContactLaw::Coulomb3d,
         ];
-        let own = all.iter().position(|&law| law == self.law).unwrap_or(0);
-        all[..=own].to_vec()
+        let last = all.iter().position(|&law| law == self.law).unwrap_or(0);
+        all[..=last].to_vec()
     }
 
     /// Every setting that differs from `base` in one knob alone, knob by knob, the base included with
@@ -326,35 +328,39 @@ impl LadderSpace {
     pub fn one_at_a_time(&self, base: &LadderSetting, finest: f64) -> Vec<(Knob, LadderSetting)> {
         let mut settings = Vec::new();
         let mut add = |knob, change: &dyn Fn(&mut LadderSetting)| {
-            let mut own = base.clone();
-            change(&mut own);
-            settings.push((knob, own));
+            let mut changed = base.clone();
+            change(&mut changed);
+            settings.push((knob, changed));
         };
         for basis in self.bases() {
-            add(Knob::Basis, &|own| own.basis = basis);
+            add(Knob::Basis, &|setting| setting.basis = basis);
         }
         for harmonics in self.harmonics(finest) {
-            add(Knob::Harmonics, &|own| own.harmonics.clone_from(&harmonics));
+            add(Knob::Harmonics, &|setting| {
+                setting.harmonics.clone_from(&harmonics);
+            });
         }
         for samples in SAMPLES {
-            add(Knob::SamplesPerPeriod, &|own| {
-                own.samples_per_period = samples;
+            add(Knob::SamplesPerPeriod, &|setting| {
+                setting.samples_per_period = samples;
             });
         }
         for residual in RESIDUALS {
-            add(Knob::ResidualTolerance, &|own| {
-                own.residual_tolerance = residual;
+            add(Knob::ResidualTolerance, &|setting| {
+                setting.residual_tolerance = residual;
             });
         }
         for peak in PEAKS {
-            add(Knob::PeakTolerance, &|own| own.peak_tolerance = peak);
+            add(Knob::PeakTolerance, &|setting| {
+                setting.peak_tolerance = peak;
+            });
         }
         for law in self.laws() {
-            add(Knob::ContactLaw, &|own| own.law = law);
+            add(Knob::ContactLaw, &|setting| setting.law = law);
         }
         if self.projection == Projection::Exact {
-            add(Knob::Projection, &|own| {
-                own.projection = Projection::CantileverModes;
+            add(Knob::Projection, &|setting| {
+                setting.projection = Projection::CantileverModes;
             });
         }
         settings

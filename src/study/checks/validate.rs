@@ -176,7 +176,7 @@ fn resolve(
         _ => Vec::new(),
     };
     if reduction.basis == Basis::TunedReceptances {
-        let ring = contact.as_ref().map(|own| own.ring);
+        let ring = contact.as_ref().map(|contact| contact.ring);
         for (key, reason) in against_receptances(ring, &solver) {
             check.conflict(key, &format!("basis = \"tuned_receptances\" {reason}"));
         }

@@ -66,17 +66,17 @@ pub(super) fn excitation(
         let table = format!("excitation.load_case[{place}]");
         let name = name(check, &table, case.name.as_deref(), &mut names);
         let force = force(check, study_file, &table, &case);
-        let (own, orders) = match case.engine_orders {
+        let (owner, orders) = match case.engine_orders {
             None if excitation.engine_orders.is_some() => ("excitation", &excitation.engine_orders),
             _ => (table.as_str(), &case.engine_orders),
         };
-        let engine_orders = engine_orders(check, own, orders.as_deref());
-        let (own, amplitude_n) = match case.amplitude_n {
+        let engine_orders = engine_orders(check, owner, orders.as_deref());
+        let (owner, amplitude_n) = match case.amplitude_n {
             None => ("excitation", &excitation.amplitude_n),
             Some(_) => (table.as_str(), &case.amplitude_n),
         };
         let (amplitude_n, amplitudes_n) =
-            amplitudes(check, own, amplitude_n.as_ref(), engine_orders.len());
+            amplitudes(check, owner, amplitude_n.as_ref(), engine_orders.len());
         if let Some(name) = name {
             load_cases.push(LoadCase {
                 name,

@@ -40,8 +40,11 @@ impl ContactForces {
     ) -> Self {
         let nominal: Vec<PairParameters> = sector.pairs(&geometry).collect();
         let pair = |index: usize| {
-            let own = nominal[index % nominal.len()];
-            factors.pairs().get(index).map_or(own, |by| own.varied(by))
+            let parameters = nominal[index % nominal.len()];
+            factors
+                .pairs()
+                .get(index)
+                .map_or(parameters, |by| parameters.varied(by))
         };
         Self {
             law,
@@ -87,8 +90,8 @@ impl ContactForces {
             derivatives.clear();
         }
         for sector in 0..self.sectors {
-            let own = &self.pairs[sector * self.geometry.rows.len()..];
-            for (pair, directions) in own.iter().zip(&self.geometry.rows) {
+            let pairs = &self.pairs[sector * self.geometry.rows.len()..];
+            for (pair, directions) in pairs.iter().zip(&self.geometry.rows) {
                 // (unknown of the pair, its place) of every direction that the pair moves in.
                 let places: Vec<(usize, usize)> = directions
                     .iter()

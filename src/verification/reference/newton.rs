@@ -104,13 +104,13 @@ impl CondensedSystem<'_> {
         force: &[f64],
         residual: &[f64],
     ) -> f64 {
-        let own: Vec<f64> = displacement
+        let corrected: Vec<f64> = displacement
             .iter()
             .zip(residual)
             .map(|(d, r)| d - r)
             .collect();
         let mut change = vec![0.0; force.len()];
-        contact.evaluate(&own, &mut change, None);
+        contact.evaluate(&corrected, &mut change, None);
         for (change, force) in change.iter_mut().zip(force) {
             *change -= force;
         }
@@ -191,23 +191,24 @@ impl CondensedSystem<'_> {
                     .collect();
                 let shares = contact.evaluate(&trial, &mut trial_force, None);
                 let trial_residual = self.displacement_residual(&trial, &stuck, &trial_force);
-                let own = self.force_residual(contact, &trial, &trial_force, &trial_residual);
+                let force_left =
+                    self.force_residual(contact, &trial, &trial_force, &trial_residual);
                 let contraction = norm(&factored.solve(self, &trial_residual)) / length;
-                (own <= tolerance || contraction <= 1.0 - 0.25 * factor).then_some((
+                (force_left <= tolerance || contraction <= 1.0 - 0.25 * factor).then_some((
                     trial,
                     trial_residual,
                     shares,
-                    own,
+                    force_left,
                     contraction,
                 ))
             });
             match accepted {
-                Some((displacement, next_residual, shares, own, contraction)) => {
+                Some((displacement, next_residual, shares, force_left, contraction)) => {
                     residual = next_residual;
                     now = NewtonSolution {
                         displacement,
                         force: trial_force,
-                        residual: own,
+                        residual: force_left,
                         shares,
                         ..now
                     };
@@ -273,10 +274,14 @@ impl CondensedJacobian {
         let mut start = 0;
         for pair in &self.derivatives {
             let size = pair.places.len();
-            let own = &reduced[start..start + size];
+            let pair_shares = &reduced[start..start + size];
             for (row, &place) in pair.places.iter().enumerate() {
                 let stiffness = &pair.stiffness[row * size..(row + 1) * size];
-                force[place] += stiffness.iter().zip(own).map(|(k, s)| k * s).sum::<f64>();
+                force[place] += stiffness
+                    .iter()
+                    .zip(pair_shares)
+                    .map(|(k, s)| k * s)
+                    .sum::<f64>();
             }
             start += size;
         }

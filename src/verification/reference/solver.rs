@@ -238,14 +238,14 @@ impl ReferenceSolver {
         let solution = self.attempts(&system, contact, frequency_hz)?;
         let observed: Vec<(u32, Vec<Complex64>)> = system
             .places()
-            .map(|(start, own)| {
-                let force = load(&solution.force[start..], own.harmonic, system.rows);
-                let mut observed = own.receptance.observed.times_vector(&force);
+            .map(|(start, harmonic)| {
+                let force = load(&solution.force[start..], harmonic.harmonic, system.rows);
+                let mut observed = harmonic.receptance.observed.times_vector(&force);
                 for (row, u) in observed.iter_mut().enumerate() {
-                    let forced = own.forced.as_ref().map(|forced| forced.observed[row]);
+                    let forced = harmonic.forced.as_ref().map(|forced| forced.observed[row]);
                     *u = forced.unwrap_or_default() - *u;
                 }
-                (own.harmonic, observed)
+                (harmonic.harmonic, observed)
             })
             .collect();
         Ok(ReferencePoint {

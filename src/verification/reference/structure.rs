@@ -169,9 +169,9 @@ impl<'a> Waves<'a> {
         for h in 0..model.sectors {
             start.push(eigenvalues.len());
             let index = h.min(model.sectors - h);
-            let own = &model.nodal_diameters[index];
-            eigenvalues.extend_from_slice(&own.eigenvalues);
-            added_damping_per_s.extend_from_slice(&own.added_damping_per_s);
+            let diameter = &model.nodal_diameters[index];
+            eigenvalues.extend_from_slice(&diameter.eigenvalues);
+            added_damping_per_s.extend_from_slice(&diameter.added_damping_per_s);
         }
         Self {
             size: eigenvalues.len(),
@@ -238,7 +238,7 @@ impl<'a> Waves<'a> {
             }
             (Deviations::PerMode { modes, values }, _) => {
                 self.add_cantilever(stiffness, |blade, mode| {
-                    let place = modes.iter().position(|&own| own as usize == mode);
+                    let place = modes.iter().position(|&number| number as usize == mode);
                     place.map_or(0.0, |place| values[blade * modes.len() + place])
                 })?;
             }

@@ -134,10 +134,10 @@ impl Propagator {
     pub(super) fn compliance(&self, rows: &Matrix<f64>) -> Matrix<f64> {
         let mut sum = Matrix::zeros(rows.rows(), rows.rows());
         for block in &self.blocks {
-            let own = rows.column_range(block.start, block.start + block.count);
+            let block_rows = rows.column_range(block.start, block.start + block.count);
             let weight =
                 Matrix::from_fn(block.count, block.count, |i, j| block.force_after[(i, j)]);
-            let part = own.times(&weight).times(&own.adjoint());
+            let part = block_rows.times(&weight).times(&block_rows.adjoint());
             for (sum, part) in sum.as_mut_slice().iter_mut().zip(part.as_slice()) {
                 *sum += part;
             }

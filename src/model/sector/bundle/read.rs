@@ -76,7 +76,7 @@ fn check_bodies(model: &SectorModel) -> Result<(), ModelError> {
         for (side, body) in [(contact.first, Body::Blisk), (contact.second, Body::Ring)] {
             let elsewhere = |&node: &usize| {
                 let place = model.place_of(node);
-                place.is_some_and(|(own, _)| own != body)
+                place.is_some_and(|(body_of_node, _)| body_of_node != body)
             };
             if let Some(node) = side.node().filter(elsewhere) {
                 return Err(ModelError::Contact {

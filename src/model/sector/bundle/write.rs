@@ -155,8 +155,8 @@ fn side(side: ContactSide) -> String {
 fn ring_pair(model: &SectorModel, pair: &ContactPair) -> Option<[usize; 2]> {
     let on = |side: ContactSide, body: Body| match side {
         ContactSide::Node(node) => {
-            let (own, _) = model.place_of(node)?;
-            (own == body).then_some(node)
+            let (body_of_node, _) = model.place_of(node)?;
+            (body_of_node == body).then_some(node)
         }
         ContactSide::NextSector(_) | ContactSide::Ground => None,
     };

@@ -48,8 +48,8 @@ pub(super) fn stiffness(
     let assembled = solid.assemble()?;
     // `assemble` has turned the matrices to the same frames; only the numbers differ.
     let dof_of = |dof: usize| {
-        let own = &assembled.dofs[dof];
-        frames.dof(nodes[own.node], own.component as usize)
+        let assembled_dof = &assembled.dofs[dof];
+        frames.dof(nodes[assembled_dof.node], assembled_dof.component as usize)
     };
     let mut triplets = Vec::new();
     for (row, column, value) in assembled.blade_stiffness.lower_entries() {

@@ -144,12 +144,13 @@ fn project_ring(
 ) -> Result<Option<Projected>, ModelError> {
     let is_projected = |contact: &&Contact| contact.pairing == Pairing::Projection;
     let contact = file.contacts.iter().find(is_projected);
-    let Some((contact, Side::Surface(ring))) = contact.map(|own| (own, &own.second)) else {
+    let Some((contact, Side::Surface(ring))) = contact.map(|contact| (contact, &contact.second))
+    else {
         return Ok(None);
     };
     let tolerance_m = contact.tolerance_m.unwrap_or(tolerance_m(file, nodes));
-    let own = runs.iter().position(|run| run.holds(Body::Ring));
-    let matrices = &mut matrices[own.unwrap_or_default()];
+    let of_ring = runs.iter().position(|run| run.holds(Body::Ring));
+    let matrices = &mut matrices[of_ring.unwrap_or_default()];
     project(
         file,
         (contact, ring),
@@ -298,14 +299,19 @@ fn body_reports(
             .iter()
             .fold(0.0_f64, |worst, value| worst.max(value.abs()))
             / largest;
-        let own = |dof: &&crate::model::sector::Dof| dof.body == body;
-        let nodes: BTreeSet<usize> = frames.dofs.iter().filter(own).map(|dof| dof.node).collect();
+        let of_body = |dof: &&crate::model::sector::Dof| dof.body == body;
+        let nodes: BTreeSet<usize> = frames
+            .dofs
+            .iter()
+            .filter(of_body)
+            .map(|dof| dof.node)
+            .collect();
         let facts = &run.mesh.run;
         let faces = faces.get(body_name(body));
         BodyReport {
             body: body_name(body),
             nodes: nodes.len(),
-            dofs: frames.dofs.iter().filter(own).count(),
+            dofs: frames.dofs.iter().filter(of_body).count(),
             mass_kg,
             mass_is_lumped,
             node_offset: run.offset,
@@ -336,8 +342,8 @@ fn ground(
 ) {
     let omega = TAU * frequency_hz;
     if omega > 0.0 {
-        let own = |&&(row, _, _): &&(usize, usize, f64)| frames.dofs[row].body == body;
-        let springs = mass.iter().filter(own);
+        let of_body = |&&(row, _, _): &&(usize, usize, f64)| frames.dofs[row].body == body;
+        let springs = mass.iter().filter(of_body);
         stiffness.extend(springs.map(|&(row, column, value)| (row, column, omega * omega * value)));
     }
 }

@@ -57,11 +57,11 @@ pub(super) fn pairs(
     let mut pairs = Vec::new();
     let mut report = ContactReport::default();
     for contact in &file.contacts {
-        let (mut own, surfaces) = pairs_of(file, contact, runs, sector)?;
+        let (mut pairs_of_contact, surfaces) = pairs_of(file, contact, runs, sector)?;
         if let Some(weight) = contact.weight {
-            share_out(weight, contact.is_equal(), &mut own);
+            share_out(weight, contact.is_equal(), &mut pairs_of_contact);
         }
-        for pair in own {
+        for pair in pairs_of_contact {
             add(&mut pairs, pair);
         }
         report.worst_distance_m = report.worst_distance_m.max(surfaces.worst_distance_m);
@@ -127,11 +127,11 @@ fn has_constant_load(frames: &Frames, pair: &Pair) -> bool {
 
 /// Adds a pair, to the same one if that is there: at the edge of two surfaces, or on both cyclic faces.
 fn add(pairs: &mut Vec<Pair>, pair: Pair) {
-    let same = |own: &&mut Pair| (own.first, own.second) == (pair.first, pair.second);
+    let same = |known: &&mut Pair| (known.first, known.second) == (pair.first, pair.second);
     match pairs.iter_mut().find(same) {
-        Some(own) => {
-            own.nodal.add(pair.nodal);
-            own.share += pair.share;
+        Some(known) => {
+            known.nodal.add(pair.nodal);
+            known.share += pair.share;
         }
         None => pairs.push(pair),
     }
@@ -236,8 +236,9 @@ impl<'a> Facing<'a> {
         nodes: &'a SurfaceNodes,
     ) -> Self {
         let positions = |chosen: &dyn Fn(i64) -> bool| {
-            let own = nodes.keys().filter(|(_, ahead)| chosen(*ahead));
-            own.map(|&(node, _)| (node, sector.nodes[&node].position_m))
+            let positioned = nodes.keys().filter(|(_, ahead)| chosen(*ahead));
+            positioned
+                .map(|&(node, _)| (node, sector.nodes[&node].position_m))
                 .collect()
         };
         Self {
@@ -280,13 +281,13 @@ impl<'a> Facing<'a> {
             (Some(a), Some(b)) if b.distance_m < a.distance_m => Some(b),
             (a, b) => a.or(b),
         };
-        let own = closer(
+        let closest = closer(
             among(&self.ahead[0], between - ahead),
             among(&self.ahead[1], between + 1 - ahead),
         );
-        match own {
-            Some(met) if met.distance_m <= tolerance_m => own,
-            _ => closer(among(&self.all, between), own),
+        match closest {
+            Some(met) if met.distance_m <= tolerance_m => closest,
+            _ => closer(among(&self.all, between), closest),
         }
     }
 
@@ -392,8 +393,8 @@ fn surface(
     if contact.normal.is_some() {
         // The surface is its nodes. What their normal is, is said of the pairs.
         let nodes = run.set(&name);
-        let own = nodes.into_iter().filter(|&node| run.body_of(node) == body);
-        cartesian.extend(own.map(|node| (node + run.offset, NodalArea::default())));
+        let of_body = nodes.into_iter().filter(|&node| run.body_of(node) == body);
+        cartesian.extend(of_body.map(|node| (node + run.offset, NodalArea::default())));
     } else {
         let faces = run.mesh.faces_of(&name).unwrap_or_default();
         let faces = faces.into_iter().filter(|(element, _)| {

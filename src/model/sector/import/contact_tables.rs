@@ -104,14 +104,14 @@ fn contact(
     let keys = if is_by_body { by_body } else { by_order };
     let mut sides = Vec::new();
     for (name, text) in keys {
-        let own = format!("{key}.{name}");
+        let full_key = format!("{key}.{name}");
         let Some(text) = text else {
             let accepted = match name {
                 "blisk" | "ring" => "a set of the mesh",
                 "first" => "BODY.SET, the surface out of which normals point",
                 _ => "BODY.SET, next.BODY.SET or ground, what it touches",
             };
-            problems.push(missing(own, accepted));
+            problems.push(missing(full_key, accepted));
             continue;
         };
         let side = match name {
@@ -120,8 +120,8 @@ fn contact(
             _ => Side::of(text),
         };
         match side {
-            Ok(side) => sides.push((own, side)),
-            Err(problem) => problems.push((own, problem)),
+            Ok(side) => sides.push((full_key, side)),
+            Err(problem) => problems.push((full_key, problem)),
         }
     }
     if table
@@ -195,10 +195,12 @@ fn check_pairing(contact: &Contact, earlier: &[Contact], problems: &mut Problems
     if contact.pairing == Pairing::Projection {
         let mut projected = earlier
             .iter()
-            .filter(|own| own.pairing == Pairing::Projection);
+            .filter(|earlier_contact| earlier_contact.pairing == Pairing::Projection);
         let accepted = if is_of_ring && is_under_blisk {
             let earlier = projected.next();
-            earlier.map(|own| format!("\"nodes\": {} is projected already", own.key))
+            earlier.map(|earlier_contact| {
+                format!("\"nodes\": {} is projected already", earlier_contact.key)
+            })
         } else {
             Some("\"nodes\": only a ring is projected on the blisk, first = \"blisk.SET\" and second = \"ring.SET\"".to_owned())
         };
@@ -213,17 +215,20 @@ fn check_pairing(contact: &Contact, earlier: &[Contact], problems: &mut Problems
     }
     let second = contact.second.to_string();
     let first = contact.first.to_string();
-    let same = |own: &&Contact| {
-        let sides = [own.first.to_string(), own.second.to_string()];
+    let same = |earlier_contact: &&Contact| {
+        let sides = [
+            earlier_contact.first.to_string(),
+            earlier_contact.second.to_string(),
+        ];
         let is = |a: &String, b: &String| {
             sides[0].eq_ignore_ascii_case(a) && sides[1].eq_ignore_ascii_case(b)
         };
         is(&first, &second) || is(&second, &first)
     };
-    if let Some(own) = earlier.iter().find(same) {
+    if let Some(same_contact) = earlier.iter().find(same) {
         let reason = format!(
             "{} joins the same surfaces; accepted: each two once",
-            own.key
+            same_contact.key
         );
         conflict(problems, contact.first_key.clone(), &reason);
     }

@@ -34,7 +34,8 @@ pub fn calculix_equations(path: &Path, body: Body) -> Result<String, ModelError>
         })
         .collect();
     let faces = cyclic_faces(&file, &runs, &nodes, &free)?;
-    let Some((_, run, _)) = face_sets(&file, &runs).find(|(own, ..)| *own == body) else {
+    let Some((_, run, _)) = face_sets(&file, &runs).find(|(body_of_run, ..)| *body_of_run == body)
+    else {
         return Err(file.refuse(vec![missing("ring", "the files of the ring")]));
     };
     let pairs = &faces[body_name(body)].pairs;

@@ -167,8 +167,9 @@ impl Reader<'_> {
     fn matrices(&mut self, keys: &Keys<'_>) -> MatrixFiles {
         let format = self.format;
         let calculix = format == MatrixFormat::Calculix;
-        let mut path = |own: Option<&PathBuf>, suffix: &str, key: &str| match (own, keys.job) {
-            (Some(own), _) => self.beside(own),
+        let mut path = |stated: Option<&PathBuf>, suffix: &str, key: &str| match (stated, keys.job)
+        {
+            (Some(stated), _) => self.beside(stated),
             (None, Some(job)) if calculix => self.beside(&with_suffix(job, suffix)),
             // DMIG names its rows itself.
             (None, _) if key == "dofs" && format == MatrixFormat::Dmig => PathBuf::new(),

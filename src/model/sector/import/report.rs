@@ -134,8 +134,8 @@ impl ContactReport {
                 "  {nodes} nodes of the ring follow the nodes of the blisk's faces"
             )?;
         }
-        for own in &self.surfaces {
-            own.write(f, self.surfaces.len() > 1)?;
+        for surface in &self.surfaces {
+            surface.write(f, self.surfaces.len() > 1)?;
         }
         if let Some(pairs) = self.constant_load_pairs {
             writeln!(
@@ -244,7 +244,7 @@ impl fmt::Display for ImportReport {
             (Body::Damper, self.damper_grounding_hz),
         ] {
             let name = body_name(body);
-            if self.bodies.iter().any(|own| own.body == name) {
+            if self.bodies.iter().any(|report| report.body == name) {
                 writeln!(f, "{name} grounded at {hz} Hz")?;
             }
         }

@@ -42,7 +42,7 @@ fn no_nodes(format: MeshFormat, path: &Path) -> ImportProblem {
         MeshFormat::Ansys => ("ansys", "a .cdb of Ansys with NBLOCK (CDWRITE)"),
         MeshFormat::Nastran => ("nastran", "bulk data of Nastran with GRID"),
     };
-    let is = foreign::what_is(path).map_or_else(String::new, |own| format!(", it is {own}"));
+    let is = foreign::what_is(path).map_or_else(String::new, |kind| format!(", it is {kind}"));
     ImportProblem::Value {
         key: "mesh_format".to_owned(),
         found: format!("\"{name}\", but the file has no node in it{is}"),
@@ -54,9 +54,12 @@ impl Run {
     /// The runs of an import file: that of the blisk, and those of ring and damper if they have some of their own.
     pub fn read_meshes(file: &ImportFile) -> Result<Vec<Self>, ModelError> {
         let mut runs: Vec<Self> = Vec::new();
-        let own = file.others.iter();
-        let own = own.filter_map(|other| Some((other.body, other.files.as_ref()?)));
-        for (body, files) in std::iter::once((Body::Blisk, &file.blisk_files)).chain(own) {
+        let others_with_files = file.others.iter();
+        let others_with_files =
+            others_with_files.filter_map(|other| Some((other.body, other.files.as_ref()?)));
+        for (body, files) in
+            std::iter::once((Body::Blisk, &file.blisk_files)).chain(others_with_files)
+        {
             let mesh_path = files.mesh.clone();
             let mesh = match file.mesh_format {
                 MeshFormat::Calculix => deck::read(&mesh_path),
@@ -77,8 +80,8 @@ impl Run {
                 return Err(refuse(&mesh_path, problem));
             }
             let largest = |run: &Self| {
-                let own = run.mesh.nodes.keys().next_back().copied().unwrap_or(0);
-                own + run.offset
+                let largest_node = run.mesh.nodes.keys().next_back().copied().unwrap_or(0);
+                largest_node + run.offset
             };
             let others = match body {
                 Body::Ring | Body::Damper => {
@@ -106,8 +109,8 @@ impl Run {
 
     /// Whether a node of the wheel stands in the mesh.
     pub fn has_node(&self, node: usize) -> bool {
-        let own = node.checked_sub(self.offset);
-        own.is_some_and(|own| self.mesh.nodes.contains_key(&own))
+        let file_node = node.checked_sub(self.offset);
+        file_node.is_some_and(|file_node| self.mesh.nodes.contains_key(&file_node))
     }
 
     /// Nodes of a set by the numbers of the file; [`known_sets`] has found it.
@@ -130,14 +133,14 @@ impl Run {
 
     /// The run that holds a body; that of the blisk if none does.
     pub fn of(runs: &[Self], body: Body) -> &Self {
-        let own = runs.iter().find(|run| run.holds(body));
-        own.unwrap_or(&runs[0])
+        let run = runs.iter().find(|run| run.holds(body));
+        run.unwrap_or(&runs[0])
     }
 
     pub fn body_of(&self, node: usize) -> Body {
         let mut others = self.others.iter();
-        let own = others.find(|(_, nodes)| nodes.contains(&node));
-        own.map_or(Body::Blisk, |(&body, _)| body)
+        let other = others.find(|(_, nodes)| nodes.contains(&node));
+        other.map_or(Body::Blisk, |(&body, _)| body)
     }
 
     /// Nodes of the wheel: numbers with the offset, positions in m with the axis along z.
@@ -197,11 +200,11 @@ impl Run {
         rows: &Rows,
         matrix: &SymmetricSparse,
     ) -> Result<(), ModelError> {
-        let own: Rows = rows
+        let file_rows: Rows = rows
             .iter()
             .map(|&(node, direction)| (node - self.offset, direction))
             .collect();
-        Couplings::new(&own, matrix)
+        Couplings::new(&file_rows, matrix)
             .require(kind, &self.mesh)
             .map_err(|problem| refuse(path, problem))
     }

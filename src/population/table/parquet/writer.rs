@@ -75,7 +75,7 @@ impl TableWriter {
             let of_scenarios = self
                 .columns
                 .iter()
-                .position(|own| *own == key::SCENARIO)
+                .position(|column| *column == key::SCENARIO)
                 .and_then(|scenario| names_of(values.get(scenario)?, names));
             let reason = "its scenarios have no load case";
             values.insert(

@@ -177,12 +177,12 @@ impl Search {
             .half_bandwidth((1.0 + self.settings.tolerance) * top)
     }
 
-    /// Distance at which a peak of the height that counts between samples of heights `own` and `other`, at least as high as
-    /// they, and of this width would read `own`.
-    fn reach(&self, best: usize, own: f64, other: f64) -> f64 {
+    /// Distance at which a peak of the height that counts between samples of heights `sampled` and `other`, at least as high as
+    /// they, and of this width would read `sampled`.
+    fn reach(&self, best: usize, sampled: f64, other: f64) -> f64 {
         let counts = self.settings.rivals_from * self.samples.0[best].largest;
-        let height = (1.0 + self.settings.tolerance) * f64::max(counts, own.max(other));
-        self.hidden_half_bandwidth(best) * ((height / own).powi(2) - 1.0).max(0.0).sqrt()
+        let height = (1.0 + self.settings.tolerance) * f64::max(counts, sampled.max(other));
+        self.hidden_half_bandwidth(best) * ((height / sampled).powi(2) - 1.0).max(0.0).sqrt()
     }
 
     /// Where between two samples a peak higher than the best could hide.

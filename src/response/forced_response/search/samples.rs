@@ -110,16 +110,18 @@ impl Samples {
 
     /// Whether lower amplitudes were seen on both sides, or are told by the slope at an end.
     pub fn bracketed(&self, best: usize) -> bool {
-        let own = &self.0[best];
+        let sample = &self.0[best];
         // Where the curve jumps a search can ask for the same frequency twice.
         let elsewhere = |other: &&Sample| {
-            let same = other.frequency_hz.total_cmp(&own.frequency_hz).is_eq();
+            let same = other.frequency_hz.total_cmp(&sample.frequency_hz).is_eq();
             !other.amplitudes.is_empty() && !same
         };
         let left = self.0[..best].iter().rev().find(elsewhere);
         let right = self.0[best + 1..].iter().find(elsewhere);
         match (left, right) {
-            (Some(left), Some(right)) => left.largest < own.largest && right.largest < own.largest,
+            (Some(left), Some(right)) => {
+                left.largest < sample.largest && right.largest < sample.largest
+            }
             _ => self.rises_inward(best),
         }
     }

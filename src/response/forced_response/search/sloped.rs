@@ -20,8 +20,8 @@ const BEYOND: f64 = 0.1;
 impl Samples {
     /// Whether all samples that are solved have slopes.
     pub fn are_sloped(&self) -> bool {
-        let mut solved = self.0.iter().filter(|own| !own.amplitudes.is_empty());
-        solved.all(|own| own.slopes.is_some())
+        let mut solved = self.0.iter().filter(|sample| !sample.amplitudes.is_empty());
+        solved.all(|sample| sample.slopes.is_some())
     }
 
     /// A point of a blade's curve; none where the blade does not move or the slope is not known.
@@ -50,12 +50,12 @@ impl Samples {
             last if last + 1 == self.0.len() => last - 1,
             _ => return false,
         };
-        let (Some(own), Some(beside)) = (self.0.get(at), self.0.get(beside)) else {
+        let (Some(end), Some(beside)) = (self.0.get(at), self.0.get(beside)) else {
             return false;
         };
-        let slope = own.slopes.as_ref().and_then(|slopes| slopes.get(own.blade));
-        let inward = beside.frequency_hz - own.frequency_hz;
-        slope.is_some_and(|slope| slope * inward > 0.0) && beside.largest < own.largest
+        let slope = end.slopes.as_ref().and_then(|slopes| slopes.get(end.blade));
+        let inward = beside.frequency_hz - end.frequency_hz;
+        slope.is_some_and(|slope| slope * inward > 0.0) && beside.largest < end.largest
     }
 }
 
@@ -93,10 +93,10 @@ impl Search {
         if !self.samples.are_sloped() {
             return self.samples.neighbours(at);
         }
-        let own = self.samples.0[at].frequency_hz;
+        let frequency_hz = self.samples.0[at].frequency_hz;
         let good = |i: &usize| {
             let other = &self.samples.0[*i];
-            !other.amplitudes.is_empty() && (other.frequency_hz - own).abs() > self.fine()
+            !other.amplitudes.is_empty() && (other.frequency_hz - frequency_hz).abs() > self.fine()
         };
         let left = (0..at).rev().find(good)?;
         let right = (at + 1..self.samples.0.len()).find(good)?;
@@ -112,7 +112,7 @@ impl Search {
     /// `frequency_hz` itself, or, where there are slopes and a sample is as near as that already, the middle of the wider
     /// gap beside the best; none if that is as narrow.
     pub(super) fn not_known(&self, best: usize, frequency_hz: f64) -> Option<f64> {
-        let near = |own: &Sample| (own.frequency_hz - frequency_hz).abs() <= self.fine();
+        let near = |sample: &Sample| (sample.frequency_hz - frequency_hz).abs() <= self.fine();
         if !self.samples.are_sloped() || !self.samples.0.iter().any(near) {
             return Some(frequency_hz);
         }
@@ -145,7 +145,7 @@ mod tests {
             });
             let (u, rate) = parts.fold(
                 Default::default(),
-                |(u, rate): (Complex64, Complex64), own| (u + own.0, rate + own.1),
+                |(u, rate): (Complex64, Complex64), term| (u + term.0, rate + term.1),
             );
             amplitudes.push(u.norm());
             slopes.push((u.conj() * rate).re / u.norm());

@@ -53,8 +53,8 @@ impl ContactCouplings {
         let places = |pair: usize| &geometry.rows[pair % geometry.rows.len()];
         let base = |pair: usize| pair / geometry.rows.len() * geometry.row_count();
         for pair in active() {
-            let own = places(pair)[first..].iter().flatten();
-            self.rows.extend(own.map(|row| base(pair) + row));
+            let pair_rows = places(pair)[first..].iter().flatten();
+            self.rows.extend(pair_rows.map(|row| base(pair) + row));
         }
         for couplings in &mut self.couplings {
             couplings.clear(self.rows.len(), count);

@@ -244,26 +244,26 @@ mod tests {
 
         let mut pairs = vec![(found.motion.clone(), motion)];
         pairs.extend(found.receptance.iter().cloned().zip(receptance));
-        let (mut own, mut other) = (right.clone(), right.clone());
-        found.response(&forces, &mut own);
+        let (mut actual, mut other) = (right.clone(), right.clone());
+        found.response(&forces, &mut actual);
         pivoted.response(&forces, &mut other);
-        pairs.push((own, other));
-        let (mut own, mut other) = (right.clone(), right.clone());
-        found.solve(&mut own);
+        pairs.push((actual, other));
+        let (mut actual, mut other) = (right.clone(), right.clone());
+        found.solve(&mut actual);
         pivoted.solve(&mut other);
-        pairs.push((own, other));
-        let (mut own, mut other) = (right.clone(), right);
-        found.add_attached(&mut own, -0.7, &forces);
+        pairs.push((actual, other));
+        let (mut actual, mut other) = (right.clone(), right);
+        found.add_attached(&mut actual, -0.7, &forces);
         pivoted.add_attached(&mut other, -0.7, &forces);
-        pairs.push((own, other));
-        let far = pairs.iter().map(|(own, other)| {
+        pairs.push((actual, other));
+        let far = pairs.iter().map(|(actual, other)| {
             let largest = other
                 .iter()
                 .fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
-            let missed = own
+            let missed = actual
                 .iter()
                 .zip(other)
-                .map(|(own, other)| (own - other).abs());
+                .map(|(actual, other)| (actual - other).abs());
             missed.fold(0.0, f64::max) / largest
         });
         let far = far.fold(0.0, f64::max);

@@ -110,8 +110,8 @@ impl CondensedJacobian {
         let (m, n) = (contact.rows(), contact.columns());
         let mut rest = &mut *residual;
         for part in &mut self.linear {
-            let (own, beyond) = rest.split_at_mut(part.parts * n);
-            part.solve(own);
+            let (of_part, beyond) = rest.split_at_mut(part.parts * n);
+            part.solve(of_part);
             rest = beyond;
         }
         let columns = residual.len() / n;
@@ -161,9 +161,9 @@ impl CondensedJacobian {
         let (width, rows) = (x.len() / coefficients, forces.len() / coefficients);
         let mut rest = x;
         for part in &self.linear {
-            let (own, beyond) = rest.split_at_mut(part.parts * width);
+            let (of_part, beyond) = rest.split_at_mut(part.parts * width);
             let forces = &forces[part.coefficient * rows..][..part.parts * rows];
-            visit(part, own, forces);
+            visit(part, of_part, forces);
             rest = beyond;
         }
     }

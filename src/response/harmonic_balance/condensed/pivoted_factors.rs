@@ -57,15 +57,15 @@ impl PivotedFactors {
         let mut attachment = Matrix::from_fn(n, m, |i, j| Complex64::new(contact[(j, i)], 0.0));
         self.factors.solve_columns(&mut attachment);
         let parts: [fn(&Complex64) -> f64; 2] = [|z| z.re, |z| z.im];
-        for (part, (own, receptance)) in parts
+        for (part, (attached, receptance)) in parts
             .into_iter()
             .zip(self.attachment.iter_mut().zip(receptance))
         {
-            for (entry, z) in own.iter_mut().zip(attachment.as_slice()) {
+            for (entry, z) in attached.iter_mut().zip(attachment.as_slice()) {
                 *entry = part(z);
             }
             receptance.fill(0.0);
-            add_times(receptance, contact.as_slice(), own, (m, m, n));
+            add_times(receptance, contact.as_slice(), attached, (m, m, n));
         }
         if block.harmonic == 1 {
             self.right.copy_from_slice(force);

@@ -23,9 +23,9 @@ impl ContactInterface {
 
     /// Contact rows of the wheel along n, t1 and t2 of a pair, which is counted sector after sector.
     pub(super) fn rows_of(&self, pair: usize) -> [Option<usize>; 3] {
-        let (sector, own) = (pair / self.per_sector(), pair % self.per_sector());
+        let (sector, place) = (pair / self.per_sector(), pair % self.per_sector());
         let base = sector * self.geometry.row_count();
-        self.geometry.rows[own].map(|row| row.map(|row| base + row))
+        self.geometry.rows[place].map(|row| row.map(|row| base + row))
     }
 
     /// Parameters of a pair of the wheel.
@@ -44,8 +44,8 @@ impl ContactInterface {
             let rows = &self.geometry.rows[index % per_sector];
             let first = index / per_sector * sector_rows;
             let tangential = factor * pair.tangential_stiffness_n_per_m;
-            let own = self.law.springs(pair.normal_stiffness_n_per_m, tangential);
-            for (row, spring) in rows.iter().zip(own) {
+            let pair_springs = self.law.springs(pair.normal_stiffness_n_per_m, tangential);
+            for (row, spring) in rows.iter().zip(pair_springs) {
                 if let Some(row) = *row {
                     springs[first + row] = spring;
                 }

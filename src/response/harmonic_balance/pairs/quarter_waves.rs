@@ -62,7 +62,7 @@ impl QuarterWaves {
                     coefficient += 1;
                 }
             }
-            parts.map(|own| Part::quarter(transform, own))
+            parts.map(|coefficients| Part::quarter(transform, coefficients))
         } else {
             let mut parts: [Part; 4] = Default::default();
             parts[0] = Part::whole(transform);
@@ -212,10 +212,10 @@ impl Part {
         let mut sums = [[0.0; LANES]; WIDTH];
         let basis = &self.basis[j * count..(j + 1) * count];
         for (&c, &phi) in self.coefficients.iter().zip(basis) {
-            let own = &coefficients[c];
+            let coefficient = &coefficients[c];
             for group in 0..WIDTH {
                 for lane in 0..LANES {
-                    sums[group][lane] += phi * own[group][lane];
+                    sums[group][lane] += phi * coefficient[group][lane];
                 }
             }
         }

@@ -191,10 +191,10 @@ impl Simplified3dPairs {
     /// The corrections in the place of the displacements; with the bounds where the `derivative` is wanted.
     fn respond(&mut self, derivative: bool) {
         let blocks = self.lanes() / LANES;
-        let own = HEIGHT * self.transform.n_samples();
-        let bounds = if derivative { blocks * own } else { 0 };
+        let per_block = HEIGHT * self.transform.n_samples();
+        let bounds = if derivative { blocks * per_block } else { 0 };
         self.bounds.resize(bounds, 0.0);
-        let mut bounds = self.bounds.chunks_exact_mut(own);
+        let mut bounds = self.bounds.chunks_exact_mut(per_block);
         let of_block = HEIGHT * self.transform.n_coefficients();
         let coefficients = self.coefficients.chunks_exact_mut(of_block);
         for (block, coefficients) in coefficients.take(blocks).enumerate() {
@@ -218,9 +218,9 @@ impl Simplified3dPairs {
         let blocks = self.coefficients.chunks_exact_mut(HEIGHT * coefficients);
         for (rows, block) in self.rows.chunks_exact(HEIGHT).zip(blocks) {
             let from = displacement.chunks_exact(contact_rows.max(1));
-            for (column, own) in block.chunks_exact_mut(HEIGHT).zip(from) {
+            for (column, motions) in block.chunks_exact_mut(HEIGHT).zip(from) {
                 for (force, &(row, spring)) in column.iter_mut().zip(rows) {
-                    *force = spring * own[row];
+                    *force = spring * motions[row];
                 }
             }
             if mean {
@@ -249,10 +249,10 @@ impl Simplified3dPairs {
                 }
             }
             let to = correction.chunks_exact_mut(contact_rows.max(1));
-            for (c, (column, own)) in from.chunks_exact(HEIGHT).zip(to).enumerate() {
+            for (c, (column, corrections)) in from.chunks_exact(HEIGHT).zip(to).enumerate() {
                 let of_tangents = if mean && c == 0 { &[][..] } else { &**tangents };
                 for &(at, row) in normal.iter().chain(of_tangents) {
-                    own[row] = column[at];
+                    corrections[row] = column[at];
                 }
             }
         }
@@ -264,8 +264,8 @@ impl Clips {
     fn gather(&mut self, bounds: &[f64], samples: usize, lane: usize, state: [bool; 3]) {
         let bounds = &bounds[lane / LANES * HEIGHT * samples..][..HEIGHT * samples];
         let of = |direction: usize| {
-            let own = bounds[direction * LANES + lane % LANES..].iter();
-            own.step_by(HEIGHT)
+            let direction_bounds = bounds[direction * LANES + lane % LANES..].iter();
+            direction_bounds.step_by(HEIGHT)
         };
         self.normal_load.clear();
         if state[0] {

@@ -113,15 +113,19 @@ mod tests {
                 most: &mut most,
             });
             for lane in 0..lanes {
-                let own: Vec<f64> = (0..SAMPLES).map(|j| elastic[j * lanes + lane]).collect();
-                let before = own.iter().map(|x| then * x);
-                let period: Vec<f64> = own.iter().copied().chain(before).collect();
-                let whole = if then < 0.0 { &period[..] } else { &own[..] };
+                let history: Vec<f64> = (0..SAMPLES).map(|j| elastic[j * lanes + lane]).collect();
+                let before = history.iter().map(|x| then * x);
+                let period: Vec<f64> = history.iter().copied().chain(before).collect();
+                let whole = if then < 0.0 {
+                    &period[..]
+                } else {
+                    &history[..]
+                };
                 let mut y = 0.0_f64;
                 for x in whole {
                     y = y.max(-limit[lane] - x).min(limit[lane] - x);
                 }
-                let expected = own.iter().map(|x| {
+                let expected = history.iter().map(|x| {
                     y = y.max(-limit[lane] - x).min(limit[lane] - x);
                     y
                 });

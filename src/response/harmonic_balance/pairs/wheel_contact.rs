@@ -34,18 +34,18 @@ impl WheelContact {
         transform: Arc<HarmonicTransform>,
     ) -> Self {
         let rows = sectors * interface.geometry.row_count();
-        let own = interface.stuck_springs(1.0);
-        let varied = own
+        let stuck = interface.stuck_springs(1.0);
+        let varied = stuck
             .iter()
             .zip(springs.iter().cycle())
-            .map(|(own, tuned)| own - tuned);
+            .map(|(spring, tuned)| spring - tuned);
         let varied: Vec<f64> = varied.collect();
         let contact = InterfaceForces::new(interface, transform, rows);
         let mut workspace = contact.workspace();
         workspace.pairs.couple_first(0);
         Self {
             workspace,
-            springs: if own.len() > springs.len() {
+            springs: if stuck.len() > springs.len() {
                 varied
             } else {
                 Vec::new()
@@ -56,12 +56,12 @@ impl WheelContact {
         }
     }
 
-    /// The contact of a linear limit whose springs, N/m, `own` of all rows of the wheel, differ from those of the tuned wheel.
+    /// The contact of a linear limit whose springs, N/m, `of_wheel` of all rows of the wheel, differ from those of the tuned wheel.
     #[must_use]
-    pub fn linear(self, own: &[f64], tuned: &[f64]) -> Self {
-        let varied = own.iter().zip(tuned.iter().cycle());
+    pub fn linear(self, of_wheel: &[f64], tuned: &[f64]) -> Self {
+        let varied = of_wheel.iter().zip(tuned.iter().cycle());
         Self {
-            springs: varied.map(|(own, tuned)| own - tuned).collect(),
+            springs: varied.map(|(spring, tuned)| spring - tuned).collect(),
             linear: true,
             ..self
         }

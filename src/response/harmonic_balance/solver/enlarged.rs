@@ -193,8 +193,8 @@ pub fn enlarge(
     let fine = with(system.blocks(), &set.fine);
     let enlarged = with(blocks, &set.enlarged);
     let same = |block: &HarmonicBlock| {
-        let own = |own: &HarmonicBlock| own.harmonic == block.harmonic;
-        system.blocks().iter().position(own)
+        let matches = |other_block: &HarmonicBlock| other_block.harmonic == block.harmonic;
+        system.blocks().iter().position(matches)
     };
     let places: Vec<Option<usize>> = blocks.iter().map(same).collect();
     let before = embed(system, &enlarged, &places, x);
@@ -285,7 +285,7 @@ impl Enlargement<'_> {
     /// `-P^-1 R(x)`.
     fn step(&mut self, x: &[f64]) -> Vec<f64> {
         let mut step = self.residual(x);
-        let own = match &self.factors {
+        let set_step = match &self.factors {
             Factors::Blocks(_) => self.set_step(&step),
             _ => Vec::new(),
         };
@@ -296,7 +296,7 @@ impl Enlargement<'_> {
                     let place = range(&self.enlarged, index);
                     match factors {
                         Some(factors) => solve_complex(factors, &mut step[place]),
-                        None => step[place.clone()].copy_from_slice(&own[place]),
+                        None => step[place.clone()].copy_from_slice(&set_step[place]),
                     }
                 }
             }
@@ -319,9 +319,9 @@ impl Enlargement<'_> {
             }
             return step;
         }
-        let mut own = self.restricted(residual);
-        self.workspace.solve_linear(&mut own);
-        embed(self.system, &self.enlarged, &self.places, &own)
+        let mut restricted = self.restricted(residual);
+        self.workspace.solve_linear(&mut restricted);
+        embed(self.system, &self.enlarged, &self.places, &restricted)
     }
 
     /// The solution of `other`, which has the harmonics of the set, near its solution `x` at another sampling, in the
@@ -357,13 +357,14 @@ impl Enlargement<'_> {
 
     /// The unknowns of the set.
     fn restricted(&self, x: &[f64]) -> Vec<f64> {
-        let mut own = vec![0.0; self.system.unknowns()];
+        let mut restricted = vec![0.0; self.system.unknowns()];
         for (index, place) in self.places.iter().enumerate() {
             if let Some(place) = *place {
-                own[range(self.system, place)].copy_from_slice(&x[range(&self.enlarged, index)]);
+                restricted[range(self.system, place)]
+                    .copy_from_slice(&x[range(&self.enlarged, index)]);
             }
         }
-        own
+        restricted
     }
 
     /// One Newton correction in the set of `after` less each harmonic outside.

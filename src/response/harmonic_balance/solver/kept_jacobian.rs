@@ -216,13 +216,13 @@ impl KeptJacobian {
             (Held::ByHarmonic, _) => {
                 let mut rest = residual;
                 if let Some(factors) = &mut self.leading {
-                    let (own, beyond) = rest.split_at_mut(factors.dimension());
-                    factors.solve(own);
+                    let (leading, beyond) = rest.split_at_mut(factors.dimension());
+                    factors.solve(leading);
                     rest = beyond;
                 }
                 for factors in &mut self.beyond {
-                    let (own, beyond) = rest.split_at_mut(2 * factors.dimension());
-                    solve_complex(factors, own);
+                    let (block, beyond) = rest.split_at_mut(2 * factors.dimension());
+                    solve_complex(factors, block);
                     rest = beyond;
                 }
             }
@@ -230,10 +230,13 @@ impl KeptJacobian {
                 let mut rest = residual;
                 for column in &mut self.triangle {
                     let size = column.diagonal.dimension();
-                    let (own, below) = rest.split_at_mut(size);
-                    column.diagonal.solve(own);
+                    let (of_column, below) = rest.split_at_mut(size);
+                    column.diagonal.solve(of_column);
                     let negative = &mut self.negative[..size];
-                    negative.iter_mut().zip(&*own).for_each(|(n, x)| *n = -x);
+                    negative
+                        .iter_mut()
+                        .zip(&*of_column)
+                        .for_each(|(n, x)| *n = -x);
                     let shape = (below.len(), 1, size);
                     add_times(below, &column.below, negative, shape);
                     rest = below;

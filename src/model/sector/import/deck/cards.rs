@@ -39,7 +39,7 @@ pub(super) struct Cards {
 impl Card {
     /// Value of a parameter.
     pub fn value(&self, name: &str) -> Option<&str> {
-        let (_, value) = self.parameters.iter().find(|(own, _)| own == name)?;
+        let (_, value) = self.parameters.iter().find(|(key, _)| key == name)?;
         value.as_deref()
     }
 
@@ -50,7 +50,7 @@ impl Card {
 
     /// Whether a parameter is there, with or without value.
     pub fn has(&self, name: &str) -> bool {
-        self.parameters.iter().any(|(own, _)| own == name)
+        self.parameters.iter().any(|(key, _)| key == name)
     }
 }
 

@@ -75,7 +75,7 @@ pub(super) fn matrix(
     };
     let chosen: Vec<&(String, Triplets)> = found
         .iter()
-        .filter(|(own, _)| name.is_none_or(|name| name.eq_ignore_ascii_case(own)))
+        .filter(|(matrix_name, _)| name.is_none_or(|name| name.eq_ignore_ascii_case(matrix_name)))
         .collect();
     let [(_, entries)] = chosen.as_slice() else {
         let problem = ImportProblem::MatrixUnknown {
