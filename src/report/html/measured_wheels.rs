@@ -80,7 +80,7 @@ pub(super) fn of_measured_wheels(
             "Normal load per sector with the lowest peak of the wheel".to_owned(),
             "Peak amplitude of the wheel".to_owned(),
             "Numerical error of the peak".to_owned(),
-            "by what its solution states".to_owned(),
+            "the error bound of its solution".to_owned(),
         ]
     } else {
         [
