@@ -52,6 +52,13 @@ pub struct PercentileError {
 }
 
 impl PercentileError {
+    /// About from where to where the statistical interval goes, m, with the numerical error of the percentile at its ends.
+    pub(super) fn interval_with_error(&self) -> Option<(f64, f64)> {
+        let found = self.percentile;
+        let (low, high) = (self.lowest? / found.value?, self.highest? / found.value?);
+        Some((low * found.lower?, high * found.upper?))
+    }
+
     /// Width of the statistical interval over the value.
     #[must_use]
     pub fn statistical_width(&self) -> Option<f64> {

@@ -346,8 +346,8 @@ pub(super) struct AtTheEnd {
     pub(super) what: String,
     /// What is wrong, in a few words.
     pub(super) headline: String,
-    /// Where a better load than one in newtons may be: at it or beyond it on this side; none where that is not one side.
-    pub(super) sign: Option<&'static str>,
+    /// On which side of a load in newtons a better one may lie, `lower` or `higher`; none where that is not one side.
+    pub(super) side: Option<&'static str>,
     /// The headline, and where loads are added.
     pub(super) in_words: String,
 }
@@ -409,10 +409,9 @@ pub(super) fn end_at(
     Some(AtTheEnd {
         consequence: format!("the best load may be {beyond}"),
         headline: format!("{what}: add {side} {loads}"),
-        sign: [("lower", "≤"), ("higher", "≥")]
+        side: ["lower", "higher"]
             .into_iter()
-            .find(|(only, _)| *only == side && own.normal_load_n.is_some())
-            .map(|(_, sign)| sign),
+            .find(|only| *only == side && own.normal_load_n.is_some()),
         in_words: format!(
             "{of_setting}{what}, so that the optimum may lie beyond: add {side} {loads} to {key} and run again"
         ),

@@ -309,13 +309,13 @@ fn a_load_at_the_end_of_those_studied_is_the_first_warning() {
         let [load, ..] = &big_numbers(&page)[..] else {
             panic!("three numbers: {page}");
         };
-        let sign = match beyond.split_once(' ') {
-            Some(("above", _)) if own.ends_with(" N") => "≥ ",
-            Some(("below", _)) if own.ends_with(" N") => "≤ ",
+        let side = match beyond.split_once(' ') {
+            Some(("above", _)) if own.ends_with(" N") => " or higher",
+            Some(("below", _)) if own.ends_with(" N") => " or lower",
             _ => "",
         };
-        let first = load[1].split(" or ").next();
-        assert_eq!(first, Some(&*format!("{sign}{own}")));
+        let first = load[1].split(", or ").next();
+        assert_eq!(first, Some(&*format!("{own}{side}")));
         let [of_load, of_percentile, _] = looks(between(&page, "id=\"answer-0\"", "</section>"));
         assert!(of_load && !of_percentile);
         // The card of the load says so before how sure the load is the lowest.
@@ -393,8 +393,15 @@ fn the_first_screen_says_where_numerical_error_could_hide_a_better_load() {
             assert_eq!(text.contains(&said), hides, "{said}: {text}");
         }
         // They stand beside the load that is the lowest as computed.
-        let or: Vec<&str> = load[1].split(" or ").skip(1).collect();
+        let or: Vec<&str> = load[1].split(", or ").skip(1).collect();
         assert_eq!(or, hidden, "{}", load[1]);
+        // The figure has bars with numerical error at these loads, and no others.
+        let (_, figure) = section.split_once("<figure").expect("the figure");
+        let figure = figure.split_once("</figure>").expect("an end").0;
+        let bars = figure.matches("class=\"bound doubt\"").count();
+        let drawn = if hides { 3 * (1 + hidden.len()) } else { 0 };
+        assert_eq!(bars, drawn, "{figure}");
+        assert_eq!(figure.contains("numerical error is not drawn"), !hides);
         // So they do in the answer in words.
         let answer = between(section, "<span class=\"verdict\">", "</span>");
         let open = answer.starts_with("Numerical error leaves it open: P95 = ");
@@ -457,7 +464,7 @@ fn a_load_of_a_speed_has_four_digits_and_its_speed() {
     let newtons = scenario["normal_load_n"].as_f64().expect("a load");
     let shown = numbers_in(&load[1])[0];
     // It is the last of the speeds: a higher load may be better.
-    let own = load[1].strip_prefix("≥ ").expect("an open end");
+    let own = load[1].strip_suffix(" or higher").expect("an open end");
     assert!(
         (shown / newtons - 1.0).abs() < 1e-3 && own.len() <= 8,
         "{load:?}"

@@ -2,12 +2,13 @@
 
 use std::fmt::Write;
 
+use super::drawn_load::{DRAWN, Load, scaled};
 use super::load_axis::LoadAxis;
 use super::{Figure, FigureName};
-use crate::population::statistics::{Percentile, SampleStatistics};
 use crate::report::plot::{
     Axis, Frame, LegendEntry, Mark, SIDES, Scale, Svg, TOP, legend, nice_top,
 };
+use crate::report::study_report::within;
 use crate::report::words::{LengthUnit, load_words, percent_words};
 use crate::report::{GroupReport, LoadChoice, ScenarioSummary, StudyReport, setting};
 
@@ -21,13 +22,6 @@ const STRIP: f64 = 15.0;
 const LOGARITHMIC_FROM: f64 = 4.0;
 /// Share of the largest value below which the smallest one makes an axis begin at zero.
 const FROM_ZERO: f64 = 0.4;
-/// Percentiles drawn: in percent, class, mark. Through hollow marks a bound is seen that is narrower than its mark.
-const DRAWN: [(u32, &str, Mark); 3] = [
-    (99, "hollow extreme", Mark::Diamond),
-    (95, "hollow high", Mark::Square),
-    (50, "hollow median", Mark::Circle),
-];
-
 /// An axis from `bottom` to `top` that shows `values`, all positive.
 fn value_axis(values: &[f64], bottom: f64, top: f64) -> Axis {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -70,34 +64,22 @@ pub(super) fn by_load(
         .map(|&scenario| &report.summary.scenarios[scenario])
         .collect();
     let units = LengthUnit::of_summary(&report.summary);
+    // Without a choice by the amplitude there is nothing to point at; a pointer at that of the median alone would be
+    // read as the load to design for.
+    let choice = { group.choices.iter() }.find(|choice| choice.lowest.is_some());
     let amplitude = name == FigureName::Amplitude;
-    let scale = if amplitude { units.metres() } else { 1.0 };
-    let sample = |load: &ScenarioSummary| -> SampleStatistics {
-        if amplitude {
-            load.peak_amplitude_m.clone()
-        } else {
-            load.amplification_factor.clone()
-        }
+    let pointed = choice.filter(|choice| amplitude && choice.is_of_a_design());
+    let lowest = lowest_of(group, pointed).filter(|_| amplitude);
+    let drawn = if amplitude {
+        amplitudes(group, &loads, pointed, units.metres())
+    } else {
+        { loads.iter() }
+            .map(|load| Load {
+                percentiles: load.amplification_factor.percentiles.clone(),
+                ..Load::new(load)
+            })
+            .collect()
     };
-    let drawn: Vec<Load<'_>> = loads
-        .iter()
-        .map(|load| Load {
-            scenario: load,
-            tuned: load
-                .tuned_amplitude_m
-                .filter(|_| amplitude)
-                .map(|tuned| tuned / scale),
-            percentiles: sample(load)
-                .percentiles
-                .iter()
-                .map(|found| scaled(found, scale))
-                .collect(),
-            wheels: { group.measured.iter() }
-                .filter(|own| amplitude && own.scenario == load.scenario)
-                .filter_map(|own| Some((own.pattern, own.peak_amplitude_m? / scale)))
-                .collect(),
-        })
-        .collect();
     let values: Vec<f64> = drawn.iter().flat_map(Load::values).collect();
     if values.is_empty() {
         return None;
@@ -108,11 +90,6 @@ pub(super) fn by_load(
     } else {
         "amplification factor".to_owned()
     };
-    // Without a choice by the amplitude there is nothing to point at; a pointer at that of the median alone would be
-    // read as the load to design for.
-    let choice = { group.choices.iter() }.find(|choice| choice.lowest.is_some());
-    let pointed = choice.filter(|choice| amplitude && choice.is_of_a_design());
-    let lowest = lowest_of(group, pointed).filter(|_| amplitude);
     let strip = if lowest.is_some() { STRIP } else { 0.0 };
     let y = value_axis(&values, BOTTOM + strip, TOP + strip);
     let y_title = match y.scale {
@@ -138,6 +115,12 @@ pub(super) fn by_load(
         point_at(&mut svg, &frame, &x, &loads, (*scenario, words), &could);
     }
     curves(&mut svg, &frame, &x, &drawn);
+    let beside = pointed.map_or(0.0, |choice| aside(&x, &drawn, choice.percent as u32));
+    for load in &drawn {
+        if let Some(bounds) = load.with_error {
+            frame.bound(&mut svg, "doubt", x.at(load.scenario) + beside, bounds);
+        }
+    }
     points(&mut svg, &frame, &x, &drawn);
     let mut entries = entries(&drawn);
     if let Some((_, words)) = &lowest {
@@ -167,41 +150,29 @@ pub(super) fn by_load(
     })
 }
 
-/// A load with its numbers in the unit of the figure.
-struct Load<'a> {
-    scenario: &'a ScenarioSummary,
-    tuned: Option<f64>,
-    percentiles: Vec<Percentile>,
-    /// Measured wheels with their peaks.
-    wheels: Vec<(u32, f64)>,
-}
-
-impl Load<'_> {
-    fn percentile(&self, percent: u32) -> Option<&Percentile> {
-        self.percentiles
-            .iter()
-            .find(|found| found.percent.total_cmp(&f64::from(percent)).is_eq())
-    }
-
-    fn value(&self, percent: u32) -> Option<f64> {
-        self.percentile(percent)?.value
-    }
-
-    /// All values that are drawn of the load.
-    fn values(&self) -> Vec<f64> {
-        let of = |percent: u32| {
-            self.percentile(percent)
-                .filter(|found| found.value.is_some())
-                .map_or([None; 3], |found| [found.value, found.lower, found.upper])
-        };
-        [5, 50, 95, 99]
-            .into_iter()
-            .flat_map(of)
-            .chain([self.tuned])
-            .flatten()
-            .chain(self.wheels.iter().map(|own| own.1))
-            .collect()
-    }
+/// The loads with their peak amplitudes in units of `scale`, m.
+fn amplitudes<'a>(
+    group: &GroupReport,
+    loads: &[&'a ScenarioSummary],
+    pointed: Option<&LoadChoice>,
+    scale: f64,
+) -> Vec<Load<'a>> {
+    let open = with_numerical_error(group, pointed);
+    let of_load = |load: &&'a ScenarioSummary| Load {
+        scenario: load,
+        tuned: load.tuned_amplitude_m.map(|tuned| tuned / scale),
+        percentiles: { load.peak_amplitude_m.percentiles.iter() }
+            .map(|found| scaled(found, scale))
+            .collect(),
+        wheels: { group.measured.iter() }
+            .filter(|wheel| wheel.scenario == load.scenario)
+            .filter_map(|wheel| Some((wheel.pattern, wheel.peak_amplitude_m? / scale)))
+            .collect(),
+        with_error: { open.iter() }
+            .find(|(scenario, _)| *scenario == load.scenario)
+            .map(|(_, (low, high))| (low / scale, high / scale)),
+    };
+    loads.iter().map(of_load).collect()
 }
 
 /// How far the mark of a percentile stands from the place of its load: those that are drawn are centred on it, the
@@ -213,16 +184,6 @@ fn aside(x: &LoadAxis, drawn: &[Load<'_>], percent: u32) -> f64 {
         .collect();
     let place = shown.iter().take_while(|&&own| own < percent).count();
     x.aside * (place as f64 - 0.5 * (shown.len().max(1) - 1) as f64)
-}
-
-fn scaled(found: &Percentile, scale: f64) -> Percentile {
-    let of = |value: Option<f64>| value.map(|value| value / scale);
-    Percentile {
-        value: of(found.value),
-        lower: of(found.lower),
-        upper: of(found.upper),
-        ..*found
-    }
 }
 
 /// The scenario that is pointed at, and why: by the percentile of a choice, or by the worst of a few measured wheels.
@@ -258,6 +219,35 @@ fn could_be_as_low(group: &GroupReport, choice: &LoadChoice) -> Vec<usize> {
     let could = could.filter(|own| choice.lowest != Some(*own));
     let hidden = { choice.lowest }.map(|lowest| group.hidden_by_error(choice, lowest));
     could.chain(hidden.into_iter().flatten()).collect()
+}
+
+/// Where numerical error leaves it open which load is the lowest: these loads, and between which values what they are chosen by
+/// lies with it, m.
+fn with_numerical_error(
+    group: &GroupReport,
+    choice: Option<&LoadChoice>,
+) -> Vec<(usize, (f64, f64))> {
+    let Some((choice, lowest)) = choice.and_then(|choice| Some((choice, choice.lowest?))) else {
+        let open = group.loads_left_open();
+        let lowest = group.smallest_worst_peak().filter(|_| !open.is_empty());
+        let lowest = lowest.map(|(wheel, peak)| (wheel.scenario, peak));
+        return lowest
+            .into_iter()
+            .chain(open)
+            .filter_map(|(scenario, peak)| {
+                let (low, high) = within(peak, group.largest_stated_error(scenario)?);
+                Some((scenario, (low, high?)))
+            })
+            .collect();
+    };
+    let hidden = group.hidden_by_error(choice, lowest);
+    let lowest = Some(lowest).filter(|_| !hidden.is_empty());
+    { lowest.into_iter().chain(hidden) }
+        .filter_map(|scenario| {
+            let error = group.error_of(scenario, choice.percent)?.1;
+            Some((scenario, error.interval_with_error()?))
+        })
+        .collect()
 }
 
 /// Pointers above the plot at the load that is the lowest in this sample, and at those that could be: they have no
@@ -391,6 +381,9 @@ fn entries(drawn: &[Load<'_>]) -> Vec<LegendEntry<'static>> {
     }) {
         entries.push(LegendEntry::Line("limit", None, "tuned, linear"));
     }
+    if drawn.iter().any(|load| load.with_error.is_some()) {
+        entries.push(LegendEntry::Line("doubt", None, "with numerical error"));
+    }
     entries
 }
 
@@ -424,14 +417,20 @@ fn caption(
         loads.any(|load| load.value(*percent).is_some())
     };
     let measured = drawn.iter().any(|load| !load.wheels.is_empty());
+    let error = if drawn.iter().any(|load| load.with_error.is_some()) {
+        "dashed bars: with numerical error, which leaves the load open"
+    } else {
+        "numerical error is not drawn"
+    };
     let mut words = if DRAWN.iter().any(shows) {
         format!(
-            "Percentiles over {patterns} patterns with distribution-free 95 % bounds, side by side at each load; numerical error is not drawn."
+            "Percentiles over {patterns} patterns with distribution-free 95 % bounds, side by side at each load; {error}."
         )
     } else if measured {
-        "Each wheel of mistuning.file at each load; too few for a percentile. Pointer above: the smallest worst peak as computed; \
-         numerical error is not drawn."
-            .to_owned()
+        format!(
+            "Each wheel of mistuning.file at each load; too few for a percentile. Pointer above: the smallest worst peak as \
+             computed; {error}."
+        )
     } else {
         "No percentile has a value; the tuned wheel is drawn alone.".to_owned()
     };

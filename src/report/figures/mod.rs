@@ -3,6 +3,7 @@
 mod bodies;
 mod campbell;
 mod distribution;
+mod drawn_load;
 mod figure;
 mod ladder;
 mod load;

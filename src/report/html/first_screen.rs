@@ -77,7 +77,7 @@ fn marked_up(notes: &[String], more: Option<(String, String)>) -> Vec<String> {
 
 /// Findings that are named, and on a telephone.
 const NAMED: usize = 4;
-const NAMED_NARROW: usize = 2;
+const NAMED_NARROW: usize = 3;
 
 fn health_of(report: &StudyReport) -> String {
     let mut html = String::new();

@@ -9,9 +9,6 @@ use crate::report::{
     setting,
 };
 
-/// Relative correction of a percentile below which none is shown.
-const LEAST_CORRECTION: f64 = 1e-3;
-
 /// A number in large type.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct BigNumber {
@@ -72,7 +69,7 @@ fn number_of_load(
         let end = at_the_end(report, group);
         let load = with_end(load, end.as_ref());
         let loads = std::iter::once(load).chain(hidden_by_error(report, group));
-        (label, loads.collect::<Vec<_>>().join(" or "), None)
+        (label, loads.collect::<Vec<_>>().join(", or "), None)
     } else {
         let told = format!("lowest P{percent}: at {load}");
         let value = "No design load yet".to_owned();
@@ -92,8 +89,8 @@ fn number_of_load(
 
 /// A load, and the side of it where a better one may lie.
 pub(super) fn with_end(load: String, end: Option<&AtTheEnd>) -> String {
-    match end.and_then(|end| end.sign) {
-        Some(sign) => format!("{sign} {load}"),
+    match end.and_then(|end| end.side) {
+        Some(side) => format!("{load} or {side}"),
         None => load,
     }
 }
@@ -326,15 +323,10 @@ fn notes_of_percentile(
     notes
 }
 
-/// About how far the interval goes with the numerical error of the percentile at its ends.
+/// The interval of a percentile with its numerical error.
 fn interval_with_error(error: &PercentileError, units: LengthUnit) -> Option<String> {
-    let found = error.percentile;
-    let (low, high) = (error.lowest? / found.value?, error.highest? / found.value?);
-    Some(format!(
-        "{} to {}",
-        units.number(low * found.lower?),
-        units.length(high * found.upper?)
-    ))
+    let (low, high) = error.interval_with_error()?;
+    Some(format!("{} to {}", units.number(low), units.length(high)))
 }
 
 /// An amplitude beside the peak of the tuned wheel under the same load.
@@ -359,7 +351,6 @@ fn number_of_error(
     lowest: usize,
     (percent, error): (&str, Option<&PercentileError>),
 ) -> BigNumber {
-    let units = LengthUnit::of_summary(&report.summary);
     let label = format!("Numerical error of that P{percent}");
     let bounds = error.and_then(|own| Some((own.lowest?, own.highest?, own.percentile.value?)));
     let Some((low, high, value)) = bounds else {
@@ -386,16 +377,6 @@ fn number_of_error(
         remedy.beside_statistics(&sides.map(signed_share).join(" to "))
     }));
     notes.extend(remedy.map(|remedy| remedy.words().to_owned()));
-    notes.extend(
-        { error.and_then(|own| own.corrected) }.and_then(|corrected| {
-            let change = corrected / value - 1.0;
-            let is_seen = change.abs() > 0.25 * largest && change.abs() > LEAST_CORRECTION;
-            is_seen.then(|| {
-                let (corrected, change) = (units.length(corrected), signed_share(change));
-                format!("each solution corrected by its own errors: {corrected} ({change})")
-            })
-        }),
-    );
     BigNumber {
         label,
         value: format!("at most {}", share_words(largest)),

@@ -50,14 +50,6 @@ pub(super) fn of_measured_wheels(
             of_wheel.pattern
         )
     }];
-    let bound = group
-        .largest_stated_error(lowest)
-        .map(|error| within(peak, error));
-    if let Some((low, Some(high))) = bound {
-        let (low, high) = (units.number(low), units.length(high));
-        of_wheels.push(format!("with numerical error {low} to {high}"));
-    }
-    of_wheels.extend(beside_tuned(summary, lowest, peak));
     let mut designs = group.choices.iter().filter(|_| !one);
     of_wheels.extend(designs.rfind(|own| own.is_of_a_design()).map(|own| {
         let percent = percent_words(own.percent);
@@ -66,6 +58,14 @@ pub(super) fn of_measured_wheels(
             own.needed_patterns
         )
     }));
+    let bound = group
+        .largest_stated_error(lowest)
+        .map(|error| within(peak, error));
+    if let Some((low, Some(high))) = bound {
+        let (low, high) = (units.number(low), units.length(high));
+        of_wheels.push(format!("with numerical error {low} to {high}"));
+    }
+    of_wheels.extend(beside_tuned(summary, lowest, peak));
     let error_at = |own: usize| {
         // Beside the peak, as the bounds in micrometres are.
         let stated = group.largest_stated_error(own);
@@ -104,7 +104,7 @@ pub(super) fn of_measured_wheels(
         is_open,
     };
     Some([
-        number(of_lowest, loads.join(" or "), of_load, is_open),
+        number(of_lowest, loads.join(", or "), of_load, is_open),
         number(of_peak, units.length(peak), of_wheels, false),
         number(of_error, error_at(lowest), of_errors, !open.is_empty()),
     ])

@@ -62,6 +62,10 @@ const RULES: &[(&str, &str)] = &[
         ".curve.limit",
         "stroke:$quiet;stroke-width:2.8;stroke-dasharray:.1 7.5",
     ),
+    (
+        ".curve.doubt",
+        "stroke:$look;stroke-width:2.2;stroke-dasharray:5 3",
+    ),
     (".curve.touch", "stroke:$slip;stroke-width:3"),
     (".curve.pick", "stroke:$ink"),
     (".bound", "fill:none;stroke-width:1.6"),
@@ -69,6 +73,10 @@ const RULES: &[(&str, &str)] = &[
     (".bound.high", "stroke:$high"),
     (".bound.extreme", "stroke:$extreme"),
     (".bound.pick", "stroke:$ink"),
+    (
+        ".bound.doubt",
+        "stroke:$look;stroke-width:2.2;stroke-dasharray:5 3",
+    ),
     (".stem", "fill:none;stroke-width:3.5;stroke-opacity:.45"),
     (".stem.pick", "stroke:$ink"),
     (".stem.quiet", "stroke:$quiet"),
