@@ -252,8 +252,7 @@ fn by_numerical_error(
 ) -> String {
     let hidden = hidden_by_error(report, group);
     if !hidden.is_empty() {
-        let (percent, loads) = (percent_words(choice.percent), hidden.join(", "));
-        return format!("but numerical error: {loads} may have a lower P{percent}");
+        return format!("numerical error: {} may be as good", hidden.join(", "));
     }
     match group.numerical_rivals(lowest, choice.percent) {
         Some(rivals) if rivals.unknown.is_empty() => "numerical error does not change this",
