@@ -73,12 +73,30 @@ pub struct EchoedExcitation {
     pub load_case: Option<LoadCaseName>,
     /// Engine order.
     pub engine_order: u32,
-    /// Norm of the force vector of a sector, N.
+    /// Resultant of the forces on a sector, N; moments are left out.
     pub force_n: f64,
+    /// How many dofs of a sector they act on.
+    pub force_dofs: usize,
     /// Nodal diameter that it excites in the tuned wheel.
     pub nodal_diameter: usize,
     /// How the wave travels.
     pub travels: Travel,
+}
+
+impl EchoedExcitation {
+    /// The force, and what it excites.
+    pub(super) fn in_words(&self) -> String {
+        let over = match self.force_dofs {
+            1 => " on each sector".to_owned(),
+            dofs => format!(" in sum over {dofs} dofs of each sector"),
+        };
+        format!(
+            "{}{over}: excites nodal diameter {}, {}",
+            force(self.force_n),
+            self.nodal_diameter,
+            self.travels
+        )
+    }
 }
 
 /// How a wave of the wheel travels.
@@ -258,11 +276,9 @@ impl fmt::Display for StudyEcho {
             lines.push((
                 "excitation",
                 format!(
-                    "{}, {} on each sector: excites nodal diameter {}, {}",
+                    "{}, {}",
                     excitation(own.load_case, own.engine_order),
-                    force(own.force_n),
-                    own.nodal_diameter,
-                    own.travels
+                    own.in_words()
                 ),
             ));
         }

@@ -4,7 +4,7 @@ use super::excitation::excitations;
 use super::{MistuningSource, Study};
 use crate::linalg::Complex64;
 use crate::model::cyclic::nodal_diameter_of;
-use crate::model::sector::SectorModel;
+use crate::model::sector::{Component, SectorModel};
 use crate::population::statistics::{CONFIDENCE, smallest_sample};
 use crate::report::{EchoedExcitation, EchoedLoad, EchoedModel, Remark, StudyEcho, Travel};
 use crate::response::forced_response::Harmonics;
@@ -61,15 +61,11 @@ pub fn echo(study: &Study, sector: &SectorModel) -> StudyEcho {
 }
 
 fn echoed_excitations(study: &Study, sector: &SectorModel) -> Vec<EchoedExcitation> {
-    let norm = |force: &[(usize, Complex64)]| {
-        let squares: f64 = force.iter().map(|(_, value)| value.norm_sqr()).sum();
-        squares.sqrt()
-    };
     let mut found = Vec::new();
     for (place, case) in excitations(study).iter().enumerate() {
         let case_study = &case.study;
         let force = sector.load_case_forces.get(place).unwrap_or(&sector.force);
-        let force_n = case_study.amplitude_n * norm(force);
+        let force_n = case_study.amplitude_n * resultant(sector, force);
         for (order, &engine_order) in case_study.engine_orders.iter().enumerate() {
             let wave = nodal_diameter_of(1, engine_order, sector.sectors);
             let travels = if wave.index == 0 || 2 * wave.index == sector.sectors {
@@ -82,6 +78,7 @@ fn echoed_excitations(study: &Study, sector: &SectorModel) -> Vec<EchoedExcitati
             found.push(EchoedExcitation {
                 load_case: case.name,
                 engine_order,
+                force_dofs: force.iter().filter(|(_, value)| value.norm() > 0.0).count(),
                 force_n: force_n * case_study.amplitudes_n.get(order).copied().unwrap_or(1.0),
                 nodal_diameter: wave.index,
                 travels,
@@ -89,6 +86,15 @@ fn echoed_excitations(study: &Study, sector: &SectorModel) -> Vec<EchoedExcitati
         }
     }
     found
+}
+
+/// Resultant of the forces on a sector: those along r, along theta and along z summed over the nodes. Moments are left out.
+fn resultant(sector: &SectorModel, force: &[(usize, Complex64)]) -> f64 {
+    let along = [Component::Radial, Component::Tangential, Component::Axial].map(|component| {
+        let alike = { force.iter() }.filter(|(dof, _)| sector.dofs[*dof].component == component);
+        alike.map(|(_, value)| value).sum::<Complex64>().norm_sqr()
+    });
+    along.iter().sum::<f64>().sqrt()
 }
 
 fn mistuning(study: &Study) -> String {

@@ -252,7 +252,8 @@ fn by_numerical_error(
 ) -> String {
     let hidden = hidden_by_error(report, group);
     if !hidden.is_empty() {
-        return format!("numerical error: {} may be as good", hidden.join(", "));
+        let loads = hidden.join(", ");
+        return format!("numerical error: {loads} or loads between may be as good");
     }
     match group.numerical_rivals(lowest, choice.percent) {
         Some(rivals) if rivals.unknown.is_empty() => "numerical error does not change this",

@@ -100,7 +100,7 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
         let loads = hidden.join(", ");
         findings.insert(
             0,
-            format!("numerical error leaves it open whether {loads} is better"),
+            format!("numerical error: {loads} may be as good; add loads between"),
         );
         verdict = Some("Numerical error could hide a better load.".to_owned());
     }
@@ -141,7 +141,10 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
         }
     }
     if !open.is_empty() {
-        findings.insert(0, "more accuracy decides between these loads".to_owned());
+        findings.insert(
+            0,
+            "more accuracy decides between these loads; add loads between".to_owned(),
+        );
         verdict = Some("Numerical error leaves the load open.".to_owned());
     }
     let class = if verdict.is_some() { "look" } else { "good" };

@@ -28,7 +28,7 @@ pub(super) fn of_measured_wheels(
                 format!("{} at {load}", units.length(peak))
             })
             .collect();
-        format!("open: {}", peaks.join(", "))
+        format!("open: {}, and loads between", peaks.join(", "))
     }];
     let candidates = candidates(group);
     let beyond = ends_among(report, group, &candidates);

@@ -6,7 +6,7 @@ use super::table::Table;
 use crate::model::sector::Body;
 use crate::report::figures::{Figure, body_word, figure};
 use crate::report::plot::escaped;
-use crate::report::words::{excitation, force, four_digits, tied};
+use crate::report::words::{excitation, four_digits, tied};
 use crate::report::{BodyMass, FIGURES, ModelSection, ShownModel, StudyReport};
 
 /// Modes whose frequencies are listed.
@@ -98,12 +98,7 @@ fn facts(report: &StudyReport, section: &ModelSection) -> String {
     for own in &echo.excitations {
         table.fact(
             &excitation(own.load_case, own.engine_order),
-            &format!(
-                "{} on each sector: excites nodal diameter {}, {}",
-                force(own.force_n),
-                own.nodal_diameter,
-                own.travels
-            ),
+            &own.in_words(),
         );
     }
     table.fact("solved with", &echo.settings);
