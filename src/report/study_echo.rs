@@ -73,7 +73,7 @@ pub struct EchoedExcitation {
     pub load_case: Option<LoadCaseName>,
     /// Engine order.
     pub engine_order: u32,
-    /// Resultant of the forces on a sector, N; moments are left out.
+    /// Sum of the magnitudes of the forces on a sector, N; those along r, theta and z are components of one.
     pub force_n: f64,
     /// How many dofs of a sector they act on.
     pub force_dofs: usize,

@@ -65,7 +65,7 @@ fn echoed_excitations(study: &Study, sector: &SectorModel) -> Vec<EchoedExcitati
     for (place, case) in excitations(study).iter().enumerate() {
         let case_study = &case.study;
         let force = sector.load_case_forces.get(place).unwrap_or(&sector.force);
-        let force_n = case_study.amplitude_n * resultant(sector, force);
+        let force_n = case_study.amplitude_n * sum_of_magnitudes(sector, force);
         for (order, &engine_order) in case_study.engine_orders.iter().enumerate() {
             let wave = nodal_diameter_of(1, engine_order, sector.sectors);
             let travels = if wave.index == 0 || 2 * wave.index == sector.sectors {
@@ -88,13 +88,18 @@ fn echoed_excitations(study: &Study, sector: &SectorModel) -> Vec<EchoedExcitati
     found
 }
 
-/// Resultant of the forces on a sector: those along r, along theta and along z summed over the nodes. Moments are left out.
-fn resultant(sector: &SectorModel, force: &[(usize, Complex64)]) -> f64 {
-    let along = [Component::Radial, Component::Tangential, Component::Axial].map(|component| {
-        let alike = { force.iter() }.filter(|(dof, _)| sector.dofs[*dof].component == component);
-        alike.map(|(_, value)| value).sum::<Complex64>().norm_sqr()
-    });
-    along.iter().sum::<f64>().sqrt()
+/// Sum of the magnitudes of the forces on a sector, those along r, along theta and along z as components of one. Forces that
+/// cancel each other excite a wheel too, so that signs do not count. Moments are taken as forces at 1 m.
+fn sum_of_magnitudes(sector: &SectorModel, force: &[(usize, Complex64)]) -> f64 {
+    let mut along: Vec<(Component, f64)> = Vec::new();
+    for &(dof, value) in force {
+        let component = sector.dofs[dof].component;
+        match along.iter_mut().find(|known| known.0 == component) {
+            Some(known) => known.1 += value.norm(),
+            None => along.push((component, value.norm())),
+        }
+    }
+    along.iter().map(|(_, sum)| sum * sum).sum::<f64>().sqrt()
 }
 
 fn mistuning(study: &Study) -> String {

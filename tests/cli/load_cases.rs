@@ -775,10 +775,10 @@ fn folders_with_the_same_load_cases_are_compared_case_by_case() {
 }
 
 #[test]
-fn a_force_on_several_dofs_is_told_by_its_resultant() {
+fn a_force_on_several_dofs_is_told_by_the_sum_of_their_magnitudes() {
     let place = Place::new();
-    // 3 N and 5 + 6i N, both along theta.
-    place.write("disk.csv", "dof,re,im\n0,3.0,0.0\n1,5.0,6.0\n");
+    // 5 N and, against it, 13 N along theta.
+    place.write("disk.csv", "dof,re,im\n0,3.0,4.0\n1,-5.0,-12.0\n");
     place.write("study.toml", &study("spread", ON_DISK));
     let ended = place.run(&["check", "study.toml"]);
     let text = ended
@@ -786,10 +786,10 @@ fn a_force_on_several_dofs_is_told_by_its_resultant() {
         .split_whitespace()
         .collect::<Vec<_>>()
         .join(" ");
-    // |8 + 6i| = 10, times the 20 and the 40 N of the two engine orders.
+    // 18 N, times 20 and 40 for the two engine orders.
     for words in [
-        "load case disk, engine order 1, 200 N in sum over 2 dofs of each sector: excites",
-        "load case disk, engine order 2, 400 N in sum over 2 dofs of each sector: excites",
+        "load case disk, engine order 1, 360 N in sum over 2 dofs of each sector: excites",
+        "load case disk, engine order 2, 720 N in sum over 2 dofs of each sector: excites",
     ] {
         assert!(text.contains(words), "{words}: {text}");
     }

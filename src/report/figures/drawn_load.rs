@@ -18,7 +18,7 @@ pub(super) struct Load<'a> {
     pub(super) percentiles: Vec<Percentile>,
     /// Measured wheels with their peaks.
     pub(super) wheels: Vec<(u32, f64)>,
-    /// From where to where numerical error takes what the load is chosen by; none where that leaves no load open.
+    /// What the load is chosen by, as an interval with numerical error; none where that leaves no load open.
     pub(super) with_error: Option<(f64, f64)>,
 }
 
