@@ -1,6 +1,9 @@
 //! Generalised minimal residuals (Saad & Schultz 1986, SIAM J. Sci. Stat. Comput. 7(3)).
 
-use super::dot;
+use super::{Columns, Orthogonalised, Subtracted, dot, vectorized};
+
+/// Share of a vector below which what is left of it beside the basis is made orthogonal once more: so much of its digits is lost.
+const LITTLE: f64 = 0.1;
 
 /// `x` with `A x` near `right`, until the residual is `enough` of `right` or `most` products are spent, and the number of products
 /// with A that it took.
@@ -14,37 +17,40 @@ pub fn gmres(
     if size == 0.0 || !size.is_finite() {
         return (vec![0.0; right.len()], 0);
     }
-    let mut basis: Vec<Vec<f64>> = vec![right.iter().map(|b| b / size).collect()];
+    let length = right.len();
+    // Orthonormal columns, one after the other.
+    let mut basis: Vec<f64> = right.iter().map(|b| b / size).collect();
     // Columns of the triangle, and the rotations that made them.
     let mut triangle: Vec<Vec<f64>> = Vec::new();
     let mut rotations: Vec<(f64, f64)> = Vec::new();
     let mut left = vec![size];
     while triangle.len() < most {
-        let mut vector = product(&basis[triangle.len()]);
-        let mut column = vec![0.0; basis.len()];
+        let mut vector = product(&basis[triangle.len() * length..]);
+        let mut column = vec![0.0; triangle.len() + 1];
+        let mut norm = dot(&vector, &vector).sqrt();
         for _ in 0..2 {
-            for (share, direction) in column.iter_mut().zip(&basis) {
-                let part = dot(direction, &vector);
-                *share += part;
-                vector
-                    .iter_mut()
-                    .zip(direction)
-                    .for_each(|(v, o)| *v -= part * o);
+            vectorized(Orthogonalised {
+                columns: Columns::of(&basis, length),
+                shares: &mut column,
+                vector: &mut vector,
+            });
+            let whole = std::mem::replace(&mut norm, dot(&vector, &vector).sqrt());
+            if norm > LITTLE * whole {
+                break;
             }
         }
-        let norm = dot(&vector, &vector).sqrt();
         for (at, (cosine, sine)) in rotations.iter().enumerate() {
             let (a, b) = (column[at], column[at + 1]);
             column[at] = cosine * a + sine * b;
             column[at + 1] = cosine * b - sine * a;
         }
         let last = column.len() - 1;
-        let length = column[last].hypot(norm);
-        if length == 0.0 || !length.is_finite() {
+        let turned = column[last].hypot(norm);
+        if turned == 0.0 || !turned.is_finite() {
             break;
         }
-        let (cosine, sine) = (column[last] / length, norm / length);
-        column[last] = length;
+        let (cosine, sine) = (column[last] / turned, norm / turned);
+        column[last] = turned;
         rotations.push((cosine, sine));
         triangle.push(column);
         let rest = left[last];
@@ -53,7 +59,7 @@ pub fn gmres(
         if (sine * rest).abs() <= enough * size || norm == 0.0 {
             break;
         }
-        basis.push(vector.iter().map(|v| v / norm).collect());
+        basis.extend(vector.iter().map(|v| v / norm));
     }
     let count = triangle.len();
     let mut shares = left[..count].to_vec();
@@ -61,12 +67,13 @@ pub fn gmres(
         let known: f64 = (row + 1..count).map(|j| triangle[j][row] * shares[j]).sum();
         shares[row] = (shares[row] - known) / triangle[row][row];
     }
-    let mut x = vec![0.0; right.len()];
-    for (share, direction) in shares.iter().zip(&basis) {
-        x.iter_mut()
-            .zip(direction)
-            .for_each(|(x, o)| *x += share * o);
-    }
+    shares.iter_mut().for_each(|share| *share = -*share);
+    let mut x = vec![0.0; length];
+    vectorized(Subtracted {
+        columns: Columns::of(&basis, length),
+        shares: &shares,
+        from: &mut x,
+    });
     (x, count)
 }
 

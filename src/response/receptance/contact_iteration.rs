@@ -15,7 +15,7 @@ use super::pair_preconditioner::PairPreconditioner;
 use super::preconditioner::Preconditioner;
 
 /// Earlier steps that are combined.
-const DEPTH: usize = 80;
+const DEPTH: usize = 160;
 /// Damping of their shares, over the tolerance that is asked for.
 const DAMPING: f64 = 0.5;
 
@@ -59,7 +59,7 @@ const BY_HARMONICS: NewtonPlan = NewtonPlan {
     pairs: false,
     step_error: 1e-3,
     products: 120,
-    products_in_all: u64::MAX,
+    products_in_all: 1_500,
     least_factor: 1.0 / 128.0,
     decrease: 0.0,
 };
@@ -99,17 +99,19 @@ enum Attempt {
 }
 
 /// What is tried, in this order, until an attempt ends with a solution. The tangent of a known start is near; that of the linear
-/// response says little, and is renewed. Where the iteration creeps, Newton's method ends what it began. Harmonics above 1 near resonances that deviations split take the resonant shapes. Where pairs open,
-/// their harmonics depend on each other, and pairs are preconditioned by themselves.
+/// response says little, and is renewed. Where the iteration creeps, Newton's method ends what it began. Harmonics above 1 near
+/// resonances that deviations split take the resonant shapes. Where pairs open, their harmonics depend on each other, and pairs are
+/// preconditioned by themselves.
 const LADDER: [(Start, Attempt); 13] = [
     (
         Start::Known,
-        Attempt::Accelerated(plan(&[0], 100, FirstOfFundamental)),
+        Attempt::Accelerated(plan(&[0], 160, FirstOfFundamental)),
     ),
     (
         Start::Linear,
-        Attempt::Accelerated(plan(&[0, 3], 80, FirstOfFundamental)),
+        Attempt::Accelerated(plan(&[0, 3], 120, FirstOfFundamental)),
     ),
+    (Start::Best, Attempt::Newton(FROM_THERE)),
     (
         Start::Linear,
         Attempt::Accelerated(plan(&[0, 10, 25], 160, FirstOfFundamental)),
@@ -118,7 +120,6 @@ const LADDER: [(Start, Attempt); 13] = [
         Start::Known,
         Attempt::Accelerated(plan(&[0, 10, 25], 160, FirstOfFundamental)),
     ),
-    (Start::Best, Attempt::Newton(FROM_THERE)),
     (
         Start::Known,
         Attempt::Accelerated(plan(&[0, 3], 80, Resonant)),
@@ -149,11 +150,33 @@ struct Judge {
     tolerance: f64,
     /// The residual that the attempt began with.
     first: f64,
+    /// The smallest residual of so many steps, and one more.
+    least: Vec<f64>,
 }
 
 impl Judge {
     /// Growth of the residual over the first one, or over the motions, at which an attempt has diverged.
     const DIVERGED: f64 = 1e3;
+    /// Steps that every attempt has, over how many later ones the smallest residual has to fall, and to what share of it.
+    const PATIENCE: usize = 40;
+    const WINDOW: usize = 25;
+    const FALLS: f64 = 0.9;
+
+    fn of(tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            first: f64::INFINITY,
+            least: Vec::new(),
+        }
+    }
+
+    /// Whether the residual, which is that of the next step, hardly falls any more: what follows takes as many steps again for little.
+    fn stalls(&mut self, residual: f64) -> bool {
+        let least = self.least.last().map_or(residual, |l| l.min(residual));
+        self.least.push(least);
+        let steps = self.least.len() - 1;
+        steps >= Self::PATIENCE && least > Self::FALLS * self.least[steps - Self::WINDOW]
+    }
 
     /// How an attempt is lost by its residual; none while it is not.
     fn lost(&self, residual: f64) -> Option<Status> {
@@ -254,10 +277,7 @@ impl ContactEquation<'_> {
     fn accelerate(&mut self, plan: &Plan, tolerance: f64) -> Outcome {
         let mut preconditioners: Vec<Preconditioner> = Vec::new();
         let mut outcome = Outcome::none();
-        let mut judge = Judge {
-            tolerance,
-            first: f64::INFINITY,
-        };
+        let mut judge = Judge::of(tolerance);
         for iteration in 0..plan.iterations {
             let renew = plan.renewals.contains(&iteration);
             (outcome.residual, outcome.shares) = self.residual_with_tangent(renew);
@@ -266,6 +286,9 @@ impl ContactEquation<'_> {
             }
             if let Some(status) = judge.lost(outcome.residual) {
                 outcome.status = status;
+                break;
+            }
+            if judge.stalls(outcome.residual) {
                 break;
             }
             if renew {
@@ -290,10 +313,7 @@ impl ContactEquation<'_> {
     fn newton(&mut self, plan: &NewtonPlan, tolerance: f64) -> Outcome {
         self.contact.couple(true);
         let mut outcome = Outcome::none();
-        let judge = Judge {
-            tolerance,
-            first: f64::INFINITY,
-        };
+        let judge = Judge::of(tolerance);
         for _ in 0..NEWTON_STEPS {
             (outcome.residual, outcome.shares) = self.residual(true);
             let settled = judge.settled(outcome.residual, 0.0, &outcome.shares);
