@@ -179,8 +179,12 @@ impl Explanations {
         if keys.is_empty() {
             keys = import_keys_below(name);
         }
-        let mut terms = Vec::new();
+        // Of a key a figure may have the name too, like `contact`.
+        let same_name = |own: &Meaning| own.word == format!("{name} (figure)");
+        let mut terms = of_figures(name);
+        terms.retain(same_name);
         if keys.is_empty() {
+            terms.clear();
             keys = keys_about(name);
             // Terms that are named by the word, the status and columns of this name, terms that mention it.
             let named = |term: &Term| term.word.to_lowercase().contains(&name.to_lowercase());

@@ -2,16 +2,14 @@
 
 use std::sync::LazyLock;
 
-use super::Term;
-
 /// Words and meanings of the page, in its order.
 static WRITTEN: LazyLock<Vec<(String, String)>> =
     LazyLock::new(|| terms(include_str!("../../docs/glossary.md")));
 
-/// The terms of the page.
-pub(super) fn glossary() -> impl Iterator<Item = Term> {
+/// The terms of the page, each with its meaning.
+pub(super) fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
     let written: &'static [(String, String)] = &WRITTEN;
-    { written.iter() }.map(|(word, meaning)| Term { word, meaning })
+    { written.iter() }.map(|(word, meaning)| (word.as_str(), meaning.as_str()))
 }
 
 /// The rows of the tables of a page: term, meaning, unit, where it is defined.

@@ -111,7 +111,8 @@ fn all_terms() -> impl Iterator<Item = Term> {
         let of_term = |own: &Term| own.word.split([',', ':', '(']).next().map(str::trim);
         !{ TERMS.iter() }.any(|own| of_term(own) == Some(term.word))
     };
-    { TERMS.iter().copied() }.chain(glossary().filter(is_other))
+    let of_glossary = glossary().map(|(word, meaning)| term(word, meaning));
+    { TERMS.iter().copied() }.chain(of_glossary.filter(is_other))
 }
 
 /// The terms that every one of `words` occurs in, in any case of letters; all for no words. Those that are named by

@@ -13,13 +13,14 @@ use crate::report::{CampbellMode, CampbellReport, ScenarioSummary, StudyReport};
 /// Lower end of the vertical axis.
 const BOTTOM: f64 = 330.0;
 /// Height of the drawing.
-const HEIGHT: f64 = 420.0;
-/// Distance of the first line of the note from the axis, and of its lines, user units.
-const NOTE: (f64, f64) = (62.0, 17.0);
+const HEIGHT: f64 = 444.0;
+/// Left end of the note, distance of its first line from the axis, and of its lines, user units. A line of 56 letters fits on a narrow
+/// page too.
+const NOTE: (f64, f64, f64) = (14.0, 64.0, 20.0);
 /// Pieces of the line of a mode whose frequency follows the speed.
 const PIECES: u32 = 60;
 /// Where a diagram without a tuned peak ends.
-const THIRD_MODE: &str = "above the third mode of every nodal diameter";
+const THIRD_MODE: &str = "above all third modes";
 /// The frequencies shown, over the highest tuned peak.
 const SHOWN: f64 = 1.6;
 /// The speeds shown, over the highest at which an engine order meets a tuned peak.
@@ -139,7 +140,7 @@ impl<'a> Diagram<'a> {
         });
         let lines = orders.iter().filter_map(|&order| {
             let own = crossings().filter(|crossing| crossing.engine_order == order);
-            let first = own.min_by_key(|crossing| crossing.mode)?;
+            let first = own.min_by_key(|crossing| (crossing.mode, crossing.contact != "stuck"))?;
             let met = format!("mode {}, {}", first.mode, first.contact);
             Some((order, first.speed_rpm, met))
         });
@@ -195,7 +196,7 @@ impl<'a> Diagram<'a> {
         let mut entries = contact_entries(model, false);
         entries.push(LegendEntry::Line("median", None, "engine order"));
         legend(&mut svg, &entries);
-        self.note(&mut svg);
+        self.note(&mut svg, "--plot");
         let over_speed = if model.speed_rpm.len() > 1 {
             "Their squares are linear in the square of the speed between the models that were given."
         } else {
@@ -298,7 +299,7 @@ impl<'a> Diagram<'a> {
             "engine orders at one speed",
         ));
         legend(&mut svg, &entries);
-        self.note(&mut svg);
+        self.note(&mut svg, "--plot-safe");
         Figure {
             name: FigureName::Safe,
             title: "SAFE diagram: frequencies of the tuned wheel over nodal diameter".to_owned(),
@@ -337,21 +338,21 @@ impl<'a> Diagram<'a> {
         }
     }
 
-    /// Where the frequencies end, why, and how to see more.
-    fn note(&self, svg: &mut Svg) {
+    /// Where the frequencies end, why, and how to see more; `option` draws this diagram from a study.
+    fn note(&self, svg: &mut Svg, option: &str) {
         let modes = { self.model.modes.iter() }.map(|mode| mode.mode).max();
         let lines = [
+            format!("Ends at {} Hz, {}.", self.top_hz, self.ends),
             format!(
-                "Ends at {} Hz, {}; modes 1 to {} of each nodal diameter.",
-                self.top_hz,
-                self.ends,
+                "Modes 1 to {}. For more: blisk campbell STUDY.toml with",
                 modes.unwrap_or(0)
             ),
-            "For more: blisk campbell STUDY.toml, options --top-hz and --modes.".to_owned(),
+            format!("{option} FILE.svg --top-hz HZ --modes N."),
         ];
+        let (left, below, apart) = NOTE;
         for (place, line) in lines.iter().enumerate() {
-            let y = BOTTOM + NOTE.0 + NOTE.1 * place as f64;
-            svg.text("small quiet", (SIDES.0, y), Anchor::Start, line);
+            let y = BOTTOM + below + apart * place as f64;
+            svg.text("small quiet", (left, y), Anchor::Start, line);
         }
     }
 }

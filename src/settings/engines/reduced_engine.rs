@@ -72,6 +72,7 @@ impl EngineSource for ReducedEngineSource {
         }
         let digest = stored_digest(study, model)?;
         let stored = stored_for(study, model, cache, progress)?;
+        progress.step("receptances and harmonics of the rows");
         Ok(Box::new(ReducedEngine {
             evidence: stored.evidence.clone(),
             fixed_interface: stored.fixed_interface.clone(),
