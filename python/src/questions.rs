@@ -11,7 +11,10 @@ use blisk::cli::{IntegrityAnswer, RepairAnswer, ReplayAnswer, threads as threads
 use blisk::model::sector::bundle;
 use blisk::population::monte_carlo::LoadCaseName;
 use blisk::population::statistics::EstimateTarget;
-use blisk::report::{FIGURES, GroupReport, StudyReport, figure as drawn_figure, missing};
+use blisk::population::table::write_atomically;
+use blisk::report::{
+    FIGURES, FigureName, GroupReport, StudyReport, figure as drawn_figure, missing,
+};
 use blisk::settings::{EngineSource, FullSettings, ReducedEngineSource};
 use blisk::study::{PipelineError, RotationLoad, load_sector_model};
 use pyo3::exceptions::PyValueError;
@@ -39,6 +42,9 @@ pub fn model(py: Python<'_>, study: &CheckedStudy, export: Option<PathBuf>) -> P
     answer_of(&report)
 }
 
+/// SVG files for the Campbell and the SAFE diagram, and the highest frequency of both, Hz.
+type Plots = (Option<PathBuf>, Option<PathBuf>, Option<f64>);
+
 /// Natural frequencies per nodal diameter, and the speeds at which engine orders cross them.
 #[pyfunction]
 pub fn campbell(
@@ -48,6 +54,7 @@ pub fn campbell(
     modes: usize,
     range_rpm: Option<[f64; 2]>,
     bundles: Vec<(f64, PathBuf)>,
+    plots: Plots,
 ) -> PyResult<Answer> {
     let study = Arc::clone(&study.0);
     let report = watch(py, None, OnSignal::Leave, move |_| {
@@ -58,13 +65,22 @@ pub fn campbell(
                 .map(|(speed_rpm, folder)| Ok((Some(speed_rpm), bundle::read(&folder)?)))
                 .collect::<Result<Vec<_>, PipelineError>>()?
         };
-        blisk::campaign::campbell(&CampbellRequest {
+        let request = CampbellRequest {
             study: &study,
             models: &at_speeds,
             engine_orders: &engine_orders,
             modes,
             range_rpm,
-        })
+        };
+        let report = blisk::campaign::campbell(&request)?;
+        let (over_speed, safe, top_hz) = plots;
+        for (file, name) in [(over_speed, FigureName::Campbell), (safe, FigureName::Safe)] {
+            if let Some(file) = file {
+                let drawn = request.diagram(&report, name, top_hz)?;
+                write_atomically(&file, drawn.standalone().as_bytes())?;
+            }
+        }
+        Ok(report)
     })?;
     answer_of(&report)
 }

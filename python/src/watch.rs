@@ -1,14 +1,14 @@
 //! Long work on a thread of its own, while the thread of Python that asked for it watches for signals and tells a
 //! listener how far it is.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use blisk::response::harmonic_balance::Status;
-use blisk::settings::{Progress, Stage};
+use blisk::settings::{Progress, Stage, TimeLeft};
 use blisk::study::PipelineError;
 use pyo3::prelude::*;
 
@@ -33,26 +33,35 @@ const STAGES: [(Stage, &str); 6] = [
 #[derive(Default)]
 pub struct Watched {
     stage: AtomicUsize,
-    planned: AtomicU64,
-    done: AtomicU64,
+    step: Mutex<String>,
+    rows: Mutex<TimeLeft>,
+    at_a_time: AtomicU64,
     failed: AtomicU64,
     stop: AtomicBool,
 }
 
-/// Stage, rows planned, rows done, rows failed.
-type Reached = (&'static str, u64, u64, u64);
+/// Stage, step of it in words, rows planned, rows done, rows failed, time left in s.
+type Reached = (&'static str, String, u64, u64, u64, Option<f64>);
 
 impl Watched {
     fn reached(&self) -> Reached {
-        let number = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         let (_, stage) = STAGES[self.stage.load(Ordering::Relaxed)];
+        let step = locked(&self.step).clone();
+        let rows = locked(&self.rows);
         (
             stage,
-            number(&self.planned),
-            number(&self.done),
-            number(&self.failed),
+            step,
+            rows.planned(),
+            rows.done(),
+            self.failed.load(Ordering::Relaxed),
+            rows.pace().map(|pace| pace.left_s),
         )
     }
+}
+
+/// What nobody panics while holding.
+fn locked<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
+    value.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Progress for Watched {
@@ -60,17 +69,26 @@ impl Progress for Watched {
         let place = STAGES.iter().position(|(own, _)| *own == stage);
         self.stage
             .store(place.unwrap_or_default(), Ordering::Relaxed);
+        locked(&self.step).clear();
+    }
+
+    fn step(&self, words: &str) {
+        words.clone_into(&mut locked(&self.step));
+    }
+
+    fn rows_at_a_time(&self, rows: u64) {
+        self.at_a_time.store(rows, Ordering::Relaxed);
     }
 
     fn begin_rows(&self, planned: u64, done: u64) {
-        self.planned.store(planned, Ordering::Relaxed);
-        self.done.store(done, Ordering::Relaxed);
+        let at_a_time = self.at_a_time.load(Ordering::Relaxed);
+        *locked(&self.rows) = TimeLeft::new(at_a_time, planned, done);
     }
 
     fn row(&self, status: Status) {
         let failed = u64::from(status != Status::Ok);
         self.failed.fetch_add(failed, Ordering::Relaxed);
-        self.done.fetch_add(1, Ordering::Relaxed);
+        locked(&self.rows).row(Instant::now());
     }
 
     fn stop_requested(&self) -> bool {
@@ -89,7 +107,7 @@ pub enum OnSignal {
 
 /// Carries out `work` and gives what it gives.
 ///
-/// `listener` is called with stage, rows planned, rows done and rows failed, whenever they have changed. An exception
+/// `listener` is called with stage, step, rows planned, rows done, rows failed and time left, whenever they have changed. An exception
 /// of `listener` counts as a signal.
 pub fn watch<T: Send + 'static>(
     py: Python<'_>,
@@ -162,9 +180,9 @@ fn tell(
 ) -> PyResult<()> {
     let reached = watched.reached();
     if let Some(listener) = listener
-        && *told != Some(reached)
+        && told.as_ref() != Some(&reached)
     {
-        listener.call1(py, reached)?;
+        listener.call1(py, reached.clone())?;
         *told = Some(reached);
     }
     Ok(())

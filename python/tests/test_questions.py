@@ -4,6 +4,7 @@ import json
 import math
 import pickle
 import shutil
+from pathlib import Path
 
 import matplotlib
 import numpy
@@ -40,6 +41,10 @@ def test_frequencies_of_the_tuned_wheel_are_those_of_three_masses(study):
 def test_a_campbell_table_is_that_of_the_command(study):
     answer = blisk.campbell(study, [1, 2, 3], (0, 12000), modes=2)
     is_that_of(answer, "campbell", "study.toml", "--engine-orders", "1:3", "--speed-rpm", "0:12000", "--modes", 2)
+    assert blisk.campbell(study, [1, 2, 3], plot="speed.svg", plot_safe="safe.svg", top_hz=5000) is not None
+    assert "Campbell diagram" in Path("speed.svg").read_text() and "Ends at 5000 Hz" in Path("safe.svg").read_text()
+    with pytest.raises(ValueError, match=r"\.svg"):
+        blisk.campbell(study, plot="speed.png")
     crossing = answer["crossings"][0]
     springs = {"stuck": SMALL["contact"]["tangential_stiffness_n_per_m"]}.get(crossing["contact"], 0.0)
     hz = exact_hz(crossing["nodal_diameter"], springs)[crossing["mode"] - 1]

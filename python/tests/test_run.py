@@ -12,6 +12,7 @@ import pytest
 from conftest import MANY, called
 
 import blisk
+from blisk._progress import _text
 
 TABLES = ["responses", "scenarios", "percentiles", "distribution", "patterns"]
 
@@ -45,6 +46,7 @@ def test_a_finished_study_is_grown(small, finished, tmp_path):
     assert (rows[-1].planned, rows[-1].done, rows[-1].failed) == (320, 320, 0)
     assert all(before.done <= after.done for before, after in zip(rows, rows[1:]))
     assert rows[-1].stage == "tables"
+    assert rows[-1].left_s == 0.0
 
 
 def test_the_folder_is_named_by_the_study_unless_said(small, tmp_path, monkeypatch):
@@ -159,6 +161,14 @@ def test_a_locked_folder_is_refused(small, tmp_path):
 def test_threads_are_those_that_the_command_accepts(small, tmp_path, threads):
     with pytest.raises(ValueError, match="1 to 1024"):
         blisk.run(blisk.Study(**small), out=tmp_path, threads=threads)
+
+
+def test_the_line_of_progress_says_the_step_before_the_rows_and_no_time_that_is_not_known():
+    step = "tuned wheel: load 2 of 5 (10 N)"
+    assert _text(blisk.Progress("tuned", 0, 0, 0, 1.0, step)) == step
+    assert _text(blisk.Progress("tuned", 0, 0, 0, 1.0)) == "solving the tuned wheel"
+    assert "left" not in _text(blisk.Progress("rows", 10, 1, 0, 1.0))
+    assert _text(blisk.Progress("rows", 10, 5, 0, 1.0, "", 600.0)).endswith("5 of 10 rows, 0 failed, about 10 min left")
 
 
 def test_progress_on_a_stream_is_a_line(small, tmp_path, capsys, monkeypatch):

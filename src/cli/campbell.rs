@@ -6,9 +6,12 @@ use std::str::FromStr;
 use clap::Args;
 
 use super::exit::Failure;
+use super::report::ends_in_svg;
 use super::{ExitStatus, output};
 use crate::campaign::{CampbellRequest, campbell};
 use crate::model::sector::bundle;
+use crate::population::table::write_atomically;
+use crate::report::FigureName;
 use crate::study::{PipelineError, Study, load_sector_model};
 
 /// Arguments of the command.
@@ -29,6 +32,15 @@ pub struct CampbellArguments {
     /// Modes per nodal diameter.
     #[arg(long, value_name = "N", default_value = "6", value_parser = clap::value_parser!(u16).range(1..=100))]
     modes: u16,
+    /// Write the Campbell diagram, frequency over speed, to this SVG file.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// Write the SAFE diagram, frequency over nodal diameter, to this SVG file.
+    #[arg(long, value_name = "FILE")]
+    plot_safe: Option<PathBuf>,
+    /// Highest frequency of the diagrams [default: above the third mode of every nodal diameter].
+    #[arg(long, value_name = "HZ")]
+    top_hz: Option<TopHz>,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -41,6 +53,10 @@ struct Orders(u32, u32);
 /// Lowest and highest speed, revolutions per minute.
 #[derive(Debug, Clone, Copy)]
 struct Speeds([f64; 2]);
+
+/// Upper end of the frequencies of a diagram, Hz.
+#[derive(Debug, Clone, Copy)]
+struct TopHz(f64);
 
 /// A sector bundle and its speed, revolutions per minute.
 #[derive(Debug, Clone)]
@@ -78,6 +94,17 @@ impl FromStr for Speeds {
                 "accepted: LOW:HIGH in revolutions per minute, 0 <= LOW < HIGH <= 1e6".to_owned(),
             ),
         }
+    }
+}
+
+impl FromStr for TopHz {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let hz: Option<f64> = text.parse().ok();
+        hz.filter(|hz| (1e-3..=1e9).contains(hz))
+            .map(Self)
+            .ok_or_else(|| "accepted: a frequency from 1e-3 to 1e9 Hz".to_owned())
     }
 }
 
@@ -128,13 +155,28 @@ pub(super) fn command(arguments: &CampbellArguments) -> Result<ExitStatus, Failu
     let engine_orders: Vec<u32> = orders
         .flat_map(|&Orders(first, last)| first..=last)
         .collect();
-    let report = campbell(&CampbellRequest {
+    let plots = [
+        ("--plot", &arguments.plot, FigureName::Campbell),
+        ("--plot-safe", &arguments.plot_safe, FigureName::Safe),
+    ];
+    let plots = plots.map(|(option, file, name)| Some((option, file.as_deref()?, name)));
+    for (option, file, _) in plots.iter().flatten() {
+        ends_in_svg(option, file)?;
+    }
+    let request = CampbellRequest {
         study: &study,
         models: &models,
         engine_orders: &engine_orders,
         modes: usize::from(arguments.modes),
         range_rpm: arguments.speed_rpm.map(|Speeds(range)| range),
-    })?;
+    };
+    let report = campbell(&request)?;
+    for (_, file, name) in plots.into_iter().flatten() {
+        let top_hz = arguments.top_hz.map(|TopHz(hz)| hz);
+        let drawn = request.diagram(&report, name, top_hz)?;
+        write_atomically(file, drawn.standalone().as_bytes())?;
+        output::message(&format!("wrote {}: {}", file.display(), drawn.title));
+    }
     output::result(arguments.json, &report)?;
     Ok(ExitStatus::Done)
 }

@@ -8,13 +8,13 @@ use serde::{Serialize, Serializer};
 
 use super::exit::Failure;
 use super::{ExitStatus, output};
-use crate::input::nearest_key_names;
-use crate::input::{Term, terms_about};
+use crate::input::{Term, mentions, nearest_key_names, plain, terms_about};
 use crate::model::sector::import::{import_keys, import_schema};
 use crate::population::table::{
     ColumnSpec, DISTRIBUTION_COLUMNS, MAIN_EFFECT_COLUMNS, PATTERN_COLUMNS, PERCENTILE_COLUMNS,
     RESPONSE_COLUMNS, SCENARIO_COLUMNS, TAIL_FIT_COLUMNS, TRADEOFF_COLUMNS, VERIFICATION_COLUMNS,
 };
+use crate::report::FIGURES;
 use crate::response::harmonic_balance::Status;
 use crate::study::{KeySpec, keys_about, keys_below, nearest_keys, study_schema};
 
@@ -22,8 +22,8 @@ use crate::study::{KeySpec, keys_about, keys_below, nearest_keys, study_schema};
 #[derive(Debug, Args)]
 pub struct ExplainArguments {
     /// A key, like `solver.peak_tolerance`, a table, like `solver`, a column of results, like `harmonic_error`, a
-    /// status of rows, like `stagnated`, or words, like `friction`, that are sought in names and meanings; `import`
-    /// for the keys of import files [default: all keys of study files].
+    /// status of rows, like `stagnated`, a figure, like `safe`, a term, like `nodal diameter`, or words, like `friction`,
+    /// that are sought in names and meanings; `import` for the keys of import files [default: all keys of study files].
     #[arg(value_name = "KEY|WORD")]
     words: Vec<String>,
     /// Print JSON.
@@ -83,20 +83,6 @@ impl fmt::Display for Explanation {
         }
         Ok(())
     }
-}
-
-/// Markdown as plain text: no marks of code, and a link as the file it leads to.
-fn plain(words: &str) -> String {
-    let mut parts = words.split(['[', ']']);
-    let mut plain = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        // `[file](file)` comes as `file` and `(file)...`.
-        match part.strip_prefix('(').and_then(|rest| rest.split_once(')')) {
-            Some((_, rest)) => plain.push_str(rest),
-            None => plain.push_str(part),
-        }
-    }
-    plain.replace('`', "")
 }
 
 pub(super) fn explain(arguments: &ExplainArguments) -> Result<ExitStatus, Failure> {
@@ -160,6 +146,19 @@ fn of_results(name: &str) -> Vec<Meaning> {
     found
 }
 
+/// The figures that are named by `words`.
+fn of_figures(words: &str) -> Vec<Meaning> {
+    let named =
+        |name: &&str| !words.is_empty() && mentions(&[&name.replace('-', " "), name], words);
+    let figures = FIGURES.iter().map(|(_, name, about)| (*name, *about));
+    { figures.filter(|(name, _)| named(name)) }
+        .map(|(name, about)| Meaning {
+            word: format!("{name} (figure)"),
+            meaning: format!("{about}; blisk plot DIR {name} draws it"),
+        })
+        .collect()
+}
+
 /// Keys and terms that were asked for: as JSON the keys, as text both.
 #[derive(Debug)]
 pub struct Explanations {
@@ -170,7 +169,7 @@ pub struct Explanations {
 }
 
 impl Explanations {
-    /// The keys that `name` is or that stand below it, else the status and the columns of this name and the keys and
+    /// The keys that `name` is or that stand below it, else the status, the columns and the figures of this name and the keys and
     /// terms that have its words; all keys for "".
     ///
     /// # Errors
@@ -180,8 +179,12 @@ impl Explanations {
         if keys.is_empty() {
             keys = import_keys_below(name);
         }
-        let mut terms = Vec::new();
+        // Of a key a figure may have the name too, like `contact`.
+        let same_name = |own: &Meaning| own.word == format!("{name} (figure)");
+        let mut terms = of_figures(name);
+        terms.retain(same_name);
         if keys.is_empty() {
+            terms.clear();
             keys = keys_about(name);
             // Terms that are named by the word, the status and columns of this name, terms that mention it.
             let named = |term: &Term| term.word.to_lowercase().contains(&name.to_lowercase());
@@ -189,6 +192,7 @@ impl Explanations {
                 terms_about(name).into_iter().partition(named);
             terms.extend(before.into_iter().map(Meaning::from));
             terms.extend(of_results(name));
+            terms.extend(of_figures(name));
             terms.extend(after.into_iter().map(Meaning::from));
         }
         if keys.is_empty() && terms.is_empty() {

@@ -1,8 +1,9 @@
 //! Progress of a run on stderr: a bar on a terminal, a plain line now and then elsewhere.
 
 use std::fmt::Display;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -11,43 +12,133 @@ use super::interrupt::{Signals, signals_of_process};
 use super::output;
 use crate::report::ExpectedCost;
 use crate::response::harmonic_balance::Status;
-use crate::settings::{Progress, Stage};
+use crate::settings::{Progress, Stage, TimeLeft};
 
-/// Time between plain lines.
+/// Time between plain lines that say the same or count on.
 const PLAIN_INTERVAL: Duration = Duration::from_secs(30);
+/// Time between plain lines that say something else, and time that it takes to be said.
+const PLAIN_CHANGE: Duration = Duration::from_secs(2);
+/// Time between looks at whether a plain line is due.
+const LOOK: Duration = Duration::from_millis(250);
 
 /// Progress of one run.
 pub(super) struct RunProgress {
     bar: Option<ProgressBar>,
-    failed: AtomicU64,
-    plain: Mutex<Plain>,
+    reached: Arc<Mutex<Reached>>,
+    /// Wakes and ends the writer of plain lines.
+    _over: Option<Sender<()>>,
     signals: Option<&'static Signals>,
 }
 
-/// State of the plain lines.
-struct Plain {
-    began: Instant,
+/// How far the run is, and when that was said in a plain line.
+struct Reached {
+    words: String,
+    /// Since when it is there.
+    since: Instant,
+    rows: Option<TimeLeft>,
+    at_a_time: u64,
+    failed: u64,
+    /// When a plain line was last written.
     last: Instant,
-    planned: u64,
-    reused: u64,
-    solved: u64,
+    /// What it said.
+    told: String,
+}
+
+impl Reached {
+    fn new(now: Instant) -> Self {
+        Self {
+            words: String::new(),
+            since: now,
+            rows: None,
+            at_a_time: 1,
+            failed: 0,
+            last: now,
+            told: String::new(),
+        }
+    }
+
+    fn at(&mut self, words: &str, now: Instant) {
+        if self.words != words {
+            words.clone_into(&mut self.words);
+            self.since = now;
+        }
+    }
+
+    fn begin_rows(&mut self, planned: u64, done: u64, now: Instant) {
+        self.rows = Some(TimeLeft::new(self.at_a_time, planned, done));
+        self.since = now;
+    }
+
+    fn row(&mut self, status: Status, now: Instant) {
+        self.failed += u64::from(status != Status::Ok);
+        if let Some(rows) = &mut self.rows {
+            rows.row(now);
+        }
+    }
+
+    /// What stands beside a bar of rows.
+    fn beside_bar(&self) -> String {
+        let left = self.rows.as_ref().map(TimeLeft::to_string);
+        format!("{}, {} failed", left.unwrap_or_default(), self.failed)
+    }
+
+    /// The plain line that is due.
+    fn line(&mut self, now: Instant) -> Option<String> {
+        let quiet = now.duration_since(self.last);
+        let here = now.duration_since(self.since);
+        let line = match &self.rows {
+            Some(rows) => (quiet.min(here) >= PLAIN_INTERVAL).then(|| {
+                let (done, planned) = (rows.done(), rows.planned());
+                format!("{done} of {planned} rows, {}", self.beside_bar())
+            })?,
+            None if self.words.is_empty() => return None,
+            None if self.words != self.told => {
+                (quiet.min(here) >= PLAIN_CHANGE).then(|| self.words.clone())?
+            }
+            None => (quiet >= PLAIN_INTERVAL)
+                .then(|| format!("{}, for {} s so far", self.words, here.as_secs()))?,
+        };
+        self.told.clone_from(&self.words);
+        self.last = now;
+        Some(line)
+    }
+}
+
+/// Writes plain lines while the run goes on, until the sender of `over` is gone.
+fn write_lines(reached: &Mutex<Reached>, over: &Receiver<()>) {
+    while over.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
+        let line = match reached.lock() {
+            Ok(mut reached) => reached.line(Instant::now()),
+            Err(_) => None,
+        };
+        if let Some(line) = line {
+            output::message(&line);
+        }
+    }
 }
 
 impl RunProgress {
     pub(super) fn new() -> Self {
-        let now = Instant::now();
+        let bar = output::shows_bars().then(ProgressBar::no_length);
+        let reached = Arc::new(Mutex::new(Reached::new(Instant::now())));
+        let over = bar.is_none().then(|| {
+            let (over, is_over) = channel();
+            let reached = Arc::clone(&reached);
+            // It ends by itself once the run has ended.
+            thread::spawn(move || write_lines(&reached, &is_over));
+            over
+        });
         Self {
-            bar: output::shows_bars().then(ProgressBar::no_length),
-            failed: AtomicU64::new(0),
-            plain: Mutex::new(Plain {
-                began: now,
-                last: now,
-                planned: 0,
-                reused: 0,
-                solved: 0,
-            }),
+            bar,
+            reached,
+            _over: over,
             signals: signals_of_process(),
         }
+    }
+
+    fn reached(&self) -> MutexGuard<'_, Reached> {
+        // Nobody panics while holding it.
+        self.reached.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// A message, above the bar if there is one.
@@ -63,25 +154,9 @@ impl RunProgress {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
-    }
-
-    fn plain_line(&self, failed: u64) {
-        let Ok(mut plain) = self.plain.lock() else {
-            return;
-        };
-        plain.solved += 1;
-        if plain.last.elapsed() < PLAIN_INTERVAL {
-            return;
-        }
-        plain.last = Instant::now();
-        let seconds = plain.began.elapsed().as_secs_f64();
-        let rate = plain.solved as f64 / seconds.max(1e-9);
-        let done = plain.reused + plain.solved;
-        let left = plain.planned.saturating_sub(done) as f64 / rate.max(1e-9);
-        output::message(&format!(
-            "{done} of {} rows, {rate:.1} per second, about {left:.0} s left, {failed} failed",
-            plain.planned
-        ));
+        let mut reached = self.reached();
+        reached.rows = None;
+        reached.words.clear();
     }
 }
 
@@ -98,6 +173,10 @@ impl Progress for RunProgress {
             Stage::Rows => "solving the patterns",
             Stage::Tables => "writing the tables",
         };
+        let mut reached = self.reached();
+        reached.rows = None;
+        reached.at(words, Instant::now());
+        drop(reached);
         if let Some(bar) = &self.bar {
             bar.set_style(style("{spinner} {msg} {elapsed}"));
             bar.set_message(words);
@@ -105,20 +184,27 @@ impl Progress for RunProgress {
         }
     }
 
-    fn begin_rows(&self, planned: u64, done: u64) {
+    fn step(&self, words: &str) {
+        self.reached().at(words, Instant::now());
         if let Some(bar) = &self.bar {
-            bar.set_style(style(
-                "{bar:30} {pos}/{len} rows  {per_sec}  {eta} left  {msg}",
-            ));
+            bar.set_message(words.to_owned());
+        }
+    }
+
+    fn rows_at_a_time(&self, rows: u64) {
+        self.reached().at_a_time = rows;
+    }
+
+    fn begin_rows(&self, planned: u64, done: u64) {
+        let mut reached = self.reached();
+        reached.begin_rows(planned, done, Instant::now());
+        let beside = reached.beside_bar();
+        drop(reached);
+        if let Some(bar) = &self.bar {
+            bar.set_style(style("{bar:30} {pos}/{len} rows  {msg}"));
             bar.set_length(planned);
             bar.set_position(done);
-            bar.reset_eta();
-            bar.set_message("0 failed");
-        } else if let Ok(mut plain) = self.plain.lock() {
-            plain.began = Instant::now();
-            plain.planned = planned;
-            plain.reused = done;
-            plain.solved = 0;
+            bar.set_message(beside);
         }
     }
 
@@ -155,20 +241,87 @@ impl Progress for RunProgress {
     }
 
     fn row(&self, status: Status) {
-        let failures = u64::from(status != Status::Ok);
-        let failed = self.failed.fetch_add(failures, Ordering::Relaxed) + failures;
-        match &self.bar {
-            Some(bar) => {
-                if failures > 0 {
-                    bar.set_message(format!("{failed} failed"));
-                }
-                bar.inc(1);
-            }
-            None => self.plain_line(failed),
+        let mut reached = self.reached();
+        reached.row(status, Instant::now());
+        let beside = self.bar.as_ref().map(|bar| (bar, reached.beside_bar()));
+        drop(reached);
+        if let Some((bar, beside)) = beside {
+            bar.set_message(beside);
+            bar.inc(1);
         }
     }
 }
 
 fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use super::Reached;
+    use crate::response::harmonic_balance::Status;
+
+    /// The lines of a log that looks twice a second, up to `seconds` after the beginning; `happens` is told the half second.
+    fn lines(seconds: u32, mut happens: impl FnMut(&mut Reached, u32, Instant)) -> Vec<String> {
+        let began = Instant::now();
+        let mut reached = Reached::new(began);
+        let looks = 0..=2 * seconds;
+        let line = looks.filter_map(|look| {
+            let now = began + Duration::from_millis(500) * look;
+            happens(&mut reached, look, now);
+            let line = reached.line(now)?;
+            Some(format!("{} s: {line}", f64::from(look) / 2.0))
+        });
+        line.collect()
+    }
+
+    #[test]
+    fn a_log_says_what_a_slow_beginning_is_at() {
+        let told = lines(100, |reached, look, now| match look {
+            0 => reached.at("solving the tuned wheel", now),
+            1 => reached.at("tuned wheel: load 1 of 5 (3 N)", now),
+            70 => reached.at("tuned wheel: load 2 of 5 (10 N)", now),
+            71 => reached.at("tuned wheel: load 3 of 5 (30 N)", now),
+            _ => {}
+        });
+        assert_eq!(
+            told,
+            [
+                "2.5 s: tuned wheel: load 1 of 5 (3 N)",
+                "32.5 s: tuned wheel: load 1 of 5 (3 N), for 32 s so far",
+                "37.5 s: tuned wheel: load 3 of 5 (30 N)",
+                "67.5 s: tuned wheel: load 3 of 5 (30 N), for 32 s so far",
+                "97.5 s: tuned wheel: load 3 of 5 (30 N), for 62 s so far",
+            ]
+        );
+    }
+
+    #[test]
+    fn a_log_is_silent_where_all_is_quick() {
+        let told = lines(20, |reached, look, now| reached.at(&look.to_string(), now));
+        assert_eq!(told, [""; 0]);
+    }
+
+    #[test]
+    fn a_log_counts_rows_and_says_no_time_before_it_is_known() {
+        let told = lines(95, |reached, look, now| {
+            if look == 20 {
+                reached.at_a_time = 4;
+                reached.begin_rows(1000, 0, now);
+            }
+            // The first rows come late.
+            if look >= 80 {
+                reached.row(Status::Ok, now);
+            }
+        });
+        assert_eq!(
+            told,
+            [
+                "40 s: 1 of 1000 rows, time left not known yet, 0 failed",
+                "70 s: 61 of 1000 rows, 2.0 per second, about 7.8 min left, 0 failed",
+            ]
+        );
+    }
 }

@@ -114,13 +114,7 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<ExitStatus, Failure> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("{}.svg", arguments.figure)));
-    if !has_ending(&out, "svg") {
-        return Err(Failure::usage(format!(
-            "--out {}: accepted: a file name ending in .svg; other programs make other formats of it \
-             (rsvg-convert, Inkscape, a browser)",
-            out.display()
-        )));
-    }
+    ends_in_svg("--out", &out)?;
     let found = report(
         &ReportRequest {
             results: arguments.results.clone(),
@@ -149,9 +143,17 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<ExitStatus, Failure> {
     Ok(ExitStatus::Done)
 }
 
-fn has_ending(path: &Path, ending: &str) -> bool {
-    path.extension()
-        .is_some_and(|found| found.eq_ignore_ascii_case(ending))
+/// Refuses another file than one for a drawing.
+pub(super) fn ends_in_svg(option: &str, path: &Path) -> Result<(), Failure> {
+    let ending = path.extension();
+    if ending.is_some_and(|found| found.eq_ignore_ascii_case("svg")) {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "{option} {}: accepted: a file name ending in .svg; other programs make other formats of it \
+         (rsvg-convert, Inkscape, a browser)",
+        path.display()
+    )))
 }
 
 /// The group that the arguments name, or the only one.

@@ -2,6 +2,7 @@
 
 mod check;
 mod finding;
+mod glossary;
 mod key;
 mod schema;
 mod source_map;
@@ -12,6 +13,7 @@ mod value;
 pub(crate) use check::check;
 pub(crate) use finding::listed;
 pub use finding::{Excerpt, Finding, Problem};
+pub use glossary::plain;
 pub(crate) use key::{Effect, Entry, REQUIRED, all_keys, entry, key, table};
 pub use key::{KeySpec, nearest_key_names};
 pub(crate) use schema::schema_of;

@@ -1,4 +1,6 @@
-//! Words that mean one thing in one place and another elsewhere, or that no key is named by.
+//! Words that mean one thing in one place and another elsewhere, or that no key is named by, and those of the glossary.
+
+use super::glossary::glossary;
 
 /// A word with its meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,25 +45,8 @@ const TERMS: &[Term] = &[
         "static force that presses the two sides of the contact together on one sector; the wheel has it once per sector",
     ),
     term(
-        "amplification factor",
-        "largest amplitude of the mistuned wheel over that of the tuned wheel under the same normal load, engine \
-         order and settings",
-    ),
-    term(
         "slip (summary), slipping_fraction (tables)",
         "share of the contact pairs that slip at any instant of a period, at the peak, mean over the wheels",
-    ),
-    term(
-        "scenario",
-        "one load case, engine order, standard deviation and normal load; a row is one wheel under one scenario",
-    ),
-    term(
-        "pattern",
-        "one random wheel: the deviations of all its blades; the same in every scenario",
-    ),
-    term(
-        "tuned wheel",
-        "the wheel whose blades are all alike, under the same load and excitation",
     ),
     term(
         "peak, at Hz (summary)",
@@ -118,20 +103,24 @@ const TERMS: &[Term] = &[
         "outcome of setting a figure against a bar (met or not), or against a claim about dampers (confirmed, refuted or \
          open)",
     ),
-    term(
-        "crossing",
-        "the speed 60 f / EO at which the engine order EO meets the frequency f",
-    ),
 ];
+
+/// The words above, and those of the glossary that they do not say more of.
+fn all_terms() -> impl Iterator<Item = Term> {
+    let is_other = |term: &Term| {
+        let of_term = |own: &Term| own.word.split([',', ':', '(']).next().map(str::trim);
+        !{ TERMS.iter() }.any(|own| of_term(own) == Some(term.word))
+    };
+    let of_glossary = glossary().map(|(word, meaning)| term(word, meaning));
+    { TERMS.iter().copied() }.chain(of_glossary.filter(is_other))
+}
 
 /// The terms that every one of `words` occurs in, in any case of letters; all for no words. Those that are named by
 /// them come before those that mention them.
 #[must_use]
 pub fn terms_about(words: &str) -> Vec<Term> {
-    let mut found: Vec<Term> = TERMS
-        .iter()
+    let mut found: Vec<Term> = all_terms()
         .filter(|term| mentions(&[term.word, term.meaning], words))
-        .copied()
         .collect();
     found.sort_by_key(|term| !mentions(&[term.word], words));
     found
@@ -140,7 +129,7 @@ pub fn terms_about(words: &str) -> Vec<Term> {
 /// The term of this word.
 #[must_use]
 pub fn term_of(word: &str) -> Option<Term> {
-    TERMS.iter().find(|term| term.word == word).copied()
+    all_terms().find(|term| term.word == word)
 }
 
 /// Whether the texts together have every one of `words`, in any case of letters.

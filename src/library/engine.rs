@@ -65,7 +65,7 @@ impl Engine {
         let rows = ReducedEngineSource.build(study, &sector, None)?;
         let scenarios = study.scenarios();
         Ok(Self {
-            tuned: tuned_references(rows.as_ref(), &scenarios),
+            tuned: tuned_references(rows.as_ref(), &scenarios, &()),
             study: study.clone(),
             sector,
             rows,
@@ -144,6 +144,7 @@ impl Engine {
             reason: error.to_string(),
         })?;
         progress.stage(Stage::Rows);
+        progress.rows_at_a_time((threads * count) as u64);
         progress.begin_rows(planned, 0);
         let work = RowWork {
             engine: self.rows.as_ref(),

@@ -228,7 +228,7 @@ impl Writer<'_> {
                 .map(|own| {
                     let peak = own.peak_amplitude_m;
                     let peak = peak.map_or("failed".to_owned(), |peak| self.units.length(peak));
-                    format!("wheel {} {peak}", own.pattern)
+                    format!("wheel {} {peak}{}", own.pattern, factor_and_blade(own))
                 })
                 .collect();
             format!(
@@ -422,4 +422,15 @@ impl Writer<'_> {
             reasons,
         })
     }
+}
+
+/// Amplification factor and blade of a peak, in brackets.
+fn factor_and_blade(own: &MeasuredPeak) -> String {
+    let factor = { own.amplification_factor }.map(|factor| format!("amplification {factor:.3}"));
+    let blade = own.peak_blade.map(|blade| format!("blade {blade}"));
+    let parts: Vec<String> = factor.into_iter().chain(blade).collect();
+    if parts.is_empty() {
+        return String::new();
+    }
+    format!(" ({})", parts.join(", "))
 }

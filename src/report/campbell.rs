@@ -96,6 +96,19 @@ impl CampbellReport {
         report
     }
 
+    /// Frequency of a mode of this report at a speed, Hz; negative where there is less stiffness than none.
+    pub(super) fn frequency_at(&self, mode: &CampbellMode, speed_rpm: f64) -> f64 {
+        if self.speed_rpm.len() < 2 {
+            return mode.frequency_hz[0];
+        }
+        let speeds: Vec<f64> = self.speed_rpm.iter().map(|rpm| rpm / 60.0).collect();
+        let square = (speed_rpm / 60.0).powi(2);
+        let pieces = stretches(&squares(&speeds), &squares(&mode.frequency_hz));
+        let piece = pieces.iter().find(|piece| square < piece.high);
+        let eigenvalue = piece.map_or(f64::NAN, |piece| piece.constant + piece.slope * square);
+        eigenvalue.signum() * eigenvalue.abs().sqrt()
+    }
+
     fn of_mode(&self, mode: &CampbellMode, engine_order: u32) -> Vec<CampbellCrossing> {
         let excited = nodal_diameter_of(1, engine_order, self.sectors);
         if excited.index != mode.nodal_diameter || engine_order == 0 {
@@ -119,8 +132,6 @@ impl CampbellReport {
                 _ => false,
             },
         };
-        let squares =
-            |values: &[f64]| -> Vec<f64> { values.iter().map(|v| v.signum() * v * v).collect() };
         // (turns per second)^2 and Hz^2.
         let speeds = squares(
             &self
@@ -153,6 +164,14 @@ impl Stretch {
         let square = self.constant / (order * order - self.slope);
         (square.is_finite() && square >= self.low && square < self.high).then_some(square)
     }
+}
+
+/// Squares with the signs of the values.
+fn squares(values: &[f64]) -> Vec<f64> {
+    values
+        .iter()
+        .map(|value| value.signum() * value * value)
+        .collect()
 }
 
 /// The frequency of a mode over all speeds, piece by piece.

@@ -42,7 +42,7 @@ pub use comparison::{
 };
 pub use cost::{ExpectedCost, ExpectedTime};
 pub use estimate::{EstimateReport, QuantityEstimate, ScenarioEstimate};
-pub use figures::{FIGURES, Figure, FigureName, figure, missing};
+pub use figures::{DiagramRange, FIGURES, Figure, FigureName, diagram_of_model, figure, missing};
 pub use html::html_report;
 pub use model_report::{ModelReport, NodalDiameterFacts};
 pub use model_section::{
@@ -69,3 +69,4 @@ pub use visible::{is_order, visible, with_orders_escaped};
 pub use warning::{MOST_WHEELS_NAMED, RowTolerance, Warning};
 pub use wheel_report::{PairReport, ResponseCurve, WheelCurves, WheelReport, WheelStateReport};
 pub use words::LengthUnit;
+pub(crate) use words::{duration, excitation, short_load_with_unit};

@@ -220,6 +220,10 @@ pub struct MeasuredPeak {
     pub pattern: u32,
     /// Its peak amplitude, m; null: the row failed.
     pub peak_amplitude_m: Option<f64>,
+    /// Its amplification factor; null: the row or that of the tuned wheel failed.
+    pub amplification_factor: Option<f64>,
+    /// The blade of its peak; null: the row failed.
+    pub peak_blade: Option<u32>,
 }
 
 /// Which load to choose for one percentile of the peak amplitude.

@@ -96,7 +96,7 @@ pub(super) fn trimmed(value: f64) -> String {
 }
 
 /// Load case, where there is one, and engine order.
-pub(super) fn excitation(load_case: Option<LoadCaseName>, engine_order: u32) -> String {
+pub(crate) fn excitation(load_case: Option<LoadCaseName>, engine_order: u32) -> String {
     let case = load_case.map_or_else(String::new, |name| format!("load case {name}, "));
     format!("{case}engine order {engine_order}")
 }
@@ -148,7 +148,7 @@ fn with_newtons(words: String, normal_load_n: Option<f64>) -> String {
 }
 
 /// A load with its unit, a number with at most four digits where more are written; or the name of a linear limit.
-pub(super) fn short_load_with_unit(contact: &str, normal_load_n: Option<f64>) -> String {
+pub(crate) fn short_load_with_unit(contact: &str, normal_load_n: Option<f64>) -> String {
     with_newtons(short_load_words(contact, normal_load_n), normal_load_n)
 }
 
@@ -318,7 +318,7 @@ fn trimmed_digits(value: f64) -> String {
 }
 
 /// A time in the unit that suits it.
-pub(super) fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 1.0 => format!("{s:.3} s"),
         s if s < 120.0 => format!("{s:.1} s"),

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::progress::{Progress, Steps};
 use super::row_settings::row_settings;
 use crate::model::ReducedModel;
 use crate::model::cyclic::ContactGeometry;
@@ -22,6 +23,13 @@ const COMPARED_TOLERANCE: f64 = 1e-4;
 /// Distance of the points by which a top is climbed, in half-bandwidths of a linear resonance.
 const NEIGHBOURS: f64 = 0.35;
 
+/// The mistuned wheels that judge, and who is told how far they are.
+#[derive(Clone, Copy)]
+pub(super) struct JudgingWheels<'a> {
+    pub(super) patterns: &'a [Pattern],
+    pub(super) progress: &'a dyn Progress,
+}
+
 /// The wheels that judge under one force vector, on one engine.
 pub(super) struct Judges<'a> {
     engine: &'a ReceptanceEngine,
@@ -30,6 +38,7 @@ pub(super) struct Judges<'a> {
     geometry: ContactGeometry,
     /// The tuned wheel first.
     wheels: Vec<(EngineWheel, ContactFactors)>,
+    progress: &'a dyn Progress,
 }
 
 /// A judged row, the settings of its points, and its peak.
@@ -55,12 +64,12 @@ pub(super) struct JudgedTop {
 }
 
 impl<'a> Judges<'a> {
-    /// The tuned wheel and those of `patterns` under `excitation` on an engine made of `model`.
+    /// The tuned wheel and the mistuned `wheels` under `excitation` on an engine made of `model`.
     pub(super) fn new(
         engine: &'a ReceptanceEngine,
         model: &ReducedModel,
         excitation: &Excitation,
-        patterns: &[Pattern],
+        wheels: JudgingWheels<'a>,
     ) -> Self {
         let study = &excitation.study;
         let loaded_model = excitation.of(model);
@@ -74,7 +83,7 @@ impl<'a> Judges<'a> {
             EngineWheel::new(None, model.sectors),
             ContactFactors::default(),
         );
-        let mistuned = patterns.iter().map(|pattern| {
+        let mistuned = wheels.patterns.iter().map(|pattern| {
             let wheel = EngineWheel::new(Some(pattern), model.sectors);
             (wheel, pattern.contact.clone())
         });
@@ -84,6 +93,7 @@ impl<'a> Judges<'a> {
             forces: study.engine_orders.iter().map(force).collect(),
             geometry: model.contact.clone(),
             wheels: std::iter::once(tuned).chain(mistuned).collect(),
+            progress: wheels.progress,
         }
     }
 
@@ -106,12 +116,14 @@ impl<'a> Judges<'a> {
             .iter()
             .flat_map(|(order, _)| conditions.iter().map(|&condition| (*order, condition)))
             .collect();
+        let steps = Steps::new(self.progress, "judging the harmonics", "loads", cases.len());
         let judged = cases.into_par_iter().map(|case| {
-            let judged = self.judged(choice_of(case, set), reserve.is_some())?;
-            match reserve.filter(|_| judged.lacks_a_peak()) {
-                Some(reserve) => self.judged(choice_of(case, reserve), false),
-                None => Ok(judged),
+            let mut judged = self.judged(choice_of(case, set), reserve.is_some())?;
+            if let Some(reserve) = reserve.filter(|_| judged.lacks_a_peak()) {
+                judged = self.judged(choice_of(case, reserve), false)?;
             }
+            steps.done();
+            Ok(judged)
         });
         judged.collect()
     }
@@ -124,8 +136,15 @@ impl<'a> Judges<'a> {
         &self,
         sets: Vec<HarmonicChoice>,
     ) -> Result<Vec<JudgedSet<'_>>, TransformError> {
+        let steps = Steps::new(
+            self.progress,
+            "peaks that judge the model",
+            "loads",
+            sets.len(),
+        );
         let judged = sets.into_par_iter().map(|choice| {
             let peaks = self.peaks(&choice, false)?;
+            steps.done();
             Ok(JudgedSet { choice, peaks })
         });
         judged.collect()
@@ -150,8 +169,18 @@ impl<'a> Judges<'a> {
             peaks.map(move |(wheel, peak)| (wheel, peak, &set.choice))
         });
         let peaks: Vec<(usize, &JudgedPeak<'_>, &HarmonicChoice)> = peaks.collect();
+        let steps = Steps::new(
+            self.progress,
+            "tops that judge the model",
+            "peaks",
+            peaks.len(),
+        );
         let tops = peaks.into_par_iter();
-        let tops = tops.filter_map(|(wheel, peak, choice)| self.top_of(peak, wheel, choice));
+        let tops = tops.filter_map(|(wheel, peak, choice)| {
+            let top = self.top_of(peak, wheel, choice);
+            steps.done();
+            top
+        });
         Ok(tops.collect())
     }
 
@@ -178,6 +207,8 @@ impl<'a> Judges<'a> {
     /// Relative changes of `tops` of other wheels to those of these, the same ones on another engine, each climbed from where it was
     /// found; of those that are found on both.
     pub(super) fn changes(&self, tops: &[JudgedTop]) -> Vec<(TopOf, f64)> {
+        let what = "judging modes and shapes of the model";
+        let steps = Steps::new(self.progress, what, "peaks", tops.len());
         let change = |top: &JudgedTop| {
             let (engine_order, condition) = top.of;
             let row = self.row(top.wheel, engine_order, condition)?;
@@ -188,6 +219,7 @@ impl<'a> Judges<'a> {
                 top.step_hz,
                 COMPARED_TOLERANCE,
             );
+            steps.done();
             Some((top.of, (top_m? / top.amplitude_m - 1.0).abs()))
         };
         tops.par_iter().filter_map(change).collect()

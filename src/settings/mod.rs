@@ -11,6 +11,7 @@ pub(crate) mod ladder;
 mod progress;
 mod reduced_study;
 mod row_settings;
+mod time_left;
 mod tuned_receptances;
 
 pub use accuracy::{
@@ -23,4 +24,5 @@ pub use full_model::{FullModel, FullRow, FullSettings};
 pub use ladder::{HarmonicLevel, Knob, LadderSetting};
 pub use progress::{Progress, Stage};
 pub(crate) use row_settings::contact_stiffness;
+pub use time_left::{Pace, TimeLeft};
 pub(crate) use tuned_receptances::SHAPES_BETWEEN;

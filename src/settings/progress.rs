@@ -1,5 +1,7 @@
 //! What a run tells whoever watches it, and is told by it.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use crate::report::ExpectedCost;
 use crate::response::harmonic_balance::Status;
 
@@ -24,6 +26,10 @@ pub enum Stage {
 pub trait Progress: Sync {
     /// A stage begins.
     fn stage(&self, _stage: Stage) {}
+    /// What the stage is at, with its place among what it goes through: `tuned wheel: load 2 of 5 (10 N)`. Called from several threads.
+    fn step(&self, _words: &str) {}
+    /// So many rows are solved at the same time: those of a pattern, on every thread. Said before [`Self::begin_rows`].
+    fn rows_at_a_time(&self, _rows: u64) {}
     /// Rows are about to be solved: `planned` in all, of which `done` are stored already.
     fn begin_rows(&self, _planned: u64, _done: u64) {}
     /// Of the rows that are about to be solved, `rows` are stored, but for other settings than the study now has: `why`.
@@ -47,3 +53,50 @@ pub trait Progress: Sync {
 
 /// For work that nobody watches, like a choice of settings that is a part of the reduction.
 impl Progress for () {}
+
+/// Counts what is done of some things at the same time, and says so after each.
+pub(crate) struct Steps<'a> {
+    progress: &'a dyn Progress,
+    what: &'static str,
+    things: &'static str,
+    count: usize,
+    done: AtomicUsize,
+}
+
+impl<'a> Steps<'a> {
+    /// Says that none of the `count` things of `what` is done.
+    pub(crate) fn new(
+        progress: &'a dyn Progress,
+        what: &'static str,
+        things: &'static str,
+        count: usize,
+    ) -> Self {
+        let steps = Self {
+            progress,
+            what,
+            things,
+            count,
+            done: AtomicUsize::new(0),
+        };
+        steps.say(0);
+        steps
+    }
+
+    /// One more is done.
+    pub(crate) fn done(&self) {
+        self.say(self.done.fetch_add(1, Ordering::Relaxed) + 1);
+    }
+
+    fn say(&self, done: usize) {
+        if self.count > 0 {
+            let Self {
+                what,
+                things,
+                count,
+                ..
+            } = self;
+            self.progress
+                .step(&format!("{what}: {done} of {count} {things} done"));
+        }
+    }
+}

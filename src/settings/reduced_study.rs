@@ -12,7 +12,8 @@ use super::fixed_interface::{
     FixedInterface, expected_deviation, reduce_sector, sensitivity_vectors,
 };
 use super::harmonics_on_basis::{choose_harmonics, with_separation};
-use super::harmonics_on_receptances::choice_of;
+use super::harmonics_on_receptances::{JudgingWheels, choice_of};
+use super::progress::Progress;
 use super::row_settings::{contact_stiffness, row_settings};
 use super::tuned_receptances::{COMPANION_MODES, Refined, engine_of, engine_options, refined};
 use crate::model::cyclic::pair_tangents;
@@ -148,6 +149,7 @@ pub(super) fn stored_for(
     study: &Study,
     model: &SectorModel,
     cache: Option<&Path>,
+    progress: &dyn Progress,
 ) -> Result<Stored, PipelineError> {
     let digest = stored_digest(study, model)?;
     let cached: Option<Stored> = cache.and_then(|folder| read_cached(folder, &digest));
@@ -155,9 +157,11 @@ pub(super) fn stored_for(
         return Ok(stored);
     }
     let stored = if is_on_receptances(study, model) {
-        reduced_on_receptances(study, model)?
+        reduced_on_receptances(study, model, progress)?
     } else {
+        progress.step("fixed-interface modes of the sector");
         let (reduction, fixed_interface) = reduce_sector(study, model)?;
+        progress.step("harmonics and basis of the reduced model");
         reduced(study, &reduction, fixed_interface)?
     };
     if let Some(folder) = cache {
@@ -304,9 +308,16 @@ fn admitting_separation(cases: &[Case<'_>], sets: Vec<Sets>) -> Result<Vec<Sets>
 
 /// What rows on tuned receptances are solved on: fixed-interface modes by the tuned wheel and some mistuned ones, all harmonics up to
 /// 15 or those of the study, and a small companion model besides, for what is not solved there.
-fn reduced_on_receptances(study: &Study, sector: &SectorModel) -> Result<Stored, PipelineError> {
+fn reduced_on_receptances(
+    study: &Study,
+    sector: &SectorModel,
+    progress: &dyn Progress,
+) -> Result<Stored, PipelineError> {
     let excitations = excitations(study);
-    let patterns = judging_patterns(study, sector)?;
+    let wheels = JudgingWheels {
+        patterns: &judging_patterns(study, sector)?,
+        progress,
+    };
     let law = study.contact.as_ref().map(|contact| contact.law);
     let separates = law.is_some_and(ContactLaw::has_variable_load);
     let (set, reserve) = match &study.solver.harmonics {
@@ -328,7 +339,7 @@ fn reduced_on_receptances(study: &Study, sector: &SectorModel) -> Result<Stored,
         evidence,
         harmonics,
         of_limits,
-    } = refined(study, sector, &excitations, &patterns, |judges| {
+    } = refined((study, sector), &excitations, wheels, |judges| {
         judges.harmonics(&study.contacts, &set, reserve.as_deref())
     })?;
     let harmonics = harmonics.concat();

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::basis_choice::{BasisError, BasisEvidence};
 use super::fixed_interface::{FixedInterface, ModesTried, expected_deviation, reduction_with};
-use super::harmonics_on_receptances::{JudgedSet, JudgedTop, Judges, TopOf};
+use super::harmonics_on_receptances::{JudgedSet, JudgedTop, Judges, JudgingWheels, TopOf};
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::{ModelError, SectorModel, StiffnessKind};
@@ -121,12 +121,12 @@ impl Made {
     }
 
     /// The wheels that judge, under each force vector.
-    pub(super) fn judges(
-        &self,
+    pub(super) fn judges<'a>(
+        &'a self,
         excitations: &[Excitation],
-        patterns: &[Pattern],
-    ) -> Vec<Judges<'_>> {
-        let under = |case| Judges::new(&self.receptances, &self.own.model, case, patterns);
+        wheels: JudgingWheels<'a>,
+    ) -> Vec<Judges<'a>> {
+        let under = |case| Judges::new(&self.receptances, &self.own.model, case, wheels);
         excitations.iter().map(under).collect()
     }
 }
@@ -152,10 +152,9 @@ pub(super) struct Refined<'a> {
 /// # Errors
 /// The model cannot be reduced, or samples cannot tell harmonics apart.
 pub(super) fn refined<'a>(
-    study: &Study,
-    sector: &'a SectorModel,
+    (study, sector): (&Study, &'a SectorModel),
     excitations: &[Excitation],
-    patterns: &[Pattern],
+    wheels: JudgingWheels<'_>,
     chosen: impl for<'j> Fn(&'j Judges<'_>) -> Result<Vec<JudgedSet<'j>>, TransformError>,
 ) -> Result<Refined<'a>, PipelineError> {
     let fixed = study.reduction.craig_bampton_modes;
@@ -164,6 +163,8 @@ pub(super) fn refined<'a>(
     let mut tried = Vec::new();
     let mut shape_factor = 1;
     loop {
+        let step = format!("receptances of the tuned wheel with {modes} fixed-interface modes");
+        wheels.progress.step(&step);
         let fine = reduction_with(study, sector, modes)
             .with_residual_vectors()
             .completed()?;
@@ -176,7 +177,7 @@ pub(super) fn refined<'a>(
         let engine = Made::new(study, &taken, excitations, shape_factor)?;
         let shaped = Shaped::new(study, engine, excitations, shape_factor)?;
         shape_factor = shaped.factor;
-        let judges = shaped.engine.judges(excitations, patterns);
+        let judges = shaped.engine.judges(excitations, wheels);
         let is_exact = other.is_none() && shaped.finer.is_none();
         let (mut sets, tops) = match harmonics.take() {
             None => sets_and_tops(&judges, study, !is_exact, |of_case, _| chosen(of_case))?,
@@ -191,7 +192,7 @@ pub(super) fn refined<'a>(
             None => Some(0.0),
             Some(other) => {
                 let other = Made::new(study, other, excitations, shape_factor)?;
-                of_modes = changes_of(&tops, &other.judges(excitations, patterns));
+                of_modes = changes_of(&tops, &other.judges(excitations, wheels));
                 largest(&of_modes)
             }
         };
@@ -205,16 +206,16 @@ pub(super) fn refined<'a>(
             modes *= 2;
             continue;
         }
-        let mut of_shapes = shaped.changes(&tops, excitations, patterns);
+        let mut of_shapes = shaped.changes(&tops, excitations, wheels);
         let mut shaped = shaped.with_change(of_friction(&of_shapes, &study.contacts));
         while shaped.lacks_shapes(study) {
             shaped = shaped.with_twice_the_shapes(study, excitations)?;
-            let judges = shaped.engine.judges(excitations, patterns);
+            let judges = shaped.engine.judges(excitations, wheels);
             let (_, tops) = sets_and_tops(&judges, study, true, |of_case, case| {
                 of_case.with_sets(sets[case].clone())
             })?;
             drop(judges);
-            of_shapes = shaped.changes(&tops, excitations, patterns);
+            of_shapes = shaped.changes(&tops, excitations, wheels);
             shaped = shaped.with_change(of_friction(&of_shapes, &study.contacts));
         }
         let margin = if fixed.is_some() { FIXED_MARGIN } else { 1.0 };
@@ -424,11 +425,11 @@ impl Shaped {
         &self,
         tops: &[Vec<JudgedTop>],
         excitations: &[Excitation],
-        patterns: &[Pattern],
+        wheels: JudgingWheels<'_>,
     ) -> Vec<Change> {
         let finer = self.finer.as_ref();
         finer.map_or_else(Vec::new, |finer| {
-            changes_of(tops, &finer.judges(excitations, patterns))
+            changes_of(tops, &finer.judges(excitations, wheels))
         })
     }
 

@@ -162,6 +162,7 @@ fn value(command: &str, before: &str, word: &str) -> String {
         ("NAME", "--example", _) => "quickstart",
         ("START:STOP:COUNT", ..) => "300:400:3",
         ("LOW:HIGH", ..) => "45:60",
+        ("HZ", ..) => "2000",
         ("RPM=BUNDLE", ..) => "0=exported",
         ("k/n", ..) => "1/2",
         ("T", "--time", _) => "01:00:00",

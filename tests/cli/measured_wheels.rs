@@ -80,6 +80,14 @@ fn few_measured_wheels_are_read_one_by_one_instead_of_drawing_more() {
             .expect("a number");
         let error = shown * 1e-6 / peak_m - 1.0;
         assert!(error.abs() < 1e-3, "wheel {wheel}: {shown} and {peak_m}");
+        let factor = find(&row, "amplification_factor").expect("a factor");
+        let blade = find(&row, "peak_blade").expect("a blade");
+        let beside = format!("µm (amplification {factor:.3}, blade {blade})");
+        let (_, own) = line
+            .split_once(&format!("wheel {wheel} "))
+            .expect("the wheel");
+        let own = own.split_once(')').expect("an end").0;
+        assert!(format!("{own})").ends_with(&beside), "{own}: {beside}");
     }
 }
 

@@ -766,6 +766,12 @@ fn campbell_and_safe_diagram_and_the_sector_are_drawn() {
             "{diameter}"
         );
     }
+    // Both say where they end and why, and how to see more.
+    for figure in [&campbell, &safe] {
+        assert!(figure.contains(" Hz, about 1.6 times the highest tuned peak.<"));
+        assert!(figure.contains("Modes 1 to 3. For more: blisk campbell STUDY.toml with"));
+        assert!(figure.contains(" FILE.svg --top-hz HZ --modes N.<"));
+    }
     let sector = drawing("sector.svg");
     assert_eq!(sector.matches("class=\"touch\" cx").count(), 1);
     assert!(sector.contains("It has one contact pair."));

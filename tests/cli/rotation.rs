@@ -218,3 +218,107 @@ fn every_engine_order_can_have_its_own_amplitude() {
     let verified = both.run(&["verify", "study.toml", "--sample", "4"]);
     assert_eq!(verified.code, 0, "{}{}", verified.stdout, verified.stderr);
 }
+
+#[test]
+fn campbell_and_safe_diagram_are_drawn_from_a_study_without_results() {
+    let place = Place::with(GOOD);
+    let arguments = |more: &[&'static str]| {
+        let first = ["campbell", "study.toml", "--engine-orders", "2,5"];
+        [&first[..], more].concat()
+    };
+    let plots = ["--plot", "speed.svg", "--plot-safe", "safe.svg", "--json"];
+    let drawn = place.run(&arguments(&plots));
+    assert_eq!(drawn.code, 0, "{}", drawn.stderr);
+    assert!(!place.path("results").exists());
+    let report: Value = serde_json::from_str(&drawn.stdout).expect("JSON");
+    let read = |name: &str| std::fs::read_to_string(place.path(name)).expect("a figure");
+    let (speed, safe) = (read("speed.svg"), read("safe.svg"));
+    for figure in [&speed, &safe] {
+        assert_eq!(
+            figure.matches("<polyline class=\"curve median\"").count(),
+            2
+        );
+        assert!(figure.contains("Ends at ") && figure.contains(" --top-hz "));
+    }
+    // First modes are met on either figure, at the frequencies of the table.
+    for crossing in report["crossings"].as_array().expect("a list") {
+        if crossing["mode"] != 1 {
+            continue;
+        }
+        let (order, contact) = (&crossing["engine_order"], &crossing["contact"]);
+        let number = |key: &str| crossing[key].as_f64().expect("a number");
+        let (hz, rpm) = (number("frequency_hz"), number("speed_rpm"));
+        let words = format!(
+            "engine order {order}, nodal diameter {}, mode 1, {}: {hz:.2} Hz at {rpm:.0} rpm",
+            crossing["nodal_diameter"],
+            contact.as_str().expect("a name")
+        );
+        assert!(speed.contains(&words), "{words}");
+        if contact == "stuck" {
+            let words = format!("engine order {order} at {rpm:.0} rpm: {hz:.2} Hz");
+            assert!(safe.contains(&words), "{words}");
+        }
+    }
+    assert!(safe.contains("nodal diameter 3, mode 1, slide"));
+    // Where it ends is asked for.
+    let higher = place.run(&arguments(&["--plot-safe", "safe.svg", "--top-hz", "5e3"]));
+    assert_eq!(higher.code, 0, "{}", higher.stderr);
+    assert!(read("safe.svg").contains("Ends at 5000 Hz, as asked for"));
+    for wrong in [["--plot", "speed.png"], ["--top-hz", "0"]] {
+        let refused = place.run(&arguments(&wrong));
+        assert_eq!(refused.code, 2, "{}", refused.stderr);
+        assert!(refused.stderr.contains("accepted: "), "{}", refused.stderr);
+    }
+}
+
+#[test]
+fn models_at_several_speeds_have_curves_over_speed_and_no_safe_diagram() {
+    let place = Place::with(GOOD);
+    assert_eq!(
+        place.run(&["model", "study.toml", "--export", "slow"]).code,
+        0
+    );
+    let stiffer = GOOD.replace(
+        "blade_stiffness_n_per_m = 2.5e6",
+        "blade_stiffness_n_per_m = 3e6",
+    );
+    place.write("study.toml", &stiffer);
+    assert_eq!(
+        place.run(&["model", "study.toml", "--export", "fast"]).code,
+        0
+    );
+    let at = [
+        "campbell",
+        "study.toml",
+        "--at",
+        "0=slow",
+        "--at",
+        "9000=fast",
+    ];
+    let drawn = place.run(&[&at[..], &["--plot", "speed.svg"]].concat());
+    assert_eq!(drawn.code, 0, "{}", drawn.stderr);
+    let speed = std::fs::read_to_string(place.path("speed.svg")).expect("a figure");
+    let lines = speed
+        .split("<polyline class=\"curve stuck\" points=\"")
+        .skip(1);
+    let heights: Vec<Vec<f64>> = lines
+        .map(|line| {
+            let points = line.split_once('"').expect("an end").0.split(' ');
+            let height = |point: &str| point.split_once(',').expect("two numbers").1.parse();
+            points
+                .map(|point| height(point).expect("a number"))
+                .collect()
+        })
+        .collect();
+    // Heights count downwards: no frequency falls with the speed, and that of a blade rises.
+    let falls = |own: &Vec<f64>| own.windows(2).any(|pair| pair[1] > pair[0]);
+    assert!(!heights.is_empty() && heights.iter().all(|own| own.len() > 10 && !falls(own)));
+    assert!(heights.iter().any(|own| own[0] - own[own.len() - 1] > 2.0));
+    let refused = place.run(&[&at[..], &["--plot-safe", "safe.svg"]].concat());
+    assert_ne!(refused.code, 0);
+    assert!(
+        refused.stderr.contains("accepted: the model of the study"),
+        "{}",
+        refused.stderr
+    );
+}

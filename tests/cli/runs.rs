@@ -1,5 +1,11 @@
 //! Whole runs with the real engine on a wheel of six masses.
 
+use std::sync::Mutex;
+
+use blisk::campaign::{RunRequest, run};
+use blisk::settings::{Progress, ReducedEngineSource};
+use blisk::study::Study;
+
 use crate::blisk::{GOOD, Place};
 use crate::missed_peaks::WHEEL;
 
@@ -501,4 +507,58 @@ fn a_load_that_is_added_keeps_the_rows_of_the_others() {
     assert_eq!(at_once.code, 0, "{}", at_once.stderr);
     let rows = |folder: &str| std::fs::read(place.path(&format!("{folder}/responses.parquet")));
     assert!(rows("ring").expect("a table") == rows("at-once").expect("a table"));
+}
+
+/// Keeps what it is told before the rows.
+#[derive(Default)]
+struct Told(Mutex<Vec<String>>);
+
+impl Progress for Told {
+    fn step(&self, words: &str) {
+        self.0.lock().expect("a list").push(words.to_owned());
+    }
+}
+
+/// What the beginning of a run of `study` is at.
+fn steps_of(study: &str) -> Vec<String> {
+    let place = Place::with(study);
+    let told = Told::default();
+    let request = RunRequest {
+        study: &Study::read(&place.path("study.toml")).expect("a study"),
+        results: &place.path("results"),
+        threads: 2,
+    };
+    run(request, &ReducedEngineSource, &told).expect("results");
+    told.0.into_inner().expect("a list")
+}
+
+#[test]
+fn a_run_says_which_tuned_wheel_is_solved_and_what_the_reduction_is_at() {
+    let steps = steps_of(&GOOD.replace("harmonics = [1, 3]", ""));
+    let (before, tuned) = steps.split_at(steps.len() - 3);
+    let expected = [
+        "tuned wheel: load 1 of 3 (slide)",
+        "tuned wheel: load 2 of 3 (50 N)",
+        "tuned wheel: load 3 of 3 (stuck)",
+    ];
+    assert_eq!(tuned, expected);
+    for step in [
+        "receptances of the tuned wheel with 60 fixed-interface modes",
+        "judging the harmonics: 0 of 1 loads done",
+        "judging the harmonics: 1 of 1 loads done",
+    ] {
+        assert!(before.iter().any(|own| own == step), "{step}: {before:?}");
+    }
+    // One tuned wheel for both standard deviations; engine orders are named where there are several.
+    let more = GOOD
+        .replace("engine_orders = [2]", "engine_orders = [1, 2]")
+        .replace(
+            "standard_deviation = [0.03]",
+            "standard_deviation = [0.03, 0.01]",
+        );
+    let steps = steps_of(&more);
+    let tuned = steps.iter().filter(|step| step.starts_with("tuned wheel"));
+    assert_eq!(tuned.count(), 6, "{steps:?}");
+    let last = "tuned wheel: load 6 of 6 (engine order 2, stuck)";
+    assert_eq!(steps.last().map(String::as_str), Some(last));
 }

@@ -266,6 +266,12 @@ fn explain_finds_keys_and_terms_by_words_of_their_names_and_meanings() {
         ("stated error", "stated error, numerical error"),
         ("not estimable", "not estimable, not settled"),
         ("warning", "warning (summary)"),
+        // Figures, and terms of the glossary.
+        ("worst response", "worst-response (figure)"),
+        ("nodal diameter", "\nnodal diameter\n"),
+        ("engine order", "\nengine order\n"),
+        ("Campbell", "\nCampbell diagram\n"),
+        ("SAFE", "\nSAFE diagram\n"),
     ] {
         let found = format!("\n{}", output(&place, &["explain", word]));
         // What has the word in its name comes before what mentions it.
@@ -276,6 +282,29 @@ fn explain_finds_keys_and_terms_by_words_of_their_names_and_meanings() {
         );
     }
     assert_eq!(place.run(&["explain", "no-such-word"]).code, 2);
+}
+
+#[test]
+fn explain_knows_the_figures_and_every_term_of_the_glossary() {
+    let place = Place::new();
+    for (_, name, about) in blisk::report::FIGURES {
+        let text = output(&place, &["explain", name]);
+        let own = format!("{name} (figure)\n  meaning   {about}; ");
+        assert!(text.contains(&own), "{name}: {text}");
+    }
+    let terms = include_str!("../../docs/glossary.md")
+        .lines()
+        .filter_map(|line| line.strip_prefix("| ")?.split(" | ").next())
+        .filter(|term| *term != "term" && !term.starts_with("---"));
+    for term in terms {
+        let known = blisk::input::terms_about(term);
+        let named = |own: &blisk::input::Term| own.word.starts_with(term);
+        assert!(known.iter().any(named), "{term}: {known:?}");
+    }
+    let text = output(&place, &["explain", "nodal diameter"]);
+    let meaning = "nodal diameter\n  meaning   Spatial harmonic h of a motion around the wheel";
+    assert!(text.starts_with(meaning), "{text}");
+    assert!(!text.contains("]("), "{text}");
 }
 
 /// From their one declaration, which the page has too.

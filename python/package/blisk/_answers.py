@@ -215,6 +215,9 @@ def campbell(
     *,
     at: Optional[Mapping[float, Union[str, os.PathLike[str]]]] = None,
     modes: int = 6,
+    plot: Optional[Union[str, os.PathLike[str]]] = None,
+    plot_safe: Optional[Union[str, os.PathLike[str]]] = None,
+    top_hz: Optional[float] = None,
 ) -> Answer:
     """Natural frequencies per nodal diameter (Hz), and the speeds (rpm) at which engine orders cross them.
 
@@ -223,6 +226,8 @@ def campbell(
     ``speed_rpm``: lowest and highest speed, rpm; all unless given.
     ``at``: bundles by speed in rpm, in the place of the model of the study; frequencies then follow the speed.
     ``modes``: modes per nodal diameter, 1 to 100.
+    ``plot``, ``plot_safe``: SVG files to write, the Campbell diagram (over speed) and the SAFE diagram (over nodal diameter).
+    ``top_hz``: highest frequency of the diagrams, Hz; above the third mode of every nodal diameter unless given.
 
     Returns a dictionary. ``model``, ``sectors``: of the model. ``speed_rpm``: the speeds of ``at``, rpm. ``range_rpm``:
     the speeds that were asked for, rpm. ``modes``: a list with ``contact``, ``nodal_diameter``, ``mode`` (from 1) and
@@ -245,7 +250,13 @@ def campbell(
     bundles = sorted((float(speed), Path(folder)) for speed, folder in (at or {}).items())
     if any(not 0.0 <= speed <= 1e6 for speed, _ in bundles):
         raise ValueError("at is not accepted; accepted: speeds from 0 to 1e6 rpm with a bundle each")
-    return answer_of(_native.campbell(study._checked, orders, modes, speeds, bundles))
+    for name, file in (("plot", plot), ("plot_safe", plot_safe)):
+        if file is not None and Path(file).suffix.lower() != ".svg":
+            raise ValueError(f"{name} = {os.fspath(file)!r} is not accepted; accepted: a file name ending in .svg")
+    if top_hz is not None and not 1e-3 <= top_hz <= 1e9:
+        raise ValueError(f"top_hz = {top_hz} is not accepted; accepted: a frequency from 1e-3 to 1e9 Hz")
+    plots = (plot, plot_safe, top_hz)
+    return answer_of(_native.campbell(study._checked, orders, modes, speeds, bundles, plots))
 
 
 def modes(study: Study, count: int = 6) -> list[dict[str, Any]]:

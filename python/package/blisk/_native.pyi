@@ -45,7 +45,7 @@ __all__ = [
 ]
 
 _Path = Union[str, os.PathLike[str]]
-_Listener = Callable[[str, int, int, int], object]
+_Listener = Callable[[str, str, int, int, int, Optional[float]], object]
 
 VERSION: str
 BUILD: str
@@ -158,6 +158,7 @@ def campbell(
     modes: int,
     range_rpm: Optional[tuple[float, float]],
     bundles: Sequence[tuple[float, _Path]],
+    plots: tuple[Optional[_Path], Optional[_Path], Optional[float]],
 ) -> tuple[str, str]: ...
 def merge(shards: Sequence[_Path], out: _Path, study_file: Optional[_Path]) -> None: ...
 def replay(results: _Path, scenario: int, pattern: int, full: bool, study_file: Optional[_Path]) -> tuple[str, str]: ...

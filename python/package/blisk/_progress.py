@@ -41,6 +41,10 @@ class Progress:
     """Rows of this run without a result."""
     elapsed_s: float
     """Time since the run began, s."""
+    step: str = ""
+    """What a stage before the rows is at: ``tuned wheel: load 2 of 5 (10 N)``. Empty where nothing is said."""
+    left_s: Optional[float] = None
+    """Time that the rows still take, s, by the rows solved so far; none before enough of them are solved."""
 
 
 ProgressArgument = Union[bool, Callable[[Progress], object], None]
@@ -48,7 +52,9 @@ ProgressArgument = Union[bool, Callable[[Progress], object], None]
 
 
 @contextmanager
-def listening(progress: ProgressArgument) -> Iterator[Optional[Callable[[str, int, int, int], None]]]:
+def listening(
+    progress: ProgressArgument,
+) -> Iterator[Optional[Callable[[str, str, int, int, int, Optional[float]], None]]]:
     """The function that the native part tells how far it is, or none."""
     line = _Line() if progress is True else None
     told: Optional[Callable[[Progress], object]] = None
@@ -60,9 +66,9 @@ def listening(progress: ProgressArgument) -> Iterator[Optional[Callable[[str, in
         raise TypeError(f"progress = {progress!r} is not accepted; accepted: True, False, None or a function")
     began = time.monotonic()
 
-    def listen(stage: str, planned: int, done: int, failed: int) -> None:
+    def listen(stage: str, step: str, planned: int, done: int, failed: int, left_s: Optional[float]) -> None:
         if told is not None:
-            told(Progress(stage, planned, done, failed, time.monotonic() - began))
+            told(Progress(stage, planned, done, failed, time.monotonic() - began, step, left_s))
 
     try:
         yield None if told is None else listen
@@ -79,13 +85,12 @@ class _Line:
         self._over = sys.stderr.isatty()
         self._last = time.monotonic()
         self._width = 0
-        self._rows: Optional[tuple[float, int, int]] = None
         self._reached: Optional[Progress] = None
 
     def show(self, reached: Progress) -> None:
         now = time.monotonic()
         self._reached = reached
-        text = self._text(reached, now)
+        text = _text(reached)
         if self._cell is not None:
             self._cell.show(text, now)
             return
@@ -96,19 +101,6 @@ class _Line:
             self._last = now
             sys.stderr.write(text + "\n")
         sys.stderr.flush()
-
-    def _text(self, reached: Progress, now: float) -> str:
-        if reached.stage != "rows" or not reached.planned:
-            return _STAGES[reached.stage]
-        text = _bar(reached)
-        # The rate is that of this run; rows that were there took no time. A search has several runs.
-        if self._rows is None or self._rows[1] > reached.done or self._rows[2] != reached.planned:
-            self._rows = (now, reached.done, reached.planned)
-        since, before, _ = self._rows
-        if reached.done > before and now > since:
-            left = (reached.planned - reached.done) * (now - since) / (reached.done - before)
-            text += f", about {_time(left)} left"
-        return text
 
     def finish(self) -> None:
         reached = self._reached
@@ -148,6 +140,13 @@ def _in_notebook() -> bool:
     ipython = sys.modules.get("IPython")
     shell = None if ipython is None else ipython.get_ipython()
     return getattr(shell, "kernel", None) is not None
+
+
+def _text(reached: Progress) -> str:
+    if reached.stage != "rows" or not reached.planned:
+        return reached.step or _STAGES[reached.stage]
+    text = _bar(reached)
+    return text if reached.left_s is None else f"{text}, about {_time(reached.left_s)} left"
 
 
 def _bar(reached: Progress) -> str:

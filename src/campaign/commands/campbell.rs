@@ -2,7 +2,9 @@
 
 use crate::model::cyclic::natural_frequencies_hz;
 use crate::model::sector::SectorModel;
-use crate::report::{CampbellMode, CampbellReport};
+use crate::report::{
+    CampbellMode, CampbellReport, DiagramRange, Figure, FigureName, diagram_of_model,
+};
 use crate::settings::contact_stiffness;
 use crate::study::{PipelineError, Study};
 
@@ -19,6 +21,52 @@ pub struct CampbellRequest<'a> {
     pub modes: usize,
     /// Range of speeds, revolutions per minute.
     pub range_rpm: Option<[f64; 2]>,
+}
+
+impl CampbellRequest<'_> {
+    /// The engine orders asked for, or those of the study.
+    #[must_use]
+    pub fn orders(&self) -> &[u32] {
+        if self.engine_orders.is_empty() {
+            &self.study.engine_orders
+        } else {
+            self.engine_orders
+        }
+    }
+
+    /// The Campbell or SAFE diagram of the report of this request, with frequencies up to `top_hz`.
+    ///
+    /// # Errors
+    /// There is nothing to draw; or a SAFE diagram is asked for models at several speeds.
+    pub fn diagram(
+        &self,
+        report: &CampbellReport,
+        name: FigureName,
+        top_hz: Option<f64>,
+    ) -> Result<Figure, PipelineError> {
+        if name == FigureName::Safe && self.models.len() > 1 {
+            return Err(PipelineError::NoCampbell {
+                reason: format!(
+                    "a SAFE diagram has the frequencies of one model, and there are {}; accepted: the model of the study, or one \
+                     at one speed",
+                    self.models.len()
+                ),
+            });
+        }
+        let range = DiagramRange {
+            top_hz,
+            top_rpm: self.range_rpm.map(|[_, high]| high),
+        };
+        diagram_of_model(report, self.orders(), range, name).ok_or_else(|| {
+            PipelineError::NoCampbell {
+                reason: format!(
+                    "there is nothing to draw in the figure {}: no engine order meets a first mode; accepted: other engine orders, \
+                     or a range of speeds",
+                    name.name()
+                ),
+            }
+        })
+    }
 }
 
 /// Natural frequencies with stuck and with sliding contact (without contact where the study has none), and the
@@ -73,17 +121,12 @@ pub fn campbell(request: &CampbellRequest<'_>) -> Result<CampbellReport, Pipelin
             }));
         }
     }
-    let engine_orders = if request.engine_orders.is_empty() {
-        &study.engine_orders
-    } else {
-        request.engine_orders
-    };
     Ok(CampbellReport::new(
         first.name.clone(),
         first.sectors,
         models.iter().filter_map(|(speed, _)| *speed).collect(),
         request.range_rpm,
         modes,
-        engine_orders,
+        request.orders(),
     ))
 }

@@ -79,9 +79,10 @@ pub fn estimate(
     let patterns = pattern_source(study, &model)?;
     let pool = pool_of(request.threads)?;
     progress.stage(Stage::Reduce);
-    let engine = pool.install(|| source.build(study, &model, Some(&results.join("model"))))?;
+    let engine = pool
+        .install(|| source.build_watched(study, &model, Some(&results.join("model")), progress))?;
     progress.stage(Stage::Tuned);
-    let facts = pool.install(|| Facts::solve(engine.as_ref(), study, &digest));
+    let facts = pool.install(|| Facts::solve(engine.as_ref(), study, &digest, progress));
     let work = Work {
         request,
         engine: engine.as_ref(),
@@ -430,6 +431,7 @@ impl Rows<'_> {
         let reused = stored.count(&ids);
         progress.stage(Stage::Rows);
         folder.announce(planned, reused)?;
+        progress.rows_at_a_time(self.work.pool.current_num_threads() as u64);
         progress.begin_rows(planned, reused);
         let rows = RowWork {
             engine: self.work.engine,

@@ -445,6 +445,14 @@ impl Progress for Timed<'_> {
         self.progress.stage(stage);
     }
 
+    fn step(&self, words: &str) {
+        self.progress.step(words);
+    }
+
+    fn rows_at_a_time(&self, rows: u64) {
+        self.progress.rows_at_a_time(rows);
+    }
+
     fn begin_rows(&self, planned: u64, done: u64) {
         if let Ok(mut began) = self.began.lock() {
             *began = Some((Instant::now(), 0));

@@ -67,15 +67,16 @@ pub fn plan(
     let patterns = pattern_source(study, &model)?;
     let pool = pool_of(request.threads)?;
     progress.stage(Stage::Reduce);
-    let engine = pool.install(|| source.build(study, &model, None))?;
+    let engine = pool.install(|| source.build_watched(study, &model, None, progress))?;
     progress.stage(Stage::Tuned);
-    let facts = pool.install(|| Facts::solve(engine.as_ref(), study, &digest));
+    let facts = pool.install(|| Facts::solve(engine.as_ref(), study, &digest, progress));
     let set_up_s = began.elapsed().as_secs_f64();
     let mut ids = patterns.ids();
     ids.truncate(request.pilot);
     let tables = TableWork::new(study, &digest, &patterns, (None, ids), facts);
     let scenarios = &tables.schema().scenarios;
     progress.stage(Stage::Rows);
+    progress.rows_at_a_time((request.threads * scenarios.len()) as u64);
     progress.begin_rows(tables.planned(), 0);
     let work = RowWork {
         engine: engine.as_ref(),

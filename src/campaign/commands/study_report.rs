@@ -21,6 +21,7 @@ use crate::report::{
     LoadChoice, MOST_WHEELS_NAMED, MeasuredPeak, Provenance, ScenarioErrors, ShownModel,
     StudyReport, Wheels,
 };
+use crate::response::harmonic_balance::Status;
 use crate::settings::EngineSource;
 use crate::study::PipelineError;
 
@@ -61,6 +62,13 @@ pub fn report(
         .into_iter()
         .map(|group| group_report(&columns, &rows, group))
         .collect();
+    let measured = measured_peaks(&columns)?;
+    for group in &mut groups {
+        let here = measured
+            .iter()
+            .filter(|own| group.scenarios.contains(&own.scenario));
+        group.measured = here.copied().collect();
+    }
     let asked = request.curves || request.model;
     let inputs = asked.then(|| inputs_of(request)).transpose()?;
     if let (true, Some(inputs)) = (request.curves, &inputs) {
@@ -191,27 +199,37 @@ fn group_report(columns: &ResultColumns, rows: &[ErrorRows], group: Range<usize>
         wheels: Wheels::NotSolved {
             reason: "not asked for".to_owned(),
         },
-        measured: measured_peaks(&columns.patterns, scenarios),
+        measured: Vec::new(),
     }
 }
 
 /// The peaks of the wheels of a file, scenario by scenario; none of drawn ones, nor of many.
-fn measured_peaks(patterns: &[u32], scenarios: &[ScenarioColumns]) -> Vec<MeasuredPeak> {
-    // Only wheels of a file have no standard deviation.
-    let of_file = |load: &&ScenarioColumns| load.scenario.standard_deviation.is_none();
-    if patterns.len() as u64 > MOST_WHEELS_NAMED {
-        return Vec::new();
+fn measured_peaks(columns: &ResultColumns) -> Result<Vec<MeasuredPeak>, PipelineError> {
+    let mut peaks = Vec::new();
+    if columns.patterns.len() as u64 > MOST_WHEELS_NAMED {
+        return Ok(peaks);
     }
-    { scenarios.iter().filter(of_file) }
-        .flat_map(|load| {
-            let peaks = patterns.iter().zip(load.values(Quantity::PeakAmplitudeM));
-            peaks.map(|(&pattern, &peak_amplitude_m)| MeasuredPeak {
-                scenario: load.scenario.index,
-                pattern,
-                peak_amplitude_m,
-            })
-        })
-        .collect()
+    let mut reader = ResponseReader::open(&columns.folder.join("responses.parquet"))?;
+    loop {
+        let batch: Vec<ResponseRow> = reader.next_batch()?;
+        if batch.is_empty() {
+            break;
+        }
+        // Only wheels of a file have no standard deviation.
+        let of_file = batch.iter().filter(|row| {
+            let load = columns.scenarios.get(row.scenario);
+            load.is_some_and(|load| load.scenario.standard_deviation.is_none())
+        });
+        peaks.extend(of_file.map(|row| MeasuredPeak {
+            scenario: row.scenario,
+            pattern: row.pattern,
+            peak_amplitude_m: Quantity::PeakAmplitudeM.of(row),
+            amplification_factor: Quantity::AmplificationFactor.of(row),
+            peak_blade: row.peak_blade.filter(|_| row.status == Status::Ok),
+        }));
+    }
+    peaks.sort_by_key(|peak| peak.scenario);
+    Ok(peaks)
 }
 
 /// What every row of a scenario states of errors that are not measured on the row itself, besides the basis.

@@ -166,9 +166,10 @@ pub(in crate::campaign) fn run_in(
     }
     if ended.is_none() {
         progress.stage(Stage::Reduce);
-        let engine = pool.install(|| source.build(study, &model, Some(scope.model_cache)))?;
+        let engine = pool
+            .install(|| source.build_watched(study, &model, Some(scope.model_cache), progress))?;
         progress.stage(Stage::Tuned);
-        let facts = pool.install(|| Facts::solve(engine.as_ref(), study, &digest));
+        let facts = pool.install(|| Facts::solve(engine.as_ref(), study, &digest, progress));
         let mut solved = 0;
         for &size in job.goal.ends() {
             let tables = tables(size, facts.clone());
@@ -317,6 +318,8 @@ impl Job<'_> {
                 .map_or_else(String::new, |stored| why_anew(stored, &tables.unfinished()));
             self.progress.solves_anew(anew, &why);
         }
+        let at_a_time = pool.current_num_threads() * scenarios.len();
+        self.progress.rows_at_a_time(at_a_time as u64);
         self.progress.begin_rows(tables.planned(), reused);
         let rows = RowWork {
             engine,

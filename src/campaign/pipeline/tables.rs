@@ -20,7 +20,7 @@ use crate::population::table::{
 };
 use crate::report::StudySummary;
 use crate::response::mistuning::{GENERATOR, PatternSource};
-use crate::settings::{Engine, tuned_references};
+use crate::settings::{Engine, Progress, tuned_references};
 use crate::study::{PipelineError, Study, StudyDigest};
 
 /// Patterns up to which `patterns.parquet` is written without being asked for.
@@ -40,15 +40,16 @@ pub(in crate::campaign) struct Facts {
 }
 
 impl Facts {
-    /// Asks the engine.
+    /// Asks the engine; `progress` is told which tuned wheel is solved.
     pub(in crate::campaign) fn solve(
         engine: &dyn Engine,
         study: &Study,
         digest: &StudyDigest,
+        progress: &dyn Progress,
     ) -> Self {
         let scenarios = study.scenarios();
         Self {
-            tuned: tuned_references(engine, &scenarios),
+            tuned: tuned_references(engine, &scenarios, progress),
             row_digests: scenarios
                 .iter()
                 .map(|scenario| digest.of_rows(scenario, &engine.rows_made_from(scenario)))

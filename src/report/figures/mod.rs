@@ -14,6 +14,7 @@ mod uncertainty;
 mod wheel;
 
 pub(super) use bodies::{body_word, friction_words};
+pub use campbell::{DiagramRange, diagram_of_model};
 pub use figure::{FIGURES, Figure, FigureName};
 
 use super::{GroupReport, ShownModel, StudyReport, Wheels};

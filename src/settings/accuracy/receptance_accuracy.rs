@@ -44,7 +44,7 @@ pub(super) fn on_receptances(
     let mut operations = 0.0;
     loop {
         setting = left.next().unwrap_or(setting);
-        let stored = stored_for(&setting.applied_to(study), sector, cache)?;
+        let stored = stored_for(&setting.applied_to(study), sector, cache, &())?;
         let choice = |met, evidence| AccuracyChoice {
             accepted,
             craig_bampton_modes: stored.fixed_interface.modes,

@@ -13,6 +13,7 @@ use crate::response::forced_response::{ResponseTrace, SearchPlan};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
 use crate::settings::accuracy::AccuracyChoice;
+use crate::settings::progress::Progress;
 use crate::study::{AccuracyOptions, PipelineError, Study};
 use crate::verification::time_integration::{PointComparison, TimeOptions};
 
@@ -30,11 +31,12 @@ pub(super) fn accurate_engine(
     study: &Study,
     accuracy: AccuracyOptions,
     source: &dyn EngineSource,
-    model: &SectorModel,
-    cache: Option<&Path>,
+    (model, cache): (&SectorModel, Option<&Path>),
+    progress: &dyn Progress,
 ) -> Result<Box<dyn Engine>, PipelineError> {
+    progress.step("choosing settings for the accepted error of [accuracy]");
     let choice = AccuracyChoice::of(study, accuracy, model, cache)?;
-    let engine = source.build(&choice.applied_to(study), model, cache)?;
+    let engine = source.build_watched(&choice.applied_to(study), model, cache, progress)?;
     Ok(Box::new(AccurateEngine { engine, choice }))
 }
 

@@ -13,6 +13,7 @@ use crate::report::ModelReport;
 use crate::response::forced_response::{ResponseTrace, SearchPlan};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::Pattern;
+use crate::settings::progress::Progress;
 use crate::study::{PipelineError, Study};
 use crate::verification::time_integration::{PointComparison, TimeOptions};
 
@@ -122,4 +123,18 @@ pub trait EngineSource: Sync {
         model: &SectorModel,
         cache: Option<&Path>,
     ) -> Result<Box<dyn Engine>, PipelineError>;
+
+    /// The same engine; `progress` is told what the reduction is at.
+    ///
+    /// # Errors
+    /// As [`Self::build`].
+    fn build_watched(
+        &self,
+        study: &Study,
+        model: &SectorModel,
+        cache: Option<&Path>,
+        _progress: &dyn Progress,
+    ) -> Result<Box<dyn Engine>, PipelineError> {
+        self.build(study, model, cache)
+    }
 }

@@ -20,6 +20,7 @@ use crate::response::mistuning::Pattern;
 use crate::settings::SHAPES_BETWEEN;
 use crate::settings::basis_choice::BasisEvidence;
 use crate::settings::fixed_interface::FixedInterface;
+use crate::settings::progress::Progress;
 use crate::settings::reduced_study::{models_digest, solver_of, stored_digest, stored_for};
 use crate::study::{PipelineError, Study};
 use crate::verification::time_integration::{PointComparison, TimeOptions};
@@ -56,11 +57,22 @@ impl EngineSource for ReducedEngineSource {
         model: &SectorModel,
         cache: Option<&Path>,
     ) -> Result<Box<dyn Engine>, PipelineError> {
+        self.build_watched(study, model, cache, &())
+    }
+
+    fn build_watched(
+        &self,
+        study: &Study,
+        model: &SectorModel,
+        cache: Option<&Path>,
+        progress: &dyn Progress,
+    ) -> Result<Box<dyn Engine>, PipelineError> {
         if let Some(accuracy) = study.accuracy {
-            return accurate_engine(study, accuracy, self, model, cache);
+            return accurate_engine(study, accuracy, self, (model, cache), progress);
         }
         let digest = stored_digest(study, model)?;
-        let stored = stored_for(study, model, cache)?;
+        let stored = stored_for(study, model, cache, progress)?;
+        progress.step("receptances and harmonics of the rows");
         Ok(Box::new(ReducedEngine {
             evidence: stored.evidence.clone(),
             fixed_interface: stored.fixed_interface.clone(),

@@ -4,6 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::Engine;
 use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use crate::report::{excitation, short_load_with_unit};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::{Pattern, PatternSource};
 use crate::settings::progress::Progress;
@@ -67,13 +68,29 @@ pub(crate) fn rows_of(
 }
 
 /// Tuned reference of each scenario. The tuned wheel, which knows no standard deviation, is solved once per engine order and
-/// contact condition.
-pub(crate) fn tuned_references(engine: &dyn Engine, scenarios: &[Scenario]) -> Vec<TunedReference> {
+/// contact condition; `progress` is told which one.
+pub(crate) fn tuned_references(
+    engine: &dyn Engine,
+    scenarios: &[Scenario],
+    progress: &dyn Progress,
+) -> Vec<TunedReference> {
+    let first_alike = |scenario: &Scenario| {
+        let alike =
+            |other: &Scenario| other.same_excitation(scenario) && other.contact == scenario.contact;
+        scenarios.iter().position(alike)
+    };
+    let own: Vec<&Scenario> = { scenarios.iter().enumerate() }
+        .filter(|(place, scenario)| first_alike(scenario) == Some(*place))
+        .map(|(_, scenario)| scenario)
+        .collect();
+    let mut solved = 0;
     let mut tuned: Vec<TunedReference> = Vec::new();
-    for scenario in scenarios {
-        let same = scenarios[..tuned.len()]
-            .iter()
-            .position(|other| other.same_excitation(scenario) && other.contact == scenario.contact);
+    for (place, scenario) in scenarios.iter().enumerate() {
+        let same = first_alike(scenario).filter(|&first| first < place);
+        if same.is_none() {
+            solved += 1;
+            progress.step(&tuned_step(scenario, solved, &own));
+        }
         tuned.push(match same {
             Some(same) => TunedReference {
                 scenario: scenario.index,
@@ -83,4 +100,16 @@ pub(crate) fn tuned_references(engine: &dyn Engine, scenarios: &[Scenario]) -> V
         });
     }
     tuned
+}
+
+/// The tuned wheel of `scenario`, the `number`th of `all` that are solved: by load, and by engine order and load case where they differ.
+fn tuned_step(scenario: &Scenario, number: usize, all: &[&Scenario]) -> String {
+    let contact = scenario.contact;
+    let load = short_load_with_unit(contact.name(), contact.normal_load_n());
+    let count = all.len();
+    if all.iter().all(|other| other.same_excitation(scenario)) {
+        return format!("tuned wheel: load {number} of {count} ({load})");
+    }
+    let excitation = excitation(scenario.load_case, scenario.engine_order);
+    format!("tuned wheel: load {number} of {count} ({excitation}, {load})")
 }

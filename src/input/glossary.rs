@@ -1,0 +1,61 @@
+//! The terms of `docs/glossary.md`, in plain text.
+
+use std::sync::LazyLock;
+
+/// Words and meanings of the page, in its order.
+static WRITTEN: LazyLock<Vec<(String, String)>> =
+    LazyLock::new(|| terms(include_str!("../../docs/glossary.md")));
+
+/// The terms of the page, each with its meaning.
+pub(super) fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let written: &'static [(String, String)] = &WRITTEN;
+    { written.iter() }.map(|(word, meaning)| (word.as_str(), meaning.as_str()))
+}
+
+/// The rows of the tables of a page: term, meaning, unit, where it is defined.
+fn terms(page: &str) -> Vec<(String, String)> {
+    let rows = page.lines().filter_map(|line| {
+        let cells: Vec<&str> = line.strip_prefix('|')?.split('|').map(str::trim).collect();
+        let [word, meaning, unit, ..] = cells[..] else {
+            return None;
+        };
+        if word == "term" || word.starts_with("---") {
+            return None;
+        }
+        let unit = match unit {
+            "" | "1" | "as the value" | "as the figure" => String::new(),
+            unit => format!(" Unit: {unit}."),
+        };
+        Some((word.to_owned(), plain(&format!("{meaning}{unit}"))))
+    });
+    rows.collect()
+}
+
+/// Markdown as plain text: no marks of code, and a link as the file it leads to.
+#[must_use]
+pub fn plain(words: &str) -> String {
+    let mut parts = words.split(['[', ']']);
+    let mut plain = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        // `[file](file)` comes as `file` and `(file)...`.
+        match part.strip_prefix('(').and_then(|rest| rest.split_once(')')) {
+            Some((_, rest)) => plain.push_str(rest),
+            None => plain.push_str(part),
+        }
+    }
+    plain.replace('`', "")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{glossary, terms};
+
+    #[test]
+    fn rows_of_tables_are_terms() {
+        let page = "# Page\n\n| term | meaning | unit | defined in |\n| --- | --- | --- | --- |\n\
+                    | a wheel | As `b` in [c](d.md). | Hz | [e](e.md) |\n\nText | more.\n";
+        let term = ("a wheel".to_owned(), "As b in c. Unit: Hz.".to_owned());
+        assert_eq!(terms(page), [term]);
+        assert!(glossary().count() > 40);
+    }
+}
