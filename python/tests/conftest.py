@@ -13,6 +13,7 @@ import pytest
 import blisk
 
 ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = ROOT / "python" / "package" / "blisk" / "examples"
 
 
 def study_of(script):
@@ -24,7 +25,7 @@ def study_of(script):
 
 # The study of the example with less to solve.
 SMALL = {
-    **study_of(ROOT / "python" / "examples" / "quickstart.py"),
+    **study_of(EXAMPLES / "quickstart.py"),
     "study": {"name": "small", "seed": 7, "patterns": 80},
     "sweep": {"normal_load_n": ["slide", 50, 150, "stuck"], "standard_deviation": [0.03]},
     "solver": {"harmonics": [1, 3]},

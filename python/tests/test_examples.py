@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import nbformat
 import numpy
@@ -11,12 +12,12 @@ import pytest
 import scipy.sparse
 from ansys.mapdl import reader
 from ansys.mapdl.reader import examples
-from conftest import ROOT
+from conftest import EXAMPLES, ROOT
 from scipy.linalg import eigh
 
 import blisk
 
-SCRIPT = ROOT / "python" / "examples" / "ansys_files.py"
+SCRIPT = EXAMPLES / "ansys_files.py"
 NOTEBOOK = ROOT / "python" / "notebooks" / "from-ansys.ipynb"
 TIP, LOSS_FACTOR = 27, 0.01
 
@@ -25,7 +26,7 @@ TIP, LOSS_FACTOR = 27, 0.01
 def carried_out(tmp_path_factory):
     """What the script prints, and its results."""
     folder = tmp_path_factory.mktemp("ansys-files")
-    ended = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True)
+    ended = subprocess.run([sys.executable, "-m", "blisk.examples", SCRIPT.stem, folder], capture_output=True, text=True)
     assert ended.returncode == 0, ended.stderr
     return ended.stdout, blisk.Results(folder / "beam")
 
@@ -66,6 +67,26 @@ def test_it_prints_what_the_page_shows(carried_out):
     # How near two solvers are is noise of the machine.
     printed = re.sub(r"within \de-1\d of SciPy", "within 4e-13 of SciPy", text).splitlines()
     assert len(shown) >= 3 and printed[-len(shown) :] == shown
+
+
+def test_the_package_has_the_examples_of_the_repository_and_lists_them(tmp_path):
+    installed = Path(blisk.__file__).parent / "examples"
+    names = sorted(path.name for path in EXAMPLES.glob("*.py"))
+    assert names == ["__init__.py", "__main__.py", "ansys_files.py", "quickstart.py"]
+    for name in names:
+        assert (installed / name).read_bytes() == (EXAMPLES / name).read_bytes()
+        assert (ROOT / "python" / "examples" / name).samefile(EXAMPLES / name)
+
+    def ended(*arguments):
+        line = [sys.executable, "-m", "blisk.examples", *arguments]
+        return subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, check=False)
+
+    listed = ended()
+    assert listed.returncode == 0, listed.stderr
+    for name in ("ansys_files", "quickstart"):
+        assert re.search(rf"^{name}: .*\n    {re.escape(str(installed / name))}\.py$", listed.stdout, flags=re.MULTILINE)
+    wrong = ended("ansys")
+    assert wrong.returncode != 0 and wrong.stderr == "error: ansys is no example; accepted: ansys_files, quickstart\n"
 
 
 def calls(code):

@@ -97,3 +97,14 @@ def test_progress_in_a_notebook_is_a_bar_that_is_written_over(folder):
     # That line is the output of the cell, with what the cell gives, and nothing else.
     outputs = [output["data"]["text/plain"] for output in notebook.cells[0].outputs]
     assert outputs == [texts[-1], "True"]
+
+
+def test_steps_of_an_import_in_a_notebook_are_one_output_that_grows(folder):
+    code = (
+        "from blisk._import._steps import Steps\nsteps = Steps(True)\n"
+        "steps.begins('reading')\nsteps.begins('checking')\nSteps(False).begins('silent')"
+    )
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(code)])
+    Client(notebook, folder).execute()
+    (output,) = notebook.cells[0].outputs
+    assert re.fullmatch(r" +\d+ s  reading\n +\d+ s  checking", output["data"]["text/plain"])

@@ -250,6 +250,43 @@ def test_axes_hold_the_numbers_of_the_tables(finished):
     matplotlib.pyplot.close("all")
 
 
+def test_axes_of_a_distribution_hold_the_numbers_of_the_table(finished):
+    def stairs(axes):
+        return {line.get_label(): line for line in axes.get_lines() if not line.get_label().startswith("_")}
+
+    best = finished.best(percentile=95)
+    axes = finished.plot_distribution()
+    (name,) = stairs(axes)
+    assert name == f"{best.normal_load_n:g} N"
+    table = finished.distribution.rows()
+    rows = [row for row in table if row["scenario"] == best.scenario and row["quantity"] == "peak_amplitude_m"]
+    line = stairs(axes)[name]
+    assert len(rows) == 80 and list(line.get_xdata()) == [row["value"] / 1e-6 for row in rows]
+    assert list(line.get_ydata()) == [100 * row["cumulative"] for row in rows]
+    # Titles, unit and scale of the figure of the report: the median of Gumbel's law is 0.3665 of its reduced variate.
+    figure = finished.figure("amplitude-distribution").svg
+    assert axes.get_xlabel() == "peak blade amplitude, µm" and axes.get_xlabel() in figure
+    assert axes.get_ylabel() == "wheels below, % (Gumbel scale)" and axes.get_ylabel() in figure
+    assert axes.get_xscale() == "linear" and axes.get_ylim() == (0.625, 99.9)
+    to_scale = axes.yaxis.get_transform()
+    assert to_scale.transform([50.0]) == pytest.approx([0.36651], abs=1e-5)
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["1", "5", "25", "50", "75", "95", "99", "99.9"]
+    # The square of the P95 lies on the stair, with its bounds.
+    points = [(list(own.get_xdata()), list(own.get_ydata())) for own in axes.get_lines()]
+    assert ([best.value / 1e-6], [95.0]) in points
+    assert ([best.lower / 1e-6, best.upper / 1e-6], [95.0, 95.0]) in points
+    # Other loads, another quantity, axes of one's own for a paper.
+    _, own = matplotlib.pyplot.subplots(figsize=(3.35, 2.7), layout="constrained")
+    assert finished.plot_distribution("amplification_factor", loads=["slide", 150, "stuck"], ax=own) is own
+    assert list(stairs(own)) == ["slide", "150 N", "stuck"] and own.get_xlabel() == "amplification factor"
+    own.figure.draw_without_rendering()
+    with pytest.raises(ValueError, match=r"loads = \[70\] is not accepted; accepted: some of 'slide', 50, 150, 'stuck'"):
+        finished.plot_distribution(loads=[70])
+    with pytest.raises(ValueError, match="accepted: peak_amplitude_m"):
+        finished.plot_distribution("luck")
+    matplotlib.pyplot.close("all")
+
+
 def test_labels_of_loads_do_not_run_into_each_other(study):
     loads = [50, 80, 100, 120, 140, 150, 400, 1000]
     results = blisk.run(study.replace({"study.patterns": 6, "sweep.normal_load_n": loads}))

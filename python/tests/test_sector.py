@@ -470,8 +470,85 @@ def test_a_result_file_of_another_model_fails_the_check(beam, tmp_path):
     own = _ansys.run(examples.fullfile, examples.hexarchivefile, ())
     own.matrices.mass = 1.01 * own.matrices.mass
     with pytest.raises(blisk.BliskError, match="mode 1 of file.rst, .* is not one of the matrices") as refused:
-        _ansys.result_checked(examples.rstfile, own, held, lambda count: [], 5)
+        _ansys.result_checked(examples.rstfile, examples.fullfile, own, held, lambda count: [], 5)
     assert refused.value.exit_code == 11
+    # The mesh of the result file is the first that is compared.
+    rows = [(node + 1000 * (node > 300), direction) for node, direction in own.matrices.rows]
+    own.matrices = Matrices(rows, own.matrices.stiffness, own.matrices.mass)
+    with pytest.raises(blisk.InputError) as refused:
+        _ansys.result_checked(examples.rstfile, "wheel.full", own, held, lambda count: [], 5)
+    words = f"{examples.rstfile} and wheel.full are not of one model: {examples.rstfile} has 321 nodes, and wheel.full has 300"
+    assert str(refused.value).startswith(words), refused.value
+    assert "accepted: files of one model" in str(refused.value)
+
+
+def test_a_mesh_or_a_blade_of_another_model_is_refused_by_the_numbers_of_nodes(tmp_path, monkeypatch):
+    def refusal(full=examples.fullfile, cdb=examples.hexarchivefile, blade_full=examples.fullfile):
+        with pytest.raises(blisk.InputError) as refused:
+            blisk.Sector.from_ansys(full, cdb, blade_full=blade_full, out=tmp_path, sectors=5, axis="x", **WORDS)
+        return str(refused.value)
+
+    full, other = examples.fullfile, examples.sector_archive_file
+    words = refusal(cdb=other)
+    counts = f"{full} has 321 nodes, and {other} has 655 nodes, of which 230 belong to its elements"
+    assert words.startswith(f"{full} and {other} are not of one model: {counts}"), words
+    assert "accepted: files of one model, all of them written after the last change of its mesh" in words
+    # A blade with other nodes, and a mesh that differs by a few nodes alone: what is refused then may have that cause.
+    read = _ansys._read
+
+    def renumbered(path):
+        own, nodes = read(examples.fullfile)
+        by = 5000 * (path == "blade.full")
+        return Matrices([(node + by, axis) for node, axis in own.rows], own.stiffness, own.mass), {node + by for node in nodes}
+
+    monkeypatch.setattr(_ansys, "_read", renumbered)
+    words = refusal(blade_full="blade.full")
+    assert words.startswith(f"blade.full and {full} are not of one model: blade.full has 321 nodes, of which 321 are not among the 321")
+    assert "accepted: the same model with the blade's elements selected" in words
+    own, nodes = read(examples.fullfile)
+    monkeypatch.setattr(_ansys, "_read", lambda path: (own, nodes - {27}))
+    words = refusal()
+    assert words.startswith(f"{full} and {examples.hexarchivefile} may not be of one model: {full} has 320 nodes")
+    assert "\nno node of the blisk lies where another one lies" in words
+
+
+def test_each_step_of_an_import_is_told_with_its_time(solid, tmp_path, capfd, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+    def told(**more):
+        blisk.Sector.from_arrays(
+            solid.stiffness, solid.mass, solid.blade_stiffness, solid.positions, out="bundle", sectors=6,
+            held=[node + 1 for node in solid.held], sets={"TIP": [solid.tip + 1]}, **WORDS, **more,
+        )  # fmt: skip
+        shown = capfd.readouterr()
+        assert shown.out == ""
+        return shown.err.splitlines()
+
+    lines = told()
+    assert all(re.match(r" +\d+ s  \S", line) for line in lines), lines
+    checks = [f"checking nodal diameter {diameter} by SciPy ({diameter + 1} of 4)" for diameter in range(4)]
+    steps = [
+        "reading the arrays",
+        "finding the cut faces",
+        f"writing what the bundle is made of: {Path('bundle') / 'import'}",
+        "making the bundle, with 6 frequencies per nodal diameter: bundle",
+        *checks,
+        "ready",
+    ]
+    assert [line.partition(" s  ")[2] for line in lines] == steps
+    assert told(progress=False) == []
+    assert not any("SciPy" in line for line in told(check=False))
+
+
+def test_the_steps_of_ansys_name_its_files(beam, tmp_path, capfd):
+    _, _, _, held, _ = beam
+    blisk.Sector.from_ansys(
+        examples.fullfile, examples.hexarchivefile, blade_full=examples.fullfile, rst=examples.rstfile, sectors=5,
+        out=tmp_path, axis="x", low_face="LOW", high_face="HIGH", sets={"LOW": held, "HIGH": held, "TIP": [27]}, **WORDS,
+    )  # fmt: skip
+    shown = [line.partition(" s  ")[2] for line in capfd.readouterr().err.splitlines()]
+    assert f"reading {examples.fullfile} and {examples.hexarchivefile}" in shown
+    assert shown[-2:] == [f"comparing with {examples.rstfile}", "ready"]
 
 
 def test_frequencies_that_differ_from_those_of_the_matrices_fail_the_check(solid, tmp_path, monkeypatch):

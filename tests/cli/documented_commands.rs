@@ -112,7 +112,7 @@ const NOT_RUN: [(&str, &str); 37] = [
         "needs ansys-mapdl-reader; tests/readers/ansys_files.py runs it",
     ),
     (
-        "python python/examples/ansys_files.py",
+        "python -m blisk.examples",
         "needs the Python package; python/tests/test_examples.py runs it",
     ),
 ];

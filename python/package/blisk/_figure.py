@@ -13,7 +13,7 @@ from ._needed import needed
 if TYPE_CHECKING:
     from ._results import Results
 
-_LABELS = {"peak_amplitude_m": "peak blade amplitude", "amplification_factor": "amplification factor"}
+LABELS = {"peak_amplitude_m": "peak blade amplitude", "amplification_factor": "amplification factor"}
 _LIMITS = {"slide": ":", "stuck": "--"}
 """Line of a linear limit."""
 _UNITS = (("m", 1.0, 100.0), ("mm", 1e-3, 0.1), ("µm", 1e-6, 1e-8), ("nm", 1e-9, 0.0))
@@ -65,13 +65,12 @@ def figures() -> dict[str, str]:
 
 def plotted(results: Results, quantity: str, percentiles: Sequence[float], wanted: Mapping[str, Any], ax: Any) -> Any:
     """Percentiles over the normal load; see ``Results.plot``."""
-    if quantity not in _LABELS:
-        raise ValueError(f"quantity = {quantity!r} is not accepted; accepted: {', '.join(_LABELS)}")
+    checked_quantity(quantity)
     every = results.scenarios.rows()
-    scenarios = _only(every, wanted)
+    scenarios = only(every, wanted)
     own = {row["scenario"] for row in scenarios}
     table = [row for row in results.percentiles.rows() if row["scenario"] in own and row["quantity"] == quantity]
-    unit, metres = _unit(every) if quantity == "peak_amplitude_m" else ("", 1.0)
+    unit, metres = unit_of(every) if quantity == "peak_amplitude_m" else ("", 1.0)
     if ax is None:
         _, ax = needed("matplotlib.pyplot", "plot()").subplots()
     for percent in percentiles:
@@ -102,12 +101,18 @@ def plotted(results: Results, quantity: str, percentiles: Sequence[float], wante
     drawn = [row for row in table if row["percent"] in _OF_THE_REPORT and row["value"] is not None]
     values = [row[key] / metres for row in drawn for key in ("value", "lower", "upper") if row[key] is not None]
     values += [row["tuned_amplitude_m"] / metres for row in tuned]
-    _scale(ax, [row["normal_load_n"] for row in scenarios if row["contact"] == "full"], values, f"{_LABELS[quantity]}{unit}")
+    _scale(ax, [row["normal_load_n"] for row in scenarios if row["contact"] == "full"], values, f"{LABELS[quantity]}{unit}")
     ax.legend()
     return ax
 
 
-def _unit(scenarios: list[dict[str, Any]]) -> tuple[str, float]:
+def checked_quantity(quantity: str) -> None:
+    """Refuses what is no quantity."""
+    if quantity not in LABELS:
+        raise ValueError(f"quantity = {quantity!r} is not accepted; accepted: {', '.join(LABELS)}")
+
+
+def unit_of(scenarios: list[dict[str, Any]]) -> tuple[str, float]:
     """The unit of amplitudes, as the report has it, and its length in m."""
     found = [row[key] for row in scenarios for key in ("tuned_amplitude_m", "peak_amplitude_m_mean")]
     smallest = min((own for own in found if own is not None), default=1e-6)
@@ -152,7 +157,7 @@ def _ticks(ax: Any, loads: Sequence[float]) -> None:
     ax.set_xticks(loads, labels=labels)
 
 
-def _only(rows: list[dict[str, Any]], wanted: Mapping[str, Any]) -> list[dict[str, Any]]:
+def only(rows: list[dict[str, Any]], wanted: Mapping[str, Any]) -> list[dict[str, Any]]:
     """The rows of one excitation and standard deviation."""
     for key, value in wanted.items():
         rows = [row for row in rows if value is None or row.get(key) == value]

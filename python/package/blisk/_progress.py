@@ -81,7 +81,7 @@ class _Line:
     """A line with a bar: on a terminal written over, in a notebook an output of its cell, elsewhere one now and then."""
 
     def __init__(self) -> None:
-        self._cell = _Cell() if _in_notebook() else None
+        self._cell = cell_of_notebook()
         self._over = sys.stderr.isatty()
         self._last = time.monotonic()
         self._width = 0
@@ -112,7 +112,7 @@ class _Line:
             sys.stderr.flush()
 
 
-class _Cell:
+class Cell:
     """The output of a notebook's cell that is written over."""
 
     def __init__(self) -> None:
@@ -135,11 +135,11 @@ class _Cell:
             self._handle.update(content, raw=True)
 
 
-def _in_notebook() -> bool:
-    """Whether a kernel of Jupyter carries this out."""
+def cell_of_notebook() -> Optional[Cell]:
+    """The output of the cell that a kernel of Jupyter carries out; none without such a kernel."""
     ipython = sys.modules.get("IPython")
     shell = None if ipython is None else ipython.get_ipython()
-    return getattr(shell, "kernel", None) is not None
+    return None if getattr(shell, "kernel", None) is None else Cell()
 
 
 def _text(reached: Progress) -> str:

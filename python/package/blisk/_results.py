@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Optional, Union
 
 from . import _native
+from ._distribution import drawn
 from ._errors import BliskError
 from ._figure import Figure, plotted
 from ._native import Table
@@ -238,6 +239,31 @@ class Results:
         """
         wanted = {"engine_order": engine_order, "standard_deviation": standard_deviation, "load_case": load_case}
         return plotted(self, quantity, percentiles, wanted, ax)
+
+    def plot_distribution(
+        self,
+        quantity: str = "peak_amplitude_m",
+        *,
+        loads: Optional[Sequence[Union[float, str]]] = None,
+        engine_order: Optional[int] = None,
+        standard_deviation: Optional[float] = None,
+        load_case: Optional[str] = None,
+        ax: Any = None,
+    ) -> Any:
+        """Draws the share of the wheels that stay below a value, %, with the 95 % band of the whole distribution.
+
+        ``quantity``: ``peak_amplitude_m`` or ``amplification_factor``. Unit and scales are those of the report's figure
+        ``amplitude-distribution``: the vertical axis is that of Gumbel's law, which spreads the tail.
+        ``loads``: normal loads per sector (N) of the study, or the names ``"slide"``, ``"stuck"``, ``"free"``; unless
+        given the load with the lowest of the highest percentile that has a value.
+        ``engine_order``, ``standard_deviation``, ``load_case``: the number, the relative deviation (1) and the name of
+        one setting; needed where the study has several.
+        ``ax``: axes of matplotlib to draw into; new ones unless given.
+
+        Returns the axes. A square is a percentile, and the line through it reaches from its lower to its upper 95 % bound.
+        """
+        wanted = {"engine_order": engine_order, "standard_deviation": standard_deviation, "load_case": load_case}
+        return drawn(self, quantity, loads, wanted, ax)
 
     def _repr_html_(self) -> str:
         text = f"<pre>{escape(self.summary_text)}</pre>"

@@ -12,7 +12,7 @@ from . import _native
 from ._answer import Answer, answer_of
 from ._import import _abaqus, _ansys, _arrays, _nastran
 from ._import._keywords import Keywords, Wheel, with_keywords
-from ._import._run import Matrices, held_nodes, refused, symmetric
+from ._import._run import Matrices, held_nodes, refused, saying_first, symmetric
 from ._import._write import Import, Imported, blade_of
 from ._needed import needed
 
@@ -101,23 +101,29 @@ class Sector:
         ``ring``, ``damper`` with files of their own: the keys ``full`` and ``cdb``, and ``held``.
         """
         wheel = Wheel.of(cdb, keywords)
+        wheel.steps.begins(f"reading {full} and {cdb}")
         own = _ansys.run(full, cdb, wheel.held, wheel.sets)
-        others = {
-            body: _ansys.run(table["full"], table["cdb"], table.get("held", ()))
-            for body, table in _with_files(wheel.ring, wheel.damper, ("full", "cdb"))
-        }
+        others = {}
+        for body, table in _with_files(wheel.ring, wheel.damper, ("full", "cdb")):
+            wheel.steps.begins(f"reading {table['full']} and {table['cdb']}")
+            others[body] = _ansys.run(table["full"], table["cdb"], table.get("held", ()))
         alone: Optional[Matrices] = None
         if blade_full is not None:
-            alone = _ansys.matrices(blade_full)
+            wheel.steps.begins(f"reading {blade_full}")
+            alone = _ansys.blade_of_file(own, full, blade_full)
         elif blade_emat is not None and blade is not None:
+            wheel.steps.begins(f"reading {blade_emat}")
             alone = _ansys.blade_of_elements(own, cdb, blade_emat, blade)
         alone = blade_of(own, alone, "blade_full, or blade_emat and blade")
-        work = Import(wheel, own, alone, others)
-        sector = cls._of(work.carried_out())
+        with saying_first(own.doubt, *(of_body.doubt for of_body in others.values())):
+            work = Import(wheel, own, alone, others)
+            made = work.carried_out()
         if rst is not None:
+            wheel.steps.begins(f"comparing with {rst}")
             faces = [node for pair in work.pairs["blisk"] for node in pair]
-            sector.check["result_file"] = _ansys.result_checked(rst, own, faces, sector.frequencies_hz, wheel.sectors)
-        return sector
+            ours = cls(made.folder).frequencies_hz
+            made.check["result_file"] = _ansys.result_checked(rst, full, own, faces, ours, wheel.sectors)
+        return cls._of(made, wheel)
 
     @classmethod
     @with_keywords
@@ -150,22 +156,25 @@ class Sector:
         ``ring``, ``damper`` with files of their own: the keys ``bdf`` and ``matrices``, and ``rows``, ``held``.
         """
         wheel = Wheel.of(bdf, keywords)
+        wheel.steps.begins(f"reading {bdf} and {matrices}")
         names = (stiffness_name, mass_name)
         made = _nastran.matrices(_nastran.grids(bdf), matrices, mass or matrices, rows, names)
         own = _nastran.run(bdf, made, wheel.held, wheel.sets)
         others = {}
         for body, table in _with_files(wheel.ring, wheel.damper, ("bdf", "matrices")):
+            wheel.steps.begins(f"reading {table['bdf']} and {table['matrices']}")
             points = _nastran.grids(table["bdf"])
             of_body = _nastran.matrices(points, table["matrices"], table["matrices"], table.get("rows"), (None, None))
             others[body] = _nastran.run(table["bdf"], of_body, table.get("held", ()))
         alone = None
         if blade is not None:
+            wheel.steps.begins(f"reading {blade}")
             of_blade = rows if blade_rows is None else blade_rows
             alone = _nastran.matrices(own.positions, blade, None, of_blade, (blade_stiffness_name, None)).without_held(
                 held_nodes(wheel.held, own.sets, wheel.sets)
             )
         alone = blade_of(own, alone, "blade, a file with the stiffness of the blade's elements alone")
-        return cls._of(Import(wheel, own, alone, others).carried_out())
+        return cls._of(Import(wheel, own, alone, others).carried_out(), wheel)
 
     @classmethod
     @with_keywords
@@ -190,17 +199,19 @@ class Sector:
         ``ring``, ``damper`` with files of their own: the keys ``inp``, ``stiffness`` and ``mass``, and ``held``.
         """
         wheel = Wheel.of(inp, keywords)
+        wheel.steps.begins(f"reading {inp}, {stiffness} and {mass}")
         own = _abaqus.run(inp, stiffness, mass, wheel.held, wheel.sets)
-        others = {
-            body: _abaqus.run(table["inp"], table["stiffness"], table["mass"], table.get("held", ()))
-            for body, table in _with_files(wheel.ring, wheel.damper, ("inp", "stiffness", "mass"))
-        }
+        others = {}
+        for body, table in _with_files(wheel.ring, wheel.damper, ("inp", "stiffness", "mass")):
+            wheel.steps.begins(f"reading {table['inp']}, {table['stiffness']} and {table['mass']}")
+            others[body] = _abaqus.run(table["inp"], table["stiffness"], table["mass"], table.get("held", ()))
         alone = None
         if blade_stiffness is not None:
+            wheel.steps.begins(f"reading {blade_stiffness}")
             deck = _abaqus.Deck(inp if blade_inp is None else blade_inp)
             alone = _abaqus.matrices(deck, blade_stiffness, None).without_held(held_nodes(wheel.held, own.sets, wheel.sets))
         alone = blade_of(own, alone, "blade_stiffness, the .mtx file of a job with the blade's elements alone")
-        return cls._of(Import(wheel, own, alone, others).carried_out())
+        return cls._of(Import(wheel, own, alone, others).carried_out(), wheel)
 
     @classmethod
     @with_keywords
@@ -226,18 +237,21 @@ class Sector:
         a contact needs them, or a ``normal``.
         """
         wheel = Wheel.of("wheel", keywords)
+        wheel.steps.begins("reading the arrays")
         own, named = _arrays.run(stiffness, mass, rows, nodes, elements, wheel.held, wheel.sets)
         blade = symmetric(blade_stiffness, "blade_stiffness")
         if blade.shape[0] != len(named):
             raise refused(f"blade_stiffness has {blade.shape[0]} rows, stiffness {len(named)}; accepted: the same rows")
         free = Matrices(named, blade).without_held(held_nodes(wheel.held, own.sets, wheel.sets))
         alone = blade_of(own, free, "blade_stiffness")
-        return cls._of(Import(wheel, own, alone, {}).carried_out())
+        return cls._of(Import(wheel, own, alone, {}).carried_out(), wheel)
 
     @classmethod
-    def _of(cls, made: Imported) -> Sector:
+    def _of(cls, made: Imported, wheel: Optional[Wheel] = None) -> Sector:
         sector = cls(made.folder)
         sector.report, sector.check = answer_of(made.answer), made.check
+        if wheel is not None:
+            wheel.steps.begins("ready")
         return sector
 
     @property

@@ -8,7 +8,7 @@ from typing import Any, Optional, Union
 
 from .._needed import needed
 from . import _check
-from ._run import Held, Matrices, Path_, Run, held_nodes, refused, symmetric, text_of_file
+from ._run import Held, Matrices, Path_, Run, held_nodes, refused, saying_first, symmetric, text_of_file
 
 
 def reader() -> Any:
@@ -16,8 +16,18 @@ def reader() -> Any:
     return needed("ansys.mapdl.reader", "reading files of Ansys")
 
 
+_ONE_MODEL = "accepted: files of one model, all of them written after the last change of its mesh"
+_FEW = 0.1
+"""Share of the nodes that may be in one of two files alone: held nodes, and nodes of elements that are not solids."""
+
+
 def matrices(path: Path_) -> Matrices:
     """Stiffness and mass of a ``.full`` file over its free rows."""
+    return _read(path)[0]
+
+
+def _read(path: Path_) -> tuple[Matrices, set[int]]:
+    """Stiffness and mass of a ``.full`` file over its free rows, and all of its nodes."""
     full = reader().read_binary(os.fspath(path))
     if not hasattr(full, "load_km"):
         raise refused(
@@ -37,27 +47,53 @@ def matrices(path: Path_) -> Matrices:
     ]
     if own[0] is None:
         raise refused(f"{path} holds no stiffness; accepted: the .full file of a modal analysis")
-    return Matrices([rows[row] for row in kept], *own)
+    return Matrices([rows[row] for row in kept], *own), {node for node, _ in rows}
+
+
+def _doubt(full: Path_, nodes: set[int], cdb: Path_, mesh: set[int], used: set[int]) -> str:
+    """Why a ``.full`` and a ``.cdb`` file are not of one model; empty: nothing says so. ``used``: nodes of elements."""
+    if nodes == used:
+        return ""
+    words = (
+        f"{full} and {cdb} are not of one model: {full} has {len(nodes)} nodes, and {cdb} has {len(mesh)} nodes, of which"
+        f" {len(used)} belong to its elements; {len(nodes & used)} of those are in {full}; {_ONE_MODEL}"
+    )
+    few = max(len(nodes - used), len(used - nodes)) <= _FEW * min(len(nodes), len(used))
+    if nodes <= mesh and few:
+        return words.replace("are not of one model", "may not be of one model")
+    raise refused(words)
+
+
+def blade_of_file(run_: Run, full: Path_, blade_full: Path_) -> Matrices:
+    """The stiffness of a ``.full`` file with the blade's elements alone."""
+    own, nodes = _read(blade_full)
+    unknown = nodes.difference(run_.positions)
+    if unknown:
+        raise refused(
+            f"{blade_full} and {full} are not of one model: {blade_full} has {len(nodes)} nodes, of which {len(unknown)}"
+            f" are not among the {len(run_.positions)} of the mesh, like node {min(unknown)}; accepted: the same model with"
+            " the blade's elements selected, its nodes not renumbered"
+        )
+    return own
 
 
 def run(full: Path_, cdb: Path_, held: Held, more: Optional[Mapping[str, Iterable[int]]] = None) -> Run:
     """Mesh and matrices of a run of Ansys."""
     archive = _archive(cdb)
-    own = matrices(full)
+    own, nodes = _read(full)
     if own.mass is None:
         raise refused(f"{full} holds no mass; accepted: the .full file of a modal analysis (WRFULL before SOLVE)")
     number = [int(node) for node in archive.nnum]
     positions = {node: tuple(map(float, xyz[:3])) for node, xyz in zip(number, archive.nodes)}
-    unknown = next((node for node, _ in own.rows if node not in positions), None)
-    if unknown is not None:
-        raise refused(f"{full} has node {unknown}, which is not in {cdb}; accepted: files of one model")
     elements = [[int(node) for node in element[10:]] for element in archive.elem]
+    used = {node for element in elements for node in element if node > 0}
+    doubt = _doubt(full, nodes, cdb, set(positions), used)
     of_element = dict(zip((int(own) for own in archive.enum), elements))
     sets = {name.upper(): {int(node) for node in nodes} for name, nodes in archive.node_components.items()}
     for name, numbers in archive.element_components.items():
-        nodes = {node for element in numbers for node in of_element.get(int(element), [])}
-        sets.setdefault(name.upper(), nodes)
-    return Run("ansys", text_of_file(cdb), positions, elements, sets, own.without_held(held_nodes(held, sets, more)))  # type: ignore[arg-type]
+        sets.setdefault(name.upper(), {node for element in numbers for node in of_element.get(int(element), [])})
+    free = own.without_held(held_nodes(held, sets, more))
+    return Run("ansys", text_of_file(cdb), positions, elements, sets, free, doubt=doubt)  # type: ignore[arg-type]
 
 
 def _archive(cdb: Path_) -> Any:
@@ -118,6 +154,7 @@ def blade_of_elements(run_: Run, cdb: Path_, emat: Path_, blade: Union[str, Iter
 
 def result_checked(
     rst: Path_,
+    full: Path_,
     run_: Run,
     faces: Iterable[int],
     ours: Callable[[int], list[list[float]]],
@@ -126,10 +163,32 @@ def result_checked(
 ) -> dict[str, Any]:
     """Frequencies of an ``.rst`` file against the bundle (cyclic), or against the matrices (of one sector)."""
     result = reader().read_binary(os.fspath(rst))
-    name = os.path.basename(os.fspath(rst))
     kind = result._resultheader.get("kan")
     if kind not in (None, 2):
         raise refused(f"{rst} is no result of a modal analysis (its kind is {kind}); accepted: ANTYPE,MODAL")
+    free = {node for node, _ in run_.matrices.rows}
+    there = {int(node) for node in result.mesh.nnum}
+    words = (
+        f"{rst} and {full} are not of one model: {rst} has {len(there)} nodes, and {full} has {len(free)} free nodes, of"
+        f" which {len(free & there)} are in {rst}; {_ONE_MODEL}"
+    )
+    if not free <= there:
+        raise refused(words)
+    same = len(there) == len(run_.positions)
+    with saying_first("" if same else words.replace("are not of one", "may not be of one")):
+        return _modes_checked(result, run_, faces, ours, sectors, tolerance, rst)
+
+
+def _modes_checked(
+    result: Any,
+    run_: Run,
+    faces: Iterable[int],
+    ours: Callable[[int], list[list[float]]],
+    sectors: int,
+    tolerance: float,
+    rst: Path_,
+) -> dict[str, Any]:
+    name = os.path.basename(os.fspath(rst))
     frequencies = [float(hz) for hz in result.time_values]
     if type(result).__name__ == "CyclicResult":
         if int(result.n_sector) != sectors:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from .._errors import BliskError
@@ -20,14 +20,19 @@ def cyclic_frequencies_hz(
     axis: str,
     sectors: int,
     count: int,
-    diameters: Iterable[int],
+    diameters: Sequence[int],
+    begins: Callable[[str], None] = lambda step: None,
 ) -> dict[int, list[float]]:
-    """Frequencies by nodal diameter of bodies that nothing joins; each has matrices, face pairs and a grounding in Hz."""
+    """Frequencies by nodal diameter of bodies that nothing joins; each has matrices, face pairs and a grounding in Hz.
+
+    ``begins``: told of every nodal diameter before it is solved.
+    """
     numpy = needed("numpy", "a check")
     sparse = needed("scipy.sparse", "a check")
     turned = rotation(axis, 2.0 * math.pi / sectors)
     found: dict[int, list[float]] = {}
-    for diameter in diameters:
+    for number, diameter in enumerate(diameters, start=1):
+        begins(f"checking nodal diameter {diameter} by SciPy ({number} of {len(diameters)})")
         values: list[float] = []
         phase = complex(math.cos(2.0 * math.pi * diameter / sectors), math.sin(2.0 * math.pi * diameter / sectors))
         for matrices, face_pairs, grounding_hz in bodies:

@@ -10,6 +10,7 @@ from typing import Any, Callable, Optional, TypedDict, TypeVar, Union
 
 from . import _faces
 from ._run import Held, Path_, name_of
+from ._steps import Steps
 
 Tables = Union[Mapping[str, Any], Sequence[Mapping[str, Any]], None]
 
@@ -37,6 +38,7 @@ class Keywords(_Needed, total=False):
     position_tolerance_m: Optional[float]
     frequencies: int
     check: Union[bool, Iterable[int]]
+    progress: bool
 
 
 @dataclass
@@ -60,6 +62,10 @@ class Wheel:
     position_tolerance_m: Optional[float] = None
     frequencies: int = 6
     check: Union[bool, Iterable[int]] = True
+    progress: bool = True
+
+    def __post_init__(self) -> None:
+        self.steps = Steps(self.progress)
 
     @classmethod
     def of(cls, mesh: Path_, keywords: Keywords) -> Wheel:
@@ -111,6 +117,8 @@ given.
 nothing with the program: at every nodal diameter (of a sector of more than 5000 rows at 0, 1 and the last one), at
 those that are listed, or at none (``False``). A relative difference beyond 1e-6 is a ``BliskError`` with the exit code
 11, that of a failed verification.
+``progress``: each step is told as it begins, with the time since the import began, on the standard error stream or
+below the cell of a notebook; ``False``: nothing is.
 
 Returns the sector: ``report`` says what was found, ``check`` what was compared."""
 """The keywords of ``Wheel`` in the help of every maker."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional, Union
 
-from .._errors import InputError
+from .._errors import BliskError, InputError
 from .._needed import needed
 
 Path_ = Union[str, "os.PathLike[str]"]
@@ -22,6 +23,22 @@ _LARGEST_SPRING = 1e30
 def refused(message: str) -> InputError:
     """The exception of files that are not accepted."""
     return InputError(message, 4)
+
+
+@contextmanager
+def saying_first(*doubts: str) -> Iterator[None]:
+    """What is refused meanwhile is refused with the doubts before the words, where there are some."""
+    said = "".join(f"{doubt}\n" for doubt in doubts if doubt)
+    try:
+        yield
+    except InputError as error:
+        if not said:
+            raise
+        raise InputError(f"{said}{error}", error.exit_code, error.findings) from error
+    except BliskError as error:
+        if not said:
+            raise
+        raise BliskError(f"{said}{error}", error.exit_code) from error
 
 
 @dataclass
@@ -70,6 +87,8 @@ class Run:
     matrices: Matrices
     added: dict[str, list[int]] = field(default_factory=dict)
     """Sets that stand in no file of the code."""
+    doubt: str = ""
+    """Why its files may be of two models; what is refused later is likely to come from it."""
 
     def add_sets(self, sets: Mapping[str, Iterable[int]]) -> None:
         """Adds node sets; a name may not be there already."""

@@ -35,6 +35,7 @@ class Import:
 
     def __init__(self, wheel: Wheel, run: Run, blade: Matrices, others: Mapping[str, Run]) -> None:
         wheel.checked()
+        wheel.steps.begins("finding the cut faces" if wheel.low_face is None else "pairing the cut faces")
         self.wheel = wheel
         self.runs = {"blisk": run, **others}
         self.blade = blade
@@ -128,7 +129,11 @@ class Import:
     def carried_out(self) -> Imported:
         """Writes all, makes the bundle, and compares its frequencies with those of a cyclic eigenproblem."""
         wheel, folder = self.wheel, Path(self.wheel.out)
-        answer = _native.import_sector(self.write(), folder, wheel.frequencies)
+        wheel.steps.begins(f"writing what the bundle is made of: {folder / 'import'}")
+        path = self.write()
+        several = f", with {wheel.frequencies} frequencies per nodal diameter" if wheel.frequencies else ""
+        wheel.steps.begins(f"making the bundle{several}: {folder}")
+        answer = _native.import_sector(path, folder, wheel.frequencies)
         ours = json.loads(answer[0])["frequencies_hz"] if wheel.frequencies else []
         return Imported(folder, answer, self._checked(ours) if ours else {})
 
@@ -168,7 +173,8 @@ class Import:
             matrices = own.matrices if len(kept) == len(rows) else own.matrices.keeping(kept)
             grounding_hz = float(self.tables[body].get("grounding_hz", 0.0))
             bodies.append((matrices, self.pairs.get(body, []), grounding_hz))
-        theirs = _check.cyclic_frequencies_hz(bodies, wheel.axis, wheel.sectors, wheel.frequencies, diameters)
+        place = (wheel.axis, wheel.sectors, wheel.frequencies)
+        theirs = _check.cyclic_frequencies_hz(bodies, *place, diameters, wheel.steps.begins)
         return _check.compared(ours, theirs, _CHECK_TOLERANCE, "a cyclic eigenproblem of the matrices by SciPy")
 
 
