@@ -107,6 +107,9 @@ def test_the_script_from_files_of_ansys_to_the_best_load_runs(tmp_path, monkeypa
     assert best.normal_load_n in loads and best.lower is not None
     printed = capsys.readouterr().out
     print(printed)
+    # What was compared stands in the report.
+    assert re.search(r"^compared: \d+ frequencies of nodal diameters 0, 1, .* are within \S+e-\d\d of a cyclic", printed, re.M)
+    assert re.search(r"^compared: stiffness and mass give \d+ modes of wheel.rst their frequencies within", printed, re.M)
     assert "P95" in printed and Path("results", "wheel-optimum").is_dir() and Path("results", "wheel").is_dir()
     # The table below the script names every component that the script or the blade's run asks for.
     table = GUIDE.read_text(encoding="utf-8").partition("| component in Ansys |")[2].partition("\n\n")[0]
@@ -163,6 +166,24 @@ def test_every_block_of_python_of_the_guide_to_imports_runs(tmp_path, monkeypatc
     (surfaces,) = report["contact"]["surfaces"]
     assert (surfaces["first"], surfaces["second"]) == ("blisk.FLANGE", "ring.RING_TOP")
     assert surfaces["area_m2"] == pytest.approx(0.5e-3**2, rel=1e-9)
+
+
+def test_cut_faces_from_k0_and_kc_have_the_frequencies_of_the_wheel():
+    """The block of the page against ``K0 + Kc e^(i a h) + Kc^T e^(-i a h)``, where the block makes a sector with two faces."""
+    (block,) = [text for language, text in blocks_of(ROOT / "docs" / "sector-bundle.md") if language == "python"]
+    spring = numpy.array([[3.0, -3.0, 0.0], [-3.0, 3.0, 0.0], [0.0, 0.0, 0.0]])
+    towards = numpy.array([[0.0, 0.0, 0.0], [0.0, 0.7, 0.1], [0.0, 0.1, 0.4]])
+    names = {"K0": spring + numpy.diag([0.0, 5.0, 2.0]) + 2.0 * towards, "Kc": -towards}
+    names |= {"M0": numpy.diag([1.0, 2.0, 0.5]), "blade0": spring}
+    exec(compile(block, "sector-bundle.md", "exec"), names)
+    assert names["mass"].shape == names["blade_stiffness"].shape == names["stiffness"].shape == (5, 5)
+    assert not names["blade_stiffness"][3:].any() and not names["mass"][3:].any()
+    for phase in (0.0, 0.9, 2.4, numpy.pi):
+        turned = numpy.vstack([numpy.eye(3), numpy.exp(1j * phase) * numpy.eye(3)[[1, 2]]])
+        of_sector = eigh(turned.conj().T @ names["stiffness"] @ turned, names["M0"], eigvals_only=True)
+        coupled = names["Kc"] * numpy.exp(1j * phase)
+        of_wheel = eigh(names["K0"] + coupled + coupled.conj().T, names["M0"], eigvals_only=True)
+        assert of_sector == pytest.approx(of_wheel, rel=1e-12)
 
 
 @pytest.mark.parametrize("code", ["ansys", "nastran", "abaqus", "arrays"])

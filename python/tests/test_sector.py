@@ -689,7 +689,7 @@ def test_a_missing_package_is_named(monkeypatch, tmp_path):
 
     monkeypatch.setattr(importlib, "import_module", without)
     where = {"out": tmp_path, "sectors": 5, **WORDS}
-    with pytest.raises(ImportError, match="pip install ansys-mapdl-reader"):
+    with pytest.raises(ImportError, match="pip install ansys-mapdl-reader scipy"):
         blisk.Sector.from_ansys("file.full", "wheel.cdb", **where)
     with pytest.raises(ImportError, match="pip install pyyeti"):
         blisk.Sector.from_nastran("wheel.bdf", "wheel.op4", **where)

@@ -216,9 +216,11 @@ impl ComparisonReport {
             format!("{}{}", self.folder(&first.scenario), group(&first.scenario))
         });
         let bound = |bound: Option<f64>| bound.map_or_else(dash, |value| shown(value, unit));
+        let possible = best.loads.iter().filter(|load| load.could_be_best);
+        let among = if possible.count() > 1 { "among " } else { "" };
         format!(
             "lowest P{percent} ({heading}): at {}; with 95 % confidence the best of the loads is \
-             among {}, its P{percent} in [{} {}]",
+             {among}{}, its P{percent} in [{} {}]",
             of(&|scenario, _| Some(scenario) == best.lowest),
             of(&|_, possible| possible),
             bound(best.lower),

@@ -544,8 +544,8 @@ fn a_run_says_which_tuned_wheel_is_solved_and_what_the_reduction_is_at() {
     assert_eq!(tuned, expected);
     for step in [
         "receptances of the tuned wheel with 60 fixed-interface modes",
-        "judging the harmonics: 0 of 1 loads done",
-        "judging the harmonics: 1 of 1 loads done",
+        "choosing the harmonics: 0 of 1 loads done",
+        "choosing the harmonics: 1 of 1 loads done",
     ] {
         assert!(before.iter().any(|own| own == step), "{step}: {before:?}");
     }

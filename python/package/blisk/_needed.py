@@ -5,9 +5,10 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
+# The first is the one that is missing; what the function needs besides stands with it.
 _INSTALLED_BY = {
-    "ansys.mapdl.reader": "ansys-mapdl-reader",
-    "pyyeti.nastran": "pyyeti",
+    "ansys.mapdl.reader": "ansys-mapdl-reader scipy",
+    "pyyeti.nastran": "pyyeti scipy",
     "scipy.sparse": "scipy",
     "scipy.sparse.linalg": "scipy",
     "scipy.io": "scipy",
@@ -22,7 +23,7 @@ def needed(module: str, what: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        package = _INSTALLED_BY.get(module, module)
+        packages = _INSTALLED_BY.get(module, module)
         raise ImportError(
-            f"{what} needs the package {package}, which cannot be imported ({error}); pip install {package}"
+            f"{what} needs the package {packages.split()[0]}, which cannot be imported ({error}); pip install {packages}"
         ) from error

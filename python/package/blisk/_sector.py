@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 
 from . import _native
 from ._answer import Answer, answer_of
-from ._import import _abaqus, _ansys, _arrays, _nastran
+from ._import import _abaqus, _ansys, _arrays, _check, _nastran
 from ._import._keywords import Keywords, Wheel, with_keywords
 from ._import._run import Matrices, held_nodes, refused, saying_first, symmetric
 from ._import._write import Import, Imported, blade_of
@@ -41,8 +41,8 @@ class Sector:
     folder: Path
     """The folder of the bundle."""
     report: Optional[Answer]
-    """What the import found: bodies, faces, contact, ``frequencies_hz``; as ``blisk import --json``. ``None``: none was
-    made."""
+    """What the import found: bodies, faces, contact, ``frequencies_hz``; as ``blisk import --json``. Its text ends with
+    what was compared. ``None``: none was made."""
     check: dict[str, Any]
     """The frequencies on another way: ``worst_relative_difference``, ``frequencies_compared``, ``nodal_diameters``, and
     ``result_file`` where one was given. Empty: nothing was compared."""
@@ -249,7 +249,10 @@ class Sector:
     @classmethod
     def _of(cls, made: Imported, wheel: Optional[Wheel] = None) -> Sector:
         sector = cls(made.folder)
-        sector.report, sector.check = answer_of(made.answer), made.check
+        values, text = made.answer
+        compared = _check.words(made.check)
+        sector.report = answer_of((values, f"{text.rstrip()}\n{compared}" if compared else text))
+        sector.check = made.check
         if wheel is not None:
             wheel.steps.begins("ready")
         return sector

@@ -29,6 +29,8 @@ struct Plan {
     renewals: &'static [usize],
     iterations: usize,
     shapes: PreconditionedShapes,
+    /// Whether an attempt that stalls is over before that: others follow it.
+    gives_up: bool,
 }
 
 const fn plan(renewals: &'static [usize], iterations: usize, shapes: PreconditionedShapes) -> Plan {
@@ -36,6 +38,7 @@ const fn plan(renewals: &'static [usize], iterations: usize, shapes: Preconditio
         renewals,
         iterations,
         shapes,
+        gives_up: true,
     }
 }
 
@@ -142,8 +145,11 @@ const LADDER: [(Start, Attempt); 13] = [
     (Start::Linear, Attempt::Newton(BY_PAIRS)),
 ];
 
-/// For the errors of a solution, from that solution.
-const BESIDE: Plan = plan(&[0], 120, FirstOfFundamental);
+/// For the errors of a solution, from that solution: what is left counts, so every step does.
+const BESIDE: Plan = Plan {
+    gives_up: false,
+    ..plan(&[0], 120, FirstOfFundamental)
+};
 
 /// What decides that an attempt is over.
 struct Judge {
@@ -288,7 +294,7 @@ impl ContactEquation<'_> {
                 outcome.status = status;
                 break;
             }
-            if judge.stalls(outcome.residual) {
+            if plan.gives_up && judge.stalls(outcome.residual) {
                 break;
             }
             if renew {

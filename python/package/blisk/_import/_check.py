@@ -151,8 +151,27 @@ def modes_compared(
     return {
         "reference": reference,
         "modes_compared": count,
+        "frequencies_hz": [hz for hz, _ in modes],
         "inner_rows": int(inner.sum()),
         "worst_relative_difference": worst,
         "worst_residual": residual,
         "tolerance": tolerance,
     }
+
+
+def words(check: Mapping[str, Any]) -> str:
+    """What was compared, a line each; empty: nothing was."""
+    lines = []
+    for of in (check, check.get("result_file", {})):
+        off = f"within {of.get('worst_relative_difference', 0.0):.1e} of {of.get('reference')}"
+        if "frequencies_compared" in of:
+            diameters = ", ".join(str(diameter) for diameter in of["nodal_diameters"])
+            lines.append(f"compared: {of['frequencies_compared']} frequencies of nodal diameters {diameters} are {off}")
+        elif "modes_compared" in of:
+            first = ", ".join(f"{hz:.5g}" for hz in of["frequencies_hz"][:6])
+            lines.append(
+                f"compared: stiffness and mass give {of['modes_compared']} modes of {of['reference']} their frequencies"
+                f" within {of['worst_relative_difference']:.1e}\n"
+                f"  (first {first} Hz: the bundle has others where it is held in another way)"
+            )
+    return "".join(f"{line}\n" for line in lines)
