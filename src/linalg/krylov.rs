@@ -67,7 +67,9 @@ pub fn gmres(
         let known: f64 = (row + 1..count).map(|j| triangle[j][row] * shares[j]).sum();
         shares[row] = (shares[row] - known) / triangle[row][row];
     }
-    shares.iter_mut().for_each(|share| *share = -*share);
+    for share in &mut shares {
+        *share = -*share;
+    }
     let mut x = vec![0.0; length];
     vectorized(Subtracted {
         columns: Columns::of(&basis, length),

@@ -161,7 +161,7 @@ pub struct BestLoad {
     pub engine_order: u32,
     /// Standard deviation, if the study has one.
     pub standard_deviation: Option<f64>,
-    /// `tuned_amplitude_m` or `peak_amplitude_m_p95`.
+    /// `tuned_amplitude_m`, `peak_amplitude_m` of a single wheel, or `peak_amplitude_m_p95`.
     pub quantity: &'static str,
     /// Scenario with the lowest value.
     pub scenario: usize,
@@ -289,19 +289,19 @@ fn scenario_summary(record: &ScenarioRecord, rotation: Option<&RotationFacts>) -
     }
 }
 
-/// For each excitation and standard deviation, the lowest tuned and the lowest P95 amplitude.
+/// For each excitation and standard deviation, the lowest tuned amplitude, the lowest peak of a single wheel, and the lowest P95.
 fn best_loads(scenarios: &[ScenarioSummary]) -> Vec<BestLoad> {
     let mut best = Vec::new();
     let groups = scenarios.chunk_by(ScenarioSummary::same_group);
     for group in groups.filter(|group| group.len() > 1) {
         let tuned = |scenario: &ScenarioSummary| scenario.tuned_amplitude_m;
-        let p95 = |scenario: &ScenarioSummary| {
-            scenario
-                .peak_amplitude_m
-                .percentile(95)
-                .and_then(|p| p.value)
+        let single = |scenario: &ScenarioSummary| {
+            let mean = scenario.peak_amplitude_m.mean;
+            mean.filter(|_| scenario.rows.planned() == 1)
         };
+        let p95 = |scenario: &ScenarioSummary| scenario.peak_amplitude_m.percentile(95)?.value;
         best.extend(lowest(group, "tuned_amplitude_m", tuned));
+        best.extend(lowest(group, "peak_amplitude_m", single));
         best.extend(lowest(group, "peak_amplitude_m_p95", p95));
     }
     best
@@ -342,12 +342,12 @@ fn warnings(
     let beyond = { records.iter() }.filter(|record| record.statistics.beyond_tolerance > 0);
     let scenarios: Vec<usize> = beyond.map(|record| record.scenario.index).collect();
     if !scenarios.is_empty() {
-        let stated = records
-            .iter()
-            .filter_map(|record| record.statistics.largest_stated_error);
-        let beyond = records.iter().map(|own| own.statistics.beyond_tolerance);
+        let statistics = || records.iter().map(|record| &record.statistics);
+        let stated = statistics().filter_map(|of| of.largest_stated_error);
         warnings.push(Warning::BeyondTolerance {
-            rows: beyond.sum(),
+            rows: statistics().map(|of| of.beyond_tolerance).sum(),
+            by_sampling: statistics().map(|of| of.beyond_by_sampling).sum(),
+            automatic: context.harmonics == Harmonics::Auto,
             planned: rows.planned(),
             scenarios,
             tolerance: context.tolerance,

@@ -260,6 +260,7 @@ fn percentiles(sample: &SampleStatistics, show: impl Fn(f64) -> String) -> Vec<S
 fn best_line(best: &BestLoad, unit: LengthUnit) -> String {
     let what = match best.quantity {
         "tuned_amplitude_m" => "tuned amplitude",
+        "peak_amplitude_m" => "peak of the wheel",
         _ => "P95 amplitude",
     };
     let deviation = best

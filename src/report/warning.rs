@@ -60,6 +60,10 @@ pub enum Warning {
     BeyondTolerance {
         /// Rows concerned.
         rows: u64,
+        /// Those of them whose sampling error is the larger one; of the others the harmonic error is.
+        by_sampling: u64,
+        /// Whether the program chose the harmonics.
+        automatic: bool,
         /// All rows.
         planned: u64,
         /// Scenarios concerned.
@@ -267,9 +271,12 @@ impl Warning {
                 named(scenarios)
             ),
             Self::BeyondTolerance {
-                rows, scenarios, ..
+                rows,
+                planned,
+                scenarios,
+                ..
             } => format!(
-                "{rows} solutions miss the accuracy asked for, at {}",
+                "{rows} of {planned} solutions miss the accuracy asked for, at {}",
                 named(scenarios)
             ),
             Self::ReplacedBasis { .. } => "the basis of the study is replaced".to_owned(),
@@ -339,18 +346,19 @@ impl Warning {
             ),
             Self::BeyondTolerance {
                 rows,
+                by_sampling,
+                automatic,
                 planned,
                 scenarios,
                 tolerance,
                 largest_stated_error,
             } => format!(
                 "{rows} of {planned} rows state a sampling or harmonic error beyond its tolerance{} {} \
-                 (stated errors up to {:.1} %); where sampling_error in responses.parquet is the larger one, \
-                 raise solver.samples_per_period; where harmonic_error is, take solver.harmonics = \"auto\" or a \
-                 larger set (another study with another --out), or accept it by a larger solver.harmonic_tolerance",
+                 (stated errors up to {:.1} %); {}",
                 tolerance.in_brackets(),
                 at(scenarios),
-                100.0 * largest_stated_error
+                100.0 * largest_stated_error,
+                advice_beyond(*by_sampling, rows - by_sampling, *automatic),
             ),
             Self::ReplacedBasis { taken } => format!(
                 "basis = \"stick_attachment\" is replaced: rows are on {taken}, which has no modes to choose; take \
@@ -468,4 +476,23 @@ pub(super) fn read_each_wheel(wheels: u64) -> &'static str {
     } else {
         "read the peak of each wheel in responses.parquet"
     }
+}
+
+/// What helps so many rows whose sampling error is beyond its tolerance, and so many whose harmonic error is.
+fn advice_beyond(by_sampling: u64, by_harmonics: u64, automatic: bool) -> String {
+    let samples = format!(
+        "the sampling error is the larger one of {by_sampling}: raise solver.samples_per_period"
+    );
+    let more = if automatic {
+        "\"auto\" took no more of them: raise the normal load, name more in solver.harmonics"
+    } else {
+        "take solver.harmonics = \"auto\" or a larger set (another study with another --out)"
+    };
+    let harmonics = format!(
+        "the harmonic error is the larger one of {by_harmonics}: {more}, or accept it by a larger \
+         solver.harmonic_tolerance"
+    );
+    let parts = [(by_sampling, samples), (by_harmonics, harmonics)];
+    let parts = parts.into_iter().filter(|(rows, _)| *rows > 0);
+    parts.map(|(_, part)| part).collect::<Vec<_>>().join("; ")
 }

@@ -116,7 +116,12 @@ impl<'a> Judges<'a> {
             .iter()
             .flat_map(|(order, _)| conditions.iter().map(|&condition| (*order, condition)))
             .collect();
-        let steps = Steps::new(self.progress, "choosing the harmonics", "loads", cases.len());
+        let steps = Steps::new(
+            self.progress,
+            "choosing the harmonics",
+            "loads",
+            cases.len(),
+        );
         let judged = cases.into_par_iter().map(|case| {
             let mut judged = self.judged(choice_of(case, set), reserve.is_some())?;
             if let Some(reserve) = reserve.filter(|_| judged.lacks_a_peak()) {

@@ -119,6 +119,22 @@ fn one_measured_wheel_has_peaks_and_nothing_is_said_of_percentiles() {
             "{text}"
         );
     }
+    // The load with the lowest peak of this wheel is said, as its line has it.
+    let peak_of = |line: &str| -> Option<f64> {
+        let mut cells = line.split_whitespace();
+        let label = cells.next()?;
+        ["slide", "50", "stuck"].contains(&label).then_some(())?;
+        cells.nth(2)?.parse().ok()
+    };
+    let peaks: Vec<f64> = run.lines().filter_map(peak_of).collect();
+    assert_eq!(peaks.len(), 3, "{run}");
+    let lowest = peaks.into_iter().fold(f64::INFINITY, f64::min);
+    let (_, said) =
+        { run.split_once("lowest peak of the wheel (engine order 3): ") }.expect("it is said");
+    let said: f64 = { said.split_whitespace().next() }
+        .and_then(|number| number.parse().ok())
+        .expect("a number");
+    assert!((said / lowest - 1.0).abs() < 1e-3, "{said}: {run}");
     // The summary has the peak and its factor, as the row has them.
     let arguments = [
         "replay",

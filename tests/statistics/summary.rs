@@ -147,11 +147,14 @@ fn rows_beyond_their_tolerance_are_counted_with_the_largest_stated_error() {
     let mut inexact = record(0, load(9.0), 1.0, 0, 0.0);
     assert_eq!(inexact.statistics.beyond_tolerance, 0);
     inexact.statistics.beyond_tolerance = 100;
+    inexact.statistics.beyond_by_sampling = 30;
     let auto = StudySummary::new(&context(Harmonics::Auto), &[inexact]);
     assert_eq!(
         auto.warnings,
         [Warning::BeyondTolerance {
             rows: 100,
+            by_sampling: 30,
+            automatic: true,
             planned: 400,
             scenarios: vec![0],
             tolerance: context(Harmonics::Auto).tolerance,
@@ -163,9 +166,34 @@ fn rows_beyond_their_tolerance_are_counted_with_the_largest_stated_error() {
     assert!(
         text.contains(
             "100 of 400 rows state a sampling or harmonic error beyond its tolerance (0.1 % by samples per period, 2 % by harmonics) \
-             at 9 N (stated errors up to 2.5 %)"
+             at 9 N (stated errors up to 2.5 %); the sampling error is the larger one of 30: raise solver.samples_per_period; \
+             the harmonic error is the larger one of 70: \"auto\" took no more of them: raise the normal load"
         ),
         "{text}"
+    );
+}
+
+#[test]
+fn rows_beyond_their_tolerance_are_counted_by_the_larger_of_their_errors() {
+    let mut rows = ScenarioAccumulator::default();
+    for (pattern, sampling, harmonic, within) in [
+        (0, 3e-2, -1e-2, false),
+        (1, 1e-3, -5e-2, false),
+        (2, -4e-2, 3e-2, false),
+        (3, 5e-2, 1e-2, true),
+    ] {
+        rows.add(&ResponseRow {
+            peak_amplitude_m: Some(1.0),
+            sampling_error: Some(sampling),
+            harmonic_error: Some(harmonic),
+            error_within_tolerance: Some(within),
+            ..ResponseRow::without_result(0, pattern, Status::Ok)
+        });
+    }
+    let counted = rows.finish();
+    assert_eq!(
+        (counted.beyond_tolerance, counted.beyond_by_sampling),
+        (3, 2)
     );
 }
 

@@ -31,6 +31,9 @@ pub struct ScenarioStatistics {
     pub largest_stated_error: Option<f64>,
     /// `ok` rows whose sampling or harmonic error exceeds its tolerance.
     pub beyond_tolerance: u64,
+    /// Those of them whose sampling error is the larger one.
+    #[serde(skip)]
+    pub beyond_by_sampling: u64,
 }
 
 /// Gathers the rows of one scenario; holds 16 bytes per row.
@@ -45,6 +48,7 @@ pub struct ScenarioAccumulator {
     slipping_sum: f64,
     largest_stated_error: Option<f64>,
     beyond_tolerance: u64,
+    beyond_by_sampling: u64,
 }
 
 impl ScenarioAccumulator {
@@ -62,7 +66,12 @@ impl ScenarioAccumulator {
             let largest = self.largest_stated_error.unwrap_or(0.0);
             self.largest_stated_error = Some(largest.max(stated));
         }
-        self.beyond_tolerance += u64::from(row.error_within_tolerance == Some(false));
+        if row.error_within_tolerance == Some(false) {
+            let size = |error: Option<f64>| error.unwrap_or(0.0).abs();
+            self.beyond_tolerance += 1;
+            self.beyond_by_sampling +=
+                u64::from(size(row.sampling_error) > size(row.harmonic_error));
+        }
         if let Some(separated) = row.separated_fraction {
             let largest = self.largest_separated_fraction.unwrap_or(0.0);
             self.largest_separated_fraction = Some(largest.max(separated));
@@ -108,6 +117,7 @@ impl ScenarioAccumulator {
                 .map(|_| self.separated_rows as f64 / ok as f64),
             largest_stated_error: self.largest_stated_error,
             beyond_tolerance: self.beyond_tolerance,
+            beyond_by_sampling: self.beyond_by_sampling,
             mean_slipping_fraction: (self.contact_rows > 0)
                 .then(|| self.slipping_sum / self.contact_rows as f64),
         }
