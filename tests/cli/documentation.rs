@@ -96,6 +96,7 @@ fn with_values(command: &str) -> Vec<String> {
             ("I" | "ID" | "N" | "S" | "M", _) => "5",
             ("P", _) => "95",
             ("R", _) => "0.1",
+            ("HZ", _) => "2500",
             ("Q", _) => "peak_amplitude_m",
             (other, _) => other,
         };

@@ -130,7 +130,7 @@ fn one_measured_wheel_has_peaks_and_nothing_is_said_of_percentiles() {
     assert_eq!(peaks.len(), 3, "{run}");
     let lowest = peaks.into_iter().fold(f64::INFINITY, f64::min);
     let (_, said) =
-        { run.split_once("lowest peak of the wheel (engine order 3): ") }.expect("it is said");
+        { run.split_once("lowest peak of the wheel (engine order 2): ") }.expect("it is said");
     let said: f64 = { said.split_whitespace().next() }
         .and_then(|number| number.parse().ok())
         .expect("a number");
