@@ -344,8 +344,8 @@ fn in_newtons<'a>(report: &'a StudyReport, group: &GroupReport) -> Vec<(f64, &'a
 /// The load of a group is the last one that was studied on a side, so that a better one may lie beyond.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct AtTheEnd {
-    /// What follows from it, without a full stop.
-    pub(super) consequence: String,
+    /// Where a better one may lie, beside the loads studied.
+    pub(super) beyond: String,
     /// Which end of the loads studied it is.
     pub(super) what: String,
     /// What is wrong, in a few words.
@@ -354,6 +354,13 @@ pub(super) struct AtTheEnd {
     pub(super) side: Option<&'static str>,
     /// The headline, and where loads are added.
     pub(super) in_words: String,
+}
+
+impl AtTheEnd {
+    /// What follows from it, without a full stop.
+    pub(super) fn consequence(&self) -> String {
+        format!("the best load may be {}", self.beyond)
+    }
 }
 
 /// Whether a better load may lie beyond those of a group, by the percentile that it is judged by.
@@ -411,7 +418,7 @@ pub(super) fn end_at(
         _ => format!("{}: ", setting(group)),
     };
     Some(AtTheEnd {
-        consequence: format!("the best load may be {beyond}"),
+        beyond,
         headline: format!("{what}: add {side} {loads}"),
         side: ["lower", "higher"]
             .into_iter()

@@ -228,7 +228,7 @@ fn a_few_measured_wheels_open_the_report_with_the_highest_of_them() {
         "{shown} {error}"
     );
     let of = format!(
-        "wheel {}; those not in the file may be higher",
+        "wheel {}; wheels not in the file may be higher",
         wheel["pattern"]
     );
     assert!(page.contains(&of), "{of}");

@@ -225,7 +225,7 @@ fn notes_of_load(
             format!("95 % sure that no other has a lower P{percent}")
         } else {
             let load = short_load(scenario);
-            format!("by statistics alone {load} (95 % sure)")
+            format!("not sure: {load} by statistics alone (95 %)")
         });
     }
     if choice.is_of_a_design() {

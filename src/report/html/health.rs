@@ -106,11 +106,15 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
     }
     let open = first.map_or_else(Vec::new, GroupReport::loads_left_open);
     if let Some(end) = first.and_then(|group| at_the_end(report, group)) {
-        findings.insert(0, end.headline);
-        let words = hidden
-            .iter()
-            .fold(end.consequence, |words, load| words + ", or " + load);
-        verdict = Some(sentence(&words));
+        findings.insert(0, end.headline.clone());
+        verdict = Some(sentence(&match (choice, hidden.split_last()) {
+            (Some((_, lowest)), Some((last, others))) => {
+                let lowest = short_load(&summary.scenarios[lowest]);
+                let loads = [&[end.beyond.clone(), lowest], others].concat().join(", ");
+                format!("not decided: {loads} or {last}")
+            }
+            _ => end.consequence(),
+        }));
     }
     let others = report.groups.iter().skip(1);
     let others = others.filter(|group| at_the_end(report, group).is_some());
@@ -136,8 +140,8 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
     if let Some(group) = first {
         let ends = ends_among(report, group, &candidates(group));
         for (_, end) in ends.into_iter().rev() {
-            findings.insert(0, end.headline);
-            verdict = Some(sentence(&end.consequence));
+            findings.insert(0, end.headline.clone());
+            verdict = Some(sentence(&end.consequence()));
         }
     }
     if !open.is_empty() {

@@ -28,12 +28,12 @@ pub(super) fn of_measured_wheels(
                 format!("{} at {load}", units.length(peak))
             })
             .collect();
-        format!("open: {}, and loads between", peaks.join(", "))
+        format!("not decided: {}", peaks.join(", "))
     }];
     let candidates = candidates(group);
     let beyond = ends_among(report, group, &candidates);
     let is_open = !beyond.is_empty() || !open.is_empty();
-    of_load.extend(beyond.iter().map(|end| end.1.consequence.clone()));
+    of_load.extend(beyond.iter().map(|end| end.1.consequence()));
     let loads: Vec<String> = { candidates.iter() }
         .map(|&scenario| {
             let end = beyond.iter().find(|end| end.0 == scenario);
@@ -46,7 +46,7 @@ pub(super) fn of_measured_wheels(
         "the one wheel of mistuning.file: no percentile".to_owned()
     } else {
         format!(
-            "wheel {}; those not in the file may be higher",
+            "wheel {}; wheels not in the file may be higher",
             of_wheel.pattern
         )
     }];

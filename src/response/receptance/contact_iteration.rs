@@ -1,7 +1,7 @@
 //! The motions at the contact of a mistuned wheel at one frequency: a preconditioned, accelerated iteration.
 //!
 //! A step is `-P r` with the inverse P of `I + A G'` for the mean tangent G' of the contact; Anderson's acceleration makes up for
-//! what the mean leaves out. What is approximate stands in P alone. Where the first attempts of the [`LADDER`] by these steps end without
+//! what the mean leaves out. What is approximate stands in P alone. Where the first attempts by these steps end without
 //! a solution, Newton's method goes on from the best of them; the last ones are Newton's method too, and with few harmonics every pair is
 //! preconditioned by itself besides.
 
@@ -14,22 +14,26 @@ use super::fields::{Field, flatten, norm_squared, unflatten};
 use super::pair_preconditioner::PairPreconditioner;
 use super::preconditioner::Preconditioner;
 
-/// Earlier steps that are combined.
-const DEPTH: usize = 160;
-/// Damping of their shares, over the tolerance that is asked for.
+use Attempt::{Accelerated, Newton};
+use Start::{Best, Known, Linear};
+
+/// Damping of the shares of earlier steps, over the tolerance that is asked for.
 const DAMPING: f64 = 0.5;
 
 /// Newton steps of an attempt at most.
 const NEWTON_STEPS: usize = 40;
-/// Most harmonics with which pairs are preconditioned by themselves: with more the steps take too long.
-const MOST_HARMONICS: usize = 6;
+/// Most harmonics that are few: with more a step takes so long that attempts are ended early, and that no pair is preconditioned by itself.
+const FEW_HARMONICS: usize = 6;
 
 /// When preconditioners are renewed, what they take in, and how many steps are taken at most.
+#[derive(Clone, Copy)]
 struct Plan {
     renewals: &'static [usize],
     iterations: usize,
     shapes: PreconditionedShapes,
-    /// Whether an attempt that stalls is over before that: others follow it.
+    /// Earlier steps that are combined.
+    depth: usize,
+    /// Whether an attempt that stalls is over before that: Newton's method goes on from there.
     gives_up: bool,
 }
 
@@ -38,8 +42,21 @@ const fn plan(renewals: &'static [usize], iterations: usize, shapes: Preconditio
         renewals,
         iterations,
         shapes,
-        gives_up: true,
+        depth: 80,
+        gives_up: false,
     }
+}
+
+/// With many harmonics the steps that follow a new beginning cost more than a long history: all steps are combined.
+const fn combining_all(plan: Plan) -> Plan {
+    Plan { depth: 160, ..plan }
+}
+
+const fn brief(plan: Plan) -> Attempt {
+    Accelerated(Plan {
+        gives_up: true,
+        ..combining_all(plan)
+    })
 }
 
 /// How Newton steps are preconditioned, how closely they are solved, and how they are shortened.
@@ -62,9 +79,14 @@ const BY_HARMONICS: NewtonPlan = NewtonPlan {
     pairs: false,
     step_error: 1e-3,
     products: 120,
-    products_in_all: 1_500,
+    products_in_all: u64::MAX,
     least_factor: 1.0 / 128.0,
     decrease: 0.0,
+};
+/// With many harmonics: where these are not enough, more hardly ever are.
+const BY_MANY_HARMONICS: NewtonPlan = NewtonPlan {
+    products_in_all: 1_500,
+    ..BY_HARMONICS
 };
 /// From where the iteration has come to: few steps are left, which need not be solved closely.
 const FROM_THERE: NewtonPlan = NewtonPlan {
@@ -105,51 +127,40 @@ enum Attempt {
 /// response says little, and is renewed. Where the iteration creeps, Newton's method ends what it began. Harmonics above 1 near
 /// resonances that deviations split take the resonant shapes. Where pairs open, their harmonics depend on each other, and pairs are
 /// preconditioned by themselves.
-const LADDER: [(Start, Attempt); 13] = [
-    (
-        Start::Known,
-        Attempt::Accelerated(plan(&[0], 160, FirstOfFundamental)),
-    ),
-    (
-        Start::Linear,
-        Attempt::Accelerated(plan(&[0, 3], 120, FirstOfFundamental)),
-    ),
-    (Start::Best, Attempt::Newton(FROM_THERE)),
-    (
-        Start::Linear,
-        Attempt::Accelerated(plan(&[0, 10, 25], 160, FirstOfFundamental)),
-    ),
-    (
-        Start::Known,
-        Attempt::Accelerated(plan(&[0, 10, 25], 160, FirstOfFundamental)),
-    ),
-    (
-        Start::Known,
-        Attempt::Accelerated(plan(&[0, 3], 80, Resonant)),
-    ),
-    (
-        Start::Known,
-        Attempt::Accelerated(plan(&[0, 10, 25], 160, Resonant)),
-    ),
-    (
-        Start::Linear,
-        Attempt::Accelerated(plan(&[0, 3], 80, Resonant)),
-    ),
-    (
-        Start::Linear,
-        Attempt::Accelerated(plan(&[0, 10, 25], 160, Resonant)),
-    ),
-    (Start::Known, Attempt::Newton(BY_HARMONICS)),
-    (Start::Linear, Attempt::Newton(BY_HARMONICS)),
-    (Start::Known, Attempt::Newton(BY_PAIRS)),
-    (Start::Linear, Attempt::Newton(BY_PAIRS)),
+const WITH_FEW_HARMONICS: [(Start, Attempt); 13] = [
+    (Known, Accelerated(plan(&[0], 100, FirstOfFundamental))),
+    (Linear, Accelerated(plan(&[0, 3], 80, FirstOfFundamental))),
+    (Linear, Accelerated(RENEWED)),
+    (Known, Accelerated(RENEWED)),
+    (Best, Newton(FROM_THERE)),
+    (Known, Accelerated(plan(&[0, 3], 80, Resonant))),
+    (Known, Accelerated(RENEWED_RESONANT)),
+    (Linear, Accelerated(plan(&[0, 3], 80, Resonant))),
+    (Linear, Accelerated(RENEWED_RESONANT)),
+    (Known, Newton(BY_HARMONICS)),
+    (Linear, Newton(BY_HARMONICS)),
+    (Known, Newton(BY_PAIRS)),
+    (Linear, Newton(BY_PAIRS)),
 ];
+/// The same with many: where the first attempts stall they are over, since Newton's method from there takes less than other starts do.
+const WITH_MANY_HARMONICS: [(Start, Attempt); 11] = [
+    (Known, brief(plan(&[0], 160, FirstOfFundamental))),
+    (Linear, brief(plan(&[0, 3], 120, FirstOfFundamental))),
+    (Best, Newton(FROM_THERE)),
+    (Linear, Accelerated(combining_all(RENEWED))),
+    (Known, Accelerated(combining_all(RENEWED))),
+    (Known, Accelerated(plan(&[0, 3], 80, Resonant))),
+    (Known, Accelerated(combining_all(RENEWED_RESONANT))),
+    (Linear, Accelerated(plan(&[0, 3], 80, Resonant))),
+    (Linear, Accelerated(combining_all(RENEWED_RESONANT))),
+    (Known, Newton(BY_MANY_HARMONICS)),
+    (Linear, Newton(BY_MANY_HARMONICS)),
+];
+const RENEWED: Plan = plan(&[0, 10, 25], 160, FirstOfFundamental);
+const RENEWED_RESONANT: Plan = plan(&[0, 10, 25], 160, Resonant);
 
 /// For the errors of a solution, from that solution: what is left counts, so every step does.
-const BESIDE: Plan = Plan {
-    gives_up: false,
-    ..plan(&[0], 120, FirstOfFundamental)
-};
+const BESIDE: Plan = combining_all(plan(&[0], 120, FirstOfFundamental));
 
 /// What decides that an attempt is over.
 struct Judge {
@@ -229,23 +240,25 @@ impl ContactEquation<'_> {
     pub(super) fn solve(&mut self, starts: &[Vec<f64>], tolerance: f64) -> Outcome {
         let linear = self.linear_start();
         let known = self.best_of(starts);
-        let attempts = LADDER.iter();
-        let few = self.harmonics.len() <= MOST_HARMONICS;
-        let attempts = attempts
-            .filter(|(_, attempt)| few || !matches!(attempt, Attempt::Newton(plan) if plan.pairs));
-        let attempts = attempts.filter(|(start, _)| known.is_some() || *start != Start::Known);
+        let attempts = if self.harmonics.len() <= FEW_HARMONICS {
+            WITH_FEW_HARMONICS.as_slice()
+        } else {
+            WITH_MANY_HARMONICS.as_slice()
+        };
+        let attempts = attempts.iter();
+        let attempts = attempts.filter(|(start, _)| known.is_some() || *start != Known);
         let mut best = (f64::INFINITY, linear.clone());
         let mut total = Outcome::none();
         for (rung, (start, attempt)) in attempts.enumerate() {
             let start = match start {
-                Start::Known => known.as_ref().unwrap_or(&linear),
-                Start::Linear => &linear,
-                Start::Best => &best.1,
+                Known => known.as_ref().unwrap_or(&linear),
+                Linear => &linear,
+                Best => &best.1,
             };
             self.buffers.motions.clone_from(start);
             let outcome = match attempt {
-                Attempt::Accelerated(plan) => self.accelerate(plan, tolerance),
-                Attempt::Newton(plan) => self.newton(plan, tolerance),
+                Accelerated(plan) => self.accelerate(plan, tolerance),
+                Newton(plan) => self.newton(plan, tolerance),
             };
             total = total.followed_by(outcome, rung);
             if total.status == Status::Ok {
@@ -309,7 +322,7 @@ impl ContactEquation<'_> {
                 break;
             }
             outcome.iterations += 1;
-            self.buffers.move_on();
+            self.buffers.move_on(plan.depth);
         }
         outcome
     }
@@ -430,12 +443,12 @@ impl Buffers {
     }
 
     /// The next motions by the preconditioned residual and the steps before.
-    fn move_on(&mut self) {
+    fn move_on(&mut self, depth: usize) {
         let [x, step, next] = &mut self.flat;
         flatten(&self.motions, 1.0, x);
         flatten(&self.residual, -1.0, step);
         next.resize(x.len(), 0.0);
-        self.acceleration.next(x, step, DEPTH, next);
+        self.acceleration.next(x, step, depth, next);
         unflatten(next, &mut self.motions);
     }
 }
