@@ -22,7 +22,7 @@ use super::point_settings::PointSettings;
 use super::point_source::PointSource;
 use super::receptance_points::{EngineRow, ReceptancePoints};
 use super::refined_peak::{
-    EXTENSIONS, HUMP, MADE_UP, NEIGHBOURS, POINTS_OF_TOP, Top, inside_of_band, summit_of,
+    EXTENSIONS, HUMP, MADE_UP, NEIGHBOURS, POINTS_OF_TOP, Top, inside_of_band, opens, summit_of,
     tops_of_few,
 };
 use super::search::find_peak;
@@ -64,25 +64,36 @@ const BESIDE_LINEAR: f64 = 0.5;
 /// Share that harmonics may change one top more than another at most.
 const MOST_MADE_UP: f64 = 0.5;
 
+/// A search that found no peak.
+pub(super) struct Lost {
+    pub(super) work: Work,
+    /// Whether a contact opens, which few harmonics without the mean motion do not follow.
+    pub(super) opens: bool,
+}
+
 /// The peak of `row` by `plan` with the settings of few harmonics, and of sets each within the next, the last with all of them.
 ///
 /// The amplitude with all of them over that with the set before, less 1, stands beside it.
 ///
 /// # Errors
-/// The work done, where few harmonics find no peak, a contact opens, or a top is lost.
+/// Where few harmonics find no peak, a contact opens that they do not follow, or a top is lost.
 pub(super) fn corrected_peak(
     row: &EngineRow<'_>,
     plan: &SearchPlan,
     of_few: &PointSettings,
     sets: &[&PointSettings],
     peak_tolerance: f64,
-) -> Result<(Peak, f64), Work> {
+) -> Result<(Peak, f64), Lost> {
+    let lost = |work: Work, opens: bool| Lost { work, opens };
     let mut few = ReceptancePoints::new(row, of_few);
-    let tops = tops_of_few(plan, &mut few, peak_tolerance, MADE_UP)?;
+    let follows = of_few.harmonics().contains(&0);
+    let tops = tops_of_few(plan, &mut few, peak_tolerance, MADE_UP);
+    let is_open = opens(&few.points);
+    let tops = tops.map_err(|work| lost(work, is_open))?;
     // What samples change jumps over frequency, and is no part of what harmonics leave.
-    let as_fine = sets.first().map(|set| set.search_at_own_samples());
-    let Some(Ok(Some(as_fine))) = as_fine else {
-        return Err(few.work());
+    let as_fine = sets.first().map(|set| of_few.at_samples_of(set));
+    let Some(Ok(as_fine)) = as_fine.filter(|_| follows || !is_open) else {
+        return Err(lost(few.work(), is_open));
     };
     let mut corrected = ReceptancePoints::new(row, &as_fine);
     let care = if sets.len() > 1 { LED } else { ONE_SET };
@@ -97,12 +108,14 @@ pub(super) fn corrected_peak(
         envelope: plan.envelope,
         tolerance: peak_tolerance,
         care,
+        follows,
     };
     let found = search.highest(plan, &tops);
     let found = found.and_then(|highest| Ok((search.finished(highest.frequency_hz)?, highest)));
     let work = search.work();
-    let (point, highest) = found.map_err(|_| work)?;
-    let all = search.sets.last_mut().ok_or(work)?;
+    let is_open = search.opens();
+    let (point, highest) = found.map_err(|_| lost(work, is_open))?;
+    let all = search.sets.last_mut().ok_or(lost(work, is_open))?;
     let peak = Peak {
         status: Status::Ok,
         blade: point.largest_blade(),
@@ -111,7 +124,8 @@ pub(super) fn corrected_peak(
         bracketed: true,
         work,
     };
-    Ok((inside_of_band(plan, peak)?, highest.last_change()))
+    let peak = inside_of_band(plan, peak).map_err(|work| lost(work, is_open))?;
+    Ok((peak, highest.last_change()))
 }
 
 struct CorrectedSearch<'a> {
@@ -123,6 +137,8 @@ struct CorrectedSearch<'a> {
     envelope: Envelope,
     tolerance: f64,
     care: Care,
+    /// Whether few harmonics have the mean motion, and so follow a contact that opens.
+    follows: bool,
 }
 
 /// The highest top so far: its frequency, Hz, and its height, m, with few harmonics and with each of the sets.
@@ -161,13 +177,13 @@ impl CorrectedSearch<'_> {
         self.sets.iter().fold(few, |sum, set| sum.plus(set.work()))
     }
 
-    /// The point with all harmonics, to the tolerance of the residual but where several sets led to it and none was asked for; an error
-    /// where a contact opens beside it.
+    /// Whether a contact opens at a point without correction, or with one of the sets.
+    fn opens(&self) -> bool {
+        opens(&self.uncorrected.points) || self.sets.iter().any(|set| opens(&set.points))
+    }
+
+    /// The point with all harmonics, to the tolerance of the residual but where several sets led to it and none was asked for.
     fn finished(&mut self, frequency_hz: f64) -> Result<Point, Status> {
-        let mut points = self.sets.iter().flat_map(|set| &set.points);
-        if points.any(|point| point.shares.separated > 0.0) {
-            return Err(Status::SweepIncomplete);
-        }
         let is_guided = self.sets.len() > 1;
         let all = self.sets.last_mut().ok_or(Status::NotBracketed)?;
         if is_guided && !all.residual_is_stated() {
@@ -192,6 +208,9 @@ impl CorrectedSearch<'_> {
         let lower = 1.0 - 1.0 / (1.0 + reach);
         let found = tops_of_few(plan, &mut self.uncorrected, self.tolerance, lower);
         let mut further = found.map_err(|_| Status::SweepIncomplete)?;
+        if self.opens() && !self.follows {
+            return Err(Status::SweepIncomplete);
+        }
         let apart = self.envelope.linear_half_bandwidth_hz;
         further.retain(|candidate| {
             let is_new = |top: &Top| (top.frequency_hz - candidate.frequency_hz).abs() > apart;
@@ -394,6 +413,9 @@ impl CorrectedSearch<'_> {
         });
         last_set.points.push(point);
         climb.known[sets - 1].push(known);
+        if self.opens() && !self.follows {
+            return Err(Status::SweepIncomplete);
+        }
         Ok(())
     }
 }

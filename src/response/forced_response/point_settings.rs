@@ -16,6 +16,8 @@ use crate::response::mistuning::ContactFactors;
 const GUIDE: [u32; 2] = [1, 3];
 /// Share of the samples asked for that they are sampled with.
 const SAMPLES_OF_GUIDE: (usize, usize) = (1, 2);
+/// Harmonics that lead to the top where contacts open: a pair that opens moves apart in the mean, and twice a period.
+const OPENING: [u32; 4] = [0, 1, 2, 3];
 
 /// Everything of a study that the solution of a point needs besides the structure.
 #[derive(Debug, Clone)]
@@ -35,6 +37,8 @@ pub struct PointSettings {
     search: Option<Box<Self>>,
     /// Settings with the harmonics that lead to the top before all of them are solved there, where there are such.
     guide: Option<Box<Self>>,
+    /// Settings with the harmonics of the search for the top where contacts open, where there are such.
+    opening: Option<Box<Self>>,
 }
 
 impl PointSettings {
@@ -67,8 +71,11 @@ impl PointSettings {
             let (share, whole) = SAMPLES_OF_GUIDE;
             settings.at_samples(share * options.samples_per_period / whole)
         });
+        let opens = guided && OPENING.iter().all(|k| harmonics.contains(k));
+        let opening = opens.then(|| Self::new(options, &OPENING, contact, geometry.clone()));
         Ok(Self {
             search,
+            opening: opening.transpose()?.map(Box::new),
             guide: guide.transpose()?.map(Box::new),
             harmonics: harmonics.to_vec(),
             transform: Arc::new(HarmonicTransform::new(&set, samples)?),
@@ -93,6 +100,7 @@ impl PointSettings {
             ring,
             search: same(self.search),
             guide: same(self.guide),
+            opening: same(self.opening),
             ..self
         }
     }
@@ -108,6 +116,7 @@ impl PointSettings {
             factors: factors.clone(),
             search: same(&self.search),
             guide: same(&self.guide),
+            opening: same(&self.opening),
             ..self.clone()
         }
     }
@@ -151,15 +160,12 @@ impl PointSettings {
         })
     }
 
-    /// The search with fewer harmonics at the samples of all of them; none without such a search.
+    /// These settings at the samples of others.
     ///
     /// # Errors
-    /// If the harmonics cannot be told apart with them.
-    pub(super) fn search_at_own_samples(&self) -> Result<Option<Self>, TransformError> {
-        let search = self.search().cloned();
-        search
-            .map(|search| search.at_samples(self.transform.n_samples()))
-            .transpose()
+    /// If their harmonics cannot be told apart with them.
+    pub(super) fn at_samples_of(&self, other: &Self) -> Result<Self, TransformError> {
+        self.clone().at_samples(other.transform.n_samples())
     }
 
     /// These settings with `samples` samples per period.
@@ -216,6 +222,12 @@ impl PointSettings {
     #[must_use]
     pub fn guide(&self) -> Option<&Self> {
         self.guide.as_deref()
+    }
+
+    /// Settings of the search where contacts open, if there is one: an automatic set on tuned receptances that has the mean motion.
+    #[must_use]
+    pub fn opening(&self) -> Option<&Self> {
+        self.opening.as_deref()
     }
 
     /// How the errors of a solution are estimated.

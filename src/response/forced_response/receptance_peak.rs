@@ -5,6 +5,7 @@ use super::peak::{Peak, Window, peak_by};
 use super::point::Work;
 use super::point_settings::PointSettings;
 use super::receptance_points::{EngineRow, ReceptancePoints, receptance_plan};
+use super::refined_peak::with_work;
 
 /// The peak of a row on tuned receptances.
 #[derive(Debug, Clone)]
@@ -40,20 +41,26 @@ pub fn receptance_peak(
     let mut wasted = Work::default();
     if let Some(search) = search.filter(|_| nonlinear) {
         let sets: Vec<&PointSettings> = settings.guide().into_iter().chain([settings]).collect();
-        match corrected_peak(row, &plan, search, &sets, peak_tolerance) {
+        let mut found = corrected_peak(row, &plan, search, &sets, peak_tolerance);
+        let mut by_harmonics = settings.guide().is_some();
+        if let (Err(lost), Some(opening)) = (&found, settings.opening())
+            && lost.opens
+        {
+            wasted = lost.work;
+            by_harmonics = false;
+            found = corrected_peak(row, &plan, opening, &[settings], peak_tolerance);
+        }
+        match found {
             Ok((peak, change)) => {
                 return ReceptancePeak {
-                    peak,
-                    by_harmonics: settings.guide().map(|_| change),
+                    peak: with_work(peak, wasted),
+                    by_harmonics: by_harmonics.then_some(change),
                 };
             }
-            Err(work) => wasted = work,
+            Err(lost) => wasted = wasted.plus(lost.work),
         }
     }
     let solver = ReceptancePoints::new(row, settings);
     let found = peak_by(&plan, row.condition, solver, peak_tolerance);
-    alone(Peak {
-        work: found.work.plus(wasted),
-        ..found
-    })
+    alone(with_work(found, wasted))
 }

@@ -91,6 +91,9 @@ pub fn refined(
     }
     let mut coarse = PointSolver::new(search.excited, condition, search.settings);
     let tops = tops_of_few(&plan, &mut coarse, peak_tolerance, MADE_UP)?;
+    if opens(coarse.points()) {
+        return Err(coarse.work());
+    }
     let mut solver = PointSolver::new(excited, condition, settings).refining(&coarse);
     solver.set_precision(REFINED_PRECISION * peak_tolerance);
     let refined = highest(solver, &tops, plan.envelope, peak_tolerance)
@@ -99,7 +102,7 @@ pub fn refined(
 }
 
 /// The tops that `few` harmonics find by `plan`, the highest first, among them all that are lower than the highest by no more than
-/// `made_up`; the work done where they find no peak, or a contact opens.
+/// `made_up`; the work done where they find no peak.
 pub(super) fn tops_of_few(
     plan: &SearchPlan,
     few: &mut impl PointSource,
@@ -123,12 +126,15 @@ pub(super) fn tops_of_few(
             stuck: &plan.stuck,
         },
     );
-    let mut points = few.points().iter();
-    let opens = points.any(|point| point.shares.separated > 0.0);
-    if found.end != SearchEnd::Found || !found.bracketed || opens {
+    if found.end != SearchEnd::Found || !found.bracketed {
         return Err(few.work());
     }
     Ok(tops(&found, plan.envelope, plan.extensions > 0))
+}
+
+/// Whether a contact opens at one of the points.
+pub(super) fn opens(points: &[Point]) -> bool {
+    points.iter().any(|point| point.shares.separated > 0.0)
 }
 
 /// The peak, unless a band that is asked for ends there: it has no peak beyond its ends.
@@ -142,7 +148,8 @@ pub(super) fn inside_of_band(plan: &SearchPlan, refined: Peak) -> Result<Peak, W
     }
 }
 
-fn with_work(peak: Peak, work: Work) -> Peak {
+/// A peak that took other work besides.
+pub(super) fn with_work(peak: Peak, work: Work) -> Peak {
     Peak {
         work: peak.work.plus(work),
         ..peak
@@ -197,8 +204,7 @@ pub(super) fn summit_of(found: &SearchResult) -> Option<&Sample> {
 
 /// The point at a frequency, solved to its end; the work done where that fails or a contact opens.
 fn finished(solver: &mut impl PointSource, frequency_hz: f64) -> Result<Point, Work> {
-    let mut points = solver.points().iter();
-    if points.any(|point| point.shares.separated > 0.0) {
+    if opens(solver.points()) {
         return Err(solver.work());
     }
     let finished = solver.finished(frequency_hz);
