@@ -184,7 +184,7 @@ impl CorrectedSearch<'_> {
 
     /// The point with all harmonics, to the tolerance of the residual but where several sets led to it and none was asked for.
     fn finished(&mut self, frequency_hz: f64) -> Result<Point, Status> {
-        let is_guided = self.sets.len() > 1;
+        let is_guided = self.sets.len() > 1 || self.follows;
         let all = self.sets.last_mut().ok_or(Status::NotBracketed)?;
         if is_guided && !all.residual_is_stated() {
             let same = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();

@@ -97,6 +97,11 @@ const FROM_THERE: NewtonPlan = NewtonPlan {
     least_factor: 1.0 / 128.0,
     decrease: 0.0,
 };
+/// The same with many, where its steps take off less each.
+const FROM_THERE_WITH_MANY: NewtonPlan = NewtonPlan {
+    products_in_all: 1_500,
+    ..FROM_THERE
+};
 const BY_PAIRS: NewtonPlan = NewtonPlan {
     pairs: true,
     step_error: 1e-2,
@@ -119,6 +124,7 @@ enum Start {
 
 /// One way to a solution.
 enum Attempt {
+    #[allow(dead_code)]
     Accelerated(Plan),
     Newton(NewtonPlan),
 }
@@ -142,18 +148,19 @@ const WITH_FEW_HARMONICS: [(Start, Attempt); 13] = [
     (Known, Newton(BY_PAIRS)),
     (Linear, Newton(BY_PAIRS)),
 ];
-/// The same with many: where the first attempts stall they are over, since Newton's method from there takes less than other starts do.
-const WITH_MANY_HARMONICS: [(Start, Attempt); 11] = [
+/// The same with many: where an attempt stalls it is over, since Newton's method from there takes less than other starts do.
+const WITH_MANY_HARMONICS: [(Start, Attempt); 12] = [
     (Known, brief(plan(&[0], 160, FirstOfFundamental))),
+    (Best, Newton(FROM_THERE_WITH_MANY)),
+    (Known, Newton(BY_MANY_HARMONICS)),
     (Linear, brief(plan(&[0, 3], 120, FirstOfFundamental))),
-    (Best, Newton(FROM_THERE)),
+    (Best, Newton(FROM_THERE_WITH_MANY)),
     (Linear, Accelerated(combining_all(RENEWED))),
     (Known, Accelerated(combining_all(RENEWED))),
     (Known, Accelerated(plan(&[0, 3], 80, Resonant))),
     (Known, Accelerated(combining_all(RENEWED_RESONANT))),
     (Linear, Accelerated(plan(&[0, 3], 80, Resonant))),
     (Linear, Accelerated(combining_all(RENEWED_RESONANT))),
-    (Known, Newton(BY_MANY_HARMONICS)),
     (Linear, Newton(BY_MANY_HARMONICS)),
 ];
 const RENEWED: Plan = plan(&[0, 10, 25], 160, FirstOfFundamental);
@@ -235,6 +242,27 @@ pub(super) struct Outcome {
     pub(super) shares: ContactShares,
 }
 
+fn dbg_ladder() -> &'static [(Start, Attempt)] {
+    static L: std::sync::OnceLock<Vec<(Start, Attempt)>> = std::sync::OnceLock::new();
+    L.get_or_init(|| {
+        let Ok(text) = std::env::var("BLK_LADDER") else { return Vec::new() };
+        text.split(' ').map(|t| {
+            let mut c = t.chars();
+            let start = match c.next().unwrap() { 'K' => Known, 'L' => Linear, _ => Best };
+            let kind = c.next().unwrap();
+            let rest: Vec<f64> = c.as_str().split(',').filter(|x| !x.is_empty()).map(|x| x.parse().unwrap()).collect();
+            let attempt = match kind {
+                'b' if start == Known => brief(plan(&[0], 160, FirstOfFundamental)),
+                'b' => brief(plan(&[0, 3], 120, FirstOfFundamental)),
+                'r' => Accelerated(combining_all(RENEWED)),
+                'R' => Accelerated(combining_all(RENEWED_RESONANT)),
+                _ => Newton(NewtonPlan { pairs: kind == 'p', step_error: rest[0], products: rest[1] as usize, products_in_all: rest[2] as u64, least_factor: 1.0/256.0, decrease: rest[3] }),
+            };
+            (start, attempt)
+        }).collect()
+    })
+}
+
 impl ContactEquation<'_> {
     /// Solves from the best of `starts`, or from the linear response without any, until the residual is within `tolerance`.
     pub(super) fn solve(&mut self, starts: &[Vec<f64>], tolerance: f64) -> Outcome {
@@ -245,8 +273,12 @@ impl ContactEquation<'_> {
         } else {
             WITH_MANY_HARMONICS.as_slice()
         };
+        let dbg = dbg_ladder();
+        let attempts = if self.harmonics.len() > FEW_HARMONICS && !dbg.is_empty() { dbg } else { attempts };
         let attempts = attempts.iter();
         let attempts = attempts.filter(|(start, _)| known.is_some() || *start != Known);
+        // Without a known start the linear response begins.
+        let attempts = attempts.skip_while(|(start, _)| known.is_none() && *start == Best);
         let mut best = (f64::INFINITY, linear.clone());
         let mut total = Outcome::none();
         for (rung, (start, attempt)) in attempts.enumerate() {
@@ -260,6 +292,7 @@ impl ContactEquation<'_> {
                 Accelerated(plan) => self.accelerate(plan, tolerance),
                 Newton(plan) => self.newton(plan, tolerance),
             };
+            if rung > 0 || outcome.status != Status::Ok { eprintln!("DBG   rung {} {} st={:?} res={:.2e} step={:.2e} it={} tan={} sep={:.3}", rung, match attempt { Accelerated(p) => format!("acc{:?}x{} d{}", p.renewals, p.iterations, p.depth), Newton(_) => "newton".into() }, outcome.status, outcome.residual, outcome.step, outcome.iterations, outcome.tangents, outcome.shares.separated); }
             total = total.followed_by(outcome, rung);
             if total.status == Status::Ok {
                 break;
@@ -342,6 +375,7 @@ impl ContactEquation<'_> {
                 break;
             }
             outcome.tangents += 1;
+            eprintln!("DBG     newton res={:.2e} products={}", outcome.residual, outcome.iterations);
             let pairs = plan.pairs;
             let mut by = NewtonPreconditioner {
                 harmonics: self.preconditioners(FirstOfFundamental),
