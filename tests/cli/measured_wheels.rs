@@ -305,6 +305,115 @@ fn a_target_for_a_percentile_of_few_measured_wheels_asks_for_wheels() {
     );
 }
 
+/// Of wheels too few for a percentile the peaks are compared, against the load where the worst of them is lowest.
+#[test]
+fn a_comparison_of_few_measured_wheels_is_one_of_their_peaks_and_says_so() {
+    for (wheels, said, of_baseline) in [
+        (
+            1,
+            "P95 has no value, it needs 72 patterns: the one pattern is compared",
+            "the load with the lowest peak amplitude, since patterns are too few for P95",
+        ),
+        (
+            3,
+            "P95 has no value, it needs 72 patterns: the largest of the patterns is compared, which is no statistic",
+            "the load with the lowest of the largest peak amplitude, since patterns are too few for P95",
+        ),
+    ] {
+        let place = of_file(wheels);
+        output(&place, &["run", "study.toml"]);
+        let request = ["compare", "results/small"];
+        let text = output(&place, &request);
+        let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        for part in [said, of_baseline, "against 50 N per sector: "] {
+            assert!(words.contains(part), "{part}: {text}");
+        }
+        assert!(
+            text.lines().all(|line| line.chars().count() <= 80),
+            "{text}"
+        );
+        // As the report has the peaks, which `replay` finds as well.
+        let report = ["report", "results/small", "--no-curves", "--json"];
+        let report: Value = serde_json::from_str(&output(&place, &report)).expect("JSON");
+        let measured = report["groups"][0]["measured"].as_array().expect("a list");
+        let worst = |scenario: u64| {
+            let own = measured.iter().filter(|own| own["scenario"] == scenario);
+            let peaks = own.map(|own| own["peak_amplitude_m"].as_f64().expect("a peak"));
+            peaks.fold(0.0, f64::max)
+        };
+        let found = output(&place, &[&request[..], &["--json"]].concat());
+        let found: Value = serde_json::from_str(&found).expect("JSON");
+        assert_eq!(found["baseline_choice"], "lowest_of_largest");
+        let comparisons = found["quantities"][0]["comparisons"].as_array();
+        let comparisons = comparisons.expect("a list");
+        assert_eq!(comparisons.len(), 2);
+        for own in comparisons {
+            let scenarios = [&own["baseline"]["scenario"], &own["candidate"]["scenario"]];
+            let scenarios = scenarios.map(|own| own.as_u64().expect("an index"));
+            assert_eq!(scenarios[0], 1, "50 N is the best load of these wheels");
+            let own = own["largest"].as_array().expect("two");
+            for (scenario, own) in scenarios.into_iter().zip(own) {
+                let own = own.as_f64().expect("a number");
+                assert!((own / worst(scenario) - 1.0).abs() < 1e-12, "{scenario}");
+            }
+            let line = text.lines().find(|line| {
+                let name =
+                    ["slide", "50", "stuck"][usize::try_from(scenarios[1]).expect("an index")];
+                line.trim_start().starts_with(name)
+            });
+            let cells: Vec<&str> = line.expect("its line").split_whitespace().collect();
+            for (cell, expected) in [
+                (1, 1e6 * worst(scenarios[1])),
+                (2, worst(scenarios[1]) / worst(scenarios[0])),
+            ] {
+                let shown: f64 = cells[cell].parse().expect("a number");
+                assert!((shown / expected - 1.0).abs() < 1e-3, "{shown} {expected}");
+            }
+        }
+    }
+    // Between folders both sides stand.
+    let place = of_file(3);
+    output(&place, &["run", "study.toml"]);
+    let text = output(&place, &["compare", "results/small", "results/small"]);
+    assert!(
+        text.contains("largest A") && text.contains("it needs 72"),
+        "{text}"
+    );
+}
+
+/// A search over loads takes a percentile: of few wheels it says what answers in its place.
+#[test]
+fn a_search_of_few_measured_wheels_names_the_way_out() {
+    for (wheels, why, which) in [
+        (
+            1,
+            "one wheel has no percentile to search; ",
+            "the load with the lowest peak of this wheel",
+        ),
+        (
+            3,
+            "P95 of 3 wheels has no interval; ",
+            "the load under which the worst of these wheels is lowest",
+        ),
+    ] {
+        let place = of_file(wheels);
+        let ended = place.run(&["optimum", "study.toml", "--between", "40:400"]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (2, ""), "{wheels}");
+        let error = ended.stderr.split_whitespace().collect::<Vec<_>>();
+        let error = error.join(" ");
+        for words in [
+            why,
+            "accepted: a mistuning.file of 72 wheels or more; ",
+            which,
+            "list loads in sweep.normal_load_n, `blisk run study.toml` and read it in `blisk report DIR`",
+            "take mistuning.distribution in the place of mistuning.file, with study.patterns from 72 on",
+        ] {
+            assert!(error.contains(words), "{words}: {error}");
+        }
+        assert!(!place.path("results").exists());
+    }
+}
+
 #[test]
 fn the_key_of_measured_wheels_is_found_by_that_word() {
     let place = Place::with(GOOD);

@@ -743,6 +743,43 @@ fn explain_says_what_a_key_accepts_and_suggests_what_was_meant() {
 }
 
 #[test]
+fn explain_proposes_near_names_alone() {
+    let place = Place::new();
+    for (wrong, meant) in [
+        ("harmonix", "solver.harmonics?"),
+        ("Patterms", "study.patterns?"),
+        ("engine oders", "excitation.engine_orders?"),
+        ("import.sektors", "import.sectors?"),
+        // Columns, statuses, figures and terms too.
+        ("stated_eror", "stated_error?"),
+        ("stagnatd", "stagnated?"),
+        ("nodal diametre", "nodal diameter?"),
+    ] {
+        let ended = place.run(&["explain", wrong]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (2, ""), "{wrong}");
+        assert!(
+            ended.stderr.contains(&format!("did you mean {meant}")),
+            "{wrong}: {}",
+            ended.stderr
+        );
+    }
+    for wrong in ["xyzzy", "zq", "import.xyzzy", "turbocharger"] {
+        let ended = place.run(&["explain", wrong]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (2, ""), "{wrong}");
+        let error = ended.stderr.split_whitespace().collect::<Vec<_>>();
+        let error = error.join(" ");
+        assert!(!error.contains("did you mean"), "{error}");
+        for words in [
+            wrong,
+            "`blisk explain` lists them",
+            "`blisk explain import`",
+        ] {
+            assert!(error.contains(words), "{wrong}: {error}");
+        }
+    }
+}
+
+#[test]
 fn every_example_is_a_study_that_init_writes() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
     let mut names: BTreeSet<String> = ["template".to_owned()].into();
