@@ -166,7 +166,31 @@ fn one_measured_wheel_has_peaks_and_nothing_is_said_of_percentiles() {
             "{name}: {shown} and {own}"
         );
     }
+    // The printed answer has the numerical error of the peak, as the page has it.
     let page = std::fs::read_to_string(place.path("results/small/report.html")).expect("a page");
+    let (_, answer) =
+        { report.split_once("How much of that peak is numerical error?\n  At most ") }
+            .expect("the answer");
+    let (bound, rest) = answer
+        .split_once(" % of the peak at 50 N: it lies between ")
+        .expect("a bound");
+    let (_, of_page) = page
+        .split_once("Numerical error of the peak<")
+        .expect("the number");
+    let (_, of_page) = of_page.split_once("at most\u{a0}").expect("a bound");
+    assert!(
+        of_page.starts_with(&format!("{bound}\u{a0}%")),
+        "{bound}: {}",
+        &of_page[..40]
+    );
+    let (low, rest) = rest.split_once(" and ").expect("two ends");
+    let (high, _) = rest.split_once(" µm.").expect("an end");
+    let own = 1e6 * find(&row, "peak_amplitude_m").expect("a peak");
+    let stated = find(&row, "stated_error").expect("an error");
+    for (shown, expected) in [(low, own / (1.0 + stated)), (high, own / (1.0 - stated))] {
+        let shown: f64 = shown.parse().expect("a number");
+        assert!((shown / expected - 1.0).abs() < 1e-3, "{shown} {expected}");
+    }
     assert!(page.contains("Normal load per sector with the lowest peak of the wheel"));
     assert!(page.contains("No problem found"));
 }
@@ -263,6 +287,37 @@ fn a_few_measured_wheels_open_the_report_with_the_highest_of_them() {
         .expect("the figure");
     let figure = figure.split_once("</figure>").expect("an end").0;
     assert_eq!(figure.matches("<title>wheel ").count(), 9, "{figure}");
+    marks_stand_apart(figure);
+}
+
+/// The marks of a load stand side by side, so far apart that the bar of one reaches no other.
+fn marks_stand_apart(figure: &str) {
+    let places = |class: &str, name: &str| -> Vec<f64> {
+        let marks = figure.split('<').filter(|own| own.contains(class));
+        let of = marks.filter_map(|own| own.split_once(&format!(" {name}=\"")));
+        of.map(|(_, rest)| rest.split('"').next().expect("a number"))
+            .map(|number| number.parse().expect("a number"))
+            .collect()
+    };
+    let wheels = places("class=\"mark quiet\"", "cx");
+    assert_eq!(wheels.len(), 9, "{figure}");
+    let reach = 5.5 + 4.0;
+    for (place, at) in wheels.iter().enumerate() {
+        let others = wheels.iter().enumerate().filter(|own| own.0 != place);
+        assert!(
+            others.clone().all(|own| (own.1 - at).abs() > reach),
+            "{wheels:?}"
+        );
+    }
+    let bars: Vec<[f64; 2]> = { places("class=\"bound doubt\"", "x1").into_iter() }
+        .zip(places("class=\"bound doubt\"", "x2"))
+        .map(|(from, to)| [from, to])
+        .collect();
+    for [from, to] in bars {
+        let middle = f64::midpoint(from, to);
+        let near = wheels.iter().filter(|at| (*at - middle).abs() < reach);
+        assert_eq!(near.count(), 1, "{middle}: {wheels:?}");
+    }
 }
 
 #[test]
@@ -273,6 +328,7 @@ fn many_measured_wheels_are_left_to_the_table() {
         run.contains("mistuning.file holds 13; read the peak of each wheel in responses.parquet")
     );
     let report = output(&place, &["report", "results/small", "--no-curves"]);
+    assert!(!report.contains("numerical error?"), "{report}");
     assert!(!report.contains("Peaks at "), "{report}");
     assert!(report.contains("mistuning.file holds 13"), "{report}");
 }

@@ -746,22 +746,21 @@ fn explain_says_what_a_key_accepts_and_suggests_what_was_meant() {
 fn explain_proposes_near_names_alone() {
     let place = Place::new();
     for (wrong, meant) in [
-        ("harmonix", "solver.harmonics?"),
-        ("Patterms", "study.patterns?"),
-        ("engine oders", "excitation.engine_orders?"),
-        ("import.sektors", "import.sectors?"),
+        ("harmonix", "did you mean solver.harmonics?"),
+        (
+            "Patterms",
+            "did you mean study.patterns or output.patterns?",
+        ),
+        ("engine oders", "did you mean excitation.engine_orders or "),
+        ("import.sektors", "did you mean import.sectors?"),
         // Columns, statuses, figures and terms too.
-        ("stated_eror", "stated_error?"),
-        ("stagnatd", "stagnated?"),
-        ("nodal diametre", "nodal diameter?"),
+        ("stated_eror", "did you mean stated error or stated_error?"),
+        ("stagnatd", "did you mean stagnated?"),
+        ("nodal diametre", "did you mean nodal diameter?"),
     ] {
         let ended = place.run(&["explain", wrong]);
         assert_eq!((ended.code, ended.stdout.as_str()), (2, ""), "{wrong}");
-        assert!(
-            ended.stderr.contains(&format!("did you mean {meant}")),
-            "{wrong}: {}",
-            ended.stderr
-        );
+        assert!(ended.stderr.contains(meant), "{wrong}: {}", ended.stderr);
     }
     for wrong in ["xyzzy", "zq", "import.xyzzy", "turbocharger"] {
         let ended = place.run(&["explain", wrong]);
