@@ -177,7 +177,7 @@ fn one_measured_wheel_has_peaks_and_nothing_is_said_of_percentiles() {
     let (_, of_page) = page
         .split_once("Numerical error of the peak<")
         .expect("the number");
-    let (_, of_page) = of_page.split_once("at most\u{a0}").expect("a bound");
+    let (_, of_page) = of_page.split_once("at most ").expect("a bound");
     assert!(
         of_page.starts_with(&format!("{bound}\u{a0}%")),
         "{bound}: {}",
@@ -186,7 +186,10 @@ fn one_measured_wheel_has_peaks_and_nothing_is_said_of_percentiles() {
     let (low, rest) = rest.split_once(" and ").expect("two ends");
     let (high, _) = rest.split_once(" µm.").expect("an end");
     let own = 1e6 * find(&row, "peak_amplitude_m").expect("a peak");
-    let stated = find(&row, "stated_error").expect("an error");
+    let numbers = ["report", "results/small", "--no-curves", "--json"];
+    let numbers: Value = serde_json::from_str(&output(&place, &numbers)).expect("JSON");
+    let stated = &numbers["groups"][0]["errors"][1]["rows"]["stated"]["largest"];
+    let stated = stated.as_f64().expect("an error");
     for (shown, expected) in [(low, own / (1.0 + stated)), (high, own / (1.0 - stated))] {
         let shown: f64 = shown.parse().expect("a number");
         assert!((shown / expected - 1.0).abs() < 1e-3, "{shown} {expected}");
@@ -287,37 +290,56 @@ fn a_few_measured_wheels_open_the_report_with_the_highest_of_them() {
         .expect("the figure");
     let figure = figure.split_once("</figure>").expect("an end").0;
     assert_eq!(figure.matches("<title>wheel ").count(), 9, "{figure}");
-    marks_stand_apart(figure);
+    marks_stand_apart(figure, 9);
 }
 
-/// The marks of a load stand side by side, so far apart that the bar of one reaches no other.
-fn marks_stand_apart(figure: &str) {
-    let places = |class: &str, name: &str| -> Vec<f64> {
-        let marks = figure.split('<').filter(|own| own.contains(class));
-        let of = marks.filter_map(|own| own.split_once(&format!(" {name}=\"")));
-        of.map(|(_, rest)| rest.split('"').next().expect("a number"))
-            .map(|number| number.parse().expect("a number"))
-            .collect()
+/// The marks of a load stand side by side, so far apart that the bar of one reaches no other: how many bars there are.
+fn marks_stand_apart(figure: &str, wheels: usize) -> usize {
+    let number = |element: &str, name: &str| -> f64 {
+        let (_, rest) = element
+            .rsplit_once(&format!(" {name}=\""))
+            .expect("the place");
+        rest.split('"')
+            .next()
+            .and_then(|own| own.parse().ok())
+            .expect("a number")
     };
-    let wheels = places("class=\"mark quiet\"", "cx");
-    assert_eq!(wheels.len(), 9, "{figure}");
+    let marks: Vec<&str> = figure.split("<title>wheel ").collect();
+    let marks = &marks[..marks.len() - 1];
+    let places: Vec<f64> = marks.iter().map(|before| number(before, "cx")).collect();
+    assert_eq!(places.len(), wheels, "{figure}");
+    // Half the width of a bar, and of a mark.
     let reach = 5.5 + 4.0;
-    for (place, at) in wheels.iter().enumerate() {
-        let others = wheels.iter().enumerate().filter(|own| own.0 != place);
-        assert!(
-            others.clone().all(|own| (own.1 - at).abs() > reach),
-            "{wheels:?}"
-        );
+    for (place, at) in places.iter().enumerate() {
+        let mut others = places.iter().enumerate().filter(|own| own.0 != place);
+        assert!(others.all(|own| (own.1 - at).abs() > reach), "{places:?}");
     }
-    let bars: Vec<[f64; 2]> = { places("class=\"bound doubt\"", "x1").into_iter() }
-        .zip(places("class=\"bound doubt\"", "x2"))
-        .map(|(from, to)| [from, to])
+    let bars = figure
+        .split('<')
+        .filter(|own| own.contains("class=\"bound doubt\""));
+    let bars: Vec<f64> = bars
+        .map(|bar| f64::midpoint(number(bar, "x1"), number(bar, "x2")))
         .collect();
-    for [from, to] in bars {
-        let middle = f64::midpoint(from, to);
-        let near = wheels.iter().filter(|at| (*at - middle).abs() < reach);
-        assert_eq!(near.count(), 1, "{middle}: {wheels:?}");
+    for bar in &bars {
+        let near = places.iter().filter(|at| (*at - bar).abs() < reach);
+        assert_eq!(near.count(), 1, "{bar}: {places:?}");
     }
+    bars.len()
+}
+
+/// Loads that the errors of the peaks leave open have bars, each on the mark of the worst wheel alone.
+#[test]
+fn bars_of_numerical_error_stand_on_one_wheel_each() {
+    let place = of_file(3);
+    let study = std::fs::read_to_string(place.path("study.toml")).expect("a study");
+    let loads = "[\"slide\", 50, \"stuck\"]";
+    place.write("study.toml", &study.replace(loads, "[50, 52, 54]"));
+    output(&place, &["run", "study.toml"]);
+    output(&place, &["plot", "results/small", "amplitude"]);
+    let figure = std::fs::read_to_string(place.path("amplitude.svg")).expect("a figure");
+    // Each of a line and two caps.
+    let lines = marks_stand_apart(&figure, 9);
+    assert!(lines >= 6 && lines.is_multiple_of(3), "{lines}: {figure}");
 }
 
 #[test]
