@@ -196,7 +196,7 @@ impl Pilot {
         let scenarios = self.rows.len() / self.ids.len().max(1);
         let mut work = vec![0_u64; scenarios];
         for row in &self.rows {
-            work[row.scenario] += row.nonlinear_solves as u64;
+            work[row.scenario] += row.nonlinear_solves;
         }
         let of_pattern: u64 = work.iter().sum();
         // The number of patterns that take as long as the missing rows.
