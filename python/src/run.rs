@@ -1,6 +1,6 @@
 //! What solves rows: runs, searches for a load, plans, response curves.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use blisk::campaign::{
@@ -95,6 +95,7 @@ pub fn plan(
     let plan = watch(py, None, OnSignal::Leave, move |progress| {
         let request = PlanRequest {
             study: &study,
+            results: &Path::new("results").join(&study.name),
             pilot: pilot as usize,
             threads: threads_of(threads),
         };

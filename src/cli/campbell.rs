@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 
 use super::exit::Failure;
 use super::report::ends_in_svg;
@@ -16,6 +16,7 @@ use crate::study::{PipelineError, Study, load_sector_model};
 
 /// Arguments of the command.
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("diagram").args(["plot", "plot_safe"]).multiple(true))]
 pub struct CampbellArguments {
     /// The study file: model, contact stiffness, engine orders.
     study: PathBuf,
@@ -38,8 +39,8 @@ pub struct CampbellArguments {
     /// Write the SAFE diagram, frequency over nodal diameter, to this SVG file.
     #[arg(long, value_name = "FILE")]
     plot_safe: Option<PathBuf>,
-    /// Highest frequency of the diagrams [default: above the third mode of every nodal diameter].
-    #[arg(long, value_name = "HZ")]
+    /// Highest frequency of the diagrams, beside --plot or --plot-safe [default: above the third mode of every nodal diameter].
+    #[arg(long, value_name = "HZ", requires = "diagram")]
     top_hz: Option<TopHz>,
     /// Print JSON.
     #[arg(long)]

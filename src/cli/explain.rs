@@ -1,5 +1,6 @@
 //! `blisk explain`, `blisk schema` and `blisk completions`: what a study file and the command line accept.
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use clap::Args;
@@ -8,7 +9,9 @@ use serde::{Serialize, Serializer};
 
 use super::exit::Failure;
 use super::{ExitStatus, output};
-use crate::input::{Term, mentions, nearest_key_names, plain, terms_about};
+use crate::input::{
+    Term, mentions, misspelling, names_of_terms, nearest_key_names, plain, terms_about,
+};
 use crate::model::sector::import::{import_keys, import_schema};
 use crate::population::table::{
     ColumnSpec, DISTRIBUTION_COLUMNS, MAIN_EFFECT_COLUMNS, PATTERN_COLUMNS, PERCENTILE_COLUMNS,
@@ -196,15 +199,7 @@ impl Explanations {
             terms.extend(after.into_iter().map(Meaning::from));
         }
         if keys.is_empty() && terms.is_empty() {
-            let near = if name.starts_with("import.") {
-                nearest_key_names(&import_keys_below("import"), name)
-            } else {
-                nearest_keys(name)
-            };
-            return Err(Failure::usage(format!(
-                "there is no key {name}; did you mean {}?",
-                near.join(" or ")
-            )));
+            return Err(Failure::usage(unknown(name)));
         }
         let is_last = |key: &KeySpec| key.key.rsplit('.').next() == Some(name);
         let (named, others): (Vec<KeySpec>, Vec<KeySpec>) = keys.into_iter().partition(is_last);
@@ -213,6 +208,42 @@ impl Explanations {
             keys: named.iter().chain(&others).map(Explanation::from).collect(),
             terms,
         })
+    }
+}
+
+/// That nothing has this name, with the names that it may be meant for, or else with what can be explained.
+fn unknown(name: &str) -> String {
+    let mut near = if name.starts_with("import.") {
+        nearest_key_names(&import_keys_below("import"), name)
+    } else {
+        nearest_keys(name)
+    };
+    if near.is_empty() {
+        let columns = TABLES.iter().flat_map(|(_, columns)| *columns);
+        let columns = columns.map(|column| column.name);
+        let others = { Status::ALL.iter().map(|status| status.name()) }
+            .chain(columns)
+            .chain(FIGURES.iter().map(|(_, name, _)| *name))
+            .chain(names_of_terms());
+        let others: Vec<(usize, &str)> = others
+            .filter_map(|own| Some((misspelling(name, own)?, own)))
+            .collect();
+        let nearest = others.iter().map(|own| own.0).min();
+        let nearest = others.into_iter().filter(|own| Some(own.0) == nearest);
+        let nearest: BTreeSet<&str> = nearest.map(|own| own.1).collect();
+        near = nearest.into_iter().map(str::to_owned).collect();
+    }
+    if near.is_empty() {
+        format!(
+            "nothing has the name {name}, and no text has this word; accepted: a key of study files (`blisk explain` lists \
+             them) or of import files (`blisk explain import`), a column of results, a status of rows, a figure, a term of \
+             the glossary, or a word of their texts"
+        )
+    } else {
+        format!(
+            "there is no key {name}; did you mean {}?",
+            near.join(" or ")
+        )
     }
 }
 

@@ -1,6 +1,6 @@
 //! `blisk plan`: what a study will cost, from its first few patterns.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -15,7 +15,7 @@ use crate::study::Study;
 /// Arguments of `blisk plan`.
 #[derive(Debug, Args)]
 pub struct PlanArguments {
-    /// The study file.
+    /// The study file. Rows that its results folder, results/NAME, has are counted.
     study: PathBuf,
     /// Patterns of the pilot, the first ones of the study; they are solved, timed and not kept.
     #[arg(long, value_name = "N", default_value = "20", value_parser = clap::value_parser!(u32).range(2..))]
@@ -33,6 +33,7 @@ pub(super) fn command(arguments: &PlanArguments) -> Result<ExitStatus, Failure> 
     let progress = RunProgress::new();
     let request = PlanRequest {
         study: &study,
+        results: &Path::new("results").join(&study.name),
         pilot: arguments.pilot as usize,
         threads: threads(arguments.threads),
     };

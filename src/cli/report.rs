@@ -191,7 +191,7 @@ fn chosen<'a>(
     )))
 }
 
-/// The opening answers as text.
+/// The opening answers as text, and what the rows are held to.
 fn in_words(found: &StudyReport) -> String {
     let mut text = String::new();
     for group in &found.groups {
@@ -213,5 +213,5 @@ fn in_words(found: &StudyReport) -> String {
             text.push('\n');
         }
     }
-    text
+    text + &found.summary.held_to()
 }

@@ -204,22 +204,38 @@ impl KeySpec {
     }
 }
 
-/// The keys of `all` that `name` may be meant for: those that end in it, or else the nearest in spelling.
+/// The keys of `all` that `name` may be meant for: those that end in it, or else whose last part has it, or else the nearest
+/// in spelling; none where no key is near.
 #[must_use]
 pub fn nearest_key_names(all: &[KeySpec], name: &str) -> Vec<String> {
     let last = |key: &KeySpec| key.key.rsplit('.').next().unwrap_or_default().to_owned();
     let wanted = name.rsplit('.').next().unwrap_or_default();
-    let same: Vec<String> = all
-        .iter()
-        .filter(|key| last(key) == wanted)
-        .map(|key| key.key.clone())
-        .collect();
+    let those = |chosen: &dyn Fn(&KeySpec) -> bool| -> Vec<String> {
+        let keys = all.iter().filter(|key| chosen(key));
+        keys.map(|key| key.key.clone()).collect()
+    };
+    let same = those(&|key| last(key) == wanted);
     if !same.is_empty() {
         return same;
     }
+    let containing = those(&|key| !wanted.is_empty() && last(key).contains(wanted));
+    if !containing.is_empty() {
+        return containing;
+    }
     let distance = |key: &KeySpec| {
-        damerau_levenshtein(name, &key.key).min(damerau_levenshtein(wanted, &last(key)))
+        let [whole, of_last] = [(name, key.key.as_str()), (wanted, &last(key))]
+            .map(|(written, own)| misspelling(written, own));
+        whole.into_iter().chain(of_last).min()
     };
-    let nearest = all.iter().min_by_key(|key| distance(key));
-    nearest.map(|key| key.key.clone()).into_iter().collect()
+    let nearest = all.iter().filter_map(distance).min();
+    those(&|key| nearest.is_some() && distance(key) == nearest)
+}
+
+/// In how many letters `written` differs from `name`, if it is near enough to be meant for it: by a quarter of its letters at
+/// most, a space in the place of an underscore not counted.
+pub(crate) fn misspelling(written: &str, name: &str) -> Option<usize> {
+    let [written, name] = [written, name].map(|own| own.to_lowercase().replace(' ', "_"));
+    let letters = written.chars().count();
+    let most = if letters < 3 { 0 } else { (letters / 4).max(1) };
+    Some(damerau_levenshtein(&written, &name)).filter(|distance| *distance <= most)
 }

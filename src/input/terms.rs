@@ -126,6 +126,11 @@ pub fn terms_about(words: &str) -> Vec<Term> {
     found
 }
 
+/// The name of every term, without where it stands.
+pub fn names_of_terms() -> impl Iterator<Item = &'static str> {
+    all_terms().filter_map(|term| term.word.split([',', ':', '(']).next().map(str::trim))
+}
+
 /// The term of this word.
 #[must_use]
 pub fn term_of(word: &str) -> Option<Term> {

@@ -1,16 +1,20 @@
 //! The answers that a report opens with: which normal load, how sure, and how much of it is numerical error.
 
 use super::numerical_error::Remedy;
-use super::stated_errors::{common_words, measured, stated};
-use super::study_report::at_the_end_by;
+use super::stated_errors::{common_words, largest_stated, measured, stated};
+use super::study_report::{at_the_end_by, within};
 use super::words::{
-    LengthUnit, four_digits, listed, loads_and_limits, percent_words, short_load_with_unit,
-    signed_share,
+    LengthUnit, four_digits, listed, loads_and_limits, percent_words, share_words,
+    short_load_with_unit, signed_share,
 };
 use super::{
     BestLoads, GroupReport, LoadChoice, MeasuredPeak, ScenarioSummary, StudyReport, Warning,
 };
 use crate::population::statistics::{CONFIDENCE, Percentile};
+
+/// What no numerical error is about.
+const NOT_IN_ERROR: &str = "Not in these numbers: errors of the model that was given, as of its mesh, contact stiffness, \
+                            friction coefficient or damping.";
 
 /// A question of an engineer with its answer from the numbers of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,7 +27,7 @@ pub struct Answer {
     pub reasons: Vec<String>,
 }
 
-/// The answers for one group: the peak of each measured wheel, where they are few; for P99 and P95 which load to choose, and
+/// The answers for one group: the peak of each measured wheel, where they are few, and its numerical error; for P99 and P95 which load to choose, and
 /// how much is numerical error. Percentiles that are known come first, of the others the one that needs the fewest patterns.
 #[must_use]
 pub fn answers(report: &StudyReport, group: &GroupReport) -> Vec<Answer> {
@@ -43,10 +47,12 @@ pub fn answers(report: &StudyReport, group: &GroupReport) -> Vec<Answer> {
     let loads = known.into_iter().chain(unknown.into_iter().rev());
     let mut answers: Vec<Answer> = writer.measured_wheels().into_iter().collect();
     if report.summary.is_of_one_wheel() {
+        answers.extend(writer.error_of_wheels());
         return answers;
     }
     answers.extend(loads.map(|choice| writer.load(choice)));
-    answers.extend(asked().find_map(|choice| writer.error(choice)));
+    let error = asked().find_map(|choice| writer.error(choice));
+    answers.extend(error.or_else(|| writer.error_of_wheels()));
     answers
 }
 
@@ -411,13 +417,56 @@ impl Writer<'_> {
         }
         reasons.extend(common_words(&self.report.summary.basis, &errors.common));
         reasons.extend(self.report.summary.numerical_error.map(measured));
-        reasons.push(
-            "Not in these numbers: errors of the model that was given, as of its mesh, contact stiffness, friction \
-             coefficient or damping."
-                .to_owned(),
-        );
+        reasons.push(NOT_IN_ERROR.to_owned());
         Some(Answer {
             question: "How much of that number is numerical error?".to_owned(),
+            verdict,
+            reasons,
+        })
+    }
+
+    /// How much of the peaks of a few measured wheels is numerical error under the load of the smallest worst one; none
+    /// where there is none.
+    fn error_of_wheels(&self) -> Option<Answer> {
+        let (worst, peak) = self.group.smallest_worst_peak()?;
+        let mut errors = self.group.errors.iter();
+        let errors = errors.find(|own| own.scenario == worst.scenario)?;
+        let one = self.report.summary.is_of_one_wheel();
+        let (question, peaks, which) = if one {
+            (
+                "How much of that peak is numerical error?",
+                "the peak",
+                "it",
+            )
+        } else {
+            (
+                "How much of these peaks is numerical error?",
+                "each peak",
+                "the worst",
+            )
+        };
+        let load = self.load_of(worst.scenario);
+        let bound = self.group.largest_stated_error(worst.scenario);
+        let bound = bound.filter(|_| errors.rows.without_bound == 0);
+        let ends = bound.and_then(|error| {
+            let (low, high) = within(peak, error);
+            Some((low, high?))
+        });
+        let verdict = match ends {
+            Some((low, high)) => format!(
+                "At most {} of {peaks} at {load}: {which} lies between {} and {}.",
+                share_words(high / peak - 1.0),
+                self.units.number(low),
+                self.units.length(high)
+            ),
+            None => format!("Not bounded at {load}: {}.", errors.rows.why_no_bound()),
+        };
+        let mut reasons: Vec<String> = largest_stated(&errors.rows).into_iter().collect();
+        reasons.extend(common_words(&self.report.summary.basis, &errors.common));
+        reasons.extend(self.report.summary.numerical_error.map(measured));
+        reasons.push(NOT_IN_ERROR.to_owned());
+        Some(Answer {
+            question: question.to_owned(),
             verdict,
             reasons,
         })

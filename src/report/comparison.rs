@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use crate::population::monte_carlo::{LoadCaseName, Scenario};
-use crate::population::statistics::{PairFacts, Percentile, PercentileComparison, Quantity};
+use crate::population::statistics::{
+    PairFacts, Percentile, PercentileComparison, PointStatus, Quantity,
+};
 
 /// A results folder of a comparison.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -76,12 +78,26 @@ pub struct ScenarioComparison {
     pub patterns_left_out: [u64; 2],
     /// The percentile, its difference and its ratio.
     pub percentile: PercentileComparison,
+    /// Largest value of the patterns used, of the baseline and of the candidate; null where a row has no value. What is
+    /// compared where the percentile has no value for lack of patterns.
+    pub largest: [Option<f64>; 2],
     /// `p_value` adjusted for all comparisons of this quantity (Holm 1979).
     pub adjusted_p_value: Option<f64>,
     /// Whether the adjusted one comes from a `p_value` at its floor: it is then an upper bound.
     pub adjusted_p_value_is_bound: bool,
     /// Facts about the pairs; null for independent populations.
     pub pairs: Option<PairFacts>,
+}
+
+impl ScenarioComparison {
+    /// How many patterns the percentile needs, where there are fewer on a side.
+    pub(super) fn needed_patterns(&self) -> Option<u64> {
+        let sides = [&self.percentile.baseline, &self.percentile.candidate];
+        sides.into_iter().find_map(|side| match side.status {
+            PointStatus::TooFewPatterns { needed } => Some(needed),
+            _ => None,
+        })
+    }
 }
 
 /// A load among those of which one is the best.
@@ -127,6 +143,9 @@ pub enum BaselineChoice {
     /// In each group the load with the lowest percentile of the peak amplitude; the first one where no
     /// percentile has a value.
     Lowest,
+    /// In each group the load with the lowest of the largest peak amplitudes, because there are too few patterns for the
+    /// percentile.
+    LowestOfLargest,
     /// The scenario that the user names.
     Named,
     /// The scenario of the first folder with the same keys.

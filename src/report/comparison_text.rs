@@ -70,6 +70,18 @@ impl ComparisonReport {
                 "baseline: the load with the lowest P{percent} of the peak amplitude; --baseline I takes \
                  scenario I"
             ),
+            BaselineChoice::LowestOfLargest => {
+                let one = self.folders.first().is_some_and(|own| own.patterns == 1);
+                let which = if one {
+                    "lowest"
+                } else {
+                    "lowest of the largest"
+                };
+                format!(
+                    "baseline: the load with the {which} peak amplitude, since patterns are too few for P{percent}; \
+                     --baseline I takes scenario I"
+                )
+            }
             BaselineChoice::Named => "baseline: the scenario of --baseline".to_owned(),
             BaselineChoice::SameKeys => {
                 "baseline: the same load in A; --baseline I takes scenario I of A".to_owned()
@@ -105,9 +117,15 @@ impl ComparisonReport {
             Quantity::PeakAmplitudeM => Some(length_unit(found)),
             Quantity::AmplificationFactor => None,
         };
+        let of_percentile = { found.comparisons.iter() }.any(|own| own.needed_patterns().is_none());
+        let what = if of_percentile || found.comparisons.is_empty() {
+            format!("P{percent} of the ")
+        } else {
+            String::new()
+        };
         match unit {
-            Some(unit) => writeln!(f, "\nP{percent} of the peak amplitude, {}", unit.name())?,
-            None => writeln!(f, "\nP{percent} of the amplification factor")?,
+            Some(unit) => writeln!(f, "\n{what}peak amplitude, {}", unit.name())?,
+            None => writeln!(f, "\n{what}amplification factor")?,
         }
         for together in found.comparisons.chunk_by(told_together) {
             self.together(f, together, unit)?;
@@ -130,6 +148,11 @@ impl ComparisonReport {
         let one_baseline = found.iter().all(|own| own.baseline == first.baseline)
             && self.baseline_choice != BaselineChoice::SameKeys;
         let heading = self.heading(first, one_baseline, unit);
+        if let Some(needed) = first.needed_patterns() {
+            let why = self.why_largest(first, needed);
+            writeln!(f, "\n{}", paragraph(&format!("{heading}. {why}")))?;
+            return write!(f, "{}", of_largest(found, one_baseline, unit));
+        }
         writeln!(f, "\n{}", paragraph(&heading))?;
         let percent = trimmed(self.percent);
         let value = format!("P{percent}");
@@ -198,8 +221,21 @@ impl ComparisonReport {
             } else {
                 format!(" ({})", group(baseline))
             },
-            point(&first.percentile.baseline, unit),
+            match first.needed_patterns() {
+                Some(_) => shown_or_dash(first.largest[0], unit),
+                None => point(&first.percentile.baseline, unit),
+            },
         )
+    }
+
+    /// Why the percentile of so few patterns is not compared, and what is in its place.
+    fn why_largest(&self, first: &ScenarioComparison, needed: u64) -> String {
+        let percent = trimmed(self.percent);
+        let in_its_place = match first.patterns {
+            [1, 1] => "the one pattern is compared",
+            _ => "the largest of the patterns is compared, which is no statistic",
+        };
+        format!("P{percent} has no value, it needs {needed} patterns: {in_its_place}")
     }
 
     /// Which load is the lowest, and which could be.
@@ -254,6 +290,34 @@ fn told_together(a: &ScenarioComparison, b: &ScenarioComparison) -> bool {
     alike(&a.baseline, &b.baseline)
         && alike(&a.candidate, &b.candidate)
         && (a.pairing, a.patterns) == (b.pairing, b.patterns)
+}
+
+/// Comparisons by the largest value of the patterns.
+fn of_largest(found: &[ScenarioComparison], one_baseline: bool, unit: Unit) -> TextTable {
+    let of = |scenario: &ComparedScenario| format!("largest {}", letter(scenario.folder));
+    let [of_baseline, of_candidate] = [of(&found[0].baseline), of(&found[0].candidate)];
+    let mut header = vec!["load N", &of_baseline, &of_candidate, "ratio", "better"];
+    if one_baseline {
+        header = vec!["load N", "largest", "ratio", "better"];
+    }
+    let mut table = TextTable::new(&header);
+    for own in found {
+        let [baseline, candidate] = own.largest;
+        let ratio = { baseline.zip(candidate) }.map(|(baseline, candidate)| candidate / baseline);
+        let mut row = vec![load_words(
+            own.candidate.contact,
+            own.candidate.normal_load_n,
+        )];
+        if !one_baseline {
+            row.push(shown_or_dash(baseline, unit));
+        }
+        row.push(shown_or_dash(candidate, unit));
+        row.push(shown_or_dash(ratio, None));
+        let [better, ..] = facts_about_pairs(own);
+        row.push(better);
+        table.row(row);
+    }
+    table
 }
 
 fn facts_about_pairs(found: &ScenarioComparison) -> [String; 3] {
@@ -312,16 +376,21 @@ fn letter(place: usize) -> String {
 
 fn length_unit(found: &QuantityComparison) -> LengthUnit {
     let values = found.comparisons.iter().flat_map(|comparison| {
-        [
-            comparison.percentile.baseline.value,
-            comparison.percentile.candidate.value,
-        ]
+        let percentile = &comparison.percentile;
+        match comparison.needed_patterns() {
+            Some(_) => comparison.largest,
+            None => [percentile.baseline.value, percentile.candidate.value],
+        }
     });
     LengthUnit::of(values.flatten())
 }
 
 fn point(found: &Percentile, unit: Unit) -> String {
-    found.value.map_or_else(dash, |value| shown(value, unit))
+    shown_or_dash(found.value, unit)
+}
+
+fn shown_or_dash(value: Option<f64>, unit: Unit) -> String {
+    value.map_or_else(dash, |value| shown(value, unit))
 }
 
 fn interval(found: Option<&IntervalEstimate>, unit: Unit) -> String {

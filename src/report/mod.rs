@@ -48,10 +48,12 @@ pub use model_report::{ModelReport, NodalDiameterFacts};
 pub use model_section::{
     BodyMass, ContactFacts, ContactPlace, ModelSection, PictureNode, SectorPicture, ShownModel,
 };
-pub use numerical_error::{NumericalError, NumericalFinding};
+pub use numerical_error::{NumericalError, NumericalFinding, RowTolerance};
 pub use optimum::{OptimumExcitation, OptimumReport};
 pub use peak_audit::PeakAuditReport;
-pub use plan::{PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan};
+pub use plan::{
+    PlannedDisk, PlannedLook, PlannedPercentile, PlannedRest, PlannedStop, PlannedTime, StudyPlan,
+};
 pub use rotation::RotationFacts;
 pub use stated_errors::{CommonErrors, ErrorRows, ErrorSpread, PercentileError, StatedErrors};
 pub use statistics_csv::statistics_csv;
@@ -66,7 +68,7 @@ pub use time_domain::{StepReport, TimeDomainReport};
 pub use tradeoff::{FullContactCheck, TradeoffChoice, TradeoffReference, TradeoffReport};
 pub use verification::{ErrorDistribution, RegimeErrors, VerificationContext, VerificationReport};
 pub use visible::{is_order, visible, with_orders_escaped};
-pub use warning::{MOST_WHEELS_NAMED, RowTolerance, Warning};
+pub use warning::{MOST_WHEELS_NAMED, Warning};
 pub use wheel_report::{PairReport, ResponseCurve, WheelCurves, WheelReport, WheelStateReport};
 pub use words::LengthUnit;
-pub(crate) use words::{duration, excitation, short_load_with_unit};
+pub(crate) use words::{basis_words, duration, excitation, short_load_with_unit};

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::RotationFacts;
 use super::text_table::TextTable;
 use super::warning::Warning;
+use super::words::basis_words;
 
 /// Facts about one nodal diameter of the reduced model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -80,8 +81,8 @@ impl fmt::Display for ModelReport {
         )?;
         write!(
             f,
-            "basis {}: {} reduced coordinates, {:.1} MiB",
-            self.basis,
+            "{}: {} reduced coordinates, {:.1} MiB",
+            basis_words(&self.basis),
             self.reduced_coordinates,
             self.memory_bytes as f64 / f64::from(1 << 20)
         )?;

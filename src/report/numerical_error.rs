@@ -1,4 +1,5 @@
-//! The numerical error of a study whose settings were chosen by it, beside its statistical uncertainty.
+//! The numerical error of a study whose settings were chosen by it, beside its statistical uncertainty, and what its rows are
+//! held to.
 
 use std::fmt;
 
@@ -73,6 +74,68 @@ impl Remedy {
             Self::Finer => "to be surer: more accuracy first",
         }
     }
+}
+
+/// The tolerances of the errors that a row is marked by; none where the results do not say it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct RowTolerance {
+    /// Of the change by finer sampling.
+    pub sampling_tolerance: Option<f64>,
+    /// Of the change by more harmonics, `solver.harmonic_tolerance`.
+    pub harmonic_tolerance: Option<f64>,
+}
+
+impl RowTolerance {
+    fn known(self) -> Vec<String> {
+        let named = [
+            ("samples per period", self.sampling_tolerance),
+            ("harmonics", self.harmonic_tolerance),
+        ];
+        { named.into_iter() }
+            .filter_map(|(name, own)| Some(format!("{} % by {name}", percent(own?))))
+            .collect()
+    }
+
+    /// Both that are known, in brackets; empty without any.
+    pub(super) fn in_brackets(self) -> String {
+        let known = self.known();
+        if known.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", known.join(", "))
+        }
+    }
+
+    /// What each row is held to, and which keys say it; with the error that `[accuracy]` chose them by. Empty where nothing is
+    /// known.
+    #[must_use]
+    pub fn in_words(self, accepted: Option<f64>) -> String {
+        let known = self.known();
+        if known.is_empty() {
+            return String::new();
+        }
+        let by = accepted.map_or_else(
+            || {
+                "solver.peak_tolerance, solver.harmonic_tolerance; accuracy.amplitude_error sets both"
+                    .to_owned()
+            },
+            |accepted| {
+                format!(
+                    "chosen by accuracy.amplitude_error, {} % for 95 % of the rows",
+                    percent(accepted)
+                )
+            },
+        );
+        format!(
+            "the amplitude of each row is held to {} ({by})",
+            known.join(" and ")
+        )
+    }
+}
+
+/// In percent, with six decimals at most.
+fn percent(ratio: f64) -> f64 {
+    (1e8 * ratio).round() / 1e6
 }
 
 /// Numerical error of the peak amplitudes of a study with `[accuracy]`.
@@ -211,6 +274,36 @@ impl fmt::Display for NumericalFinding {
             ),
         }
     }
+}
+
+/// What helps so many rows whose sampling error is beyond its tolerance, and so many whose harmonic error is, with harmonics
+/// that the program chose or not, on a basis or not.
+pub(super) fn advice_beyond(
+    by_sampling: u64,
+    by_harmonics: u64,
+    (automatic, on_basis): (bool, bool),
+) -> String {
+    let samples = format!(
+        "the sampling error is the larger one of {by_sampling}: raise solver.samples_per_period"
+    );
+    let more = match (automatic, on_basis) {
+        (true, true) => {
+            "\"auto\" took no more of them: raise the normal load, name more in solver.harmonics"
+        }
+        (true, false) => {
+            "\"auto\" took all that have a peak: raise the normal load, or keep this one, since the stated errors are valid"
+        }
+        (false, _) => {
+            "take solver.harmonics = \"auto\" or a larger set (another study with another --out)"
+        }
+    };
+    let harmonics = format!(
+        "the harmonic error is the larger one of {by_harmonics}: {more}, or accept it by a larger \
+         solver.harmonic_tolerance"
+    );
+    let parts = [(by_sampling, samples), (by_harmonics, harmonics)];
+    let parts = parts.into_iter().filter(|(rows, _)| *rows > 0);
+    parts.map(|(_, part)| part).collect::<Vec<_>>().join("; ")
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! What a study will cost, and what its percentiles will be worth.
 
 use std::fmt;
+use std::path::PathBuf;
 
 use serde::Serialize;
 
@@ -37,6 +38,8 @@ pub struct StudyPlan {
     /// Time of the patterns after which the rule is expected to stop; null without one, or where the
     /// pilot does not say.
     pub expected_time: Option<PlannedTime>,
+    /// Rows that are stored already, which a run takes over; null where none is.
+    pub stored: Option<PlannedRest>,
     /// Largest memory, bytes: that of the pilot and what a run grows by with all rows; null where the system
     /// does not say.
     pub memory_bytes: Option<u64>,
@@ -61,6 +64,17 @@ pub struct PlannedTime {
     pub wall_lower_s: f64,
     /// Upper bound of the time on the clock, s; null where one pattern cannot say.
     pub wall_upper_s: Option<f64>,
+}
+
+/// Rows that are stored, and the time of the others.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlannedRest {
+    /// The results folder.
+    pub folder: PathBuf,
+    /// Rows of the study that are stored there.
+    pub rows: u64,
+    /// Time of the others, as that of so many patterns; null where all are stored.
+    pub time: Option<PlannedTime>,
 }
 
 /// Space on disk, without the cache of the reduced model.
@@ -140,6 +154,18 @@ impl fmt::Display for StudyPlan {
         self.line_of(f, "all patterns", &self.time)?;
         if let Some(expected) = &self.expected_time {
             self.line_of(f, "expected to stop", expected)?;
+        }
+        if let Some(stored) = &self.stored {
+            let what = format!(
+                "{} of {} rows are stored in {}",
+                stored.rows,
+                self.rows,
+                stored.folder.display()
+            );
+            match &stored.time {
+                Some(rest) => self.line_of(f, &format!("{what}; the rest, like"), rest)?,
+                None => writeln!(f, "{what}: none is left to solve")?,
+            }
         }
         let memory = self.memory_bytes.map_or("unknown".to_owned(), size);
         writeln!(

@@ -217,7 +217,7 @@ pub(super) fn common_words(basis: &BasisSummary, common: &CommonErrors) -> Optio
             common.reduced_model.or(basis.tuned_peak_error),
             format!(
                 "the reduced model ({}, measured on {measured_on})",
-                basis.name
+                basis.name.replace(TUNED_RECEPTANCES, "tuned receptances")
             ),
         ),
     ];
@@ -256,23 +256,40 @@ pub(super) fn measured(error: NumericalError) -> String {
     )
 }
 
+/// What single solutions state, each by its name.
+fn sources(rows: &StatedErrors) -> impl Iterator<Item = (&'static str, ErrorSpread)> {
+    let sources = [
+        ("full error bound", rows.stated),
+        ("change by finer sampling", rows.sampling),
+        ("change by the next harmonics", rows.harmonics),
+    ];
+    { sources.into_iter() }.filter_map(|(name, spread)| Some((name, spread?)))
+}
+
+/// The largest errors that the few rows of a load state; none where they state none.
+pub(super) fn largest_stated(rows: &StatedErrors) -> Option<String> {
+    let parts: Vec<String> = sources(rows)
+        .map(|(name, spread)| format!("{name} {}", share_words(spread.largest)))
+        .collect();
+    let of = if rows.rows > 1 {
+        "The largest that a solution here states"
+    } else {
+        "The solution states"
+    };
+    (!parts.is_empty()).then(|| format!("{of}: {}.", parts.join(", ")))
+}
+
 /// What the rows of the chosen load state.
 pub(super) fn stated(rows: &StatedErrors) -> String {
-    let mut parts = Vec::new();
-    let sources = [
-        ("full error bound", &rows.stated),
-        ("change by finer sampling", &rows.sampling),
-        ("change by the next harmonics", &rows.harmonics),
-    ];
-    for (name, spread) in sources {
-        if let Some(spread) = spread {
-            parts.push(format!(
+    let parts: Vec<String> = sources(rows)
+        .map(|(name, spread)| {
+            format!(
                 "{name} {} (largest {})",
                 share_words(spread.median),
                 share_words(spread.largest)
-            ));
-        }
-    }
+            )
+        })
+        .collect();
     if parts.is_empty() {
         "These solutions state no errors.".to_owned()
     } else {

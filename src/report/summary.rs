@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{NumericalError, RotationFacts, RowTolerance, Warning};
-use crate::population::monte_carlo::LoadCaseName;
+use crate::population::monte_carlo::{LoadCaseName, TUNED_RECEPTANCES};
 use crate::population::statistics::{
     Accounting, PERCENTILES, Percentile, PointStatus, SampleStatistics, ScenarioStability,
     StopOutcome,
@@ -194,6 +194,8 @@ pub struct StudySummary {
     pub basis: BasisSummary,
     /// Numerical error by which the settings were chosen; null: the study says the settings.
     pub numerical_error: Option<NumericalError>,
+    /// What rows are marked by.
+    pub tolerance: RowTolerance,
     /// Normal loads by rotation; absent: all are written in newtons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rotation: Option<RotationFacts>,
@@ -232,6 +234,7 @@ impl StudySummary {
             stop: context.stop.clone(),
             basis: context.basis.clone(),
             numerical_error: context.numerical_error,
+            tolerance: context.tolerance,
             rotation: context.rotation.clone(),
             stress_pa_per_m: context.stress_pa_per_m,
             rows,
@@ -348,6 +351,7 @@ fn warnings(
             rows: statistics().map(|of| of.beyond_tolerance).sum(),
             by_sampling: statistics().map(|of| of.beyond_by_sampling).sum(),
             automatic: context.harmonics == Harmonics::Auto,
+            on_basis: context.basis.name != TUNED_RECEPTANCES,
             planned: rows.planned(),
             scenarios,
             tolerance: context.tolerance,
@@ -382,11 +386,8 @@ fn warnings(
             planned: rows.planned(),
         });
     }
-    let tuned_failures: Vec<usize> = records
-        .iter()
-        .filter(|record| record.tuned.status != Status::Ok)
-        .map(|record| record.scenario.index)
-        .collect();
+    let without_tuned = { records.iter() }.filter(|record| record.tuned.status != Status::Ok);
+    let tuned_failures: Vec<usize> = without_tuned.map(|own| own.scenario.index).collect();
     if !tuned_failures.is_empty() {
         warnings.push(Warning::TunedFailures {
             scenarios: tuned_failures,

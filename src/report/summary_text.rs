@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::text_table::TextTable;
 use super::words::{
-    LengthUnit, excitation, excitation_and_deviation, load_per_sector, load_words,
+    LengthUnit, basis_words, excitation, excitation_and_deviation, load_per_sector, load_words,
     scenarios_in_words, trimmed,
 };
 use super::{BestLoad, NumericalError, ScenarioSummary, StudySummary};
@@ -27,8 +27,8 @@ impl fmt::Display for StudySummary {
         if let Some(error) = self.basis.tuned_peak_error {
             writeln!(
                 f,
-                "basis {}, tuned peak within {:.2} % of the full contact model at the same harmonics",
-                self.basis.name,
+                "{}, tuned peak within {:.2} % of the full contact model at the same harmonics",
+                basis_words(&self.basis.name),
                 100.0 * error
             )?;
         }
@@ -88,6 +88,20 @@ impl fmt::Display for StudySummary {
              A load N is the normal load per sector. Amplification factor: peak over the tuned peak of \
              the same normal load."
         )
+    }
+}
+
+impl StudySummary {
+    /// What each row with friction is held to, in a paragraph; empty where there is none, or nothing is known.
+    #[must_use]
+    pub fn held_to(&self) -> String {
+        let accepted = self.numerical_error.map(|error| error.accepted);
+        let words = self.tolerance.in_words(accepted);
+        let mut scenarios = self.scenarios.iter();
+        if words.is_empty() || !scenarios.any(|own| own.normal_load_n.is_some()) {
+            return String::new();
+        }
+        format!("Accuracy: {words}.\n\n")
     }
 }
 

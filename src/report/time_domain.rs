@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::text_table::TextTable;
-use super::words::{LengthUnit, excitation, load_per_sector};
+use super::words::{LengthUnit, basis_words, excitation, load_per_sector};
 use crate::population::monte_carlo::{LoadCaseName, ResponseRow, Scenario};
 use crate::response::harmonic_balance::Status;
 use crate::verification::time_integration::{PeriodicMotion, PointComparison, Stability};
@@ -182,7 +182,7 @@ impl fmt::Display for TimeDomainReport {
         };
         writeln!(
             f,
-            "study {}: scenario {}, pattern {}, {}, {}, {} Hz, harmonics {}, basis {}",
+            "study {}: scenario {}, pattern {}, {}, {}, {} Hz, harmonics {}, {}",
             self.name,
             self.scenario,
             self.pattern,
@@ -191,7 +191,7 @@ impl fmt::Display for TimeDomainReport {
             self.frequency_hz
                 .map_or_else(|| "-".to_owned(), |hz| format!("{hz:.4}")),
             self.harmonics,
-            self.basis
+            basis_words(&self.basis)
         )?;
         let mut table = TextTable::new(&["largest blade", "amplitude"]);
         for (path, amplitude_m) in [

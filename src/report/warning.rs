@@ -4,46 +4,14 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::NumericalFinding;
-use super::numerical_error::share_of_interval;
+use super::numerical_error::{advice_beyond, share_of_interval};
+use super::{NumericalFinding, RowTolerance};
 
 /// Largest number of wheels of a file that a report names one by one.
 pub const MOST_WHEELS_NAMED: u64 = 12;
 
 /// Says scenarios, of which it gets the indices, in the words of a reader.
 pub(super) type Named<'a> = &'a dyn Fn(&[usize]) -> String;
-
-/// The tolerances of the errors that a row is marked by; none where the results do not say it.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct RowTolerance {
-    /// Of the change by finer sampling.
-    pub sampling_tolerance: Option<f64>,
-    /// Of the change by more harmonics, `solver.harmonic_tolerance`.
-    pub harmonic_tolerance: Option<f64>,
-}
-
-impl RowTolerance {
-    /// Both that are known, in brackets; empty without any.
-    fn in_brackets(self) -> String {
-        let named = [
-            ("samples per period", self.sampling_tolerance),
-            ("harmonics", self.harmonic_tolerance),
-        ];
-        let known: Vec<String> = { named.into_iter() }
-            .filter_map(|(name, own)| Some(format!("{} % by {name}", percent(own?))))
-            .collect();
-        if known.is_empty() {
-            String::new()
-        } else {
-            format!(" ({})", known.join(", "))
-        }
-    }
-}
-
-/// In percent, with six decimals at most.
-fn percent(ratio: f64) -> f64 {
-    (1e8 * ratio).round() / 1e6
-}
 
 /// A warning about the results of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -64,6 +32,8 @@ pub enum Warning {
         by_sampling: u64,
         /// Whether the program chose the harmonics.
         automatic: bool,
+        /// Whether rows are on a reduction basis, on which more harmonics can be named.
+        on_basis: bool,
         /// All rows.
         planned: u64,
         /// Scenarios concerned.
@@ -348,6 +318,7 @@ impl Warning {
                 rows,
                 by_sampling,
                 automatic,
+                on_basis,
                 planned,
                 scenarios,
                 tolerance,
@@ -358,7 +329,7 @@ impl Warning {
                 tolerance.in_brackets(),
                 at(scenarios),
                 100.0 * largest_stated_error,
-                advice_beyond(*by_sampling, rows - by_sampling, *automatic),
+                advice_beyond(*by_sampling, rows - by_sampling, (*automatic, *on_basis)),
             ),
             Self::ReplacedBasis { taken } => format!(
                 "basis = \"stick_attachment\" is replaced: rows are on {taken}, which has no modes to choose; take \
@@ -476,23 +447,4 @@ pub(super) fn read_each_wheel(wheels: u64) -> &'static str {
     } else {
         "read the peak of each wheel in responses.parquet"
     }
-}
-
-/// What helps so many rows whose sampling error is beyond its tolerance, and so many whose harmonic error is.
-fn advice_beyond(by_sampling: u64, by_harmonics: u64, automatic: bool) -> String {
-    let samples = format!(
-        "the sampling error is the larger one of {by_sampling}: raise solver.samples_per_period"
-    );
-    let more = if automatic {
-        "\"auto\" took no more of them: raise the normal load, name more in solver.harmonics"
-    } else {
-        "take solver.harmonics = \"auto\" or a larger set (another study with another --out)"
-    };
-    let harmonics = format!(
-        "the harmonic error is the larger one of {by_harmonics}: {more}, or accept it by a larger \
-         solver.harmonic_tolerance"
-    );
-    let parts = [(by_sampling, samples), (by_harmonics, harmonics)];
-    let parts = parts.into_iter().filter(|(rows, _)| *rows > 0);
-    parts.map(|(_, part)| part).collect::<Vec<_>>().join("; ")
 }

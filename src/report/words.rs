@@ -1,7 +1,7 @@
 //! Words, units and number formats of everything that people read: texts for a terminal, tables and figures of a report.
 
 use super::{ScenarioSummary, StudySummary};
-use crate::population::monte_carlo::LoadCaseName;
+use crate::population::monte_carlo::{LoadCaseName, TUNED_RECEPTANCES};
 
 /// Units of length, the largest first: name, metres, and the length in m from which on it is taken. Amplitudes
 /// of blades are in µm, so that one text does not say mm where another says µm.
@@ -93,6 +93,15 @@ fn digits(value: f64, count: i32) -> String {
 pub(super) fn trimmed(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// What rows are solved on: a basis by its name, or the receptances of the tuned wheel, which need none.
+pub(crate) fn basis_words(basis: &str) -> String {
+    if basis == TUNED_RECEPTANCES {
+        "tuned receptances (no reduction basis)".to_owned()
+    } else {
+        format!("basis {basis}")
+    }
 }
 
 /// Load case, where there is one, and engine order.

@@ -5,8 +5,11 @@ use super::{MistuningSource, Study};
 use crate::linalg::Complex64;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::model::sector::{Component, SectorModel};
+use crate::population::monte_carlo::sampling_tolerance;
 use crate::population::statistics::{CONFIDENCE, smallest_sample};
-use crate::report::{EchoedExcitation, EchoedLoad, EchoedModel, Remark, StudyEcho, Travel};
+use crate::report::{
+    EchoedExcitation, EchoedLoad, EchoedModel, Remark, RowTolerance, StudyEcho, Travel, basis_words,
+};
 use crate::response::forced_response::Harmonics;
 use crate::response::harmonic_balance::Damping;
 
@@ -164,7 +167,9 @@ fn damping(study: &Study) -> String {
 fn settings(study: &Study) -> String {
     if let Some(accuracy) = study.accuracy {
         let percent = round(100.0 * accuracy.amplitude_error);
-        return format!("chosen by the program for an error of {percent} % of the amplitude");
+        return format!(
+            "chosen by the program for an error of {percent} % of the amplitude of 95 % of the rows (accuracy.amplitude_error)"
+        );
     }
     let harmonics = match &study.solver.harmonics {
         Harmonics::Auto => "chosen for each load".to_owned(),
@@ -174,8 +179,19 @@ fn settings(study: &Study) -> String {
         }
     };
     let basis = serde_json::json!(study.reduction.basis);
-    let basis = basis.as_str().unwrap_or_default();
-    format!("harmonics {harmonics}; basis {basis}")
+    let basis = basis_words(basis.as_str().unwrap_or_default());
+    let held = RowTolerance {
+        sampling_tolerance: Some(sampling_tolerance(study.solver.peak_tolerance)),
+        harmonic_tolerance: Some(study.solver.harmonic_tolerance),
+    };
+    let mut loads = study.contacts.iter();
+    let with_friction = loads.any(|own| own.normal_load_n().is_some());
+    let held = if with_friction {
+        format!("; {}", held.in_words(None))
+    } else {
+        String::new()
+    };
+    format!("harmonics {harmonics}; {basis}{held}")
 }
 
 fn remarks(study: &Study, sector: &SectorModel, excitations: &[EchoedExcitation]) -> Vec<Remark> {

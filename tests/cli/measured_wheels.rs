@@ -166,7 +166,34 @@ fn one_measured_wheel_has_peaks_and_nothing_is_said_of_percentiles() {
             "{name}: {shown} and {own}"
         );
     }
+    // The printed answer has the numerical error of the peak, as the page has it.
     let page = std::fs::read_to_string(place.path("results/small/report.html")).expect("a page");
+    let (_, answer) =
+        { report.split_once("How much of that peak is numerical error?\n  At most ") }
+            .expect("the answer");
+    let (bound, rest) = answer
+        .split_once(" % of the peak at 50 N: it lies between ")
+        .expect("a bound");
+    let (_, of_page) = page
+        .split_once("Numerical error of the peak<")
+        .expect("the number");
+    let (_, of_page) = of_page.split_once("at most ").expect("a bound");
+    assert!(
+        of_page.starts_with(&format!("{bound}\u{a0}%")),
+        "{bound}: {}",
+        &of_page[..40]
+    );
+    let (low, rest) = rest.split_once(" and ").expect("two ends");
+    let (high, _) = rest.split_once(" µm.").expect("an end");
+    let own = 1e6 * find(&row, "peak_amplitude_m").expect("a peak");
+    let numbers = ["report", "results/small", "--no-curves", "--json"];
+    let numbers: Value = serde_json::from_str(&output(&place, &numbers)).expect("JSON");
+    let stated = &numbers["groups"][0]["errors"][1]["rows"]["stated"]["largest"];
+    let stated = stated.as_f64().expect("an error");
+    for (shown, expected) in [(low, own / (1.0 + stated)), (high, own / (1.0 - stated))] {
+        let shown: f64 = shown.parse().expect("a number");
+        assert!((shown / expected - 1.0).abs() < 1e-3, "{shown} {expected}");
+    }
     assert!(page.contains("Normal load per sector with the lowest peak of the wheel"));
     assert!(page.contains("No problem found"));
 }
@@ -263,6 +290,56 @@ fn a_few_measured_wheels_open_the_report_with_the_highest_of_them() {
         .expect("the figure");
     let figure = figure.split_once("</figure>").expect("an end").0;
     assert_eq!(figure.matches("<title>wheel ").count(), 9, "{figure}");
+    marks_stand_apart(figure, 9);
+}
+
+/// The marks of a load stand side by side, so far apart that the bar of one reaches no other: how many bars there are.
+fn marks_stand_apart(figure: &str, wheels: usize) -> usize {
+    let number = |element: &str, name: &str| -> f64 {
+        let (_, rest) = element
+            .rsplit_once(&format!(" {name}=\""))
+            .expect("the place");
+        rest.split('"')
+            .next()
+            .and_then(|own| own.parse().ok())
+            .expect("a number")
+    };
+    let marks: Vec<&str> = figure.split("<title>wheel ").collect();
+    let marks = &marks[..marks.len() - 1];
+    let places: Vec<f64> = marks.iter().map(|before| number(before, "cx")).collect();
+    assert_eq!(places.len(), wheels, "{figure}");
+    // Half the width of a bar, and of a mark.
+    let reach = 5.5 + 4.0;
+    for (place, at) in places.iter().enumerate() {
+        let mut others = places.iter().enumerate().filter(|own| own.0 != place);
+        assert!(others.all(|own| (own.1 - at).abs() > reach), "{places:?}");
+    }
+    let bars = figure
+        .split('<')
+        .filter(|own| own.contains("class=\"bound doubt\""));
+    let bars: Vec<f64> = bars
+        .map(|bar| f64::midpoint(number(bar, "x1"), number(bar, "x2")))
+        .collect();
+    for bar in &bars {
+        let near = places.iter().filter(|at| (*at - bar).abs() < reach);
+        assert_eq!(near.count(), 1, "{bar}: {places:?}");
+    }
+    bars.len()
+}
+
+/// Loads that the errors of the peaks leave open have bars, each on the mark of the worst wheel alone.
+#[test]
+fn bars_of_numerical_error_stand_on_one_wheel_each() {
+    let place = of_file(3);
+    let study = std::fs::read_to_string(place.path("study.toml")).expect("a study");
+    let loads = "[\"slide\", 50, \"stuck\"]";
+    place.write("study.toml", &study.replace(loads, "[50, 52, 54]"));
+    output(&place, &["run", "study.toml"]);
+    output(&place, &["plot", "results/small", "amplitude"]);
+    let figure = std::fs::read_to_string(place.path("amplitude.svg")).expect("a figure");
+    // Each of a line and two caps.
+    let lines = marks_stand_apart(&figure, 9);
+    assert!(lines >= 6 && lines.is_multiple_of(3), "{lines}: {figure}");
 }
 
 #[test]
@@ -273,6 +350,7 @@ fn many_measured_wheels_are_left_to_the_table() {
         run.contains("mistuning.file holds 13; read the peak of each wheel in responses.parquet")
     );
     let report = output(&place, &["report", "results/small", "--no-curves"]);
+    assert!(!report.contains("numerical error?"), "{report}");
     assert!(!report.contains("Peaks at "), "{report}");
     assert!(report.contains("mistuning.file holds 13"), "{report}");
 }
@@ -303,6 +381,115 @@ fn a_target_for_a_percentile_of_few_measured_wheels_asks_for_wheels() {
         "{}",
         check.stderr
     );
+}
+
+/// Of wheels too few for a percentile the peaks are compared, against the load where the worst of them is lowest.
+#[test]
+fn a_comparison_of_few_measured_wheels_is_one_of_their_peaks_and_says_so() {
+    for (wheels, said, of_baseline) in [
+        (
+            1,
+            "P95 has no value, it needs 72 patterns: the one pattern is compared",
+            "the load with the lowest peak amplitude, since patterns are too few for P95",
+        ),
+        (
+            3,
+            "P95 has no value, it needs 72 patterns: the largest of the patterns is compared, which is no statistic",
+            "the load with the lowest of the largest peak amplitude, since patterns are too few for P95",
+        ),
+    ] {
+        let place = of_file(wheels);
+        output(&place, &["run", "study.toml"]);
+        let request = ["compare", "results/small"];
+        let text = output(&place, &request);
+        let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        for part in [said, of_baseline, "against 50 N per sector: "] {
+            assert!(words.contains(part), "{part}: {text}");
+        }
+        assert!(
+            text.lines().all(|line| line.chars().count() <= 80),
+            "{text}"
+        );
+        // As the report has the peaks, which `replay` finds as well.
+        let report = ["report", "results/small", "--no-curves", "--json"];
+        let report: Value = serde_json::from_str(&output(&place, &report)).expect("JSON");
+        let measured = report["groups"][0]["measured"].as_array().expect("a list");
+        let worst = |scenario: u64| {
+            let own = measured.iter().filter(|own| own["scenario"] == scenario);
+            let peaks = own.map(|own| own["peak_amplitude_m"].as_f64().expect("a peak"));
+            peaks.fold(0.0, f64::max)
+        };
+        let found = output(&place, &[&request[..], &["--json"]].concat());
+        let found: Value = serde_json::from_str(&found).expect("JSON");
+        assert_eq!(found["baseline_choice"], "lowest_of_largest");
+        let comparisons = found["quantities"][0]["comparisons"].as_array();
+        let comparisons = comparisons.expect("a list");
+        assert_eq!(comparisons.len(), 2);
+        for own in comparisons {
+            let scenarios = [&own["baseline"]["scenario"], &own["candidate"]["scenario"]];
+            let scenarios = scenarios.map(|own| own.as_u64().expect("an index"));
+            assert_eq!(scenarios[0], 1, "50 N is the best load of these wheels");
+            let own = own["largest"].as_array().expect("two");
+            for (scenario, own) in scenarios.into_iter().zip(own) {
+                let own = own.as_f64().expect("a number");
+                assert!((own / worst(scenario) - 1.0).abs() < 1e-12, "{scenario}");
+            }
+            let line = text.lines().find(|line| {
+                let name =
+                    ["slide", "50", "stuck"][usize::try_from(scenarios[1]).expect("an index")];
+                line.trim_start().starts_with(name)
+            });
+            let cells: Vec<&str> = line.expect("its line").split_whitespace().collect();
+            for (cell, expected) in [
+                (1, 1e6 * worst(scenarios[1])),
+                (2, worst(scenarios[1]) / worst(scenarios[0])),
+            ] {
+                let shown: f64 = cells[cell].parse().expect("a number");
+                assert!((shown / expected - 1.0).abs() < 1e-3, "{shown} {expected}");
+            }
+        }
+    }
+    // Between folders both sides stand.
+    let place = of_file(3);
+    output(&place, &["run", "study.toml"]);
+    let text = output(&place, &["compare", "results/small", "results/small"]);
+    assert!(
+        text.contains("largest A") && text.contains("it needs 72"),
+        "{text}"
+    );
+}
+
+/// A search over loads takes a percentile: of few wheels it says what answers in its place.
+#[test]
+fn a_search_of_few_measured_wheels_names_the_way_out() {
+    for (wheels, why, which) in [
+        (
+            1,
+            "one wheel has no percentile to search; ",
+            "the load with the lowest peak of this wheel",
+        ),
+        (
+            3,
+            "P95 of 3 wheels has no interval; ",
+            "the load under which the worst of these wheels is lowest",
+        ),
+    ] {
+        let place = of_file(wheels);
+        let ended = place.run(&["optimum", "study.toml", "--between", "40:400"]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (2, ""), "{wheels}");
+        let error = ended.stderr.split_whitespace().collect::<Vec<_>>();
+        let error = error.join(" ");
+        for words in [
+            why,
+            "accepted: a mistuning.file of 72 wheels or more; ",
+            which,
+            "list loads in sweep.normal_load_n, `blisk run study.toml` and read it in `blisk report DIR`",
+            "take mistuning.distribution in the place of mistuning.file, with study.patterns from 72 on",
+        ] {
+            assert!(error.contains(words), "{words}: {error}");
+        }
+        assert!(!place.path("results").exists());
+    }
 }
 
 #[test]

@@ -176,6 +176,8 @@ fn a_campbell_table_has_the_frequencies_and_crossings_of_a_study() {
         (["--at", "fast=bundle"], 2, "RPM=BUNDLE"),
         (["--engine-orders", "0"], 2, "from 1 to 10000"),
         (["--speed-rpm", "9:3"], 2, "LOW:HIGH"),
+        // An upper end of diagrams that are not drawn.
+        (["--top-hz", "500"], 2, "--plot <FILE>|--plot-safe <FILE>"),
     ] {
         let words = ["campbell", "study.toml", arguments[0], arguments[1]];
         let refused = place.run(&words);

@@ -450,6 +450,59 @@ fn a_plan_says_what_a_study_takes_and_what_its_percentiles_are_worth_and_writes_
     );
 }
 
+/// What is stored is not planned again: rows of fewer patterns, of other loads, and all of them.
+#[test]
+fn a_plan_counts_the_rows_that_are_stored_and_writes_nothing() {
+    let place = Place::with(GOOD);
+    assert_eq!(place.run(&["run", "study.toml"]).code, 0);
+    let files = || {
+        let mut found: Vec<(String, u64)> = Vec::new();
+        for folder in ["results", "results/small", "results/small/parts"] {
+            for entry in std::fs::read_dir(place.path(folder)).into_iter().flatten() {
+                let entry = entry.expect("an entry");
+                let size = entry.metadata().expect("a file").len();
+                found.push((entry.path().display().to_string(), size));
+            }
+        }
+        found.sort();
+        found
+    };
+    let before = files();
+    let plan = |study: &str| {
+        place.write("study.toml", study);
+        let arguments = ["plan", "study.toml", "--pilot", "4"];
+        let text = place.run(&arguments);
+        assert_eq!(text.code, 0, "{}", text.stderr);
+        let json = place.run(&[&arguments[..], &["--json"]].concat());
+        let json: serde_json::Value = serde_json::from_str(&json.stdout).expect("JSON");
+        (text.stdout, json)
+    };
+    let (text, json) = plan(GOOD);
+    let said = "30 of 30 rows are stored in results/small: none is left to solve";
+    assert!(text.contains(said), "{text}");
+    assert!(json["stored"]["time"].is_null());
+    let longer = GOOD.replace("patterns = 10", "patterns = 40");
+    let (text, json) = plan(&longer);
+    let said = "30 of 120 rows are stored in results/small; the rest, like: 30 patterns, ";
+    assert!(text.contains(said), "{text}");
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    let of = |time: &serde_json::Value| number(&time["cpu_s"]["value"]);
+    let share = of(&json["stored"]["time"]) / of(&json["time"]);
+    assert!((share - 0.75).abs() < 1e-9, "{share}");
+    // A second load takes about half of the time; the linear limits, which are stored, take next to none.
+    let (text, json) = plan(&GOOD.replace("50, ", "50, 55, "));
+    assert!(text.contains("30 of 40 rows are stored"), "{text}");
+    let patterns = number(&json["stored"]["time"]["patterns"]);
+    assert!((3.0..=7.0).contains(&patterns), "{patterns}");
+    // Rows of another study are none of it.
+    let (text, json) = plan(&GOOD.replace("seed = 7", "seed = 8"));
+    assert!(
+        !text.contains("stored") && json["stored"].is_null(),
+        "{text}"
+    );
+    assert_eq!(files(), before);
+}
+
 #[test]
 fn a_search_for_the_best_load_does_not_go_into_the_results_of_a_study() {
     let place = Place::with(GOOD);

@@ -521,11 +521,15 @@ fn a_search_that_cannot_be_made_is_refused() {
         "{}",
         several.stderr
     );
+    let several = flat(&several.stderr);
+    let said = "sweep.standard_deviation has 2; accepted: one of them, like [0.03]; `blisk run`";
+    assert!(several.contains(said), "{several}");
     place.write("study.toml", &two_loads());
     let few = search(&["--percentile", "99"]);
     assert_eq!(few.code, 2);
     assert!(
-        few.stderr.contains("study.patterns from 368 on"),
+        flat(&few.stderr)
+            .contains("study.patterns from 368 on, or --percentile 95, for which they are enough"),
         "{}",
         few.stderr
     );

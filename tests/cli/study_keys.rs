@@ -743,6 +743,42 @@ fn explain_says_what_a_key_accepts_and_suggests_what_was_meant() {
 }
 
 #[test]
+fn explain_proposes_near_names_alone() {
+    let place = Place::new();
+    for (wrong, meant) in [
+        ("harmonix", "did you mean solver.harmonics?"),
+        (
+            "Patterms",
+            "did you mean study.patterns or output.patterns?",
+        ),
+        ("engine oders", "did you mean excitation.engine_orders or "),
+        ("import.sektors", "did you mean import.sectors?"),
+        // Columns, statuses, figures and terms too.
+        ("stated_eror", "did you mean stated error or stated_error?"),
+        ("stagnatd", "did you mean stagnated?"),
+        ("nodal diametre", "did you mean nodal diameter?"),
+    ] {
+        let ended = place.run(&["explain", wrong]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (2, ""), "{wrong}");
+        assert!(ended.stderr.contains(meant), "{wrong}: {}", ended.stderr);
+    }
+    for wrong in ["xyzzy", "zq", "import.xyzzy", "turbocharger"] {
+        let ended = place.run(&["explain", wrong]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (2, ""), "{wrong}");
+        let error = ended.stderr.split_whitespace().collect::<Vec<_>>();
+        let error = error.join(" ");
+        assert!(!error.contains("did you mean"), "{error}");
+        for words in [
+            wrong,
+            "`blisk explain` lists them",
+            "`blisk explain import`",
+        ] {
+            assert!(error.contains(words), "{wrong}: {error}");
+        }
+    }
+}
+
+#[test]
 fn every_example_is_a_study_that_init_writes() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
     let mut names: BTreeSet<String> = ["template".to_owned()].into();

@@ -39,6 +39,69 @@ fn widest(text: &str) -> usize {
         .unwrap_or(0)
 }
 
+/// Check and report name once what a row is held to, and no text has the name of a column for what rows are solved on.
+#[test]
+fn what_rows_are_held_to_and_solved_on_is_said_in_plain_words() {
+    let automatic = GOOD.replace("harmonics = [1, 3]", "peak_tolerance = 2e-3");
+    let accuracy = format!("{automatic}\n[accuracy]\namplitude_error = 0.02\n");
+    let accuracy = accuracy.replace("peak_tolerance = 2e-3", "");
+    let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for (study, of_check, of_report) in [
+        (
+            &automatic,
+            "the amplitude of each row is held to 0.2 % by samples per period and 2 % by harmonics \
+             (solver.peak_tolerance, solver.harmonic_tolerance; accuracy.amplitude_error sets both)",
+            "the amplitude of each row is held to 0.2 % by samples per period and 2 % by harmonics",
+        ),
+        (
+            &accuracy,
+            "an error of 2 % of the amplitude of 95 % of the rows (accuracy.amplitude_error)",
+            "by harmonics (chosen by accuracy.amplitude_error, 2 % for 95 % of the rows)",
+        ),
+    ] {
+        let place = Place::with(study);
+        let check = flat(&output(&place, &["check", "study.toml"]));
+        assert_eq!(check.matches(of_check).count(), 1, "{check}");
+        assert_eq!(check.matches("amplitude_error").count(), 1, "{check}");
+        let run = output(&place, &["run", "study.toml"]);
+        // Chosen settings have a line of their own in its place.
+        let line = "\ntuned receptances (no reduction basis), tuned peak within ";
+        let chosen = "\nsettings chosen by an accepted numerical error of 2 %";
+        let line = if *study == accuracy { chosen } else { line };
+        assert!(run.contains(line), "{run}");
+        let report = output(&place, &["report", "results/small", "--no-curves"]);
+        assert_eq!(flat(&report).matches(of_report).count(), 1, "{report}");
+        assert_eq!(
+            report.matches("each row is held to ").count(),
+            1,
+            "{report}"
+        );
+        let model = output(&place, &["model", "study.toml"]);
+        for text in [&check, &run, &report, &model] {
+            assert!(!text.contains("tuned_receptances"), "{text}");
+        }
+        // `[accuracy]` decides when rows are solved.
+        let of_automatic = "\ntuned receptances (no reduction basis): 18 reduced coordinates";
+        let of_accuracy = "\nbasis whole space: 18 reduced coordinates";
+        let line = if *study == accuracy {
+            of_accuracy
+        } else {
+            of_automatic
+        };
+        assert!(model.contains(line), "{model}");
+    }
+    // A basis has its name.
+    let named =
+        format!("{GOOD}\n[reduction]\nbasis = \"stick_slide\"\nstick_modes = 2\nslide_modes = 2\n");
+    let place = Place::with(&named);
+    assert!(output(&place, &["check", "study.toml"]).contains("basis stick_slide"));
+    assert!(output(&place, &["model", "study.toml"]).contains("\nbasis "));
+    // Linear rows have no such error.
+    let linear = GOOD.replace("\"slide\", 50, ", "\"slide\", ");
+    let place = Place::with(&linear);
+    assert!(!output(&place, &["check", "study.toml"]).contains("is held to"));
+}
+
 #[test]
 fn a_comparison_takes_the_best_load_as_baseline_marks_the_floor_of_p_and_fits_80_columns() {
     let place = finished(&study());

@@ -155,12 +155,42 @@ fn rows_beyond_their_tolerance_are_counted_with_the_largest_stated_error() {
             rows: 100,
             by_sampling: 30,
             automatic: true,
+            on_basis: true,
             planned: 400,
             scenarios: vec![0],
             tolerance: context(Harmonics::Auto).tolerance,
             largest_stated_error: 0.021 + 1e-5 * 399.0,
         }]
     );
+    // On tuned receptances naming harmonics that "auto" left out does not help, and the text does not advise it.
+    let mut inexact = record(0, load(9.0), 1.0, 0, 0.0);
+    inexact.statistics.beyond_tolerance = 100;
+    for (name, automatic, said, unsaid) in [
+        (
+            "tuned_receptances",
+            true,
+            "took all that have a peak: raise the normal load, or keep this one, since the stated errors are valid, or accept",
+            "name more in",
+        ),
+        (
+            "stick_slide 6 + 6",
+            true,
+            "raise the normal load, name more in solver.harmonics, or accept",
+            "keep this one",
+        ),
+        (
+            "tuned_receptances",
+            false,
+            "take solver.harmonics = \"auto\" or a larger set",
+            "name more in",
+        ),
+    ] {
+        let set = Harmonics::Set(vec![1, 3]);
+        let mut own = context(if automatic { Harmonics::Auto } else { set });
+        own.basis.name = name.to_owned();
+        let text = StudySummary::new(&own, std::slice::from_ref(&inexact)).to_string();
+        assert!(text.contains(said) && !text.contains(unsaid), "{text}");
+    }
     // The text says under which load, and what the tolerances are.
     let text = auto.to_string();
     assert!(

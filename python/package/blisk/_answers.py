@@ -142,6 +142,7 @@ def plan(study: Study, pilot: int = 20, threads: Optional[int] = None) -> Answer
     ``cpu_s_per_pattern``: mean processor time of a pattern, s. ``processor_share``: share of a processor that a thread
     had, 1. ``time``: of all patterns: ``cpu_s`` on processors and ``wall_s`` on the clock, s, with 95 % bounds.
     ``expected_time``: the same for the patterns at which ``[stop]`` is expected to end; ``None``: it is not.
+    ``stored``: ``rows`` that ``folder``, results/NAME, has already, and the ``time`` of the others; ``None``: it has none.
     ``memory_bytes``: largest memory. ``disk``: ``results_bytes``, and ``peak_bytes`` while it runs. ``percentiles``: for
     each ``percent`` the ``needed_patterns``, whether it is ``estimable``, and the expected width of its 95 % interval
     over its value (1) for both quantities; ``None``: the pilot has none. ``stop``: the looks of ``[stop]``; ``None``:

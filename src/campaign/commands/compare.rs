@@ -8,7 +8,7 @@ use crate::campaign::store::{ResultColumns, ScenarioColumns, sorted_values};
 use crate::population::statistics::{
     CONFIDENCE, Expansion, PairFacts, PercentileEstimator, Quantity, RESAMPLES, best_set_at,
     compare_independent, compare_paired, holm_with_origins, percentile, percentile_at,
-    resample_percentile,
+    resample_percentile, smallest_sample,
 };
 use crate::report::{
     BaselineChoice, BestLoads, ComparedFolder, ComparedScenario, ComparisonReport, LoadOfSet,
@@ -31,7 +31,7 @@ pub struct CompareRequest {
     pub folders: Vec<PathBuf>,
     /// Scenario of the first folder that all others are compared with. Absent: in one folder the scenario
     /// with the lowest percentile of the peak amplitude of each load case, engine order and standard
-    /// deviation; of several, the scenario of the first folder with the same keys.
+    /// deviation, or with the lowest of the largest where patterns are too few for the percentile; of several, the scenario of the first folder with the same keys.
     pub baseline: Option<usize>,
     /// The percentile in percent.
     pub percent: f64,
@@ -70,6 +70,9 @@ pub fn compare(request: &CompareRequest) -> Result<ComparisonReport, PipelineErr
         seed: work.seed,
         baseline_choice: match request.baseline {
             Some(_) => BaselineChoice::Named,
+            None if folders.len() == 1 && work.has_few_patterns() => {
+                BaselineChoice::LowestOfLargest
+            }
             None if folders.len() == 1 => BaselineChoice::Lowest,
             None => BaselineChoice::SameKeys,
         },
@@ -131,15 +134,28 @@ impl Comparison<'_> {
         Ok((pairs, unmatched))
     }
 
+    /// Whether the first folder has too few patterns for the percentile.
+    fn has_few_patterns(&self) -> bool {
+        let needed = smallest_sample(self.percent / 100.0, CONFIDENCE);
+        (self.folders[0].patterns.len() as u64) < needed
+    }
+
     /// The scenario of the first folder with the lowest percentile of the peak amplitude among those of
-    /// the group of `scenario`; the first of them where none has a value.
+    /// the group of `scenario`, or with the lowest of the largest where patterns are too few; the first of them where none
+    /// has a value.
     fn lowest_beside(&self, scenario: &ScenarioColumns) -> Option<usize> {
         let of_group = self.folders[0].scenarios.iter().enumerate();
         let of_group = of_group.filter(|(_, other)| same_group(other, scenario));
+        let few = self.has_few_patterns();
         let value = |scenario: &ScenarioColumns| {
-            let (sorted, failed) = sorted_values(scenario.values(Quantity::PeakAmplitudeM));
-            let found = percentile(&sorted, failed, self.percent);
-            found.value.unwrap_or(f64::INFINITY)
+            let values = scenario.values(Quantity::PeakAmplitudeM);
+            let found = if few {
+                largest(values)
+            } else {
+                let (sorted, failed) = sorted_values(values);
+                percentile(&sorted, failed, self.percent).value
+            };
+            found.unwrap_or(f64::INFINITY)
         };
         of_group
             .map(|(index, scenario)| (index, value(scenario)))
@@ -217,6 +233,7 @@ impl Comparison<'_> {
             patterns: [x.len() as u64, y.len() as u64],
             patterns_left_out: left_out,
             percentile,
+            largest: [largest(&x), largest(&y)],
             adjusted_p_value: None,
             adjusted_p_value_is_bound: false,
             pairs: (!independent).then(|| PairFacts::new(&ids, &x, &y, self.percent)),
@@ -241,6 +258,12 @@ impl Comparison<'_> {
         }
         best
     }
+}
+
+/// The largest of `values`; none where one of them is missing, which could be larger.
+fn largest(values: &[Option<f64>]) -> Option<f64> {
+    let known: Option<Vec<f64>> = values.iter().copied().collect();
+    known?.into_iter().reduce(f64::max)
 }
 
 /// Which of `loads`, values over the same patterns, could be the best; none where the percentile is not

@@ -15,6 +15,7 @@ mod replay;
 mod report_model;
 mod report_wheels;
 mod response_curve;
+mod searchable;
 mod solved_loads;
 mod study_report;
 mod tails;

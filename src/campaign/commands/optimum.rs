@@ -13,10 +13,11 @@ use std::time::Instant;
 
 use super::compare::{best_loads, same_patterns};
 use super::load_search::{LoadRange, four_digits};
+use super::searchable::refuse;
 use super::solved_loads::{Holding, SolvedLoad, cpu_s_per_row, solved_loads, study_at};
 use crate::campaign::pipeline::{RunRequest, run};
 use crate::campaign::store::{ResultColumns, ResultsFolder, folders_of_loads, sorted_values};
-use crate::population::statistics::{CONFIDENCE, Quantity, percentile, smallest_sample};
+use crate::population::statistics::{Quantity, percentile};
 use crate::population::table::is_folder;
 use crate::report::{
     ComparedScenario, ExpectedCost, ExpectedTime, OptimumExcitation, OptimumReport,
@@ -64,7 +65,7 @@ pub fn find_optimum(
     source: &dyn EngineSource,
     progress: &dyn Progress,
 ) -> Result<OptimumReport, PipelineError> {
-    refuse(&request)?;
+    refuse(request.study, request.percent)?;
     let settled = settled(&request)?;
     let [low, high] = request.between_n;
     let mut search = Search {
@@ -85,32 +86,6 @@ pub fn find_optimum(
     search.take_over()?;
     let ended = search.solve()?;
     search.report(ended)
-}
-
-/// What a search cannot be made of.
-fn refuse(request: &OptimumRequest<'_>) -> Result<(), PipelineError> {
-    let study = request.study;
-    let needed = smallest_sample(request.percent / 100.0, CONFIDENCE);
-    let reason = if study.standard_deviations.len() != 1 {
-        "a search takes a study with one standard deviation".to_owned()
-    } else if study.contact.is_none() {
-        "the study has no [contact], so there is no normal load to search".to_owned()
-    } else if study.rotation.is_some() {
-        "a search is over newtons; accepted: a study without contact.normal_load".to_owned()
-    } else if u64::from(study.patterns) < needed {
-        let accepted = if study.standard_deviations == [None] {
-            format!("a mistuning.file of {needed} wheels or more")
-        } else {
-            format!("study.patterns from {needed} on")
-        };
-        format!(
-            "P{} of {} patterns has no interval; accepted: {accepted}",
-            request.percent, study.patterns
-        )
-    } else {
-        return Ok(());
-    };
-    Err(PipelineError::NoOptimum { reason })
 }
 
 /// The study of a search: settings by `[accuracy]` are chosen once, at both ends and between them, so

@@ -9,15 +9,16 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use crate::campaign::pipeline::{Facts, TableWork, pool_of};
+use crate::campaign::store::{continued, finished_rows};
 use crate::platform::{peak_memory_bytes, thread_processor_time_s};
-use crate::population::monte_carlo::{ResponseRow, block_size};
+use crate::population::monte_carlo::{ResponseRow, StoredRows, block_size, plan_blocks};
 use crate::population::statistics::{
     Accounting, CONFIDENCE, PERCENTILES, Quantity, StopOptions, expected_relative_width,
     expected_sum, percentile_at, smallest_sample,
 };
-use crate::population::table::{ResponseWriter, RowSchema, TableError, write_patterns};
+use crate::population::table::{ResponseWriter, RowSchema, RowStore, TableError, write_patterns};
 use crate::report::{
-    PlannedDisk, PlannedLook, PlannedPercentile, PlannedStop, PlannedTime, StudyPlan,
+    PlannedDisk, PlannedLook, PlannedPercentile, PlannedRest, PlannedStop, PlannedTime, StudyPlan,
 };
 use crate::response::mistuning::PatternSource;
 use crate::settings::{EngineSource, Progress, RowWork, Stage};
@@ -33,6 +34,8 @@ const BYTES_OF_ROW: u64 = 128;
 pub struct PlanRequest<'a> {
     /// The study.
     pub study: &'a Study,
+    /// Results folder whose rows are not solved again; it need not be there, and nothing is written to it.
+    pub results: &'a Path,
     /// Patterns of the pilot, at most.
     pub pilot: usize,
     /// Number of threads.
@@ -71,8 +74,8 @@ pub fn plan(
     progress.stage(Stage::Tuned);
     let facts = pool.install(|| Facts::solve(engine.as_ref(), study, &digest, progress));
     let set_up_s = began.elapsed().as_secs_f64();
-    let mut ids = patterns.ids();
-    ids.truncate(request.pilot);
+    let all = patterns.ids();
+    let ids = all[..all.len().min(request.pilot)].to_vec();
     let tables = TableWork::new(study, &digest, &patterns, (None, ids), facts);
     let scenarios = &tables.schema().scenarios;
     progress.stage(Stage::Rows);
@@ -108,7 +111,22 @@ pub fn plan(
         cpu_s,
     };
     let disk = pilot.disk(study, &patterns, tables.schema())?;
-    Ok(pilot.plan(&request, scenarios.len(), set_up_s, disk))
+    let mut plan = pilot.plan(&request, scenarios.len(), set_up_s, disk);
+    let stored = stored_rows(&request, &digest, tables.schema());
+    plan.stored = stored.and_then(|stored| pilot.beside_stored(&request, &stored, &all, set_up_s));
+    Ok(plan)
+}
+
+/// The rows that a run would take over; none without results that it goes on from.
+fn stored_rows(
+    request: &PlanRequest<'_>,
+    digest: &StudyDigest,
+    schema: &RowSchema,
+) -> Option<StoredRows> {
+    let manifest = continued(request.results, request.study, digest)?;
+    let finished = finished_rows(request.results, &manifest);
+    let store = RowStore::open(request.results, schema.clone(), finished);
+    store.and_then(|store| store.stored()).ok()
 }
 
 impl Pilot {
@@ -143,6 +161,7 @@ impl Pilot {
             processor_share: (cpu_s / self.wall_s.iter().sum::<f64>()).min(1.0),
             time: time(patterns),
             expected_time: expected.map(time),
+            stored: None,
             memory_bytes: peak_memory_bytes().map(|peak| peak + BYTES_OF_ROW * rows),
             disk,
             percentiles: self.percentiles(patterns, scenarios),
@@ -162,6 +181,44 @@ impl Pilot {
             wall_lower_s: wall(on_clock.lower),
             wall_upper_s: on_clock.upper.map(wall),
         }
+    }
+
+    /// What is stored of the patterns `all`, and the time of the other rows; none where no row is stored. Rows of different
+    /// loads differ in time, which their nonlinear solves tell; linear rows take next to none.
+    fn beside_stored(
+        &self,
+        request: &PlanRequest<'_>,
+        stored: &StoredRows,
+        all: &[u32],
+        set_up_s: f64,
+    ) -> Option<PlannedRest> {
+        let rows = stored.count(all);
+        let scenarios = self.rows.len() / self.ids.len().max(1);
+        let mut work = vec![0_u64; scenarios];
+        for row in &self.rows {
+            work[row.scenario] += row.nonlinear_solves;
+        }
+        let of_pattern: u64 = work.iter().sum();
+        // The number of patterns that take as long as the missing rows.
+        let blocks = plan_blocks(all, stored, scenarios, all.len().max(1));
+        let missing: f64 = { blocks.iter() }
+            .map(|block| {
+                let own = block.scenarios.iter().map(|&scenario| work[scenario]);
+                let share = if of_pattern == 0 {
+                    block.scenarios.len() as f64 / scenarios as f64
+                } else {
+                    own.sum::<u64>() as f64 / of_pattern as f64
+                };
+                share * block.patterns.len() as f64
+            })
+            .sum();
+        let patterns = (missing.ceil() as u64).max(u64::from(!blocks.is_empty()));
+        let time = (patterns > 0).then(|| self.time(patterns, request.threads, set_up_s));
+        (rows > 0).then(|| PlannedRest {
+            folder: request.results.to_owned(),
+            rows,
+            time,
+        })
     }
 
     /// Good values (ascending) of a scenario, and the number of failed rows.

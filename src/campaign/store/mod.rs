@@ -21,8 +21,8 @@ pub(super) use lock::{FolderLock, unix_seconds};
 pub(super) use result_columns::sorted_values;
 pub use result_columns::{ResultColumns, ScenarioColumns};
 pub(super) use results_folder::{
-    Found, GROWING, RESPONSES, ResultsFolder, changed_tables, finished_rows, is_complete,
-    manifest_lost, verify_tables,
+    Found, GROWING, RESPONSES, ResultsFolder, changed_tables, continued, finished_rows,
+    is_complete, manifest_lost, verify_tables,
 };
 pub(super) use stored_study::study_of;
 pub use stored_study::{StoredModel, StoredStudy};

@@ -150,6 +150,18 @@ impl ResultsFolder {
     }
 }
 
+/// The manifest of the results in the folder `results`, if `run` would go on from there with `study`; nothing is written.
+pub(in crate::campaign) fn continued(
+    results: &Path,
+    study: &Study,
+    digest: &StudyDigest,
+) -> Option<Manifest> {
+    // What is wrong with a folder is for the run to say.
+    let manifest = Manifest::read(results).ok().flatten()?;
+    let is_same = differences(&manifest, study, digest, None).is_empty();
+    Some(manifest).filter(|own| is_same && own.build == identity::BUILD)
+}
+
 /// Whether a finished run is all that `study` asks for: rows, their order, and tables.
 pub(in crate::campaign) fn is_complete(manifest: &Manifest, study: &Study) -> bool {
     let keys = manifest.scenarios.iter().map(ScenarioEntry::keys);

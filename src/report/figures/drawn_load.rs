@@ -44,6 +44,13 @@ impl<'a> Load<'a> {
         self.percentile(percent)?.value
     }
 
+    /// The place of the measured wheel with the largest peak.
+    pub(super) fn worst_wheel(&self) -> Option<usize> {
+        let wheels = self.wheels.iter().enumerate();
+        let worst = wheels.max_by(|a, b| a.1.1.total_cmp(&b.1.1));
+        worst.map(|(place, _)| place)
+    }
+
     /// All values that are drawn of the load.
     pub(super) fn values(&self) -> Vec<f64> {
         let of = |percent: u32| {

@@ -118,7 +118,11 @@ pub(super) fn by_load(
     let beside = pointed.map_or(0.0, |choice| aside(&x, &drawn, choice.percent as u32));
     for load in &drawn {
         if let Some(bounds) = load.with_error {
-            frame.bound(&mut svg, "doubt", x.at(load.scenario) + beside, bounds);
+            let at = { load.worst_wheel() }.map_or_else(
+                || x.at(load.scenario) + beside,
+                |place| x.at_wheel(load.scenario, place, load.wheels.len()),
+            );
+            frame.bound(&mut svg, "doubt", at, bounds);
         }
     }
     points(&mut svg, &frame, &x, &drawn);
@@ -327,11 +331,8 @@ fn points(svg: &mut Svg, frame: &Frame<'_>, x: &LoadAxis, drawn: &[Load<'_>]) {
             let words = format!("tuned, {name}: {tuned:.4}");
             Mark::Triangle.draw(svg, "tuned", (at, frame.y.at(tuned)), &words);
         }
-        // Side by side, as far apart as the marks of three percentiles.
-        let step = 2.0 * x.aside / (load.wheels.len().max(2) - 1) as f64;
-        let middle = 0.5 * (load.wheels.len().max(1) - 1) as f64;
         for (place, (wheel, peak)) in load.wheels.iter().enumerate() {
-            let at = at + step * (place as f64 - middle);
+            let at = x.at_wheel(load.scenario, place, load.wheels.len());
             let words = format!("wheel {wheel}, {name}: {peak:.4}");
             Mark::Circle.draw(svg, "quiet", (at, frame.y.at(*peak)), &words);
         }

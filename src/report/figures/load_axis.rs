@@ -13,6 +13,9 @@ const GAP_AT: f64 = 1.25;
 const GAP: f64 = 4.5;
 /// Distance between the marks of a load, and the share of the distance of two loads that it is at most.
 const ASIDE: (f64, f64) = (6.0, 0.25);
+/// Distance between the wheels of a load, beyond which the bar of one does not reach the mark of the next; how far apart the
+/// first and the last are at most, and which share of the distance of two loads.
+const WHEELS: (f64, f64, f64) = (10.0, 44.0, 0.7);
 /// Half the width of a letter of a name on a narrow page, where letters are large, and on a wide one.
 const HALF_LETTER: [f64; 2] = [6.6, 4.7];
 
@@ -24,6 +27,8 @@ pub(super) struct LoadAxis {
     alone: bool,
     /// Distance between the marks of a load, which would hide each other at one place.
     pub(super) aside: f64,
+    /// How far apart the first and the last of the wheels of a load are at most.
+    spread: f64,
     /// Where the axis is broken between a linear limit and the loads in newtons.
     gaps: [Option<f64>; 2],
 }
@@ -59,6 +64,7 @@ impl LoadAxis {
         let mut places = Self {
             alone: loads.len() == 1,
             aside: ASIDE.0,
+            spread: WHEELS.1,
             gaps,
             axis: Axis {
                 scale,
@@ -71,10 +77,17 @@ impl LoadAxis {
         taken.sort_unstable_by(f64::total_cmp);
         let distances = taken.windows(2).map(|two| two[1] - two[0]);
         let closest = distances.filter(|distance| *distance > 0.0);
-        places.aside = closest.fold(places.aside, |aside, distance| {
-            aside.min(ASIDE.1 * distance)
-        });
+        let closest = closest.fold(f64::INFINITY, f64::min);
+        places.aside = places.aside.min(ASIDE.1 * closest);
+        places.spread = places.spread.min(WHEELS.2 * closest);
         places
+    }
+
+    /// Where the wheel at `place` among the `count` wheels of a load stands: side by side in the order of the file.
+    pub(super) fn at_wheel(&self, load: &ScenarioSummary, place: usize, count: usize) -> f64 {
+        let between = (count.max(2) - 1) as f64;
+        let step = WHEELS.0.min(self.spread / between);
+        self.at(load) + step * (place as f64 - 0.5 * (count.max(1) - 1) as f64)
     }
 
     pub(super) fn title(&self) -> &'static str {

@@ -45,7 +45,8 @@ pub fn keys_about(words: &str) -> Vec<KeySpec> {
         .collect()
 }
 
-/// The keys that `name` may be meant for: those that end in it, or else the nearest in spelling.
+/// The keys that `name` may be meant for: those that end in it or have it, or else the nearest in spelling; none where no key
+/// is near.
 #[must_use]
 pub fn nearest_keys(name: &str) -> Vec<String> {
     nearest_key_names(&KEYS, name)
