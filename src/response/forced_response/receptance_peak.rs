@@ -47,11 +47,9 @@ pub fn receptance_peak(
             && lost.opens
         {
             wasted = lost.work;
-            eprintln!("DBG opening search");
             by_harmonics = false;
             found = corrected_peak(row, &plan, opening, &[settings], peak_tolerance);
         }
-        eprintln!("DBG corrected found={} opens={:?}", found.is_ok(), found.as_ref().err().map(|l| l.opens));
         match found {
             Ok((peak, change)) => {
                 return ReceptancePeak {

@@ -178,9 +178,7 @@ impl<'a> ReceptancePoints<'a> {
         starts: &[Vec<f64>],
         tolerance: f64,
     ) -> Result<Point, Status> {
-        let t0 = std::time::Instant::now();
         let (solved, work) = self.solver.solve(frequency_hz, starts, tolerance);
-        if self.is_nonlinear { eprintln!("DBG pt H={} f={:.4} tol={:.1e} ok={} it={} tan={} retr={} t={:.3} sep={:.4} starts={}", self.solver.harmonics().len(), frequency_hz, tolerance, solved.is_ok(), work.iterations, work.tangents, work.retries, t0.elapsed().as_secs_f64(), solved.as_ref().map_or(-1.0, |s| s.shares.separated), starts.len()); }
         self.work.nonlinear_solves += u64::from(self.is_nonlinear);
         self.work.newton_iterations += work.iterations;
         self.work.factorisations += work.tangents;

@@ -2,172 +2,19 @@
 //!
 //! A step is `-P r` with the inverse P of `I + A G'` for the mean tangent G' of the contact; Anderson's acceleration makes up for
 //! what the mean leaves out. What is approximate stands in P alone. Where the first attempts by these steps end without
-//! a solution, Newton's method goes on from the best of them; the last ones are Newton's method too, and with few harmonics every pair is
-//! preconditioned by itself besides.
+//! a solution, Newton's method goes on from the best of them; the strategy stands in `attempts.rs`.
 
 use crate::linalg::gmres;
 use crate::response::harmonic_balance::{ContactShares, Status};
 
-use super::contact_equation::PreconditionedShapes::{self, FirstOfFundamental, Resonant};
+use super::attempts::Attempt::{Accelerated, Newton};
+use super::attempts::Start::{Best, Known, Linear};
+use super::attempts::{BESIDE, DAMPING, NEWTON_STEPS, NewtonPlan, Plan, attempts};
+use super::contact_equation::PreconditionedShapes::FirstOfFundamental;
 use super::contact_equation::{Buffers, ContactEquation};
 use super::fields::{Field, flatten, norm_squared, unflatten};
 use super::pair_preconditioner::PairPreconditioner;
 use super::preconditioner::Preconditioner;
-
-use Attempt::{Accelerated, Newton};
-use Start::{Best, Known, Linear};
-
-/// Damping of the shares of earlier steps, over the tolerance that is asked for.
-const DAMPING: f64 = 0.5;
-
-/// Newton steps of an attempt at most.
-const NEWTON_STEPS: usize = 40;
-/// Most harmonics that are few: with more a step takes so long that attempts are ended early, and that no pair is preconditioned by itself.
-const FEW_HARMONICS: usize = 6;
-
-/// When preconditioners are renewed, what they take in, and how many steps are taken at most.
-#[derive(Clone, Copy)]
-struct Plan {
-    renewals: &'static [usize],
-    iterations: usize,
-    shapes: PreconditionedShapes,
-    /// Earlier steps that are combined.
-    depth: usize,
-    /// Whether an attempt that stalls is over before that: Newton's method goes on from there.
-    gives_up: bool,
-}
-
-const fn plan(renewals: &'static [usize], iterations: usize, shapes: PreconditionedShapes) -> Plan {
-    Plan {
-        renewals,
-        iterations,
-        shapes,
-        depth: 80,
-        gives_up: false,
-    }
-}
-
-/// With many harmonics the steps that follow a new beginning cost more than a long history: all steps are combined.
-const fn combining_all(plan: Plan) -> Plan {
-    Plan { depth: 160, ..plan }
-}
-
-const fn brief(plan: Plan) -> Attempt {
-    Accelerated(Plan {
-        gives_up: true,
-        ..combining_all(plan)
-    })
-}
-
-/// How Newton steps are preconditioned, how closely they are solved, and how they are shortened.
-struct NewtonPlan {
-    /// Whether every pair is preconditioned by itself besides. What is left is then measured after the preconditioners: without them
-    /// the stiffest pairs alone would count.
-    pairs: bool,
-    /// Residual of a step, relative to its right-hand side.
-    step_error: f64,
-    /// Products with the derivative of a step, and of an attempt, at most.
-    products: usize,
-    products_in_all: u64,
-    /// Share of a step below which it is not tried.
-    least_factor: f64,
-    /// Share of what a step promises that it has to take off.
-    decrease: f64,
-}
-
-const BY_HARMONICS: NewtonPlan = NewtonPlan {
-    pairs: false,
-    step_error: 1e-3,
-    products: 120,
-    products_in_all: u64::MAX,
-    least_factor: 1.0 / 128.0,
-    decrease: 0.0,
-};
-/// With many harmonics: where these are not enough, more hardly ever are.
-const BY_MANY_HARMONICS: NewtonPlan = NewtonPlan {
-    products_in_all: 1_500,
-    ..BY_HARMONICS
-};
-/// From where the iteration has come to: few steps are left, which need not be solved closely.
-const FROM_THERE: NewtonPlan = NewtonPlan {
-    pairs: false,
-    step_error: 0.1,
-    products: 120,
-    products_in_all: 700,
-    least_factor: 1.0 / 128.0,
-    decrease: 0.0,
-};
-/// The same with many, where its steps take off less each.
-const FROM_THERE_WITH_MANY: NewtonPlan = NewtonPlan {
-    products_in_all: 1_500,
-    ..FROM_THERE
-};
-const BY_PAIRS: NewtonPlan = NewtonPlan {
-    pairs: true,
-    step_error: 1e-2,
-    products: 250,
-    products_in_all: 3_500,
-    least_factor: 1.0 / 256.0,
-    decrease: 0.1,
-};
-
-/// Where an attempt begins.
-#[derive(Clone, Copy, PartialEq)]
-enum Start {
-    /// Motions that are known beside the frequency or with other harmonics.
-    Known,
-    /// The linear response.
-    Linear,
-    /// The motions with the smallest residual of all attempts before.
-    Best,
-}
-
-/// One way to a solution.
-enum Attempt {
-    #[allow(dead_code)]
-    Accelerated(Plan),
-    Newton(NewtonPlan),
-}
-
-/// What is tried, in this order, until an attempt ends with a solution. The tangent of a known start is near; that of the linear
-/// response says little, and is renewed. Where the iteration creeps, Newton's method ends what it began. Harmonics above 1 near
-/// resonances that deviations split take the resonant shapes. Where pairs open, their harmonics depend on each other, and pairs are
-/// preconditioned by themselves.
-const WITH_FEW_HARMONICS: [(Start, Attempt); 13] = [
-    (Known, Accelerated(plan(&[0], 100, FirstOfFundamental))),
-    (Linear, Accelerated(plan(&[0, 3], 80, FirstOfFundamental))),
-    (Linear, Accelerated(RENEWED)),
-    (Known, Accelerated(RENEWED)),
-    (Best, Newton(FROM_THERE)),
-    (Known, Accelerated(plan(&[0, 3], 80, Resonant))),
-    (Known, Accelerated(RENEWED_RESONANT)),
-    (Linear, Accelerated(plan(&[0, 3], 80, Resonant))),
-    (Linear, Accelerated(RENEWED_RESONANT)),
-    (Known, Newton(BY_HARMONICS)),
-    (Linear, Newton(BY_HARMONICS)),
-    (Known, Newton(BY_PAIRS)),
-    (Linear, Newton(BY_PAIRS)),
-];
-/// The same with many: where an attempt stalls it is over, since Newton's method from there takes less than other starts do.
-const WITH_MANY_HARMONICS: [(Start, Attempt); 12] = [
-    (Known, brief(plan(&[0], 160, FirstOfFundamental))),
-    (Best, Newton(FROM_THERE_WITH_MANY)),
-    (Known, Newton(BY_MANY_HARMONICS)),
-    (Linear, brief(plan(&[0, 3], 120, FirstOfFundamental))),
-    (Best, Newton(FROM_THERE_WITH_MANY)),
-    (Linear, Accelerated(combining_all(RENEWED))),
-    (Known, Accelerated(combining_all(RENEWED))),
-    (Known, Accelerated(plan(&[0, 3], 80, Resonant))),
-    (Known, Accelerated(combining_all(RENEWED_RESONANT))),
-    (Linear, Accelerated(plan(&[0, 3], 80, Resonant))),
-    (Linear, Accelerated(combining_all(RENEWED_RESONANT))),
-    (Linear, Newton(BY_MANY_HARMONICS)),
-];
-const RENEWED: Plan = plan(&[0, 10, 25], 160, FirstOfFundamental);
-const RENEWED_RESONANT: Plan = plan(&[0, 10, 25], 160, Resonant);
-
-/// For the errors of a solution, from that solution: what is left counts, so every step does.
-const BESIDE: Plan = combining_all(plan(&[0], 120, FirstOfFundamental));
 
 /// What decides that an attempt is over.
 struct Judge {
@@ -242,40 +89,12 @@ pub(super) struct Outcome {
     pub(super) shares: ContactShares,
 }
 
-fn dbg_ladder() -> &'static [(Start, Attempt)] {
-    static L: std::sync::OnceLock<Vec<(Start, Attempt)>> = std::sync::OnceLock::new();
-    L.get_or_init(|| {
-        let Ok(text) = std::env::var("BLK_LADDER") else { return Vec::new() };
-        text.split(' ').map(|t| {
-            let mut c = t.chars();
-            let start = match c.next().unwrap() { 'K' => Known, 'L' => Linear, _ => Best };
-            let kind = c.next().unwrap();
-            let rest: Vec<f64> = c.as_str().split(',').filter(|x| !x.is_empty()).map(|x| x.parse().unwrap()).collect();
-            let attempt = match kind {
-                'b' if start == Known => brief(plan(&[0], 160, FirstOfFundamental)),
-                'b' => brief(plan(&[0, 3], 120, FirstOfFundamental)),
-                'r' => Accelerated(combining_all(RENEWED)),
-                'R' => Accelerated(combining_all(RENEWED_RESONANT)),
-                _ => Newton(NewtonPlan { pairs: kind == 'p', step_error: rest[0], products: rest[1] as usize, products_in_all: rest[2] as u64, least_factor: 1.0/256.0, decrease: rest[3] }),
-            };
-            (start, attempt)
-        }).collect()
-    })
-}
-
 impl ContactEquation<'_> {
     /// Solves from the best of `starts`, or from the linear response without any, until the residual is within `tolerance`.
     pub(super) fn solve(&mut self, starts: &[Vec<f64>], tolerance: f64) -> Outcome {
         let linear = self.linear_start();
         let known = self.best_of(starts);
-        let attempts = if self.harmonics.len() <= FEW_HARMONICS {
-            WITH_FEW_HARMONICS.as_slice()
-        } else {
-            WITH_MANY_HARMONICS.as_slice()
-        };
-        let dbg = dbg_ladder();
-        let attempts = if self.harmonics.len() > FEW_HARMONICS && !dbg.is_empty() { dbg } else { attempts };
-        let attempts = attempts.iter();
+        let attempts = attempts(self.harmonics.len()).iter();
         let attempts = attempts.filter(|(start, _)| known.is_some() || *start != Known);
         // Without a known start the linear response begins.
         let attempts = attempts.skip_while(|(start, _)| known.is_none() && *start == Best);
@@ -292,7 +111,6 @@ impl ContactEquation<'_> {
                 Accelerated(plan) => self.accelerate(plan, tolerance),
                 Newton(plan) => self.newton(plan, tolerance),
             };
-            if rung > 0 || outcome.status != Status::Ok { eprintln!("DBG   rung {} {} st={:?} res={:.2e} step={:.2e} it={} tan={} sep={:.3}", rung, match attempt { Accelerated(p) => format!("acc{:?}x{} d{}", p.renewals, p.iterations, p.depth), Newton(_) => "newton".into() }, outcome.status, outcome.residual, outcome.step, outcome.iterations, outcome.tangents, outcome.shares.separated); }
             total = total.followed_by(outcome, rung);
             if total.status == Status::Ok {
                 break;
@@ -375,7 +193,6 @@ impl ContactEquation<'_> {
                 break;
             }
             outcome.tangents += 1;
-            eprintln!("DBG     newton res={:.2e} products={}", outcome.residual, outcome.iterations);
             let pairs = plan.pairs;
             let mut by = NewtonPreconditioner {
                 harmonics: self.preconditioners(FirstOfFundamental),

@@ -3,9 +3,10 @@
 //! The tuned wheel with stuck contact is one small matrix a wave and frequency (`tables.rs`). Blade deviations are eliminated
 //! exactly in few strain coordinates (`elimination.rs`, `blade_shapes.rs`), and the motions at the contact are the only
 //! unknowns of the nonlinear equation (`contact_equation.rs`), which an iteration solves (`contact_iteration.rs`,
-//! `preconditioner.rs`, `acceleration.rs`).
+//! `attempts.rs`, `preconditioner.rs`, `acceleration.rs`).
 
 mod acceleration;
+mod attempts;
 mod blade_shapes;
 mod contact_equation;
 mod contact_forces;

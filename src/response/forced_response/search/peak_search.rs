@@ -16,7 +16,7 @@ use super::summit::{self, Summit};
 
 /// Gap between samples, in half-bandwidths of a linear resonance, that points that failed may lie in without hiding a peak, and height
 /// of the samples beside it over the best below which it hides none.
-const CLOSE: f64 = 0.1;
+const CLOSE: f64 = 1.0;
 const HIGH: f64 = 0.5;
 
 /// Why a search ended.

@@ -1,0 +1,162 @@
+//! The strategy of the contact iteration: what is tried, in which order, until an attempt ends with a solution.
+
+use super::contact_equation::PreconditionedShapes::{self, FirstOfFundamental, Resonant};
+
+use Attempt::{Accelerated, Newton};
+use Start::{Best, Known, Linear};
+
+/// Damping of the shares of earlier steps, over the tolerance that is asked for.
+pub(super) const DAMPING: f64 = 0.5;
+
+/// Newton steps of an attempt at most.
+pub(super) const NEWTON_STEPS: usize = 40;
+/// Most harmonics that are few: with more a step takes so long that attempts are ended early, and that no pair is preconditioned by itself.
+const FEW_HARMONICS: usize = 6;
+
+/// When preconditioners are renewed, what they take in, and how many steps are taken at most.
+#[derive(Clone, Copy)]
+pub(super) struct Plan {
+    pub(super) renewals: &'static [usize],
+    pub(super) iterations: usize,
+    pub(super) shapes: PreconditionedShapes,
+    /// Earlier steps that are combined.
+    pub(super) depth: usize,
+    /// Whether an attempt that stalls is over before that: Newton's method goes on from there.
+    pub(super) gives_up: bool,
+}
+
+const fn plan(renewals: &'static [usize], iterations: usize, shapes: PreconditionedShapes) -> Plan {
+    Plan {
+        renewals,
+        iterations,
+        shapes,
+        depth: 80,
+        gives_up: false,
+    }
+}
+
+/// With many harmonics the steps that follow a new beginning cost more than a long history: all steps are combined.
+const fn combining_all(plan: Plan) -> Plan {
+    Plan { depth: 160, ..plan }
+}
+
+const fn brief(plan: Plan) -> Attempt {
+    Accelerated(Plan {
+        gives_up: true,
+        ..combining_all(plan)
+    })
+}
+
+/// How Newton steps are preconditioned, how closely they are solved, and how they are shortened.
+pub(super) struct NewtonPlan {
+    /// Whether every pair is preconditioned by itself besides. What is left is then measured after the preconditioners: without them
+    /// the stiffest pairs alone would count.
+    pub(super) pairs: bool,
+    /// Residual of a step, relative to its right-hand side.
+    pub(super) step_error: f64,
+    /// Products with the derivative of a step, and of an attempt, at most.
+    pub(super) products: usize,
+    pub(super) products_in_all: u64,
+    /// Share of a step below which it is not tried.
+    pub(super) least_factor: f64,
+    /// Share of what a step promises that it has to take off.
+    pub(super) decrease: f64,
+}
+
+const BY_HARMONICS: NewtonPlan = NewtonPlan {
+    pairs: false,
+    step_error: 1e-3,
+    products: 120,
+    products_in_all: u64::MAX,
+    least_factor: 1.0 / 128.0,
+    decrease: 0.0,
+};
+/// With many harmonics: where these are not enough, more hardly ever are.
+const BY_MANY_HARMONICS: NewtonPlan = NewtonPlan {
+    products_in_all: 1_500,
+    ..BY_HARMONICS
+};
+/// From where the iteration has come to: few steps are left, which need not be solved closely.
+const FROM_THERE: NewtonPlan = NewtonPlan {
+    pairs: false,
+    step_error: 0.1,
+    products: 120,
+    products_in_all: 700,
+    least_factor: 1.0 / 128.0,
+    decrease: 0.0,
+};
+/// The same with many, where its steps take off less each.
+const FROM_THERE_WITH_MANY: NewtonPlan = NewtonPlan {
+    products_in_all: 1_500,
+    ..FROM_THERE
+};
+const BY_PAIRS: NewtonPlan = NewtonPlan {
+    pairs: true,
+    step_error: 1e-2,
+    products: 250,
+    products_in_all: 3_500,
+    least_factor: 1.0 / 256.0,
+    decrease: 0.1,
+};
+
+/// Where an attempt begins.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Start {
+    /// Motions that are known beside the frequency or with other harmonics.
+    Known,
+    /// The linear response.
+    Linear,
+    /// The motions with the smallest residual of all attempts before.
+    Best,
+}
+
+/// One way to a solution.
+pub(super) enum Attempt {
+    Accelerated(Plan),
+    Newton(NewtonPlan),
+}
+
+/// What is tried, in this order, until an attempt ends with a solution. The tangent of a known start is near; that of the linear
+/// response says little, and is renewed. Where the iteration creeps, Newton's method ends what it began. Harmonics above 1 near
+/// resonances that deviations split take the resonant shapes. Where pairs open, their harmonics depend on each other, and pairs are
+/// preconditioned by themselves.
+const WITH_FEW_HARMONICS: [(Start, Attempt); 13] = [
+    (Known, Accelerated(plan(&[0], 100, FirstOfFundamental))),
+    (Linear, Accelerated(plan(&[0, 3], 80, FirstOfFundamental))),
+    (Linear, Accelerated(RENEWED)),
+    (Known, Accelerated(RENEWED)),
+    (Best, Newton(FROM_THERE)),
+    (Known, Accelerated(plan(&[0, 3], 80, Resonant))),
+    (Known, Accelerated(RENEWED_RESONANT)),
+    (Linear, Accelerated(plan(&[0, 3], 80, Resonant))),
+    (Linear, Accelerated(RENEWED_RESONANT)),
+    (Known, Newton(BY_HARMONICS)),
+    (Linear, Newton(BY_HARMONICS)),
+    (Known, Newton(BY_PAIRS)),
+    (Linear, Newton(BY_PAIRS)),
+];
+/// The same with many: where an attempt stalls it is over, since Newton's method from there takes less than other starts do.
+const WITH_MANY_HARMONICS: [(Start, Attempt); 8] = [
+    (Known, brief(plan(&[0], 160, FirstOfFundamental))),
+    (Best, Newton(FROM_THERE_WITH_MANY)),
+    (Known, Newton(BY_MANY_HARMONICS)),
+    (Linear, brief(plan(&[0, 3], 120, FirstOfFundamental))),
+    (Best, Newton(FROM_THERE_WITH_MANY)),
+    (Known, Accelerated(combining_all(RENEWED))),
+    (Known, Accelerated(combining_all(RENEWED_RESONANT))),
+    (Linear, Accelerated(combining_all(RENEWED_RESONANT))),
+];
+const RENEWED: Plan = plan(&[0, 10, 25], 160, FirstOfFundamental);
+const RENEWED_RESONANT: Plan = plan(&[0, 10, 25], 160, Resonant);
+
+/// The attempts with so many harmonics.
+pub(super) fn attempts(harmonics: usize) -> &'static [(Start, Attempt)] {
+    if harmonics <= FEW_HARMONICS {
+        &WITH_FEW_HARMONICS
+    } else {
+        &WITH_MANY_HARMONICS
+    }
+}
+
+/// For the errors of a solution, from that solution: what is left counts, so every step does.
+pub(super) const BESIDE: Plan = combining_all(plan(&[0], 120, FirstOfFundamental));
