@@ -11,6 +11,8 @@
 //! sought with few harmonics; all of them are solved where it is found, until it is found no higher than they say, and on either
 //! side of it, where another harmonic that meets a resonance of its own would show.
 //!
+//! Where contacts open, the few are harmonics 0 to 3: a pair that opens moves apart in the mean, and twice a period.
+//!
 //! Between few and all may stand a set that is cheap and close: then the same is done with that set first, and what all harmonics
 //! leave beyond it is one more force, that takes three or four solutions with all of them to know.
 
@@ -69,6 +71,8 @@ pub(super) struct Lost {
     pub(super) work: Work,
     /// Whether a contact opens, which few harmonics without the mean motion do not follow.
     pub(super) opens: bool,
+    /// How a point beside a top ended that no attempt solved, if that ended the search.
+    pub(super) unsolved: Option<Status>,
 }
 
 /// The peak of `row` by `plan` with the settings of few harmonics, and of sets each within the next, the last with all of them.
@@ -84,7 +88,11 @@ pub(super) fn corrected_peak(
     sets: &[&PointSettings],
     peak_tolerance: f64,
 ) -> Result<(Peak, f64), Lost> {
-    let lost = |work: Work, opens: bool| Lost { work, opens };
+    let lost = |work: Work, opens: bool| Lost {
+        work,
+        opens,
+        unsolved: None,
+    };
     let mut few = ReceptancePoints::new(row, of_few);
     let follows = of_few.harmonics().contains(&0);
     let tops = tops_of_few(plan, &mut few, peak_tolerance, MADE_UP);
@@ -114,7 +122,12 @@ pub(super) fn corrected_peak(
     let found = found.and_then(|highest| Ok((search.finished(highest.frequency_hz)?, highest)));
     let work = search.work();
     let is_open = search.opens();
-    let (point, highest) = found.map_err(|_| lost(work, is_open))?;
+    let of_search =
+        |status: Status| matches!(status, Status::NotBracketed | Status::SweepIncomplete);
+    let (point, highest) = found.map_err(|status| Lost {
+        unsolved: (!of_search(status)).then_some(status),
+        ..lost(work, is_open)
+    })?;
     let all = search.sets.last_mut().ok_or(lost(work, is_open))?;
     let peak = Peak {
         status: Status::Ok,

@@ -17,8 +17,8 @@ pub struct ReceptancePeak {
 }
 
 /// Finds the peak of one row: with few harmonics over the band and with all of them at its tops, where `search` has few, or with
-/// all of them alone. With an automatic set of all harmonics a search with these ends at the first point that is not found: fewer of
-/// them have to do there.
+/// all of them alone. Where contacts open, the few of an automatic set are those that follow that. With an automatic set of all
+/// harmonics a search with these ends at the first point that is not found: fewer of them have to do there.
 #[must_use]
 pub fn receptance_peak(
     row: &EngineRow<'_>,
@@ -49,6 +49,11 @@ pub fn receptance_peak(
             wasted = lost.work;
             by_harmonics = false;
             found = corrected_peak(row, &plan, opening, &[settings], peak_tolerance);
+            if let Err(lost) = &found
+                && let Some(status) = lost.unsolved
+            {
+                return alone(Peak::without(status, wasted.plus(lost.work)));
+            }
         }
         match found {
             Ok((peak, change)) => {
