@@ -10,6 +10,9 @@ const APART: f64 = 0.4;
 /// Points that a force is interpolated between at most.
 const NODES: usize = 3;
 
+/// Fall beside a top over that of a resonance, and more, from which on the curve falls off a cliff there.
+const CLIFF: (f64, f64) = (3.0, 0.01);
+
 /// A frequency that is solved with the harmonics of a set.
 pub(super) struct Known {
     pub(super) frequency_hz: f64,
@@ -53,6 +56,18 @@ impl Climb {
             .into_iter()
             .find(is_unseen);
         unseen.map(|side| top_hz + side)
+    }
+
+    /// Whether the curve falls beside the top as no resonance of this half-bandwidth, Hz, does: where a contact that opens folds it, what
+    /// the sets leave jumps.
+    pub(super) fn falls_off(&self, half_bandwidth_hz: f64) -> bool {
+        let best = self.best();
+        self.last_set().iter().any(|known| {
+            let distance = (known.frequency_hz - best.frequency_hz) / half_bandwidth_hz;
+            let of_resonance = 1.0 - 1.0 / (1.0 + distance * distance).sqrt();
+            let (times, more) = CLIFF;
+            1.0 - known.height_m / best.height_m > times * of_resonance + more
+        })
     }
 
     /// What the first `sets` sets leave on few harmonics at a frequency, Hz, and the growth of every blade's amplitude by them.

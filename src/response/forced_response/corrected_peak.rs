@@ -283,6 +283,9 @@ impl CorrectedSearch<'_> {
             }
             let floor_m = best.map_or(0.0, |best| best.heights_m[set + 1]);
             let (height_m, frequency_hz) = self.climb(&mut climb, reach_hz, floor_m)?;
+            if self.follows && climb.falls_off(top.half_bandwidth_hz) {
+                return Err(Status::SweepIncomplete);
+            }
             highest.frequency_hz = frequency_hz;
             highest.heights_m.push(height_m);
         }
