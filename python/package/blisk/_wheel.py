@@ -30,6 +30,8 @@ class Peak:
     """The blade that has it, from 0."""
     amplification_factor: Optional[float]
     """Peak over that of the tuned wheel at the same load."""
+    stated_error: Optional[float]
+    """Bound on the relative numerical error of the amplitude, unit 1; ``None`` where it is not known."""
     status: str
     """``ok``, or why there is no result."""
 
@@ -67,7 +69,7 @@ class Wheel:
             if study.scenarios != len(study.to_dict()["sweep"]["normal_load_n"]):
                 raise ValueError("the study has several load cases or engine orders; accepted: one, by study.replace")
             rows = run(study, Path(folder) / "results", threads).responses.rows()
-        own = ("contact", "normal_load_n", "amplification_factor", "status")
+        own = ("contact", "normal_load_n", "amplification_factor", "stated_error", "status")
         renamed = {"amplitude_m": "peak_amplitude_m", "frequency_hz": "peak_frequency_hz", "blade": "peak_blade"}
         return [
             Peak(**{key: row[key] for key in own}, **{key: row[column] for key, column in renamed.items()})
