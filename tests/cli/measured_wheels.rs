@@ -255,10 +255,11 @@ fn a_few_measured_wheels_open_the_report_with_the_highest_of_them() {
         "{shown} {error}"
     );
     let of = format!(
-        "wheel {}; wheels not in the file may be higher",
+        "Worst peak of the 3 wheels at {load} N, wheel {}<",
         wheel["pattern"]
     );
     assert!(page.contains(&of), "{of}");
+    assert!(page.contains("for these 3 wheels alone, no confidence for others"));
     // Loads that the errors of the peaks leave open stand beside it.
     let of_load = |own: u64| {
         let error = &group["errors"][usize::try_from(own).expect("a load")];

@@ -225,7 +225,7 @@ fn notes_of_load(
             format!("95 % sure that no other has a lower P{percent}")
         } else {
             let load = short_load(scenario);
-            format!("not sure: {load} by statistics alone (95 %)")
+            format!("statistics alone: 95 % sure of {load}")
         });
     }
     if choice.is_of_a_design() {
@@ -253,7 +253,7 @@ fn by_numerical_error(
     let hidden = hidden_by_error(report, group);
     if !hidden.is_empty() {
         let loads = hidden.join(", ");
-        return format!("numerical error: {loads} or loads between may be as good");
+        return format!("not decided: numerical error, {loads} or between may be as good");
     }
     match group.numerical_rivals(lowest, choice.percent) {
         Some(rivals) if rivals.unknown.is_empty() => "numerical error does not change this",

@@ -28,7 +28,7 @@ pub(super) fn of_measured_wheels(
                 format!("{} at {load}", units.length(peak))
             })
             .collect();
-        format!("not decided: {}", peaks.join(", "))
+        format!("not decided, numerical error: {}", peaks.join(", "))
     }];
     let candidates = candidates(group);
     let beyond = ends_among(report, group, &candidates);
@@ -45,10 +45,7 @@ pub(super) fn of_measured_wheels(
     let mut of_wheels = vec![if one {
         "the one wheel of mistuning.file: no percentile".to_owned()
     } else {
-        format!(
-            "wheel {}; wheels not in the file may be higher",
-            of_wheel.pattern
-        )
+        format!("for these {wheels} wheels alone, no confidence for others")
     }];
     let mut designs = group.choices.iter().filter(|_| !one);
     of_wheels.extend(designs.rfind(|own| own.is_of_a_design()).map(|own| {
@@ -85,7 +82,10 @@ pub(super) fn of_measured_wheels(
     } else {
         [
             "Normal load per sector with the smallest worst peak".to_owned(),
-            format!("Worst peak of the {wheels} wheels at {load}"),
+            format!(
+                "Worst peak of the {wheels} wheels at {load}, wheel {}",
+                of_wheel.pattern
+            ),
             format!("Numerical error of the peaks at {load}"),
             format!("the largest bound of the {wheels} solutions"),
         ]
