@@ -78,12 +78,9 @@ const BY_MANY_HARMONICS: NewtonPlan = NewtonPlan {
 };
 /// From where the iteration has come to: few steps are left, which need not be solved closely.
 const FROM_THERE: NewtonPlan = NewtonPlan {
-    pairs: false,
     step_error: 0.1,
-    products: 120,
     products_in_all: 700,
-    least_factor: 1.0 / 128.0,
-    decrease: 0.0,
+    ..BY_HARMONICS
 };
 /// The same with many, where its steps take off less each.
 const FROM_THERE_WITH_MANY: NewtonPlan = NewtonPlan {
