@@ -350,8 +350,6 @@ pub(super) struct AtTheEnd {
     pub(super) what: String,
     /// What is wrong, in a few words.
     pub(super) headline: String,
-    /// On which side of a load in newtons a better one may lie, `lower` or `higher`; none where that is not one side.
-    pub(super) side: Option<&'static str>,
     /// The headline, and where loads are added.
     pub(super) in_words: String,
 }
@@ -420,9 +418,6 @@ pub(super) fn end_at(
     Some(AtTheEnd {
         beyond,
         headline: format!("{what}: add {side} {loads}"),
-        side: ["lower", "higher"]
-            .into_iter()
-            .find(|only| *only == side && own.normal_load_n.is_some()),
         in_words: format!(
             "{of_setting}{what}, so that the optimum may lie beyond: add {side} {loads} to {key} and run again"
         ),

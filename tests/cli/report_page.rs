@@ -141,7 +141,7 @@ fn the_first_screen_has_load_percentile_and_numerical_error_of_the_tables() {
         assert!(!first.contains(sign), "{sign}");
     }
     // Of two loads that were calculated one is lower, with 95 % confidence unless others could be as low.
-    let sure = "95 % sure that no other has a lower P95";
+    let sure = "95 % sure that no other load studied has a lower P95";
     assert_eq!(load[2].contains(sure), others == 0, "{}", load[2]);
     // The other percentiles are a link away, which has the name of the section for a reader on paper.
     let link = "P99 needs 368 patterns; <a href=\"#numbers-0\">all percentiles</a>";
@@ -314,8 +314,7 @@ fn a_load_at_the_end_of_those_studied_is_the_first_warning() {
             Some(("below", _)) if own.ends_with(" N") => " or lower",
             _ => "",
         };
-        let first = load[1].split(", or ").next();
-        assert_eq!(first, Some(&*format!("{own}{side}")));
+        assert_eq!(load[1], format!("{own}{side}"));
         let [of_load, of_percentile, _] = looks(between(&page, "id=\"answer-0\"", "</section>"));
         assert!(of_load && !of_percentile);
         // The card of the load says so before how sure the load is the lowest.
@@ -369,6 +368,34 @@ fn hidden_loads(report: &Value) -> Vec<String> {
         .collect()
 }
 
+/// What the first screen says of the loads that are `left` of those `studied`, both in newtons.
+pub fn range_of(left: &[f64], studied: &[f64]) -> String {
+    let places: Vec<usize> = (0..studied.len())
+        .filter(|&place| left.contains(&studied[place]))
+        .collect();
+    let (first, last) = (places[0], places[places.len() - 1]);
+    let end = studied.len() - 1;
+    let in_words = |place: usize| match studied[place] {
+        load if place == 0 => format!("{load} N or lower"),
+        load if place == end => format!("{load} N or higher"),
+        load => format!("{load} N"),
+    };
+    if first == last {
+        return in_words(first);
+    }
+    if last - first >= places.len() {
+        let all: Vec<String> = places.into_iter().map(in_words).collect();
+        return format!("not decided: {}", all.join(", "));
+    }
+    let (low, high) = (studied[first], studied[last]);
+    match (first == 0, last == end) {
+        (true, true) => "not decided: any load".to_owned(),
+        (true, false) => format!("not decided: ≤ {high} N"),
+        (false, true) => format!("not decided: ≥ {low} N"),
+        (false, false) => format!("not decided: {low} N to {high} N"),
+    }
+}
+
 #[test]
 fn the_first_screen_says_where_numerical_error_could_hide_a_better_load() {
     // One harmonic is far from what friction takes: rows state errors by which close loads cannot be told apart. The
@@ -376,7 +403,13 @@ fn the_first_screen_says_where_numerical_error_could_hide_a_better_load() {
     let coarse = study()
         .replace("harmonics = [1, 3]", "harmonics = [1]")
         .replace("[\"slide\", 50, 100, 200, \"stuck\"]", "[70, 100, 200]");
-    for (study, hides) in [(coarse, true), (study(), false)] {
+    let enclosed = coarse.replace("[70, 100, 200]", "[20, 70, 100, 400]");
+    let cases: [(String, bool, &[f64]); 3] = [
+        (coarse, true, &[70.0, 100.0, 200.0]),
+        (enclosed, true, &[20.0, 70.0, 100.0, 400.0]),
+        (study(), false, &[50.0, 100.0, 200.0]),
+    ];
+    for (study, hides, studied) in cases {
         let (_place, page, report) = reported(&study, 0);
         let page = page.replace('\u{a0}', " ");
         let [load, _, error] = &big_numbers(&page)[..] else {
@@ -387,14 +420,22 @@ fn the_first_screen_says_where_numerical_error_could_hide_a_better_load() {
         let loads = hidden.join(", ");
         let section = between(&page, "id=\"answer-0\"", "</section>");
         let health = between(section, "<div class=\"health", "</div>");
-        let on_card = format!("not decided: numerical error, {loads} or between may be as good");
+        let on_card = format!("not sure by numerical error: {loads} or between may be as good");
         let in_box = format!("numerical error: {loads} may be as good; add loads between");
         for (text, said) in [(load[2].as_str(), on_card), (health, in_box)] {
             assert_eq!(text.contains(&said), hides, "{said}: {text}");
         }
-        // They stand beside the load that is the lowest as computed.
-        let or: Vec<&str> = load[1].split(", or ").skip(1).collect();
-        assert_eq!(or, hidden, "{}", load[1]);
+        // The large number is the range that is left, and the box says the same.
+        let scenario = report["groups"][0]["choices"][1]["lowest"].as_u64();
+        let scenario = scenario.expect("a scenario") as usize;
+        let own = { &report["summary"]["scenarios"][scenario]["normal_load_n"] }.as_f64();
+        let own = own.expect("a load");
+        let number = |load: &String| load.trim_end_matches(" N").parse().expect("a load");
+        let left: Vec<f64> = std::iter::once(own)
+            .chain(hidden.iter().map(number))
+            .collect();
+        assert_eq!(load[1], range_of(&left, studied));
+        assert_eq!(health.contains("Not decided: "), hides, "{health}");
         // The figure has bars with numerical error at these loads, and no others.
         let (_, figure) = section.split_once("<figure").expect("the figure");
         let figure = figure.split_once("</figure>").expect("an end").0;

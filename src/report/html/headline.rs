@@ -1,8 +1,10 @@
 //! What the first screen says in large type: load, percentile and numerical error.
 
+use std::cmp::Ordering;
+
 use crate::population::statistics::CONFIDENCE;
 use crate::report::numerical_error::Remedy;
-use crate::report::study_report::{AtTheEnd, at_the_end, neighbours, short_load};
+use crate::report::study_report::{at_the_end, neighbours, short_load};
 use crate::report::words::{LengthUnit, four_digits, percent_words, share_words, signed_share};
 use crate::report::{
     GroupReport, LoadChoice, PercentileError, ScenarioSummary, StudyReport, StudySummary, Warning,
@@ -66,10 +68,7 @@ fn number_of_load(
     let load = short_load(scenario);
     let (label, value, told) = if choice.is_of_a_design() {
         let label = format!("Normal load per sector with the lowest P{percent}");
-        let end = at_the_end(report, group);
-        let load = with_end(load, end.as_ref());
-        let loads = std::iter::once(load).chain(hidden_by_error(report, group));
-        (label, loads.collect::<Vec<_>>().join(", or "), None)
+        (label, design_loads(report, group), None)
     } else {
         let told = format!("lowest P{percent}: at {load}");
         let value = "No design load yet".to_owned();
@@ -87,11 +86,53 @@ fn number_of_load(
     }
 }
 
-/// A load, and the side of it where a better one may lie.
-pub(super) fn with_end(load: String, end: Option<&AtTheEnd>) -> String {
-    match end.and_then(|end| end.side) {
-        Some(side) => format!("{load} or {side}"),
-        None => load,
+/// The load with the lowest percentile, or those between which numerical error leaves it open.
+pub(super) fn design_loads(report: &StudyReport, group: &GroupReport) -> String {
+    let left = { group.known_choice().into_iter() }.flat_map(|(choice, lowest)| {
+        std::iter::once(lowest).chain(group.hidden_by_error(choice, lowest))
+    });
+    loads_left(report, group, &left.collect::<Vec<_>>())
+}
+
+/// The loads that an answer leaves. Several that are next to each other are one range with all loads between them, which
+/// were not studied; beyond the last load studied a better one may lie.
+pub(super) fn loads_left(report: &StudyReport, group: &GroupReport, left: &[usize]) -> String {
+    let mut left: Vec<&ScenarioSummary> = { left.iter() }
+        .map(|&own| &report.summary.scenarios[own])
+        .collect();
+    left.sort_by(|a, b| {
+        a.normal_load_n
+            .partial_cmp(&b.normal_load_n)
+            .unwrap_or(Ordering::Equal)
+    });
+    let or_beyond = |load: &ScenarioSummary| match neighbours(report, group, load) {
+        [None, Some(_)] => format!("{} or lower", short_load(load)),
+        [Some(_), None] => format!("{} or higher", short_load(load)),
+        _ => short_load(load),
+    };
+    let is_next = |pair: &[&ScenarioSummary]| {
+        let [_, higher] = neighbours(report, group, pair[0]);
+        higher.is_some_and(|higher| higher.scenario == pair[1].scenario)
+    };
+    match left[..] {
+        [] => "not known".to_owned(),
+        [only] => or_beyond(only),
+        [first, .., last] if left.windows(2).all(is_next) => {
+            let [below, _] = neighbours(report, group, first);
+            let [_, above] = neighbours(report, group, last);
+            let (first, last) = (short_load(first), short_load(last));
+            let range = match (below, above) {
+                (None, None) => "any load".to_owned(),
+                (None, Some(_)) => format!("≤ {last}"),
+                (Some(_), None) => format!("≥ {first}"),
+                (Some(_), Some(_)) => format!("{first} to {last}"),
+            };
+            format!("not decided: {range}")
+        }
+        _ => {
+            let loads: Vec<String> = left.into_iter().map(or_beyond).collect();
+            format!("not decided: {}", loads.join(", "))
+        }
     }
 }
 
@@ -208,6 +249,7 @@ fn notes_of_load(
     };
     // What makes the load no optimum comes before how sure it is the lowest.
     let is_at_the_end = at_the_end(report, group);
+    let hidden = hidden_by_error(report, group);
     notes.extend({ is_at_the_end.as_ref() }.map(|end| end.what.clone()));
     let others: Vec<String> = { best.loads.iter() }
         .filter(|own| own.could_be_best && own.scenario.scenario != scenario.scenario)
@@ -221,11 +263,11 @@ fn notes_of_load(
         let others = others.join(", ");
         notes.push(format!("95 % confidence: {others} may be as good"));
     } else if choice.is_of_a_design() {
-        notes.push(if hidden_by_error(report, group).is_empty() {
-            format!("95 % sure that no other has a lower P{percent}")
+        notes.push(if hidden.is_empty() {
+            format!("95 % sure that no other load studied has a lower P{percent}")
         } else {
             let load = short_load(scenario);
-            format!("statistics alone: 95 % sure of {load}")
+            format!("95 % sure of {load} by statistics alone")
         });
     }
     if choice.is_of_a_design() {
@@ -253,7 +295,7 @@ fn by_numerical_error(
     let hidden = hidden_by_error(report, group);
     if !hidden.is_empty() {
         let loads = hidden.join(", ");
-        return format!("not decided: numerical error, {loads} or between may be as good");
+        return format!("not sure by numerical error: {loads} or between may be as good");
     }
     match group.numerical_rivals(lowest, choice.percent) {
         Some(rivals) if rivals.unknown.is_empty() => "numerical error does not change this",
@@ -291,22 +333,23 @@ fn notes_of_percentile(
     });
     let between = error.and_then(|error| interval_with_error(error, units));
     notes.extend(between.map(|between| format!("with numerical error {between}")));
-    let value = found.and_then(|percentile| percentile.value);
-    notes.extend(
-        { choice.lowest.zip(value) }
-            .and_then(|(lowest, value)| beside_tuned(summary, lowest, value)),
-    );
     let open = choice
         .lowest
         .map_or_else(Vec::new, |lowest| group.hidden_by_error(choice, lowest));
     notes.extend(open.into_iter().filter_map(|scenario| {
         let error = group.error_of(scenario, choice.percent)?.1;
-        let value = units.length(error.percentile.value?);
+        let value = error.percentile.value?;
         let load = short_load(&summary.scenarios[scenario]);
-        let between = interval_with_error(error, units);
-        let between = between.map_or(String::new(), |between| format!(", {between}"));
-        Some(format!("at {load}: {value}{between}"))
+        Some(match interval_with_error(error, units) {
+            Some(between) => format!("at {load}: {}, with it {between}", units.number(value)),
+            None => format!("at {load}: {}", units.length(value)),
+        })
     }));
+    let value = found.and_then(|percentile| percentile.value);
+    notes.extend(
+        { choice.lowest.zip(value) }
+            .and_then(|(lowest, value)| beside_tuned(summary, lowest, value)),
+    );
     let stress = summary.stress_pa_per_m.zip(found.and_then(|own| own.value));
     notes.extend(stress.map(|(pa_per_m, value)| {
         format!("= {} MPa peak stress", four_digits(1e-6 * pa_per_m * value))

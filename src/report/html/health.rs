@@ -1,6 +1,6 @@
 //! Whether anything is wrong with a study: the worst consequence, and the warnings in a few words.
 
-use super::headline::hidden_by_error;
+use super::headline::{design_loads, hidden_by_error, loads_left};
 use super::measured_wheels::{candidates, ends_among};
 use crate::report::study_report::{at_the_end, short_load};
 use crate::report::words::{scenarios_in_words, told_apart};
@@ -102,19 +102,13 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
             0,
             format!("numerical error: {loads} may be as good; add loads between"),
         );
-        verdict = Some("Numerical error could hide a better load.".to_owned());
     }
-    let open = first.map_or_else(Vec::new, GroupReport::loads_left_open);
     if let Some(end) = first.and_then(|group| at_the_end(report, group)) {
         findings.insert(0, end.headline.clone());
-        verdict = Some(sentence(&match (choice, hidden.split_last()) {
-            (Some((_, lowest)), Some((last, others))) => {
-                let lowest = short_load(&summary.scenarios[lowest]);
-                let loads = [&[end.beyond.clone(), lowest], others].concat().join(", ");
-                format!("not decided: {loads} or {last}")
-            }
-            _ => end.consequence(),
-        }));
+        verdict = Some(sentence(&end.consequence()));
+    }
+    if let (Some(group), false) = (first, hidden.is_empty()) {
+        verdict = Some(sentence(&design_loads(report, group)));
     }
     let others = report.groups.iter().skip(1);
     let others = others.filter(|group| at_the_end(report, group).is_some());
@@ -138,18 +132,20 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
         _ => {}
     }
     if let Some(group) = first {
-        let ends = ends_among(report, group, &candidates(group));
+        let candidates = candidates(group);
+        let ends = ends_among(report, group, &candidates);
         for (_, end) in ends.into_iter().rev() {
             findings.insert(0, end.headline.clone());
             verdict = Some(sentence(&end.consequence()));
         }
-    }
-    if !open.is_empty() {
-        findings.insert(
-            0,
-            "more accuracy decides between these loads; add loads between".to_owned(),
-        );
-        verdict = Some("Numerical error leaves the load open.".to_owned());
+        if candidates.len() > 1 {
+            findings.insert(
+                0,
+                "numerical error: more accuracy decides between loads; add loads between"
+                    .to_owned(),
+            );
+            verdict = Some(sentence(&loads_left(report, group, &candidates)));
+        }
     }
     let class = if verdict.is_some() { "look" } else { "good" };
     Health {

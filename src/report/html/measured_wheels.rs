@@ -1,6 +1,6 @@
 //! What the first screen says in large type of a few measured wheels, which have no percentile to design by.
 
-use super::headline::{BigNumber, beside, beside_tuned, with_end};
+use super::headline::{BigNumber, beside, beside_tuned, loads_left};
 use crate::report::study_report::{AtTheEnd, end_at, neighbours, short_load, within};
 use crate::report::words::{LengthUnit, percent_words, share_words};
 use crate::report::{GroupReport, StudyReport};
@@ -28,18 +28,13 @@ pub(super) fn of_measured_wheels(
                 format!("{} at {load}", units.length(peak))
             })
             .collect();
-        format!("not decided, numerical error: {}", peaks.join(", "))
+        let peaks = peaks.join(", ");
+        format!("worst peak {peaks}: closer than the numerical error")
     }];
     let candidates = candidates(group);
     let beyond = ends_among(report, group, &candidates);
     let is_open = !beyond.is_empty() || !open.is_empty();
-    of_load.extend(beyond.iter().map(|end| end.1.consequence()));
-    let loads: Vec<String> = { candidates.iter() }
-        .map(|&scenario| {
-            let end = beyond.iter().find(|end| end.0 == scenario);
-            with_end(short_load(&scenarios[scenario]), end.map(|end| &end.1))
-        })
-        .collect();
+    of_load.extend(beyond.iter().map(|end| end.1.what.clone()));
     let wheels = summary.patterns;
     let one = summary.is_of_one_wheel();
     let mut of_wheels = vec![if one {
@@ -104,7 +99,12 @@ pub(super) fn of_measured_wheels(
         is_open,
     };
     Some([
-        number(of_lowest, loads.join(", or "), of_load, is_open),
+        number(
+            of_lowest,
+            loads_left(report, group, &candidates),
+            of_load,
+            is_open,
+        ),
         number(of_peak, units.length(peak), of_wheels, false),
         number(of_error, error_at(lowest), of_errors, !open.is_empty()),
     ])
