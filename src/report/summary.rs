@@ -342,17 +342,18 @@ fn warnings(
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
     warnings.extend(separation(&context.harmonics, records));
-    let beyond = { records.iter() }.filter(|record| record.statistics.beyond_tolerance > 0);
-    let scenarios: Vec<usize> = beyond.map(|record| record.scenario.index).collect();
+    let concerned = || { records.iter() }.filter(|record| record.statistics.beyond_tolerance > 0);
+    let scenarios: Vec<usize> = concerned().map(|record| record.scenario.index).collect();
     if !scenarios.is_empty() {
         let statistics = || records.iter().map(|record| &record.statistics);
         let stated = statistics().filter_map(|of| of.largest_stated_error);
+        let of_concerned = concerned().map(|record| record.statistics.accounting.planned());
         warnings.push(Warning::BeyondTolerance {
             rows: statistics().map(|of| of.beyond_tolerance).sum(),
             by_sampling: statistics().map(|of| of.beyond_by_sampling).sum(),
             automatic: context.harmonics == Harmonics::Auto,
             on_basis: context.basis.name != TUNED_RECEPTANCES,
-            planned: rows.planned(),
+            planned: of_concerned.sum(),
             scenarios,
             tolerance: context.tolerance,
             largest_stated_error: stated.fold(0.0, f64::max),

@@ -34,7 +34,7 @@ pub enum Warning {
         automatic: bool,
         /// Whether rows are on a reduction basis, on which more harmonics can be named.
         on_basis: bool,
-        /// All rows.
+        /// All rows of the scenarios concerned.
         planned: u64,
         /// Scenarios concerned.
         scenarios: Vec<usize>,
@@ -246,7 +246,7 @@ impl Warning {
                 scenarios,
                 ..
             } => format!(
-                "{rows} of {planned} solutions miss the accuracy asked for, at {}",
+                "at {}, {rows} of {planned} solutions miss the accuracy asked for",
                 named(scenarios)
             ),
             Self::ReplacedBasis { .. } => "the basis of the study is replaced".to_owned(),

@@ -383,17 +383,9 @@ pub fn range_of(left: &[f64], studied: &[f64]) -> String {
     if first == last {
         return in_words(first);
     }
-    if last - first >= places.len() {
-        let all: Vec<String> = places.into_iter().map(in_words).collect();
-        return format!("not decided: {}", all.join(", "));
-    }
-    let (low, high) = (studied[first], studied[last]);
-    match (first == 0, last == end) {
-        (true, true) => "not decided: any load".to_owned(),
-        (true, false) => format!("not decided: ≤ {high} N"),
-        (false, true) => format!("not decided: ≥ {low} N"),
-        (false, false) => format!("not decided: {low} N to {high} N"),
-    }
+    let all: Vec<String> = places.iter().map(|&own| studied[own].to_string()).collect();
+    let (last, others) = all.split_last().expect("loads");
+    format!("not decided: {} or {last} N", others.join(", "))
 }
 
 #[test]

@@ -94,44 +94,31 @@ pub(super) fn design_loads(report: &StudyReport, group: &GroupReport) -> String 
     loads_left(report, group, &left.collect::<Vec<_>>())
 }
 
-/// The loads that an answer leaves. Several that are next to each other are one range with all loads between them, which
-/// were not studied; beyond the last load studied a better one may lie.
+/// The loads studied that an answer leaves, ascending. Of one alone it says on which side a better one may lie, if it is the last one
+/// studied there.
 pub(super) fn loads_left(report: &StudyReport, group: &GroupReport, left: &[usize]) -> String {
     let mut left: Vec<&ScenarioSummary> = { left.iter() }
         .map(|&own| &report.summary.scenarios[own])
         .collect();
     left.sort_by(|a, b| {
-        a.normal_load_n
-            .partial_cmp(&b.normal_load_n)
-            .unwrap_or(Ordering::Equal)
+        let newtons = a.normal_load_n.partial_cmp(&b.normal_load_n);
+        newtons.unwrap_or(Ordering::Equal)
     });
-    let or_beyond = |load: &ScenarioSummary| match neighbours(report, group, load) {
-        [None, Some(_)] => format!("{} or lower", short_load(load)),
-        [Some(_), None] => format!("{} or higher", short_load(load)),
-        _ => short_load(load),
-    };
-    let is_next = |pair: &[&ScenarioSummary]| {
-        let [_, higher] = neighbours(report, group, pair[0]);
-        higher.is_some_and(|higher| higher.scenario == pair[1].scenario)
-    };
     match left[..] {
         [] => "not known".to_owned(),
-        [only] => or_beyond(only),
-        [first, .., last] if left.windows(2).all(is_next) => {
-            let [below, _] = neighbours(report, group, first);
-            let [_, above] = neighbours(report, group, last);
-            let (first, last) = (short_load(first), short_load(last));
-            let range = match (below, above) {
-                (None, None) => "any load".to_owned(),
-                (None, Some(_)) => format!("≤ {last}"),
-                (Some(_), None) => format!("≥ {first}"),
-                (Some(_), Some(_)) => format!("{first} to {last}"),
-            };
-            format!("not decided: {range}")
-        }
-        _ => {
-            let loads: Vec<String> = left.into_iter().map(or_beyond).collect();
-            format!("not decided: {}", loads.join(", "))
+        [only] => match neighbours(report, group, only) {
+            [None, Some(_)] => format!("{} or lower", short_load(only)),
+            [Some(_), None] => format!("{} or higher", short_load(only)),
+            _ => short_load(only),
+        },
+        [ref others @ .., last] => {
+            let others = others.iter().map(|own| short_load(own));
+            // One unit is enough.
+            let others: Vec<String> = others
+                .map(|own| own.trim_end_matches(" N").to_owned())
+                .collect();
+            let last = short_load(last);
+            format!("not decided: {} or {last}", others.join(", "))
         }
     }
 }
@@ -267,7 +254,8 @@ fn notes_of_load(
             format!("95 % sure that no other load studied has a lower P{percent}")
         } else {
             let load = short_load(scenario);
-            format!("95 % sure of {load} by statistics alone")
+            let loads = best.loads.len();
+            format!("{load} is lowest of the {loads} by statistics (95 %)")
         });
     }
     if choice.is_of_a_design() {
@@ -341,8 +329,8 @@ fn notes_of_percentile(
         let value = error.percentile.value?;
         let load = short_load(&summary.scenarios[scenario]);
         Some(match interval_with_error(error, units) {
-            Some(between) => format!("at {load}: {}, with it {between}", units.number(value)),
-            None => format!("at {load}: {}", units.length(value)),
+            Some(between) => format!("{load}: {}, with error {between}", units.number(value)),
+            None => format!("{load}: {}", units.length(value)),
         })
     }));
     let value = found.and_then(|percentile| percentile.value);

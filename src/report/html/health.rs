@@ -66,6 +66,11 @@ fn lines(report: &StudyReport, warnings: &[&Warning]) -> Vec<String> {
     Warning::headlines(warnings, &|own| scenarios_in_words(&report.summary, own))
 }
 
+/// What numerical error leaves open, and what is studied next.
+fn may_be_as_good(loads: &str) -> String {
+    format!("numerical error: {loads} may be as good; add loads between")
+}
+
 /// With a capital letter and a full stop.
 fn sentence(words: &str) -> String {
     format!("{}.", capital(words))
@@ -98,10 +103,7 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
     let hidden = first.map_or_else(Vec::new, |group| hidden_by_error(report, group));
     if !hidden.is_empty() {
         let loads = hidden.join(", ");
-        findings.insert(
-            0,
-            format!("numerical error: {loads} may be as good; add loads between"),
-        );
+        findings.insert(0, may_be_as_good(&loads));
     }
     if let Some(end) = first.and_then(|group| at_the_end(report, group)) {
         findings.insert(0, end.headline.clone());
@@ -139,11 +141,9 @@ fn of_setting(report: &StudyReport, mut warnings: Vec<&Warning>) -> Health {
             verdict = Some(sentence(&end.consequence()));
         }
         if candidates.len() > 1 {
-            findings.insert(
-                0,
-                "numerical error: more accuracy decides between loads; add loads between"
-                    .to_owned(),
-            );
+            let others = { candidates[1..].iter() }.map(|&own| short_load(&summary.scenarios[own]));
+            let others = others.collect::<Vec<_>>().join(", ");
+            findings.insert(0, may_be_as_good(&others));
             verdict = Some(sentence(&loads_left(report, group, &candidates)));
         }
     }

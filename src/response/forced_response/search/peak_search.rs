@@ -11,8 +11,11 @@
 //! hide a higher peak and the vertex of the best is found.
 
 use super::envelope::{Envelope, NEAR, SearchSettings, VERTEX_SHARE};
-use super::samples::{Curve, Sample, Samples};
+use super::samples::{Curve, Lost, Sample, Samples};
 use super::summit::{self, Summit};
+
+/// Share of the best from which a higher top can stand beside a sample: curves are steep where contacts open.
+const HIGH_FLANK: f64 = 0.7;
 
 /// Why a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -201,6 +204,8 @@ impl Search {
     /// The middle of the widest interval that could hide a peak higher than the best.
     fn hidden(&self, best: usize) -> Next {
         let gamma = self.hidden_half_bandwidth(best);
+        let top = self.samples.0[best].largest;
+        let linear = self.envelope.linear_half_bandwidth_hz;
         let good: Vec<usize> = (0..self.samples.0.len())
             .filter(|&i| !self.samples.0[i].amplitudes.is_empty())
             .collect();
@@ -219,13 +224,22 @@ impl Search {
             // Beside the best the parabola through it has judged already, and cubics everywhere, unless it is far away.
             let beside_best = pair[0] == best || pair[1] == best;
             let judged = beside_best || self.samples.are_sloped();
+            let lost = pair[1] > pair[0] + 1;
+            if lost && left.largest.max(right.largest) > HIGH_FLANK * top {
+                match self.samples.lost_between(pair[0], pair[1], linear) {
+                    Lost::Nearer(frequency) => return Next::Evaluate(frequency),
+                    Lost::Hole => hole = true,
+                    Lost::Narrow => {}
+                }
+                continue;
+            }
             if judged && right.frequency_hz - left.frequency_hz <= 2.0 * gamma {
                 continue;
             }
             let Some((from, to)) = self.hiding_place(best, pair[0], pair[1]) else {
                 continue;
             };
-            if pair[1] > pair[0] + 1 {
+            if lost {
                 hole = true;
                 continue;
             }
@@ -240,19 +254,22 @@ impl Search {
         }
     }
 
-    /// `frequency` itself, or, where a failed point lies between it and the best, a point halfway to
-    /// the failed one; a hole once that is too near.
+    /// `frequency`, or, where a failed point lies before it, one halfway to that, then one from its other side, or a hole.
     fn short_of_failures(&self, best: usize, frequency: f64) -> Next {
         let at = self.samples.0[best].frequency_hz;
+        let linear = self.envelope.linear_half_bandwidth_hz;
         let beside = if frequency > at { best + 1 } else { best - 1 };
         let failed = &self.samples.0[beside];
         let between = (failed.frequency_hz - at).abs() <= (frequency - at).abs();
         if !failed.amplitudes.is_empty() || !between {
             Next::Evaluate(frequency)
-        } else if (failed.frequency_hz - at).abs() > 0.05 * self.envelope.linear_half_bandwidth_hz {
+        } else if (failed.frequency_hz - at).abs() > 0.05 * linear {
             Next::Evaluate(0.5 * (failed.frequency_hz + at))
         } else {
-            Next::Hole
+            match self.samples.lost_beside(best, frequency > at, linear) {
+                Lost::Nearer(frequency) => Next::Evaluate(frequency),
+                Lost::Narrow | Lost::Hole => Next::Hole,
+            }
         }
     }
 
@@ -436,5 +453,46 @@ pub(super) mod tests {
             |f: f64| ((f - 100.0).abs() > 1.0).then(|| curves(&[(100.0, 0.5)], &[&[1.0]], f)),
         );
         assert_eq!(result.end, SearchEnd::Incomplete);
+    }
+
+    /// A top far narrower than a linear resonance, as where contacts open, on the flank of a broad one.
+    fn narrow_top_on_a_flank(f: f64) -> Vec<f64> {
+        curves(&[(100.0, 2.0), (101.4, 0.15)], &[&[2.0, 0.12]], f)
+    }
+
+    #[test]
+    fn a_top_beside_a_failed_point_is_found_from_nearer() {
+        // Where single points fail beside the narrow top, the others read the broad one alone.
+        let fails = |f: f64| [101.8, 102.2].iter().any(|lost| (f - lost).abs() < 0.06);
+        let result = find_peak(
+            (92.0, 108.0),
+            &[98.0, 100.0, 101.8, 102.2, 104.0],
+            ENVELOPE,
+            SETTINGS,
+            |f| (!fails(f)).then(|| narrow_top_on_a_flank(f)),
+        );
+        let best = &result.samples[result.best.expect("evaluated")];
+        let highest = (0..16_000)
+            .map(|step| narrow_top_on_a_flank(92.0 + 1e-3 * f64::from(step))[0])
+            .fold(0.0, f64::max);
+        assert_eq!(result.end, SearchEnd::Found);
+        assert!(best.largest > (1.0 - 1e-4) * highest, "{best:?} {highest}");
+    }
+
+    #[test]
+    fn a_wide_gap_of_failed_points_beside_a_high_flank_is_a_hole_and_a_narrow_one_is_none() {
+        for (half_gap, end) in [(0.4, SearchEnd::Incomplete), (0.1, SearchEnd::Found)] {
+            let result = find_peak(
+                (92.0, 108.0),
+                &[98.0, 100.0, 101.4, 104.0],
+                ENVELOPE,
+                SETTINGS,
+                |f: f64| {
+                    let solved = (f - 101.4).abs() > half_gap;
+                    solved.then(|| curves(&[(100.0, 2.0)], &[&[2.0]], f))
+                },
+            );
+            assert_eq!(result.end, end, "{half_gap}");
+        }
     }
 }

@@ -3,6 +3,11 @@
 use super::envelope::{NEAR, RESOLVED, SearchSettings, VERTEX_SHARE};
 use super::summit::{self, CurvePoint, Summit};
 
+/// Distance of two solved points, in half-bandwidths of a linear resonance, within which no top is looked for between them.
+const NO_TOP: f64 = 0.5;
+/// Distance of a failed point from a solved one, in these, that is near enough.
+const BESIDE_LOST: f64 = 0.1;
+
 /// Curves over frequency, one per blade, that a search reads.
 pub trait Curve {
     /// What is read at a frequency, Hz; none where the solution failed.
@@ -51,6 +56,17 @@ pub struct Sample {
     pub largest: f64,
     /// Blade of the largest amplitude.
     pub blade: usize,
+}
+
+/// What failed points between two solved ones leave to do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Lost {
+    /// Nothing: the solved ones are so near to each other that no top fits between them.
+    Narrow,
+    /// To look from nearer, at this frequency, Hz.
+    Nearer(f64),
+    /// Nothing: points fail as near as is looked.
+    Hole,
 }
 
 /// Samples, ascending in frequency.
@@ -106,6 +122,42 @@ impl Samples {
         let left = (0..at).rev().find(good)?;
         let right = (at + 1..self.0.len()).find(good)?;
         Some((left, right))
+    }
+
+    /// What to do about the failed points between two solved ones: to look beside the solved ones first, then between failed ones.
+    pub(super) fn lost_between(
+        &self,
+        left: usize,
+        right: usize,
+        linear_half_bandwidth_hz: f64,
+    ) -> Lost {
+        let at = |sample: usize| self.0[sample].frequency_hz;
+        let width = |from: usize| (at(from + 1) - at(from)) / linear_half_bandwidth_hz;
+        if (at(right) - at(left)) / linear_half_bandwidth_hz <= NO_TOP {
+            return Lost::Narrow;
+        }
+        let beside = [left, right - 1].into_iter();
+        let beside = beside.filter(|&from| width(from) > BESIDE_LOST);
+        let between = (left + 1..right - 1).filter(|&from| width(from) > NO_TOP);
+        let wider = |a: &usize, b: &usize| width(*a).total_cmp(&width(*b));
+        match beside.max_by(wider).or_else(|| between.max_by(wider)) {
+            Some(from) => Lost::Nearer(0.5 * (at(from) + at(from + 1))),
+            None => Lost::Hole,
+        }
+    }
+
+    /// What to do about the failed points on one side of a solved one.
+    pub(super) fn lost_beside(
+        &self,
+        at: usize,
+        above: bool,
+        linear_half_bandwidth_hz: f64,
+    ) -> Lost {
+        let Some((left, right)) = self.neighbours(at) else {
+            return Lost::Hole;
+        };
+        let (left, right) = if above { (at, right) } else { (left, at) };
+        self.lost_between(left, right, linear_half_bandwidth_hz)
     }
 
     /// Whether lower amplitudes were seen on both sides, or are told by the slope at an end.
