@@ -353,6 +353,11 @@ def test_one_wheel_at_the_linear_limit_is_masses_and_springs(study):
     assert math.isclose(amplitude.max(), peak.amplitude_m, rel_tol=1e-6)
 
 
+def test_blades_far_from_those_of_the_model_are_remarked_on(study):
+    with pytest.warns(UserWarning, match=r"mean deviation of blade stiffness is -59 %"):
+        study.wheel([-0.6] * 5 + [-0.54])
+
+
 def test_a_wheel_that_is_not_accepted_is_refused(study):
     for deviations in ([], [-1.0], [float("nan")]):
         with pytest.raises(ValueError, match="a number above -1"):

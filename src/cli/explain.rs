@@ -11,6 +11,7 @@ use super::exit::Failure;
 use super::{ExitStatus, output};
 use crate::input::{
     Term, mentions, misspelling, names_of_terms, nearest_key_names, plain, terms_about,
+    warnings_about,
 };
 use crate::model::sector::import::{import_keys, import_schema};
 use crate::population::table::{
@@ -25,8 +26,9 @@ use crate::study::{KeySpec, keys_about, keys_below, nearest_keys, study_schema};
 #[derive(Debug, Args)]
 pub struct ExplainArguments {
     /// A key, like `solver.peak_tolerance`, a table, like `solver`, a column of results, like `harmonic_error`, a
-    /// status of rows, like `stagnated`, a figure, like `safe`, a term, like `nodal diameter`, or words, like `friction`,
-    /// that are sought in names and meanings; `import` for the keys of import files [default: all keys of study files].
+    /// status of rows, like `stagnated`, a figure, like `safe`, a term, like `nodal diameter`, words, like `friction`, that are
+    /// sought in names and meanings, or a warning as it is printed; `import` for the keys of import files [default: all keys of
+    /// study files].
     #[arg(value_name = "KEY|WORD")]
     words: Vec<String>,
     /// Print JSON.
@@ -197,6 +199,10 @@ impl Explanations {
             terms.extend(of_results(name));
             terms.extend(of_figures(name));
             terms.extend(after.into_iter().map(Meaning::from));
+            terms.extend({ warnings_about(name).into_iter() }.map(|own| Meaning {
+                word: format!("{} (warning)", own.word),
+                meaning: own.meaning.to_owned(),
+            }));
         }
         if keys.is_empty() && terms.is_empty() {
             return Err(Failure::usage(unknown(name)));
@@ -237,7 +243,7 @@ fn unknown(name: &str) -> String {
         format!(
             "nothing has the name {name}, and no text has this word; accepted: a key of study files (`blisk explain` lists \
              them) or of import files (`blisk explain import`), a column of results, a status of rows, a figure, a term of \
-             the glossary, or a word of their texts"
+             the glossary, a word of their texts, or a few words of a warning"
         )
     } else {
         format!(

@@ -1,4 +1,4 @@
-//! The terms of `docs/glossary.md`, in plain text.
+//! The terms of `docs/glossary.md` and the warnings of `docs/results.md`, in plain text.
 
 use std::sync::LazyLock;
 
@@ -31,6 +31,36 @@ fn terms(page: &str) -> Vec<(String, String)> {
     rows.collect()
 }
 
+/// Warnings of the page on results, each with what it means and what to do.
+static WARNINGS: LazyLock<Vec<(String, String)>> =
+    LazyLock::new(|| warnings(include_str!("../../docs/results.md")));
+
+/// The warnings of the page, each with what it means and what to do.
+pub(super) fn known_warnings() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let written: &'static [(String, String)] = &WARNINGS;
+    { written.iter() }.map(|(words, meaning)| (words.as_str(), meaning.as_str()))
+}
+
+/// The rows of the table below the heading of the warnings: warning, meaning, what to do.
+fn warnings(page: &str) -> Vec<(String, String)> {
+    let below = { page.lines() }.skip_while(|line| *line != "## Warnings");
+    let below = below.skip(1).take_while(|line| !line.starts_with("## "));
+    let rows = below.filter_map(|line| {
+        let cells: Vec<&str> = line.strip_prefix('|')?.split('|').map(str::trim).collect();
+        let [words, meaning, to_do, ..] = cells[..] else {
+            return None;
+        };
+        let is_row = words != "warning" && !words.starts_with("---");
+        is_row.then(|| {
+            (
+                plain(words),
+                plain(&format!("{meaning}. What to do: {to_do}")),
+            )
+        })
+    });
+    rows.collect()
+}
+
 /// Markdown as plain text: no marks of code, and a link as the file it leads to.
 #[must_use]
 pub fn plain(words: &str) -> String {
@@ -48,7 +78,7 @@ pub fn plain(words: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{glossary, terms};
+    use super::{glossary, known_warnings, terms, warnings};
 
     #[test]
     fn rows_of_tables_are_terms() {
@@ -57,5 +87,17 @@ mod tests {
         let term = ("a wheel".to_owned(), "As b in c. Unit: Hz.".to_owned());
         assert_eq!(terms(page), [term]);
         assert!(glossary().count() > 40);
+    }
+
+    #[test]
+    fn rows_below_the_heading_of_warnings_are_warnings() {
+        let page = "# Page\n\n| a | b | c |\n\n## Warnings\n\n| warning | meaning | what to do |\n| --- | --- | --- |\n\
+                    | rows `fail` | no result | see [c](d.md) |\n\n## Next\n\n| e | f | g |\n";
+        let row = (
+            "rows fail".to_owned(),
+            "no result. What to do: see c".to_owned(),
+        );
+        assert_eq!(warnings(page), [row]);
+        assert!(known_warnings().count() > 8);
     }
 }

@@ -20,5 +20,5 @@ pub(crate) use schema::schema_of;
 pub(crate) use source_map::{SourceMap, nearest};
 pub(crate) use table::toml_table;
 pub(crate) use terms::mentions;
-pub use terms::{Term, names_of_terms, term_of, terms_about};
+pub use terms::{Term, names_of_terms, term_of, terms_about, warnings_about};
 pub use value::{Range, Value};

@@ -1,6 +1,6 @@
 //! Words that mean one thing in one place and another elsewhere, or that no key is named by, and those of the glossary.
 
-use super::glossary::glossary;
+use super::glossary::{glossary, known_warnings};
 
 /// A word with its meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,6 +124,25 @@ pub fn terms_about(words: &str) -> Vec<Term> {
         .collect();
     found.sort_by_key(|term| !mentions(&[term.word], words));
     found
+}
+
+/// The warnings that have all of these words, as they are printed: numbers, and names of one letter, are those of a study.
+#[must_use]
+pub fn warnings_about(words: &str) -> Vec<Term> {
+    let of_study =
+        |word: &&str| word.len() < 2 || word.contains(|letter: char| letter.is_ascii_digit());
+    let words: Vec<&str> = words
+        .split(|letter: char| letter.is_whitespace() || ",;:.".contains(letter))
+        .filter(|word| !of_study(word))
+        .collect();
+    let words = words.join(" ");
+    if words.is_empty() {
+        return Vec::new();
+    }
+    { known_warnings() }
+        .filter(|(own, _)| mentions(&[own], &words))
+        .map(|(own, meaning)| term(own, meaning))
+        .collect()
 }
 
 /// The name of every term, without where it stands.

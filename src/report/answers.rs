@@ -105,7 +105,7 @@ impl Writer<'_> {
         };
         let value = found.percentile.value.unwrap_or(f64::NAN);
         let amplitude = format!("{}{}", self.units.length(value), self.as_stress(value));
-        let open = self.group.hidden_by_error(choice, lowest);
+        let open = self.group.left_by_error(choice, lowest);
         let verdict = if open.is_empty() {
             let load = self.load_per_sector_of(lowest);
             format!("{load}: P{percent} = {amplitude}.")

@@ -158,6 +158,22 @@ impl GroupReport {
             .filter(is_higher)
             .collect()
     }
+
+    /// The other scenarios that numerical error leaves open, with those that the patterns leave open; none where numerical error
+    /// leaves none.
+    pub(super) fn left_by_error(&self, choice: &LoadChoice, lowest: usize) -> Vec<usize> {
+        let hidden = self.hidden_by_error(choice, lowest);
+        if hidden.is_empty() {
+            return hidden;
+        }
+        let by_patterns = |own: &usize| {
+            let mut loads = { choice.best.iter() }.flat_map(|best| &best.loads);
+            loads.any(|load| load.scenario.scenario == *own && load.could_be_best)
+        };
+        let all = self.scenarios.iter().copied();
+        all.filter(|own| *own != lowest && (hidden.contains(own) || by_patterns(own)))
+            .collect()
+    }
 }
 
 /// What a few measured wheels say.

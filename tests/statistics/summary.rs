@@ -211,6 +211,8 @@ fn rows_beyond_their_tolerance_are_counted_by_the_larger_of_their_errors() {
         (1, 1e-3, -5e-2, false),
         (2, -4e-2, 3e-2, false),
         (3, 5e-2, 1e-2, true),
+        // Within every tolerance of the sampling error: the harmonics of the wheels that judge are what is beyond.
+        (4, 1e-4, 0.0, false),
     ] {
         rows.add(&ResponseRow {
             peak_amplitude_m: Some(1.0),
@@ -223,7 +225,7 @@ fn rows_beyond_their_tolerance_are_counted_by_the_larger_of_their_errors() {
     let counted = rows.finish();
     assert_eq!(
         (counted.beyond_tolerance, counted.beyond_by_sampling),
-        (3, 2)
+        (4, 2)
     );
 }
 

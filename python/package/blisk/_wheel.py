@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +13,9 @@ from typing import Any, Optional, Union
 from ._native import Table
 from ._run import run
 from ._study import Study
+
+FAR = 0.15
+"""Mean deviation from which blades are others than those of the model, unit 1."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,13 @@ class Wheel:
         self.deviations = tuple(float(own) for own in deviations)
         if not self.deviations or not all(-1.0 < own < float("inf") for own in self.deviations):
             raise ValueError("deviations is not accepted; accepted: a number above -1 for each blade")
+        mean = sum(self.deviations) / len(self.deviations)
+        if abs(mean) > FAR:
+            warnings.warn(
+                f"the mean deviation of blade stiffness is {100 * mean:+.0f} %, which moves every resonance: "
+                "deviations are relative to the blade of the model",
+                stacklevel=3,
+            )
         self.study = study
 
     def peaks(

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{Accounting, CONFIDENCE, DistributionBand, Quantity, SampleStatistics};
-use crate::population::monte_carlo::ResponseRow;
+use crate::population::monte_carlo::{ResponseRow, sampling_tolerance};
 use crate::response::harmonic_balance::Status;
 
 /// Statistics of one scenario: a row of `scenarios.parquet` without its keys.
@@ -68,9 +68,13 @@ impl ScenarioAccumulator {
         }
         if row.error_within_tolerance == Some(false) {
             let size = |error: Option<f64>| error.unwrap_or(0.0).abs();
+            let sampling = size(row.sampling_error);
+            // No tolerance of the sampling error is below this one. What the wheels that judge leave out of a row's harmonics is not
+            // in its own harmonic error.
+            let by_sampling = sampling > sampling_tolerance(0.0);
             self.beyond_tolerance += 1;
             self.beyond_by_sampling +=
-                u64::from(size(row.sampling_error) > size(row.harmonic_error));
+                u64::from(by_sampling && sampling > size(row.harmonic_error));
         }
         if let Some(separated) = row.separated_fraction {
             let largest = self.largest_separated_fraction.unwrap_or(0.0);

@@ -86,12 +86,15 @@ fn number_of_load(
     }
 }
 
-/// The load with the lowest percentile, or those between which numerical error leaves it open.
+/// The load with the lowest percentile; where numerical error leaves others open, with these and those that the patterns leave
+/// open.
 pub(super) fn design_loads(report: &StudyReport, group: &GroupReport) -> String {
-    let left = { group.known_choice().into_iter() }.flat_map(|(choice, lowest)| {
-        std::iter::once(lowest).chain(group.hidden_by_error(choice, lowest))
-    });
-    loads_left(report, group, &left.collect::<Vec<_>>())
+    let Some((choice, lowest)) = group.known_choice() else {
+        return loads_left(report, group, &[]);
+    };
+    let mut left = group.left_by_error(choice, lowest);
+    left.push(lowest);
+    loads_left(report, group, &left)
 }
 
 /// The loads studied that an answer leaves, ascending. Of one alone it says on which side a better one may lie, if it is the last one

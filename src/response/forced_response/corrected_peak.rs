@@ -21,10 +21,10 @@ use super::initial_guess::between;
 use super::peak::{Peak, SearchPlan};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
-use super::point_source::PointSource;
+use super::point_source::{PointSource, opens};
 use super::receptance_points::{EngineRow, ReceptancePoints};
 use super::refined_peak::{
-    EXTENSIONS, HUMP, MADE_UP, NEIGHBOURS, POINTS_OF_TOP, Top, inside_of_band, opens, summit_of,
+    EXTENSIONS, HUMP, MADE_UP, NEIGHBOURS, POINTS_OF_TOP, Top, inside_of_band, summit_of,
     tops_of_few,
 };
 use super::search::find_peak;

@@ -87,6 +87,15 @@ impl<S: PointSource> Curve for Watched<'_, S> {
             |frequency_hz| point_at(self.solver.points(), frequency_hz).is_some_and(sticks);
         unseen(self.stuck, samples, best, sticks)
     }
+
+    fn is_steep(&self) -> bool {
+        opens(self.solver.points())
+    }
+}
+
+/// Whether a contact opens at one of the points.
+pub(super) fn opens(points: &[Point]) -> bool {
+    points.iter().any(|point| point.shares.separated > 0.0)
 }
 
 /// Whether few pairs slip at a point.

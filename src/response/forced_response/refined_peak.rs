@@ -13,7 +13,7 @@ use super::peak::{EVALUATIONS, Peak, SEARCH_PRECISION, SearchPlan, Window, peak,
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::point_solver::PointSolver;
-use super::point_source::{PointSource, Watched};
+use super::point_source::{PointSource, Watched, opens};
 use super::search::summit;
 use super::search::{Envelope, SearchSettings};
 use super::search::{Reading, Sample, Samples};
@@ -130,11 +130,6 @@ pub(super) fn tops_of_few(
         return Err(few.work());
     }
     Ok(tops(&found, plan.envelope, plan.extensions > 0))
-}
-
-/// Whether a contact opens at one of the points.
-pub(super) fn opens(points: &[Point]) -> bool {
-    points.iter().any(|point| point.shares.separated > 0.0)
 }
 
 /// The peak, unless a band that is asked for ends there: it has no peak beyond its ends.

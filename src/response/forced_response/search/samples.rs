@@ -17,6 +17,11 @@ pub trait Curve {
     fn unseen(&self, _samples: &[Sample], _best: usize) -> Option<f64> {
         None
     }
+
+    /// Whether it can be steeper than the envelope of a resonance allows for, as where a contact opens.
+    fn is_steep(&self) -> bool {
+        false
+    }
 }
 
 impl<F: FnMut(f64) -> Option<R>, R: Into<Reading>> Curve for F {
