@@ -362,8 +362,8 @@ fn in_newtons<'a>(report: &'a StudyReport, group: &GroupReport) -> Vec<(f64, &'a
 pub(super) struct AtTheEnd {
     /// Where a better one may lie, beside the loads studied.
     pub(super) beyond: String,
-    /// Which end of the loads studied it is.
-    pub(super) what: String,
+    /// Beyond which load none was studied.
+    pub(super) not_studied: String,
     /// What is wrong, in a few words.
     pub(super) headline: String,
     /// The headline, and where loads are added.
@@ -421,6 +421,10 @@ pub(super) fn end_at(
         (_, "lower") => format!("{name} is the lowest load studied"),
         _ => format!("{name} is the only load studied"),
     };
+    let not_studied = match (own.normal_load_n, side) {
+        (Some(_), "higher" | "lower") => format!("no load {beyond} was studied"),
+        _ => what.clone(),
+    };
     let of_speeds = all.iter().any(|(_, load)| load.speed_rpm.is_some());
     let (loads, key) = if of_speeds {
         ("speeds", "contact.normal_load.speed_rpm")
@@ -437,6 +441,6 @@ pub(super) fn end_at(
         in_words: format!(
             "{of_setting}{what}, so that the optimum may lie beyond: add {side} {loads} to {key} and run again"
         ),
-        what,
+        not_studied,
     })
 }

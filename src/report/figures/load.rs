@@ -483,7 +483,7 @@ fn caption(
         let percent = percent_words(choice.percent);
         let _ = write!(words, " Pointer above: the load with the lowest P{percent}");
         words.push_str(if others {
-            "; hollow: those that may be as low, by statistics (95 % confidence) or numerical error."
+            " as computed; hollow: those that may be as low, by statistics (95 % confidence) or numerical error."
         } else {
             "."
         });

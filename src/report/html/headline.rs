@@ -240,7 +240,7 @@ fn notes_of_load(
     // What makes the load no optimum comes before how sure it is the lowest.
     let is_at_the_end = at_the_end(report, group);
     let hidden = hidden_by_error(report, group);
-    notes.extend({ is_at_the_end.as_ref() }.map(|end| end.what.clone()));
+    notes.extend({ is_at_the_end.as_ref() }.map(|end| end.not_studied.clone()));
     let others: Vec<String> = { best.loads.iter() }
         .filter(|own| own.could_be_best && own.scenario.scenario != scenario.scenario)
         .map(|own| {
@@ -257,8 +257,7 @@ fn notes_of_load(
             format!("95 % sure that no other load studied has a lower P{percent}")
         } else {
             let load = short_load(scenario);
-            let loads = best.loads.len();
-            format!("{load} is lowest of the {loads} by statistics (95 %)")
+            format!("statistics: 95 % sure {load} has lowest P{percent}")
         });
     }
     if choice.is_of_a_design() {
@@ -286,7 +285,7 @@ fn by_numerical_error(
     let hidden = hidden_by_error(report, group);
     if !hidden.is_empty() {
         let loads = hidden.join(", ");
-        return format!("not sure by numerical error: {loads} or between may be as good");
+        return format!("numerical error: {loads} or between may be as good");
     }
     match group.numerical_rivals(lowest, choice.percent) {
         Some(rivals) if rivals.unknown.is_empty() => "numerical error does not change this",

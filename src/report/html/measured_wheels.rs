@@ -34,7 +34,7 @@ pub(super) fn of_measured_wheels(
     let candidates = candidates(group);
     let beyond = ends_among(report, group, &candidates);
     let is_open = !beyond.is_empty() || !open.is_empty();
-    of_load.extend(beyond.iter().map(|end| end.1.what.clone()));
+    of_load.extend(beyond.iter().map(|end| end.1.not_studied.clone()));
     let wheels = summary.patterns;
     let one = summary.is_of_one_wheel();
     let mut of_wheels = vec![if one {
