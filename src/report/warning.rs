@@ -246,7 +246,7 @@ impl Warning {
                 scenarios,
                 ..
             } => format!(
-                "at {}, {rows} of {planned} solutions miss the accuracy asked for",
+                "{rows} of {planned} solutions at {} miss the accuracy asked for",
                 named(scenarios)
             ),
             Self::ReplacedBasis { .. } => "the basis of the study is replaced".to_owned(),
@@ -416,7 +416,10 @@ fn too_few_patterns(mut needing: Vec<(String, u64)>) -> String {
         let verb = if names.len() == 1 { "needs" } else { "need" };
         format!("{} {verb} {}", names.join(", "), alike[0].1)
     });
-    format!("no value: {} patterns", each.collect::<Vec<_>>().join("; "))
+    format!(
+        "no percentile: {} patterns",
+        each.collect::<Vec<_>>().join("; ")
+    )
 }
 
 /// Which motions are unstable, and what follows from it.

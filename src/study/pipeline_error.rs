@@ -1,6 +1,6 @@
 //! Why a study could not be carried out.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -66,7 +66,7 @@ pub enum PipelineError {
         holder: String,
     },
     /// The folder holds no results of a study.
-    #[error("{} holds no results: there is no manifest.json", folder.display())]
+    #[error("{} holds no results: there is no manifest.json{}", folder.display(), not_merged(folder))]
     NoResults {
         /// The folder.
         folder: PathBuf,
@@ -181,6 +181,18 @@ pub enum PipelineError {
         /// Number of scenarios.
         scenarios: usize,
     },
+}
+
+/// What to do where the results of a folder are still those of shards.
+fn not_merged(folder: &Path) -> String {
+    let own = folder.display();
+    if folder.join("shards").is_dir() {
+        format!(
+            " of all shards; `blisk merge {own} --out {own}` makes it, `blisk status {own}` shows what is missing"
+        )
+    } else {
+        String::new()
+    }
 }
 
 fn listed(differences: &[(String, String, String)]) -> String {

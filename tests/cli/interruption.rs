@@ -234,6 +234,15 @@ fn shards_run_side_by_side_and_merge_to_the_tables_of_a_run_at_once() {
         "{}",
         status.stdout
     );
+    let early = place.run(&["report", "out"]);
+    assert_ne!(early.code, 0);
+    assert!(
+        early
+            .stderr
+            .contains("`blisk merge out --out out` makes it"),
+        "{}",
+        early.stderr
+    );
     let missing = place.run(&[
         "merge",
         "out/shards/3-of-3",

@@ -417,8 +417,8 @@ fn the_first_screen_says_where_numerical_error_could_hide_a_better_load() {
         let loads = hidden.join(", ");
         let section = between(&page, "id=\"answer-0\"", "</section>");
         let health = between(section, "<div class=\"health", "</div>");
-        let on_card = format!("numerical error: {loads} or between may be as good");
-        let in_box = format!("numerical error: {loads} may be as good; add loads between");
+        let on_card = format!("numerical error: {loads} may be as good");
+        let in_box = format!("numerical error: {loads} may be as good; solve more accurately");
         for (text, said) in [(load[2].as_str(), on_card), (health, in_box)] {
             assert_eq!(text.contains(&said), hides, "{said}: {text}");
         }

@@ -429,7 +429,7 @@ fn caption(
         )
     } else if measured {
         format!(
-            "Each wheel of mistuning.file at each load; too few for a percentile. Pointer above: the smallest worst peak as \
+            "Each wheel of mistuning.file, side by side at each load; too few for a percentile. Pointer above: the smallest worst peak as \
              computed; {error}."
         )
     } else {

@@ -257,7 +257,8 @@ fn notes_of_load(
             format!("95 % sure that no other load studied has a lower P{percent}")
         } else {
             let load = short_load(scenario);
-            format!("statistics: 95 % sure {load} has lowest P{percent}")
+            let studied = best.loads.len();
+            format!("statistics: 95 % sure {load} is best of the {studied}")
         });
     }
     if choice.is_of_a_design() {
@@ -285,7 +286,7 @@ fn by_numerical_error(
     let hidden = hidden_by_error(report, group);
     if !hidden.is_empty() {
         let loads = hidden.join(", ");
-        return format!("numerical error: {loads} or between may be as good");
+        return format!("numerical error: {loads} may be as good");
     }
     match group.numerical_rivals(lowest, choice.percent) {
         Some(rivals) if rivals.unknown.is_empty() => "numerical error does not change this",

@@ -68,7 +68,7 @@ fn lines(report: &StudyReport, warnings: &[&Warning]) -> Vec<String> {
 
 /// What numerical error leaves open, and what is studied next.
 fn may_be_as_good(loads: &str) -> String {
-    format!("numerical error: {loads} may be as good; add loads between")
+    format!("numerical error: {loads} may be as good; solve more accurately")
 }
 
 /// With a capital letter and a full stop.
