@@ -413,13 +413,9 @@ fn too_few_patterns(mut needing: Vec<(String, u64)>) -> String {
     needing.sort_by_key(|own| own.1);
     let each = needing.chunk_by(|a, b| a.1 == b.1).map(|alike| {
         let names: Vec<&str> = alike.iter().map(|own| own.0.as_str()).collect();
-        let verb = if names.len() == 1 { "needs" } else { "need" };
-        format!("{} {verb} {}", names.join(", "), alike[0].1)
+        format!("{} {}", names.join(", "), alike[0].1)
     });
-    format!(
-        "no percentile: {} patterns",
-        each.collect::<Vec<_>>().join("; ")
-    )
+    format!("patterns needed: {}", each.collect::<Vec<_>>().join("; "))
 }
 
 /// Which motions are unstable, and what follows from it.

@@ -91,15 +91,18 @@ fn health_of(report: &StudyReport) -> String {
         if !found.findings.is_empty() {
             html.push_str("<ul>");
             let all = found.findings.len();
-            for (place, finding) in found.findings.iter().take(NAMED).enumerate() {
-                let class = if place < NAMED_NARROW {
+            // The last one takes no more room than that there is one more.
+            let [named, narrow] =
+                [NAMED, NAMED_NARROW].map(|named| if all == named + 1 { all } else { named });
+            for (place, finding) in found.findings.iter().take(named).enumerate() {
+                let class = if place < narrow {
                     ""
                 } else {
                     " class=\"spacious\""
                 };
                 let _ = write!(html, "<li{class}>{}</li>", escaped(&tied(finding)));
             }
-            for (named, class) in [(NAMED, "spacious"), (NAMED_NARROW, "narrow")] {
+            for (named, class) in [(named, "spacious"), (narrow, "narrow")] {
                 if all > named {
                     let _ = write!(html, "<li class=\"{class}\">and {} more</li>", all - named);
                 }

@@ -66,7 +66,7 @@ fn lines(report: &StudyReport, warnings: &[&Warning]) -> Vec<String> {
     Warning::headlines(warnings, &|own| scenarios_in_words(&report.summary, own))
 }
 
-/// What numerical error leaves open, and what is studied next.
+/// What numerical error leaves open, and what settles it.
 fn may_be_as_good(loads: &str) -> String {
     format!("numerical error: {loads} may be as good; solve more accurately")
 }
