@@ -123,8 +123,8 @@ impl Warning {
     }
 
     /// What is wrong in a few words, a line each; [`Warning::in_words`] adds what to do about it. Neighbouring
-    /// percentiles that have no value for one reason share a line.
-    pub(super) fn headlines(warnings: &[&Self], named: Named<'_>) -> Vec<String> {
+    /// percentiles that have no value for one reason share a line. `patterns` is what these are called.
+    pub(super) fn headlines(warnings: &[&Self], named: Named<'_>, patterns: &str) -> Vec<String> {
         let alike = |a: &&Self, b: &&Self| match (a, b) {
             (
                 Self::TooManyFailures { scenarios: a, .. },
@@ -139,7 +139,7 @@ impl Warning {
                 let needing = { line.iter() }.filter_map(|own| own.needing());
                 let needing: Vec<(String, u64)> = needing.collect();
                 if needing.len() > 1 {
-                    return too_few_patterns(needing);
+                    return too_few_patterns(needing, patterns);
                 }
                 let percentiles = line.iter().filter_map(|own| own.percentile());
                 let percentiles: Vec<String> =
@@ -408,14 +408,19 @@ impl fmt::Display for Warning {
     }
 }
 
-/// Percentiles without value and how many patterns each needs, those that need as many together.
-fn too_few_patterns(mut needing: Vec<(String, u64)>) -> String {
+/// Percentiles without value and how many patterns each needs; of several that need as many, the last one.
+fn too_few_patterns(mut needing: Vec<(String, u64)>, patterns: &str) -> String {
     needing.sort_by_key(|own| own.1);
-    let each = needing.chunk_by(|a, b| a.1 == b.1).map(|alike| {
-        let names: Vec<&str> = alike.iter().map(|own| own.0.as_str()).collect();
-        format!("{} {}", names.join(", "), alike[0].1)
-    });
-    format!("patterns needed: {}", each.collect::<Vec<_>>().join("; "))
+    let each: Vec<&(String, u64)> = { needing.chunk_by(|a, b| a.1 == b.1) }
+        .filter_map(|alike| alike.last())
+        .collect();
+    let names: Vec<&str> = each.iter().map(|own| own.0.as_str()).collect();
+    let needs: Vec<String> = each.iter().map(|own| own.1.to_string()).collect();
+    format!(
+        "no {}: {} {patterns} needed",
+        names.join(", "),
+        needs.join(", ")
+    )
 }
 
 /// Which motions are unstable, and what follows from it.

@@ -63,7 +63,10 @@ pub(super) fn health(report: &StudyReport) -> Vec<Health> {
 }
 
 fn lines(report: &StudyReport, warnings: &[&Warning]) -> Vec<String> {
-    Warning::headlines(warnings, &|own| scenarios_in_words(&report.summary, own))
+    let of_file = { report.groups.iter() }.any(|group| !group.measured.is_empty());
+    let patterns = if of_file { "wheels" } else { "patterns" };
+    let named = |own: &[usize]| scenarios_in_words(&report.summary, own);
+    Warning::headlines(warnings, &named, patterns)
 }
 
 /// What numerical error leaves open, and what settles it.
