@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::blisk::{GOOD, Place};
-use crate::report_page::range_of;
+use crate::report_page::left_in_words;
 
 /// `wheels` wheels of a file, whose ids are multiples of ten.
 fn of_file(wheels: u32) -> Place {
@@ -279,7 +279,7 @@ fn a_few_measured_wheels_open_the_report_with_the_highest_of_them() {
     let (_, value) = page.split_once(label).expect("the load");
     let value = value.split_once("<p class=\"value\">").expect("a value").1;
     let value = value.split_once("</p>").expect("an end").0;
-    assert_eq!(value, range_of(&left, &[50.0, 100.0, 200.0]));
+    assert_eq!(value, left_in_words(&left, &[50.0, 100.0, 200.0]));
     let health = page.contains("Not decided: ");
     assert_eq!(health, left.len() > 1);
     assert!(page.contains("smallest worst peak: "), "the pointer");

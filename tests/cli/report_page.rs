@@ -374,7 +374,7 @@ fn hidden_loads(report: &Value) -> Vec<String> {
 }
 
 /// What the first screen says of the loads that are `left` of those `studied`, both in newtons.
-pub fn range_of(left: &[f64], studied: &[f64]) -> String {
+pub fn left_in_words(left: &[f64], studied: &[f64]) -> String {
     let places: Vec<usize> = (0..studied.len())
         .filter(|&place| left.contains(&studied[place]))
         .collect();
@@ -422,7 +422,7 @@ fn the_first_screen_says_where_numerical_error_could_hide_a_better_load() {
         for (text, said) in [(load[2].as_str(), on_card), (health, in_box)] {
             assert_eq!(text.contains(&said), hides, "{said}: {text}");
         }
-        // The large number is the range that is left, and the box says the same.
+        // The large number has the loads that are left, and the box says the same.
         let scenario = report["groups"][0]["choices"][1]["lowest"].as_u64();
         let scenario = scenario.expect("a scenario") as usize;
         let own = { &report["summary"]["scenarios"][scenario]["normal_load_n"] }.as_f64();
@@ -431,7 +431,7 @@ fn the_first_screen_says_where_numerical_error_could_hide_a_better_load() {
         let left: Vec<f64> = std::iter::once(own)
             .chain(hidden.iter().map(number))
             .collect();
-        assert_eq!(load[1], range_of(&left, studied));
+        assert_eq!(load[1], left_in_words(&left, studied));
         assert_eq!(health.contains("Not decided: "), hides, "{health}");
         // The figure has bars with numerical error at these loads, and no others.
         let (_, figure) = section.split_once("<figure").expect("the figure");
@@ -817,7 +817,7 @@ fn campbell_and_safe_diagram_and_the_sector_are_drawn() {
 
 /// A line that folds at every unit of such an axis takes for ever.
 #[test]
-fn a_frequency_at_the_end_of_the_range_of_numbers_is_drawn_or_left_out_at_once() {
+fn a_frequency_at_the_end_of_the_left_in_words_numbers_is_drawn_or_left_out_at_once() {
     let (place, ..) = reported(&study(), 0);
     for hz in [1e308, 1e-308] {
         forge(&place.path("results/small/manifest.json"), |manifest| {
