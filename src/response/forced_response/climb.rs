@@ -16,6 +16,8 @@ const CLIFF: (f64, f64) = (3.0, 0.01);
 /// A frequency that is solved with the harmonics of a set.
 pub(super) struct Known {
     pub(super) frequency_hz: f64,
+    /// Phase of harmonic 1 there, rad, by few harmonics.
+    pub(super) phase: f64,
     pub(super) height_m: f64,
     /// What the set leaves on few harmonics beyond what the sets before it do.
     pub(super) force: ContactForces,
@@ -44,8 +46,8 @@ impl Climb {
         best.expect("a climb begins with a point")
     }
 
-    /// A frequency beside the top, Hz, on a side on which no point serves. Both sides are looked at with every set: a harmonic of the
-    /// last one may meet a resonance of its own on the side that the sets before it have not shown.
+    /// A frequency beside the top, Hz, on a side on which no point serves. Both sides are looked at with the last set: one of its
+    /// harmonics may meet a resonance of its own there.
     pub(super) fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
         let is_unseen = |side: &f64| {
             let way = |known: &Known| (known.frequency_hz - top_hz) / side;
@@ -70,8 +72,13 @@ impl Climb {
         })
     }
 
-    /// What the first `sets` sets leave on few harmonics at a frequency, Hz, and the growth of every blade's amplitude by them.
-    pub(super) fn left(&self, sets: usize, frequency_hz: f64) -> Option<(ContactForces, Vec<f64>)> {
+    /// What the first `sets` sets leave on few harmonics at a frequency, Hz, with a phase of harmonic 1 there, rad, and the growth of
+    /// every blade's amplitude by them. These forces turn with the phase; beside that they change little.
+    pub(super) fn left(
+        &self,
+        sets: usize,
+        (frequency_hz, phase): (f64, f64),
+    ) -> Option<(ContactForces, Vec<f64>)> {
         let mut forces = Vec::new();
         let mut growth: Vec<f64> = Vec::new();
         for known in &self.known[..sets] {
@@ -92,8 +99,12 @@ impl Climb {
                     .zip(of_set)
                     .for_each(|(all, factor)| *all *= factor);
             }
-            forces.extend(nodes.into_iter().map(|(share, node)| (share, &node.force)));
+            let turned =
+                |(share, node): (f64, &Known)| (share, node.force.turned_ahead(phase - node.phase));
+            forces.extend(nodes.into_iter().map(turned));
         }
+        let forces = forces.iter().map(|(share, force)| (*share, force));
+        let forces: Vec<(f64, &ContactForces)> = forces.collect();
         Some((ContactForces::combined(&forces)?, growth))
     }
 

@@ -17,7 +17,7 @@
 //! leave beyond it is one more force, that takes three or four solutions with all of them to know.
 
 use super::climb::{Climb, Known};
-use super::initial_guess::between;
+use super::initial_guess::between_turning;
 use super::peak::{Peak, SearchPlan};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
@@ -30,7 +30,7 @@ use super::refined_peak::{
 use super::search::find_peak;
 use super::search::{Envelope, SearchSettings, VERTEX_SHARE};
 use crate::response::harmonic_balance::Status;
-use crate::response::receptance::{ContactForces, embedded, overlay};
+use crate::response::receptance::{ContactForces, embedded, overlay, phase_ahead, turned_ahead};
 
 /// How closely tops are followed; precisions are over the tolerance of the peak.
 struct Care {
@@ -337,7 +337,9 @@ impl CorrectedSearch<'_> {
                 return Ok((best.height_m, best.frequency_hz));
             } else if summit.largest > above {
                 self.solve(climb, summit.frequency_hz, self.care.at_top)?;
-            } else if let Some(side_hz) = climb.unseen_beside(best.frequency_hz) {
+            } else if let Some(side_hz) = climb.unseen_beside(best.frequency_hz)
+                && climb.known.len() == self.sets.len()
+            {
                 self.solve(climb, side_hz, self.care.at_side)?;
             } else {
                 return Ok((best.height_m, best.frequency_hz));
@@ -357,7 +359,8 @@ impl CorrectedSearch<'_> {
             return self.sets[climb.known.len() - 1].amplitudes_at(frequency_hz);
         }
         self.few.points.retain(|point| !same(point.frequency_hz));
-        let (force, growth) = climb.left(climb.known.len(), frequency_hz)?;
+        let there = (frequency_hz, self.phase(frequency_hz));
+        let (force, growth) = climb.left(climb.known.len(), there)?;
         self.few.solver.load_contact(force);
         let mut amplitudes_m = self.few.amplitudes_at(frequency_hz)?;
         for (amplitude_m, growth) in amplitudes_m.iter_mut().zip(growth) {
@@ -366,16 +369,26 @@ impl CorrectedSearch<'_> {
         Some(amplitudes_m)
     }
 
+    /// Phase of harmonic 1, rad, at a frequency, Hz, ahead of that of the first point with few harmonics alone.
+    fn phase(&self, frequency_hz: f64) -> f64 {
+        let points = &self.uncorrected.points;
+        let set = self.uncorrected.solver.harmonics();
+        let there = between_turning(points, set, frequency_hz);
+        there.map_or(0.0, |there| phase_ahead(&points[0].solution, &there, set))
+    }
+
     /// Motions to solve the last of the first `sets` sets from, at a frequency, Hz: those of few harmonics, and of every set on the way
     /// what its own points have beside them.
     fn start(&self, sets: usize, frequency_hz: f64) -> Option<Vec<f64>> {
-        let few = between(&self.few.points, frequency_hz).into_iter().next()?;
         let few_set = self.few.solver.harmonics();
+        let few = between_turning(&self.few.points, few_set, frequency_hz)?;
         let (mut start, mut set) = (few.clone(), few_set);
         for points in &self.sets[..sets] {
             let larger = points.solver.harmonics();
-            let known = between(&points.points, frequency_hz).into_iter().next();
-            start = if let Some(mut known) = known {
+            let known = between_turning(&points.points, larger, frequency_hz);
+            start = if let Some(known) = known {
+                let phase = phase_ahead(&embedded(&known, larger, few_set), &few, few_set);
+                let mut known = turned_ahead(known, larger, phase);
                 overlay(&mut known, &few, few_set, larger);
                 known
             } else {
@@ -407,7 +420,8 @@ impl CorrectedSearch<'_> {
         );
         let few_force = self.few.solver.contact_forces_at(&part);
         let mut force = force.beyond(&few_force.ok_or(Status::NotBracketed)?);
-        if let Some((before, grown)) = climb.left(sets - 1, frequency_hz) {
+        let phase = self.phase(frequency_hz);
+        if let Some((before, grown)) = climb.left(sets - 1, (frequency_hz, phase)) {
             force = ContactForces::combined(&[(1.0, &force), (-1.0, &before)])
                 .ok_or(Status::NotBracketed)?;
             growth
@@ -415,8 +429,10 @@ impl CorrectedSearch<'_> {
                 .zip(grown)
                 .for_each(|(factor, before)| *factor /= before);
         }
+        let last_set = &mut self.sets[sets - 1];
         let known = Known {
             frequency_hz,
+            phase,
             height_m: point.largest_amplitude_m(),
             force,
             growth,

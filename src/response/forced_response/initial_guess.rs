@@ -3,6 +3,7 @@
 use super::excited::Excited;
 use super::point::{Point, Slope};
 use crate::response::harmonic_balance::HarmonicBlock;
+use crate::response::receptance::{phase_ahead, turned_ahead};
 
 /// Share of the frequency within which a point at which most pairs slip tells more than the stuck solution.
 pub(super) const NEAR: f64 = 0.002;
@@ -133,6 +134,35 @@ pub(super) fn between(points: &[Point], frequency_hz: f64) -> Vec<Vec<f64>> {
         starts.push(interpolated(&[first, second, third], frequency_hz));
     }
     starts
+}
+
+/// The line through the solutions next to a frequency, Hz, on either side, which turns with the phase of harmonic 1; the nearest
+/// solution where there is none on one side. The points are of a wheel on receptances in the harmonics `set`.
+///
+/// Near a resonance phases change much and shapes little, and harmonic k turns k times as fast.
+pub(super) fn between_turning(
+    points: &[Point],
+    set: &[u32],
+    frequency_hz: f64,
+) -> Option<Vec<f64>> {
+    let next = |is_below: bool| {
+        let side = points.iter();
+        let side = side.filter(move |point| (point.frequency_hz <= frequency_hz) == is_below);
+        side.min_by(|a, b| {
+            let distance = |point: &Point| (point.frequency_hz - frequency_hz).abs();
+            distance(a).total_cmp(&distance(b))
+        })
+    };
+    let (Some(low), Some(high)) = (next(true), next(false)) else {
+        return nearest(points, frequency_hz).map(|point| point.solution.clone());
+    };
+    let share = (frequency_hz - low.frequency_hz) / (high.frequency_hz - low.frequency_hz);
+    let phase = phase_ahead(&low.solution, &high.solution, set);
+    let mut line = turned_ahead(high.solution.clone(), set, -phase);
+    for (x, low) in line.iter_mut().zip(&low.solution) {
+        *x = (1.0 - share) * low + share * *x;
+    }
+    Some(turned_ahead(line, set, share * phase))
 }
 
 /// The cubic through two solutions with their slopes at `frequency_hz`; none where a slope is not known.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::initial_guess::between;
+use super::initial_guess::between_turning;
 use super::linear_peaks::LinearPeak;
 use super::observed_amplitude::{ObservedAmplitude, ObservedHarmonic};
 use super::options::ContactCondition;
@@ -151,8 +151,8 @@ impl<'a> ReceptancePoints<'a> {
     }
 
     fn solve(&mut self, frequency_hz: f64, tolerance: f64) -> Result<Point, Status> {
-        let mut starts = between(&self.points, frequency_hz);
-        starts.truncate(1);
+        let known = between_turning(&self.points, self.solver.harmonics(), frequency_hz);
+        let mut starts: Vec<Vec<f64>> = known.into_iter().collect();
         if let Some(guide) = self
             .settings
             .guide()

@@ -129,13 +129,12 @@ impl ContactEquation<'_> {
         places.to_sectors(self.transform, motions, sectors, to);
     }
 
-    /// Residual at the motions, relative to them, with the derivative of the contact where that is wanted.
+    /// Norm of the residual at the motions, relative to them, with the derivative of the contact where that is wanted.
     pub(super) fn residual(&mut self, derivative: bool) -> (f64, ContactShares) {
         let places = Places::of(self.contact);
         self.give_motions();
         let shares = self.contact.evaluate(derivative);
-        let mut square = 0.0;
-        let motion: f64 = self.buffers.motions.iter().map(norm_squared).sum();
+        let motion = self.weighed(&self.buffers.motions);
         for place in 0..places.harmonics.len() {
             self.correct_forces(&places, place);
             let Buffers {
@@ -152,9 +151,9 @@ impl ContactEquation<'_> {
                 residual[place].add(-1.0, self.linear);
             }
             self.harmonics[place].add_answer(self.transform, &forces[place], &mut residual[place]);
-            square += norm_squared(&residual[place]);
         }
-        ((square / motion).sqrt(), shares)
+        let residual = self.weighed(&self.buffers.residual);
+        ((residual / motion).sqrt(), shares)
     }
 
     /// Takes the mean tangent of the contact at the motions last evaluated into the preconditioner of every harmonic.
@@ -205,6 +204,20 @@ impl ContactEquation<'_> {
             places.to_waves(self.transform, place, &motions, sectors, field);
         }
         flatten(&fields, 1.0, flat);
+    }
+
+    /// Norm of the preconditioned residual over that of the motions.
+    pub(super) fn step_over_motion(&self) -> f64 {
+        (self.weighed(&self.buffers.residual) / self.weighed(&self.buffers.motions)).sqrt()
+    }
+
+    /// Squared norm of a field per harmonic, of which harmonic k counts by `1/k`: forces that jump have harmonics that fall so, and so
+    /// does what a motion in a harmonic changes of the others.
+    fn weighed(&self, fields: &[Field]) -> f64 {
+        let set = self.contact.transform().harmonics().iter();
+        let squares = fields.iter().zip(set);
+        let squares = squares.map(|(field, &k)| norm_squared(field) / (k.max(1) * k.max(1)) as f64);
+        squares.sum()
     }
 
     /// [`Self::residual`]; the derivative is that of the contact with fewer samples, if there is one.

@@ -1,6 +1,7 @@
 //! Forces at the contact of a wheel beyond those of its springs, in some harmonics.
 
 use super::fields::Field;
+use super::motions::turn;
 
 /// Contact forces of a wheel.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +32,16 @@ impl ContactForces {
             harmonics: others.harmonics.clone(),
             fields: beyond.collect(),
         }
+    }
+
+    /// These forces ahead by a phase of harmonic 1, rad.
+    #[must_use]
+    pub fn turned_ahead(&self, phase: f64) -> Self {
+        let mut turned = self.clone();
+        for (&harmonic, field) in turned.harmonics.iter().zip(&mut turned.fields) {
+            turn(f64::from(harmonic) * phase, &mut field.re, &mut field.im);
+        }
+        turned
     }
 
     /// The sum of forces in the same harmonics, each with its share; none of no forces.

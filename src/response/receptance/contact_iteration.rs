@@ -12,7 +12,7 @@ use super::attempts::Start::{Best, Known, Linear};
 use super::attempts::{BESIDE, DAMPING, NEWTON_STEPS, NewtonPlan, Plan, attempts};
 use super::contact_equation::PreconditionedShapes::FirstOfFundamental;
 use super::contact_equation::{Buffers, ContactEquation};
-use super::fields::{Field, flatten, norm_squared, unflatten};
+use super::fields::{Field, flatten, unflatten};
 use super::pair_preconditioner::PairPreconditioner;
 use super::preconditioner::Preconditioner;
 
@@ -82,7 +82,7 @@ pub(super) struct Outcome {
     pub(super) tangents: u64,
     /// Attempts after the first.
     pub(super) retries: u64,
-    /// Norm of the residual over that of the motions.
+    /// Norm of the residual over that of the motions, of which harmonic k counts by `1/k`.
     pub(super) residual: f64,
     /// Norm of the step that was left over that of the motions.
     pub(super) step: f64,
@@ -167,7 +167,7 @@ impl ContactEquation<'_> {
                 self.buffers.acceleration.begin(DAMPING * tolerance);
             }
             self.precondition(&mut preconditioners);
-            outcome.step = self.buffers.step_over_motion();
+            outcome.step = self.step_over_motion();
             if let Some(status) = judge.settled(outcome.residual, outcome.step, &outcome.shares) {
                 outcome.status = status;
                 break;
@@ -286,13 +286,6 @@ fn norm(vector: &[f64]) -> f64 {
 }
 
 impl Buffers {
-    /// Norm of the preconditioned residual over that of the motions.
-    fn step_over_motion(&self) -> f64 {
-        let step: f64 = self.residual.iter().map(norm_squared).sum();
-        let motion: f64 = self.motions.iter().map(norm_squared).sum();
-        (step / motion).sqrt()
-    }
-
     /// The next motions by the preconditioned residual and the steps before.
     fn move_on(&mut self, depth: usize) {
         let [x, step, next] = &mut self.flat;

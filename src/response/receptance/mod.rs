@@ -16,6 +16,7 @@ mod elimination;
 mod engine;
 mod fields;
 mod free_waves;
+mod motions;
 mod pair_preconditioner;
 mod preconditioner;
 mod resonances;
@@ -31,6 +32,7 @@ pub use engine::{
     EngineModel, EngineOptions, EngineWheel, HIGHEST_HARMONIC, Limit, ReceptanceEngine,
 };
 pub use free_waves::{FreeWave, FreeWheel};
+pub use motions::{embedded, overlay, phase_ahead, turned_ahead};
 pub use resonances::Resonance;
 pub use wave_force::WaveForce;
-pub use wheel_solver::{SolutionWork, WheelSolution, WheelSolver, embedded, overlay};
+pub use wheel_solver::{SolutionWork, WheelSolution, WheelSolver};

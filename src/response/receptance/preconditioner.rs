@@ -12,17 +12,16 @@ use crate::response::harmonic_balance::MeanTangent;
 
 use super::elimination::fill_circulant;
 use super::fields::{Field, SectorTransform, padded};
-use super::wave_matrix::WaveMatrix;
+use super::wave_matrix::{WaveFactors, WaveMatrix};
 use super::wheel_harmonic::WheelHarmonic;
 
 /// Approximate inverse of the derivative `I + A G` of the equation of a harmonic: with the mean tangent G of the contact and
 /// some shapes of the blades.
 #[derive(Default)]
 pub(super) struct Preconditioner {
-    /// `(I + R_cc G)^-1`.
-    inverse: WaveMatrix,
+    /// Of `I + R_cc G`.
+    factors: WaveFactors,
     mistuned: Option<MistunedShapes>,
-    turned: Field,
 }
 
 /// The part of some shapes (index s) of the deviating blades, by Woodbury's formula.
@@ -51,29 +50,25 @@ impl Preconditioner {
         let rows = contact + shapes.last().map_or(0, |last| last + 1);
         let mut product = WaveMatrix::zeros(rows, contact, sectors);
         product.add_times_pairs(receptance, pairs, tangent);
-        let mut inverse = product.leading_rows(contact);
-        inverse.add_identity();
-        inverse.invert();
+        let mut matrix = product.leading_rows(contact);
+        matrix.add_identity();
+        let factors = matrix.factorised();
         let mistuned = (!shapes.is_empty())
-            .then(|| MistunedShapes::new(harmonic, transform, (&product, &inverse), shapes))
+            .then(|| MistunedShapes::new(harmonic, transform, (&product, &factors), shapes))
             .flatten();
-        Self {
-            inverse,
-            mistuned,
-            turned: Field::zeros(contact, sectors),
-        }
+        Self { factors, mistuned }
     }
 
     /// The residual turned into a step, in place.
     pub(super) fn apply(&mut self, transform: &SectorTransform, residual: &mut Field) {
-        let contact = self.inverse.rows;
-        self.turned.fill(0.0);
-        self.inverse
-            .add_product(0..contact, 0..contact, 1.0, residual, &mut self.turned);
-        if let Some(mistuned) = &mut self.mistuned {
-            mistuned.add(transform, residual, &mut self.turned);
+        let forces = self
+            .mistuned
+            .as_mut()
+            .map(|mistuned| mistuned.forces(transform, residual));
+        self.factors.solve(residual);
+        if let (Some(mistuned), Some(forces)) = (&self.mistuned, forces) {
+            mistuned.add(&forces, residual);
         }
-        std::mem::swap(&mut self.turned, residual);
     }
 }
 
@@ -81,7 +76,7 @@ impl MistunedShapes {
     fn new(
         harmonic: &WheelHarmonic,
         transform: &SectorTransform,
-        (product, inverse): (&WaveMatrix, &WaveMatrix),
+        (product, factors): (&WaveMatrix, &WaveFactors),
         shapes: &[usize],
     ) -> Option<Self> {
         let (sectors, contact) = (harmonic.sectors, harmonic.contact);
@@ -90,10 +85,10 @@ impl MistunedShapes {
         let (mut motions, mut strains, mut answers) = (Vec::new(), Vec::new(), Vec::new());
         for shape in shapes {
             let answer = receptance.column(contact + shape, 0..contact);
-            let mut motion = Field::zeros(contact, sectors);
-            inverse.add_product(0..contact, 0..contact, 1.0, &answer, &mut motion);
-            let mut strain = Field::zeros(contact, sectors);
-            inverse.add_transposed_product(&product.row(contact + shape), &mut strain);
+            let mut motion = answer.clone();
+            factors.solve(&mut motion);
+            let mut strain = product.row(contact + shape);
+            factors.solve_transposed(&mut strain);
             motions.push(motion);
             strains.push(strain);
             answers.push(answer);
@@ -114,19 +109,19 @@ impl MistunedShapes {
         };
         let of_shape = |shape: &usize| &harmonic.deviations[shape * sectors..][..sectors];
         let deviations: Vec<Complex64> = shapes.iter().flat_map(of_shape).copied().collect();
-        let mut factors = LuWorkspace::new(shapes.len() * sectors);
-        let matrix = factors.matrix_mut();
+        let mut of_shapes = LuWorkspace::new(shapes.len() * sectors);
+        let matrix = of_shapes.matrix_mut();
         fill_circulant(transform, shapes.len(), left, &deviations, matrix);
-        factors.factor().then_some(Self {
+        of_shapes.factor().then_some(Self {
             motions,
             strains,
-            factors,
+            factors: of_shapes,
             deviations,
         })
     }
 
-    /// Adds `M^-1 R_cs D (I + (R_ss - X) D)^-1 R_sc G M^-1 r` with `M = I + R_cc G`, `X = R_sc G M^-1 R_cs`.
-    fn add(&mut self, transform: &SectorTransform, residual: &Field, step: &mut Field) {
+    /// `D (I + (R_ss - X) D)^-1 R_sc G M^-1 r` with `M = I + R_cc G`, `X = R_sc G M^-1 R_cs`, over the waves.
+    fn forces(&mut self, transform: &SectorTransform, residual: &Field) -> Field {
         let sectors = transform.sectors();
         let stride = padded(sectors);
         let count = self.strains.len();
@@ -148,6 +143,12 @@ impl MistunedShapes {
             blades.set(place(at), z * deviation);
         }
         transform.to_waves(&blades, &mut waves);
+        waves
+    }
+
+    /// Adds `M^-1 R_cs` times the forces over the waves.
+    fn add(&self, waves: &Field, step: &mut Field) {
+        let stride = waves.re.len() / self.motions.len().max(1);
         for (shape, motion) in self.motions.iter().enumerate() {
             let forces = (
                 &waves.re[shape * stride..][..stride],

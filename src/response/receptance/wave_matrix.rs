@@ -132,18 +132,34 @@ impl WaveMatrix {
         field
     }
 
-    /// `to += A^T from` of every wave.
-    pub(super) fn add_transposed_product(&self, from: &Field, to: &mut Field) {
-        vectorized(AddTransposed {
-            matrix: self,
-            from,
-            to,
-        });
+    /// The factors of every wave, without pivoting.
+    pub(super) fn factorised(mut self) -> WaveFactors {
+        vectorized(Factorised(&mut self));
+        WaveFactors(self)
+    }
+}
+
+/// `A = L U` of every wave: L without its diagonal, which is 1, beside U with the inverse of its diagonal.
+#[derive(Debug, Default)]
+pub(super) struct WaveFactors(WaveMatrix);
+
+impl WaveFactors {
+    /// `A^-1 x` in the place of x.
+    pub(super) fn solve(&self, field: &mut Field) {
+        self.solve_by(false, field);
     }
 
-    /// The inverse of every wave in the place of the matrix, without pivoting.
-    pub(super) fn invert(&mut self) {
-        vectorized(Inverted(self));
+    /// `A^-T x` in the place of x.
+    pub(super) fn solve_transposed(&self, field: &mut Field) {
+        self.solve_by(true, field);
+    }
+
+    fn solve_by(&self, transposed: bool, field: &mut Field) {
+        vectorized(Solved {
+            factors: &self.0,
+            transposed,
+            field,
+        });
     }
 }
 
@@ -237,93 +253,103 @@ impl Loops for AddTimesPairs<'_> {
     }
 }
 
-struct AddTransposed<'a> {
-    matrix: &'a WaveMatrix,
-    from: &'a Field,
-    to: &'a mut Field,
-}
+struct Factorised<'a>(&'a mut WaveMatrix);
 
-impl Loops for AddTransposed<'_> {
+impl Loops for Factorised<'_> {
     type Output = ();
 
-    #[inline(always)]
-    fn call(self) {
-        let (rows, columns) = (self.matrix.rows, self.matrix.columns);
-        let (re, _) = self.matrix.re.as_chunks::<LANES>();
-        let (im, _) = self.matrix.im.as_chunks::<LANES>();
-        let chunks = re.len() / (rows * columns).max(1);
-        let (from_re, _) = self.from.re.as_chunks::<LANES>();
-        let (from_im, _) = self.from.im.as_chunks::<LANES>();
-        let (to_re, _) = self.to.re.as_chunks_mut::<LANES>();
-        let (to_im, _) = self.to.im.as_chunks_mut::<LANES>();
-        for chunk in 0..chunks {
-            for row in 0..rows {
-                let (x, y) = (
-                    &from_re[row * chunks + chunk],
-                    &from_im[row * chunks + chunk],
-                );
-                for column in 0..columns {
-                    let place = (chunk * rows + row) * columns + column;
-                    let (a, b) = (&re[place], &im[place]);
-                    let to_re = &mut to_re[column * chunks + chunk];
-                    let to_im = &mut to_im[column * chunks + chunk];
-                    for lane in 0..LANES {
-                        to_re[lane] += a[lane] * x[lane] - b[lane] * y[lane];
-                        to_im[lane] += a[lane] * y[lane] + b[lane] * x[lane];
-                    }
-                }
-            }
-        }
-    }
-}
-
-struct Inverted<'a>(&'a mut WaveMatrix);
-
-impl Loops for Inverted<'_> {
-    type Output = ();
-
-    /// Gauss-Jordan elimination in place.
+    /// Doolittle's elimination in place, row by row.
     #[inline(always)]
     fn call(self) {
         let n = self.0.rows;
         let re = self.0.re.as_chunks_mut::<LANES>().0.chunks_exact_mut(n * n);
         let im = self.0.im.as_chunks_mut::<LANES>().0.chunks_exact_mut(n * n);
         for (re, im) in re.zip(im) {
-            for pivot in 0..n {
-                let pivot_row = pivot * n;
-                let (a, b) = (re[pivot_row + pivot], im[pivot_row + pivot]);
-                let (mut p, mut q) = ([0.0; LANES], [0.0; LANES]);
-                for lane in 0..LANES {
-                    let square = a[lane] * a[lane] + b[lane] * b[lane];
-                    // Padding has no wave.
-                    let inverse = if square > 0.0 { 1.0 / square } else { 0.0 };
-                    p[lane] = a[lane] * inverse;
-                    q[lane] = -b[lane] * inverse;
-                }
-                (re[pivot_row + pivot], im[pivot_row + pivot]) = ([1.0; LANES], [0.0; LANES]);
+            for row in 0..n {
                 for column in 0..n {
-                    let (x, y) = (&mut re[pivot_row + column], &mut im[pivot_row + column]);
-                    for lane in 0..LANES {
-                        let (u, v) = (x[lane], y[lane]);
-                        x[lane] = u * p[lane] - v * q[lane];
-                        y[lane] = u * q[lane] + v * p[lane];
-                    }
-                }
-                for row in (0..n).filter(|&row| row != pivot) {
-                    let (f, g) = (re[row * n + pivot], im[row * n + pivot]);
-                    (re[row * n + pivot], im[row * n + pivot]) = ([0.0; LANES], [0.0; LANES]);
-                    for column in 0..n {
-                        let (x, y) = (re[pivot_row + column], im[pivot_row + column]);
-                        let to_re = &mut re[row * n + column];
-                        let to_im = &mut im[row * n + column];
+                    let place = row * n + column;
+                    let (mut x, mut y) = (re[place], im[place]);
+                    for k in 0..row.min(column) {
+                        let (a, b) = (&re[row * n + k], &im[row * n + k]);
+                        let (c, d) = (&re[k * n + column], &im[k * n + column]);
                         for lane in 0..LANES {
-                            to_re[lane] -= f[lane] * x[lane] - g[lane] * y[lane];
-                            to_im[lane] -= f[lane] * y[lane] + g[lane] * x[lane];
+                            x[lane] -= a[lane] * c[lane] - b[lane] * d[lane];
+                            y[lane] -= a[lane] * d[lane] + b[lane] * c[lane];
                         }
                     }
+                    if column < row {
+                        let pivot = column * n + column;
+                        multiply((&mut x, &mut y), (&re[pivot], &im[pivot]));
+                    } else if column == row {
+                        for lane in 0..LANES {
+                            let square = x[lane] * x[lane] + y[lane] * y[lane];
+                            // Padding has no wave.
+                            let inverse = if square > 0.0 { 1.0 / square } else { 0.0 };
+                            x[lane] *= inverse;
+                            y[lane] *= -inverse;
+                        }
+                    }
+                    (re[place], im[place]) = (x, y);
                 }
             }
         }
+    }
+}
+
+struct Solved<'a> {
+    factors: &'a WaveMatrix,
+    transposed: bool,
+    field: &'a mut Field,
+}
+
+impl Loops for Solved<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let n = self.factors.rows;
+        let re = self.factors.re.as_chunks::<LANES>().0.chunks_exact(n * n);
+        let im = self.factors.im.as_chunks::<LANES>().0.chunks_exact(n * n);
+        let (x, _) = self.field.re.as_chunks_mut::<LANES>();
+        let (y, _) = self.field.im.as_chunks_mut::<LANES>();
+        let chunks = x.len() / n.max(1);
+        let at = |row: usize, column: usize| {
+            if self.transposed {
+                column * n + row
+            } else {
+                row * n + column
+            }
+        };
+        for (chunk, (re, im)) in re.zip(im).enumerate() {
+            for way in 0..2 * n {
+                let is_first = way < n;
+                let row = if is_first { way } else { 2 * n - 1 - way };
+                let known = if is_first { 0..row } else { row + 1..n };
+                let (mut p, mut q) = (x[row * chunks + chunk], y[row * chunks + chunk]);
+                for column in known {
+                    let (a, b) = (&re[at(row, column)], &im[at(row, column)]);
+                    let (c, d) = (&x[column * chunks + chunk], &y[column * chunks + chunk]);
+                    for lane in 0..LANES {
+                        p[lane] -= a[lane] * c[lane] - b[lane] * d[lane];
+                        q[lane] -= a[lane] * d[lane] + b[lane] * c[lane];
+                    }
+                }
+                if is_first == self.transposed {
+                    let pivot = row * n + row;
+                    multiply((&mut p, &mut q), (&re[pivot], &im[pivot]));
+                }
+                (x[row * chunks + chunk], y[row * chunks + chunk]) = (p, q);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn multiply((x, y): (&mut Lanes, &mut Lanes), (a, b): (&Lanes, &Lanes)) {
+    for lane in 0..LANES {
+        let (u, v) = (x[lane], y[lane]);
+        x[lane] = u * a[lane] - v * b[lane];
+        y[lane] = u * b[lane] + v * a[lane];
     }
 }
 
@@ -338,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn products_and_inverses_are_those_of_every_wave() {
+    fn products_and_solutions_are_those_of_every_wave() {
         let (sectors, n) = (11, 4);
         let stride = padded(sectors);
         let mut matrix = WaveMatrix::zeros(n, n, sectors);
@@ -359,8 +385,10 @@ mod tests {
         part.re.copy_from_slice(&field.re[stride..3 * stride]);
         part.im.copy_from_slice(&field.im[stride..3 * stride]);
         matrix.add_product(1..4, 1..3, -2.0, &part, &mut of_part);
-        let mut inverse = matrix.clone();
-        inverse.invert();
+        let factors = matrix.clone().factorised();
+        let (mut solved, mut solved_transposed) = (field.clone(), field.clone());
+        factors.solve(&mut solved);
+        factors.solve_transposed(&mut solved_transposed);
         for h in 0..sectors {
             for i in 1..4 {
                 let sum: Complex64 = (1..3)
@@ -375,13 +403,14 @@ mod tests {
                 }
             }
             assert!(lu.factor());
-            for j in 0..n {
-                let mut column = vec![Complex64::default(); n];
-                column[j] = Complex64::from(1.0);
-                lu.solve(&mut column);
-                for (i, value) in column.iter().enumerate() {
-                    assert!((value - inverse.at(h, i, j)).norm() < 1e-12);
-                }
+            let right: Vec<Complex64> = (0..n).map(|i| field.at(i * stride + h)).collect();
+            let mut of_wave = right.clone();
+            lu.solve(&mut of_wave);
+            for (i, value) in of_wave.iter().enumerate() {
+                assert!((value - solved.at(i * stride + h)).norm() < 1e-12);
+                let turned = |j: usize| solved_transposed.at(j * stride + h) * entry(h, j, i);
+                let back: Complex64 = (0..n).map(turned).sum();
+                assert!((back - right[i]).norm() < 1e-12);
             }
         }
     }

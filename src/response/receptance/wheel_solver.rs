@@ -35,7 +35,7 @@ pub struct WheelSolver<'a> {
 pub struct WheelSolution {
     /// Motions at the contact of every harmonic, in the waves.
     pub motions: Vec<f64>,
-    /// Norm of the residual over that of the motions; 0 for a linear limit.
+    /// Norm of the residual over that of the motions, of which harmonic k counts by `1/k`; 0 for a linear limit.
     pub residual: f64,
     /// Shares of slipping and separated pairs.
     pub shares: ContactShares,
@@ -303,23 +303,4 @@ impl<'a> WheelSolver<'a> {
     pub fn harmonics(&self) -> &[u32] {
         &self.set
     }
-}
-
-/// Puts motions in the harmonics `from` in the place of those of a solution in `to`.
-pub fn overlay(all: &mut [f64], motions: &[f64], from: &[u32], to: &[u32]) {
-    let size = motions.len() / from.len().max(1);
-    for (harmonic, part) in from.iter().zip(motions.chunks_exact(size.max(1))) {
-        if let Some(place) = to.iter().position(|k| k == harmonic) {
-            all[place * size..][..size].copy_from_slice(part);
-        }
-    }
-}
-
-/// Motions in the harmonics `from` as a start in those of `to`; harmonics that `from` does not have do not move.
-#[must_use]
-pub fn embedded(motions: &[f64], from: &[u32], to: &[u32]) -> Vec<f64> {
-    let size = motions.len() / from.len().max(1);
-    let mut all = vec![0.0; size * to.len()];
-    overlay(&mut all, motions, from, to);
-    all
 }
