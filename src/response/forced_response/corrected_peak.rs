@@ -50,9 +50,9 @@ const ONE_SET: Care = Care {
     of_few: 0.02,
     above: 0.15,
 };
-/// Where one set leads to the next: what a residual and a top take off the peak are together as much as was asked for.
+/// Where one set leads to the next: a summit takes half of what was asked for off the peak, a residual a tenth.
 const LED: Care = Care {
-    at_top: 0.5,
+    at_top: 0.1,
     at_side: 3.0,
     of_few: 0.1,
     above: 0.5,
