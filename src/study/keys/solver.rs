@@ -30,7 +30,7 @@ options_table! {
             "at least 4 times the highest harmonic; an automatic set takes at least 12 per period of its highest harmonic")
             .of_accuracy(),
         residual_tolerance: f64 = key(Number(Range::from_to(1e-13, 1e-2)), "1e-8",
-            "when the iteration for a solution ends: the part of the force that is still out of balance, relative to the excitation. A smaller number takes longer and gives more digits; change it to compare with another program. Where nothing is said, peaks with automatic harmonics on tuned receptances are solved to half of `peak_tolerance`")
+            "when the iteration for a solution ends: the part of the force that is still out of balance, relative to the excitation. A smaller number takes longer and gives more digits; change it to compare with another program. Where nothing is said, peaks with automatic harmonics on tuned receptances are solved to a tenth of `peak_tolerance`")
             .of_accuracy().told("a number from 1e-13 to 1e-2"),
         peak_tolerance: f64 = key(Number(Range::from_to(1e-10, 0.1)), "1e-3",
             "relative, of the peak amplitude").of_accuracy(),
