@@ -17,6 +17,7 @@
 //! channels at a time (many harmonics); the two agree to rounding.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use rustfft::num_complex::Complex64;
@@ -62,6 +63,7 @@ pub struct HarmonicTransform {
     /// `sum_{i < j} psi_c(tau_i) phi_c'(tau_i)`, made when first asked for (`(n_samples + 1) * n_coefficients *
     /// n_coefficients`).
     products: OnceLock<Vec<f64>>,
+    own_products: OnceLock<Vec<[f64; 2]>>,
     forward: Arc<dyn Fft<f64>>,
     inverse: Arc<dyn Fft<f64>>,
 }
@@ -118,6 +120,7 @@ impl HarmonicTransform {
             basis,
             cumulative: Vec::new(),
             products: OnceLock::new(),
+            own_products: OnceLock::new(),
             forward: planner.plan_fft_forward(n_samples),
             inverse: planner.plan_fft_inverse(n_samples),
         };
@@ -205,6 +208,37 @@ impl HarmonicTransform {
             products
         });
         &products[j * n * n..][..n * n]
+    }
+
+    /// `sum_{i < j} psi_c(tau_i) phi_c'(tau_i)` for the coefficients c' of the harmonic of c, two a coefficient; the mean has one of its own.
+    pub(super) fn own_products_to(&self, j: usize) -> &[[f64; 2]] {
+        let n = self.n_coefficients();
+        let products = self.own_products.get_or_init(|| {
+            let mut sums = vec![[0.0; 2]; n];
+            let mut products = sums.clone();
+            for i in 0..self.n_samples {
+                for (c, sums) in sums.iter_mut().enumerate() {
+                    let psi = self.projection_scale(c) * self.basis(c)[i];
+                    for (sum, other) in sums.iter_mut().zip(self.own(c)) {
+                        *sum += psi * self.basis(other)[i];
+                    }
+                }
+                products.extend_from_slice(&sums);
+            }
+            products
+        });
+        &products[j * n..][..n]
+    }
+
+    /// The coefficients of the harmonic of a coefficient.
+    pub(super) fn own(&self, coefficient: usize) -> Range<usize> {
+        let mean = usize::from(self.has_mean());
+        if coefficient < mean {
+            0..mean
+        } else {
+            let first = coefficient - (coefficient - mean) % 2;
+            first..first + 2
+        }
     }
 
     /// Upper bound on a signal with these coefficients, the mean left out: the sum of the amplitudes of its harmonics.

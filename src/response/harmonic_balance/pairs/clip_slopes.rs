@@ -21,14 +21,10 @@ use crate::response::harmonic_balance::HarmonicTransform;
 /// Coefficients by which the derivatives of coefficient `c` are wanted: all `coupled` ones, or those of its
 /// harmonic.
 pub(super) fn wanted(transform: &HarmonicTransform, coupled: usize, c: usize) -> Range<usize> {
-    let mean = usize::from(transform.has_mean());
     if c < coupled {
         0..coupled.min(transform.n_coefficients())
-    } else if c < mean {
-        0..mean
     } else {
-        let first = c - (c - mean) % 2;
-        first..first + 2
+        transform.own(c)
     }
 }
 
@@ -85,15 +81,59 @@ impl ClipSlopes<'_> {
     ) {
         let by_tangential = &mut jacobian.tangential_tangential[tangent];
         let by_normal = &mut jacobian.tangential_normal[tangent];
-        sums.gather_clips(self.transform, samples, signs);
-        let wanted = |c| wanted(self.transform, self.coupled, c);
         let factors = [-self.parameters.tangential_stiffness_n_per_m, self.limit()];
-        sums.fill_tangential(factors, wanted, by_tangential, by_normal);
+        if self.coupled == 0 {
+            self.add_runs((samples, signs), factors, [by_tangential, by_normal]);
+        } else {
+            sums.gather_clips(self.transform, samples, signs);
+            let wanted = |c| wanted(self.transform, self.coupled, c);
+            sums.fill_tangential(factors, wanted, by_tangential, by_normal);
+        }
         if self.transform.has_mean() {
             let n_coefficients = self.transform.n_coefficients();
             clear_mean_row(by_tangential, n_coefficients);
             clear_mean_row(by_normal, n_coefficients);
             clear_mean_column(by_tangential, n_coefficients);
+        }
+    }
+}
+
+impl ClipSlopes<'_> {
+    /// The tangential blocks of every harmonic by itself, into cleared ones. Along a run, clips of one sign at neighbouring samples,
+    /// every clip but the last rules its own sample alone: their sums are those of products up to the ends of the run.
+    fn add_runs(
+        &self,
+        (samples, signs): (&[usize], &[f64]),
+        [by_displacement, by_limit]: [f64; 2],
+        [by_tangential, by_normal]: [&mut [f64]; 2],
+    ) {
+        let transform = self.transform;
+        let n = transform.n_coefficients();
+        let mut first = 0;
+        for last in 0..samples.len() {
+            let next = samples.get(last + 1);
+            let goes_on = next == Some(&(samples[last] + 1))
+                && signs[last + 1].total_cmp(&signs[last]).is_eq();
+            if goes_on {
+                continue;
+            }
+            let sample = samples[last];
+            let before = transform.own_products_to(samples[first]);
+            let up_to = transform.own_products_to(sample);
+            for c in 0..n {
+                let cumulative = transform.cumulative_projection(c);
+                let ruled = next.map_or_else(
+                    || cumulative[transform.n_samples()] + cumulative[samples[0]],
+                    |&next| cumulative[next],
+                ) - cumulative[sample];
+                for (place, other) in transform.own(c).enumerate() {
+                    let run = up_to[c][place] - before[c][place];
+                    let sum = run + ruled * transform.basis(other)[sample];
+                    by_tangential[c * n + other] += by_displacement * sum;
+                    by_normal[c * n + other] += by_limit * signs[last] * sum;
+                }
+            }
+            first = last + 1;
         }
     }
 }
@@ -239,4 +279,59 @@ fn dots(a: [&[f64]; 2], b: [&[f64]; 2]) -> [[f64; 2]; 2] {
             total(sums[1][1]) + rest(a1.1, b1.1),
         ],
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_by_runs_are_the_sums_over_all_clips() {
+        let parameters = PairParameters {
+            friction_coefficient: 0.3,
+            tangential_stiffness_n_per_m: 2.0,
+            normal_stiffness_n_per_m: 5.0,
+            normal_load_n: 1.0,
+        };
+        let transform = HarmonicTransform::new(&[0, 1, 2, 5], 32).expect("a set");
+        let n = transform.n_coefficients();
+        // Runs of either sign side by side, with gaps, over the end of the period, a clip at both bounds, and one clip alone.
+        let cases: [(&[usize], &[f64]); 3] = [
+            (
+                &[0, 1, 2, 7, 8, 9, 10, 15, 16, 30, 31],
+                &[1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, 0.0, -1.0, 1.0, 1.0],
+            ),
+            (&[5, 6, 7, 20], &[-1.0, -1.0, -1.0, 1.0]),
+            (&[12], &[1.0]),
+        ];
+        for (samples, signs) in cases {
+            let [by_runs, by_clips] = [0, 99].map(|coupled| {
+                let slopes = ClipSlopes {
+                    transform: &transform,
+                    coupled,
+                    variable_load: true,
+                    parameters: &parameters,
+                };
+                let mut jacobian = PairJacobian::new(n);
+                let mut sums = ClipSums::new(n, transform.n_samples());
+                slopes.tangential(&mut sums, 1, (samples, signs), &mut jacobian);
+                jacobian
+            });
+            for c in 0..n {
+                for other in transform.own(c) {
+                    for block in [1, 2] {
+                        let of = |jacobian: &PairJacobian| {
+                            let blocks = [
+                                &jacobian.tangential_tangential[1],
+                                &jacobian.tangential_normal[1],
+                            ];
+                            blocks[block - 1][c * n + other]
+                        };
+                        let difference = of(&by_runs) - of(&by_clips);
+                        assert!(difference.abs() < 1e-14, "{c} {other} {difference}");
+                    }
+                }
+            }
+        }
+    }
 }
