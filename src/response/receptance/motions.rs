@@ -1,7 +1,7 @@
 //! Motions at the contact as one list, harmonic after harmonic: in other harmonics, and at another time.
 //!
-//! Of every harmonic the real parts of its waves stand before the imaginary ones. Where a wheel turns by the phase `phi` of
-//! harmonic 1, harmonic k turns by `k phi`.
+//! Of every harmonic the real parts of its waves stand before the imaginary ones. Motions that are ahead by the phase `phi` in
+//! harmonic 1 are ahead by `k phi` in harmonic k.
 
 use crate::linalg::dot;
 

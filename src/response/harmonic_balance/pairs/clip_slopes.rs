@@ -9,7 +9,8 @@
 //! d(normal)/d(normal)_{cc'}   = -kn sum_{j: N_j = 0} psi_c(tau_j) phi_c'(tau_j)
 //! ```
 //!
-//! Under `coulomb_3d` the sums over clips become those of `coupled_derivative`.
+//! Of harmonics by themselves the sums are those over the ends of runs of clips, of which there are few. Under `coulomb_3d` the
+//! sums over clips become those of `coupled_derivative`.
 
 use std::ops::Range;
 
@@ -96,9 +97,7 @@ impl ClipSlopes<'_> {
             clear_mean_column(by_tangential, n_coefficients);
         }
     }
-}
 
-impl ClipSlopes<'_> {
     /// The tangential blocks of every harmonic by itself, into cleared ones. Along a run, clips of one sign at neighbouring samples,
     /// every clip but the last rules its own sample alone: their sums are those of products up to the ends of the run.
     fn add_runs(
