@@ -12,23 +12,28 @@ pub(super) fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
     { written.iter() }.map(|(word, meaning)| (word.as_str(), meaning.as_str()))
 }
 
-/// The rows of the tables of a page: term, meaning, unit, where it is defined.
+/// The terms of a page's tables: term, meaning, unit, where it is defined.
 fn terms(page: &str) -> Vec<(String, String)> {
-    let rows = page.lines().filter_map(|line| {
-        let cells: Vec<&str> = line.strip_prefix('|')?.split('|').map(str::trim).collect();
-        let [word, meaning, unit, ..] = cells[..] else {
-            return None;
-        };
-        if word == "term" || word.starts_with("---") {
-            return None;
-        }
+    let term = |[word, meaning, unit]: [&str; 3]| {
         let unit = match unit {
             "" | "1" | "as the value" | "as the figure" => String::new(),
             unit => format!(" Unit: {unit}."),
         };
-        Some((word.to_owned(), plain(&format!("{meaning}{unit}"))))
+        (word.to_owned(), plain(&format!("{meaning}{unit}")))
+    };
+    rows(page.lines(), "term").map(term).collect()
+}
+
+/// The first three cells of every row of the tables among `lines` but their heads, which begin with `head`.
+fn rows<'a>(
+    lines: impl Iterator<Item = &'a str>,
+    head: &str,
+) -> impl Iterator<Item = [&'a str; 3]> {
+    let cells = lines.filter_map(|line| {
+        let mut cells = line.strip_prefix('|')?.split('|').map(str::trim);
+        Some([cells.next()?, cells.next()?, cells.next()?])
     });
-    rows.collect()
+    cells.filter(move |[first, ..]| *first != head && !first.starts_with("---"))
 }
 
 /// Warnings of the page on results, each with what it means and what to do.
@@ -45,20 +50,13 @@ pub(super) fn known_warnings() -> impl Iterator<Item = (&'static str, &'static s
 fn warnings(page: &str) -> Vec<(String, String)> {
     let below = { page.lines() }.skip_while(|line| *line != "## Warnings");
     let below = below.skip(1).take_while(|line| !line.starts_with("## "));
-    let rows = below.filter_map(|line| {
-        let cells: Vec<&str> = line.strip_prefix('|')?.split('|').map(str::trim).collect();
-        let [words, meaning, to_do, ..] = cells[..] else {
-            return None;
-        };
-        let is_row = words != "warning" && !words.starts_with("---");
-        is_row.then(|| {
-            (
-                plain(words),
-                plain(&format!("{meaning}. What to do: {to_do}")),
-            )
-        })
-    });
-    rows.collect()
+    let warning = |[words, meaning, to_do]: [&str; 3]| {
+        (
+            plain(words),
+            plain(&format!("{meaning}. What to do: {to_do}")),
+        )
+    };
+    rows(below, "warning").map(warning).collect()
 }
 
 /// Markdown as plain text: no marks of code, and a link as the file it leads to.
