@@ -46,8 +46,8 @@ impl Climb {
         best.expect("a climb begins with a point")
     }
 
-    /// A frequency beside the top, Hz, on a side on which no point serves. Both sides are looked at with the last set: one of its
-    /// harmonics may meet a resonance of its own there.
+    /// A frequency beside the top, Hz, on a side on which no point serves. Both sides are looked at with every set: a harmonic of the
+    /// last one may meet a resonance of its own on the side that the sets before it have not shown.
     pub(super) fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
         let is_unseen = |side: &f64| {
             let way = |known: &Known| (known.frequency_hz - top_hz) / side;

@@ -337,9 +337,7 @@ impl CorrectedSearch<'_> {
                 return Ok((best.height_m, best.frequency_hz));
             } else if summit.largest > above {
                 self.solve(climb, summit.frequency_hz, self.care.at_top)?;
-            } else if let Some(side_hz) = climb.unseen_beside(best.frequency_hz)
-                && climb.known.len() == self.sets.len()
-            {
+            } else if let Some(side_hz) = climb.unseen_beside(best.frequency_hz) {
                 self.solve(climb, side_hz, self.care.at_side)?;
             } else {
                 return Ok((best.height_m, best.frequency_hz));

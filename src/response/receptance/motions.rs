@@ -5,6 +5,9 @@
 
 use crate::linalg::dot;
 
+/// Scalar product over the norms from which on two motions are alike.
+const ALIKE: f64 = 0.8;
+
 /// Puts motions in the harmonics `from` in the place of those of a solution in `to`.
 pub fn overlay(all: &mut [f64], motions: &[f64], from: &[u32], to: &[u32]) {
     let size = motions.len() / from.len().max(1);
@@ -44,7 +47,7 @@ pub(super) fn turn(angle: f64, re: &mut [f64], im: &mut [f64]) {
 }
 
 /// Phase of harmonic 1, rad, by which the motions `to` are ahead of `from`, both in the harmonics `set`: that after which they are
-/// nearest to each other.
+/// nearest to each other. 0 where they are not alike even then: between resonances that lie side by side the shape changes with the phase.
 #[must_use]
 pub fn phase_ahead(from: &[f64], to: &[f64], set: &[u32]) -> f64 {
     let size = from.len() / set.len().max(1);
@@ -54,7 +57,13 @@ pub fn phase_ahead(from: &[f64], to: &[f64], set: &[u32]) -> f64 {
         motions[place * size..][..size].split_at(size / 2)
     };
     let ((a, b), (c, d)) = (parts(from), parts(to));
-    f64::atan2(dot(a, d) - dot(b, c), dot(a, c) + dot(b, d))
+    let (real, imaginary) = (dot(a, c) + dot(b, d), dot(a, d) - dot(b, c));
+    let square = |x: &[f64], y: &[f64]| dot(x, x) + dot(y, y);
+    let least = ALIKE.powi(2) * square(a, b) * square(c, d);
+    if real.powi(2) + imaginary.powi(2) < least {
+        return 0.0;
+    }
+    imaginary.atan2(real)
 }
 
 #[cfg(test)]
@@ -78,5 +87,14 @@ mod tests {
             assert!((turned[2 * place + 1] - expected[1]).abs() < 1e-15);
         }
         assert!((phase_ahead(&motions, &turned, &set) - phase).abs() < 1e-15);
+    }
+
+    #[test]
+    fn motions_of_another_shape_have_no_phase() {
+        let (first, turned) = ([1.0, 0.2, 0.0, 0.1], [0.0, -0.1, 1.0, 0.2]);
+        let ahead = phase_ahead(&first, &turned, &[1]);
+        assert!((ahead - 0.5 * std::f64::consts::PI).abs() < 1e-15);
+        let other = [0.2, 1.0, 0.1, 0.3];
+        assert!(phase_ahead(&first, &other, &[1]).abs() < 1e-15);
     }
 }
