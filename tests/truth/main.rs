@@ -329,7 +329,8 @@ fn make_the_cases() {
 /// Loads of a wheel whose rows are solved after all others.
 const LIGHTEST_LOADS: usize = 2;
 
-/// Solves the rows that `truth.csv` does not have; `TRUTH_WHEEL` and `TRUTH_ROWS` leave others out.
+/// Solves the rows that `truth.csv` does not have; `TRUTH_WHEEL` and `TRUTH_ROWS` leave others out, and
+/// `TRUTH_HINT_HZ` is a frequency to start from in the place of the hint, where a higher top is known.
 /// `cargo test --release --test truth make_the_truth -- --ignored --nocapture`
 #[test]
 #[ignore = "hours: writes what is missing of the truth"]

@@ -63,6 +63,7 @@ pub struct HarmonicTransform {
     /// `sum_{i < j} psi_c(tau_i) phi_c'(tau_i)`, made when first asked for (`(n_samples + 1) * n_coefficients *
     /// n_coefficients`).
     products: OnceLock<Vec<f64>>,
+    /// Those of every harmonic by itself, two a coefficient; small enough for the nearest caches.
     own_products: OnceLock<Vec<[f64; 2]>>,
     forward: Arc<dyn Fft<f64>>,
     inverse: Arc<dyn Fft<f64>>,

@@ -84,7 +84,7 @@ pub(super) struct Outcome {
     pub(super) retries: u64,
     /// Norm of the residual over that of the motions, of which harmonic k counts by `1/k`.
     pub(super) residual: f64,
-    /// Norm of the step that was left over that of the motions.
+    /// Norm of the step that was left over that of the motions, in the same way.
     pub(super) step: f64,
     pub(super) shares: ContactShares,
 }
