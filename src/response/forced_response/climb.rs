@@ -1,10 +1,14 @@
 //! A top of a row that is climbed with one set of harmonics after the other: what every set leaves on few harmonics, between the
 //! frequencies that are solved with it.
 
-use crate::response::receptance::ContactForces;
+use crate::response::receptance::{ContactForces, WheelSolver};
 
 /// Least and largest distance, over that wanted, at which a point serves as one beside a top.
 const SERVES: (f64, f64) = (0.5, 1.5);
+/// Fall of a curve beside a top, relative, without which another top may follow, and the distance, over that wanted, at which no more is
+/// looked for.
+const FALL: f64 = 0.005;
+const FURTHEST: f64 = 3.5;
 /// Least distance of points that a force is interpolated between, over that of points beside a top.
 const APART: f64 = 0.4;
 /// Points that a force is interpolated between at most.
@@ -16,8 +20,8 @@ const CLIFF: (f64, f64) = (3.0, 0.01);
 /// A frequency that is solved with the harmonics of a set.
 pub(super) struct Known {
     pub(super) frequency_hz: f64,
-    /// Phase of harmonic 1 there, rad, by few harmonics.
-    pub(super) phase: f64,
+    /// Phases of harmonic 1 of the sectors there, rad, by few harmonics.
+    pub(super) phases: Vec<f64>,
     pub(super) height_m: f64,
     /// What the set leaves on few harmonics beyond what the sets before it do.
     pub(super) force: ContactForces,
@@ -46,18 +50,40 @@ impl Climb {
         best.expect("a climb begins with a point")
     }
 
-    /// A frequency beside the top, Hz, on a side on which no point serves. Both sides are looked at with every set: a harmonic of the
-    /// last one may meet a resonance of its own on the side that the sets before it have not shown.
-    pub(super) fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
-        let is_unseen = |side: &f64| {
-            let way = |known: &Known| (known.frequency_hz - top_hz) / side;
-            let serves = |known: &Known| (SERVES.0..=SERVES.1).contains(&way(known));
-            !self.last_set().iter().any(serves)
+    /// Frequencies, Hz, of the points of the last set that are higher than those next to them, without those that are lower than the best
+    /// by more than the share `made_up`: the next set may have another one highest. None before the first set.
+    pub(super) fn tops_hz(&self, made_up: f64) -> Option<Vec<f64>> {
+        let mut points: Vec<&Known> = self.known.last()?.iter().collect();
+        points.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+        let least_m = (1.0 - made_up) * self.best().height_m;
+        let height_m = |at: usize| points.get(at).map_or(0.0, |point| point.height_m);
+        let is_top = |at: &usize| {
+            let next_m = f64::max(height_m(at.wrapping_sub(1)), height_m(at + 1));
+            height_m(*at) > least_m.max(next_m)
         };
-        let unseen = [-self.beside_hz, self.beside_hz]
+        let tops = (0..points.len()).filter(is_top);
+        Some(tops.map(|at| points[at].frequency_hz).collect())
+    }
+
+    /// A frequency beside the top, Hz, on a side on which no point serves, or on which the curve has not fallen. Both sides are looked at
+    /// with every set: a harmonic of the last one may meet a resonance of its own on the side that the sets before it have not shown.
+    pub(super) fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
+        let best_m = self.best().height_m;
+        let unseen = |side: f64| {
+            let way = |known: &Known| (known.frequency_hz - top_hz) / side;
+            let ways = self.last_set().iter().map(way);
+            if !ways.clone().any(|way| (SERVES.0..=SERVES.1).contains(&way)) {
+                return Some(top_hz + side);
+            }
+            let furthest = ways.fold(0.0, f64::max);
+            let has_fallen =
+                |known: &Known| way(known) > 0.0 && known.height_m <= (1.0 - FALL) * best_m;
+            let is_flat = furthest < FURTHEST && !self.last_set().iter().any(has_fallen);
+            is_flat.then(|| top_hz + (furthest + 1.0) * side)
+        };
+        [-self.beside_hz, self.beside_hz]
             .into_iter()
-            .find(is_unseen);
-        unseen.map(|side| top_hz + side)
+            .find_map(unseen)
     }
 
     /// Whether the curve falls beside the top as no resonance of this half-bandwidth, Hz, does: where a contact that opens folds it, what
@@ -72,14 +98,17 @@ impl Climb {
         })
     }
 
-    /// What the first `sets` sets leave on few harmonics at a frequency, Hz, with a phase of harmonic 1 there, rad, and the growth of
-    /// every blade's amplitude by them. These forces turn with the phase; beside that they change little.
+    /// What the first `sets` sets leave on few harmonics, those of `few`, at a frequency, Hz, where the sectors have these phases of
+    /// harmonic 1, rad, and the growth of every blade's amplitude by them. These forces turn with the motion of their sector; beside
+    /// that they change little.
     pub(super) fn left(
         &self,
         sets: usize,
-        (frequency_hz, phase): (f64, f64),
+        frequency_hz: f64,
+        phases: &[f64],
+        few: &WheelSolver<'_>,
     ) -> Option<(ContactForces, Vec<f64>)> {
-        let mut forces = Vec::new();
+        let mut forces: Vec<(f64, ContactForces)> = Vec::new();
         let mut growth: Vec<f64> = Vec::new();
         for known in &self.known[..sets] {
             let nodes = self.nodes(known, frequency_hz);
@@ -99,12 +128,13 @@ impl Climb {
                     .zip(of_set)
                     .for_each(|(all, factor)| *all *= factor);
             }
-            let turned =
-                |(share, node): (f64, &Known)| (share, node.force.turned_ahead(phase - node.phase));
-            forces.extend(nodes.into_iter().map(turned));
+            for (share, node) in nodes {
+                let ahead = phases.iter().zip(&node.phases).map(|(to, from)| to - from);
+                let ahead: Vec<f64> = ahead.collect();
+                forces.push((share, few.forces_ahead(&node.force, &ahead)));
+            }
         }
-        let forces = forces.iter().map(|(share, force)| (*share, force));
-        let forces: Vec<(f64, &ContactForces)> = forces.collect();
+        let forces: Vec<(f64, &ContactForces)> = forces.iter().map(|(s, f)| (*s, f)).collect();
         Some((ContactForces::combined(&forces)?, growth))
     }
 
@@ -130,5 +160,47 @@ impl Climb {
             factors.product()
         };
         (0..nodes.len()).map(|at| (share(at), nodes[at])).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A climb with these points of its last set, frequencies in Hz and heights in m, and points 1 Hz beside a top.
+    fn climb(points: &[(f64, f64)]) -> Climb {
+        let known = points.iter().map(|&(frequency_hz, height_m)| Known {
+            frequency_hz,
+            phases: Vec::new(),
+            height_m,
+            force: ContactForces::default(),
+            growth: Vec::new(),
+        });
+        Climb {
+            known: vec![known.collect()],
+            beside_hz: 1.0,
+        }
+    }
+
+    #[test]
+    fn every_top_of_a_set_begins_the_next_one_where_a_dip_parts_them() {
+        let two = climb(&[(101.0, 0.9), (100.0, 1.0), (103.0, 0.97), (104.0, 0.9)]);
+        assert_eq!(two.tops_hz(0.05), Some(vec![100.0, 103.0]));
+        assert_eq!(two.tops_hz(0.02), Some(vec![100.0]));
+        let flank = climb(&[(100.0, 1.0), (101.0, 0.99), (99.0, 0.98)]);
+        assert_eq!(flank.tops_hz(0.05), Some(vec![100.0]));
+    }
+
+    #[test]
+    fn a_side_that_has_not_fallen_is_looked_at_further_out() {
+        let mut points = vec![(100.0, 1.0), (99.0, 0.99)];
+        assert_eq!(climb(&points).unseen_beside(100.0), Some(101.0));
+        points.push((101.0, 0.999));
+        assert_eq!(climb(&points).unseen_beside(100.0), Some(102.0));
+        points.push((102.0, 0.994));
+        assert_eq!(climb(&points).unseen_beside(100.0), None);
+        let plateau = [(100.0, 1.0), (99.0, 0.99), (101.0, 1.0), (102.0, 1.0)];
+        let plateau = [&plateau[..], &[(103.0, 1.0), (104.0, 1.0)]].concat();
+        assert_eq!(climb(&plateau).unseen_beside(100.0), None);
     }
 }

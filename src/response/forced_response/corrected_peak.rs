@@ -30,7 +30,7 @@ use super::refined_peak::{
 use super::search::find_peak;
 use super::search::{Envelope, SearchSettings, VERTEX_SHARE};
 use crate::response::harmonic_balance::Status;
-use crate::response::receptance::{ContactForces, embedded, overlay, phase_ahead, turned_ahead};
+use crate::response::receptance::{ContactForces, embedded, overlay};
 
 /// How closely tops are followed; precisions are over the tolerance of the peak.
 struct Care {
@@ -53,7 +53,7 @@ const ONE_SET: Care = Care {
 /// Where one set leads to the next: a summit takes half of what was asked for off the peak, a residual a tenth.
 const LED: Care = Care {
     at_top: 0.1,
-    at_side: 3.0,
+    at_side: 1.0,
     of_few: 0.1,
     above: 0.5,
 };
@@ -271,15 +271,15 @@ impl CorrectedSearch<'_> {
         };
         let reach_hz = NEIGHBOURS * top.half_bandwidth_hz;
         for set in 0..self.sets.len() {
+            let starts_hz = climb.tops_hz(MADE_UP).unwrap_or(vec![top.frequency_hz]);
             climb.known.push(Vec::new());
-            self.solve(&mut climb, highest.frequency_hz, self.care.at_top)?;
+            for start_hz in starts_hz {
+                self.solve(&mut climb, start_hz, self.care.at_top)?;
+            }
             if set == 0 {
                 let is_top =
                     |point: &Point| point.frequency_hz.total_cmp(&top.frequency_hz).is_eq();
                 self.few.points.retain(is_top);
-            }
-            if is_lower(climb.known[set][0].height_m, set + 1) {
-                return Ok(None);
             }
             let floor_m = best.map_or(0.0, |best| best.heights_m[set + 1]);
             let (height_m, frequency_hz) = self.climb(&mut climb, reach_hz, floor_m)?;
@@ -357,8 +357,9 @@ impl CorrectedSearch<'_> {
             return self.sets[climb.known.len() - 1].amplitudes_at(frequency_hz);
         }
         self.few.points.retain(|point| !same(point.frequency_hz));
-        let there = (frequency_hz, self.phase(frequency_hz));
-        let (force, growth) = climb.left(climb.known.len(), there)?;
+        let phases = self.phases(frequency_hz)?;
+        let sets = climb.known.len();
+        let (force, growth) = climb.left(sets, frequency_hz, &phases, &self.few.solver)?;
         self.few.solver.load_contact(force);
         let mut amplitudes_m = self.few.amplitudes_at(frequency_hz)?;
         for (amplitude_m, growth) in amplitudes_m.iter_mut().zip(growth) {
@@ -367,26 +368,27 @@ impl CorrectedSearch<'_> {
         Some(amplitudes_m)
     }
 
-    /// Phase of harmonic 1, rad, at a frequency, Hz, ahead of that of the first point with few harmonics alone.
-    fn phase(&self, frequency_hz: f64) -> f64 {
+    /// Phases of harmonic 1, rad, by which the sectors at a frequency, Hz, are ahead of those of the first point with few harmonics alone.
+    fn phases(&self, frequency_hz: f64) -> Option<Vec<f64>> {
         let points = &self.uncorrected.points;
-        let set = self.uncorrected.solver.harmonics();
-        let there = between_turning(points, set, frequency_hz);
-        there.map_or(0.0, |there| phase_ahead(&points[0].solution, &there, set))
+        let solver = &self.uncorrected.solver;
+        let there = between_turning(points, solver, frequency_hz)?;
+        Some(solver.phases_ahead(&points[0].solution, &there))
     }
 
     /// Motions to solve the last of the first `sets` sets from, at a frequency, Hz: those of few harmonics, and of every set on the way
     /// what its own points have beside them.
     fn start(&self, sets: usize, frequency_hz: f64) -> Option<Vec<f64>> {
         let few_set = self.few.solver.harmonics();
-        let few = between_turning(&self.few.points, few_set, frequency_hz)?;
+        let few = between_turning(&self.few.points, &self.few.solver, frequency_hz)?;
         let (mut start, mut set) = (few.clone(), few_set);
         for points in &self.sets[..sets] {
             let larger = points.solver.harmonics();
-            let known = between_turning(&points.points, larger, frequency_hz);
+            let known = between_turning(&points.points, &points.solver, frequency_hz);
             start = if let Some(known) = known {
-                let phase = phase_ahead(&embedded(&known, larger, few_set), &few, few_set);
-                let mut known = turned_ahead(known, larger, phase);
+                let part = embedded(&known, larger, few_set);
+                let phases = self.few.solver.phases_ahead(&part, &few);
+                let mut known = points.solver.turned_ahead(&known, &phases);
                 overlay(&mut known, &few, few_set, larger);
                 known
             } else {
@@ -418,8 +420,9 @@ impl CorrectedSearch<'_> {
         );
         let few_force = self.few.solver.contact_forces_at(&part);
         let mut force = force.beyond(&few_force.ok_or(Status::NotBracketed)?);
-        let phase = self.phase(frequency_hz);
-        if let Some((before, grown)) = climb.left(sets - 1, (frequency_hz, phase)) {
+        let phases = self.phases(frequency_hz).ok_or(Status::NotBracketed)?;
+        let before = climb.left(sets - 1, frequency_hz, &phases, &self.few.solver);
+        if let Some((before, grown)) = before {
             force = ContactForces::combined(&[(1.0, &force), (-1.0, &before)])
                 .ok_or(Status::NotBracketed)?;
             growth
@@ -430,7 +433,7 @@ impl CorrectedSearch<'_> {
         let last_set = &mut self.sets[sets - 1];
         let known = Known {
             frequency_hz,
-            phase,
+            phases,
             height_m: point.largest_amplitude_m(),
             force,
             growth,

@@ -3,7 +3,7 @@
 use super::excited::Excited;
 use super::point::{Point, Slope};
 use crate::response::harmonic_balance::HarmonicBlock;
-use crate::response::receptance::{phase_ahead, turned_ahead};
+use crate::response::receptance::WheelSolver;
 
 /// Share of the frequency within which a point at which most pairs slip tells more than the stuck solution.
 pub(super) const NEAR: f64 = 0.002;
@@ -136,13 +136,11 @@ pub(super) fn between(points: &[Point], frequency_hz: f64) -> Vec<Vec<f64>> {
     starts
 }
 
-/// The line through the solutions next to a frequency, Hz, on either side, which turns with the phase of harmonic 1; the nearest
-/// solution where there is none on one side. The points are of a wheel on receptances in the harmonics `set`.
-///
-/// Near a resonance phases change much and shapes little, and harmonic k turns k times as fast.
+/// Motions between the solutions of `solver` next to a frequency, Hz, on either side; the nearest solution where there is none on one
+/// side.
 pub(super) fn between_turning(
     points: &[Point],
-    set: &[u32],
+    solver: &WheelSolver<'_>,
     frequency_hz: f64,
 ) -> Option<Vec<f64>> {
     let next = |is_below: bool| {
@@ -157,12 +155,7 @@ pub(super) fn between_turning(
         return nearest(points, frequency_hz).map(|point| point.solution.clone());
     };
     let share = (frequency_hz - low.frequency_hz) / (high.frequency_hz - low.frequency_hz);
-    let phase = phase_ahead(&low.solution, &high.solution, set);
-    let mut line = turned_ahead(high.solution.clone(), set, -phase);
-    for (x, low) in line.iter_mut().zip(&low.solution) {
-        *x = (1.0 - share) * low + share * *x;
-    }
-    Some(turned_ahead(line, set, share * phase))
+    Some(solver.between_turning(&low.solution, &high.solution, share))
 }
 
 /// The cubic through two solutions with their slopes at `frequency_hz`; none where a slope is not known.

@@ -1,10 +1,10 @@
 //! Forces at the contact of a wheel beyond those of its springs, in some harmonics.
 
-use super::fields::Field;
-use super::motions::turn;
+use super::fields::{Field, SectorTransform};
+use super::motions::turned_field;
 
 /// Contact forces of a wheel.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct ContactForces {
     pub(super) harmonics: Vec<u32>,
     /// Over the waves, a field per harmonic.
@@ -34,14 +34,14 @@ impl ContactForces {
         }
     }
 
-    /// These forces ahead by a phase of harmonic 1, rad.
-    #[must_use]
-    pub fn turned_ahead(&self, phase: f64) -> Self {
-        let mut turned = self.clone();
-        for (&harmonic, field) in turned.harmonics.iter().zip(&mut turned.fields) {
-            turn(f64::from(harmonic) * phase, &mut field.re, &mut field.im);
+    /// These forces, whose sectors are ahead by phases of harmonic 1, rad.
+    pub(super) fn turned_ahead(&self, transform: &SectorTransform, phases: &[f64]) -> Self {
+        let fields = self.harmonics.iter().zip(&self.fields);
+        let turned = fields.map(|(&k, field)| turned_field(transform, field, k, phases));
+        Self {
+            harmonics: self.harmonics.clone(),
+            fields: turned.collect(),
         }
-        turned
     }
 
     /// The sum of forces in the same harmonics, each with its share; none of no forces.

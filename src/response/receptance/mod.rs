@@ -32,7 +32,7 @@ pub use engine::{
     EngineModel, EngineOptions, EngineWheel, HIGHEST_HARMONIC, Limit, ReceptanceEngine,
 };
 pub use free_waves::{FreeWave, FreeWheel};
-pub use motions::{embedded, overlay, phase_ahead, turned_ahead};
+pub use motions::{embedded, overlay};
 pub use resonances::Resonance;
 pub use wave_force::WaveForce;
 pub use wheel_solver::{SolutionWork, WheelSolution, WheelSolver};

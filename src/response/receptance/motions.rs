@@ -1,12 +1,12 @@
-//! Motions at the contact as one list, harmonic after harmonic: in other harmonics, and at another time.
+//! Motions at the contact as one list, harmonic after harmonic: in other harmonics, and with sectors at another time.
 //!
-//! Of every harmonic the real parts of its waves stand before the imaginary ones. Motions that are ahead by the phase `phi` in
-//! harmonic 1 are ahead by `k phi` in harmonic k.
+//! Of every harmonic the real parts of its waves stand before the imaginary ones. Motions of a sector that are ahead by the phase
+//! `phi` in harmonic 1 are ahead by `k phi` in harmonic k. A pair feels the motions of its sector alone: where they are ahead, so
+//! are its forces.
 
-use crate::linalg::dot;
+use crate::linalg::Complex64;
 
-/// Scalar product over the norms from which on two motions are alike.
-const ALIKE: f64 = 0.8;
+use super::fields::{Field, SectorTransform, padded};
 
 /// Puts motions in the harmonics `from` in the place of those of a solution in `to`.
 pub fn overlay(all: &mut [f64], motions: &[f64], from: &[u32], to: &[u32]) {
@@ -27,74 +27,175 @@ pub fn embedded(motions: &[f64], from: &[u32], to: &[u32]) -> Vec<f64> {
     all
 }
 
-/// Motions in the harmonics `set` ahead by a phase of harmonic 1, rad.
-#[must_use]
-pub fn turned_ahead(mut motions: Vec<f64>, set: &[u32], phase: f64) -> Vec<f64> {
-    let size = motions.len() / set.len().max(1);
-    for (&harmonic, part) in set.iter().zip(motions.chunks_exact_mut(size.max(1))) {
-        let (re, im) = part.split_at_mut(size / 2);
-        turn(f64::from(harmonic) * phase, re, im);
-    }
-    motions
-}
-
-/// Complex numbers times `e^{i angle}`, in place.
-pub(super) fn turn(angle: f64, re: &mut [f64], im: &mut [f64]) {
-    let (sine, cosine) = angle.sin_cos();
-    for (x, y) in re.iter_mut().zip(im) {
-        (*x, *y) = (cosine * *x - sine * *y, sine * *x + cosine * *y);
-    }
-}
-
-/// Phase of harmonic 1, rad, by which the motions `to` are ahead of `from`, both in the harmonics `set`: that after which they are
-/// nearest to each other. 0 where they are not alike even then: between resonances that lie side by side the shape changes with the phase.
-#[must_use]
-pub fn phase_ahead(from: &[f64], to: &[f64], set: &[u32]) -> f64 {
-    let size = from.len() / set.len().max(1);
-    let place = set.iter().position(|&k| k == 1).unwrap_or(0);
-    let parts = |motions| -> (&[f64], &[f64]) {
-        let motions: &[f64] = motions;
-        motions[place * size..][..size].split_at(size / 2)
+/// Motions a `share` of the way from `low` to `high`, both in the harmonics `set`: amplitudes on the line between them, phases on the
+/// way of every sector.
+///
+/// Near a resonance phases change much and shapes little, and harmonic k turns k times as fast.
+pub(super) fn between_turning(
+    transform: &SectorTransform,
+    low: &[f64],
+    high: &[f64],
+    set: &[u32],
+    share: f64,
+) -> Vec<f64> {
+    let ahead = phases_ahead(transform, low, high, set);
+    let turned = |motions: &[f64], part: f64| {
+        let phases: Vec<f64> = ahead.iter().map(|phase| part * phase).collect();
+        turned_ahead(transform, motions, set, &phases)
     };
-    let ((a, b), (c, d)) = (parts(from), parts(to));
-    let (real, imaginary) = (dot(a, c) + dot(b, d), dot(a, d) - dot(b, c));
-    let square = |x: &[f64], y: &[f64]| dot(x, x) + dot(y, y);
-    let least = ALIKE.powi(2) * square(a, b) * square(c, d);
-    if real.powi(2) + imaginary.powi(2) < least {
-        return 0.0;
+    let (low, high) = (turned(low, share), turned(high, share - 1.0));
+    let both = low.iter().zip(high);
+    both.map(|(low, high)| (1.0 - share) * low + share * high)
+        .collect()
+}
+
+/// Motions in the harmonics `set` whose sectors are ahead by phases of harmonic 1, rad.
+pub(super) fn turned_ahead(
+    transform: &SectorTransform,
+    motions: &[f64],
+    set: &[u32],
+    phases: &[f64],
+) -> Vec<f64> {
+    let parts = set.iter().zip(waves_of(motions, set));
+    let turned = parts.flat_map(|(&harmonic, waves)| {
+        let Field { re, im } = turned_field(transform, &waves, harmonic, phases);
+        re.into_iter().chain(im)
+    });
+    turned.collect()
+}
+
+/// A field of a harmonic over the waves whose sectors are ahead by phases of harmonic 1, rad.
+pub(super) fn turned_field(
+    transform: &SectorTransform,
+    waves: &Field,
+    harmonic: u32,
+    phases: &[f64],
+) -> Field {
+    let angles = phases.iter().map(|phase| f64::from(harmonic) * phase);
+    let turns: Vec<(f64, f64)> = angles.map(f64::sin_cos).collect();
+    let mut sectors = over_sectors(transform, waves);
+    let stride = padded(transform.sectors());
+    let rows = sectors.re.chunks_exact_mut(stride);
+    for (re, im) in rows.zip(sectors.im.chunks_exact_mut(stride)) {
+        for ((x, y), (sine, cosine)) in re.iter_mut().zip(im).zip(&turns) {
+            (*x, *y) = (cosine * *x - sine * *y, sine * *x + cosine * *y);
+        }
     }
-    imaginary.atan2(real)
+    let mut turned = Field::zeros_like(waves);
+    transform.to_waves(&sectors, &mut turned);
+    turned
+}
+
+/// Phases of harmonic 1, rad, by which every sector of the motions `to` is ahead of that of `from`, both in the harmonics `set`: those
+/// after which they are nearest to each other.
+pub(super) fn phases_ahead(
+    transform: &SectorTransform,
+    from: &[f64],
+    to: &[f64],
+    set: &[u32],
+) -> Vec<f64> {
+    let fundamental = set.iter().position(|&k| k == 1).unwrap_or(0);
+    let of_fundamental = |motions: &[f64]| {
+        let waves = waves_of(motions, set).nth(fundamental);
+        over_sectors(transform, &waves.unwrap_or_default())
+    };
+    let (from, to) = (of_fundamental(from), of_fundamental(to));
+    let stride = padded(transform.sectors());
+    let phase = |sector: usize| {
+        let rows = (sector..from.re.len()).step_by(stride);
+        let product: Complex64 = rows.map(|row| from.at(row).conj() * to.at(row)).sum();
+        product.arg()
+    };
+    (0..transform.sectors()).map(phase).collect()
+}
+
+/// The fields of motions in the harmonics `set`, over the waves.
+fn waves_of<'a>(motions: &'a [f64], set: &[u32]) -> impl Iterator<Item = Field> + use<'a> {
+    let size = motions.len() / set.len().max(1);
+    motions.chunks_exact(size.max(1)).map(|part| {
+        let (re, im) = part.split_at(part.len() / 2);
+        Field {
+            re: re.to_vec(),
+            im: im.to_vec(),
+        }
+    })
+}
+
+fn over_sectors(transform: &SectorTransform, waves: &Field) -> Field {
+    let mut sectors = Field::zeros_like(waves);
+    transform.to_sectors(waves, &mut sectors);
+    sectors
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn every_harmonic_turns_by_its_number_times_the_phase() {
-        let set = [0, 1, 3];
-        let motions = vec![2.0, 0.0, 0.3, -0.4, 1.0, 0.5];
-        let phase = 0.7_f64;
-        let turned = turned_ahead(motions.clone(), &set, phase);
-        for (place, &harmonic) in set.iter().enumerate() {
-            let (x, y) = (motions[2 * place], motions[2 * place + 1]);
-            let angle = f64::from(harmonic) * phase;
-            let expected = [
-                x * angle.cos() - y * angle.sin(),
-                x * angle.sin() + y * angle.cos(),
-            ];
-            assert!((turned[2 * place] - expected[0]).abs() < 1e-15);
-            assert!((turned[2 * place + 1] - expected[1]).abs() < 1e-15);
-        }
-        assert!((phase_ahead(&motions, &turned, &set) - phase).abs() < 1e-15);
+    /// Motions of sectors that resonate each at a frequency of its own, in harmonics 1 and 3 of one channel, over the waves.
+    fn resonant(transform: &SectorTransform, set: &[u32], frequency: f64) -> Vec<f64> {
+        let sectors = transform.sectors();
+        let fields = set.iter().map(|&harmonic| {
+            let mut field = Field::zeros(1, sectors);
+            for sector in 0..sectors {
+                let distance = frequency - 0.1 * sector as f64;
+                let motion = Complex64::new(1.0, distance).inv();
+                let turned = (motion / motion.norm()).powu(harmonic);
+                field.set(sector, turned * motion.norm() / f64::from(harmonic));
+            }
+            let mut waves = Field::zeros(1, sectors);
+            transform.to_waves(&field, &mut waves);
+            waves
+        });
+        fields
+            .flat_map(|Field { re, im }| re.into_iter().chain(im))
+            .collect()
     }
 
     #[test]
-    fn motions_of_another_shape_have_no_phase() {
-        let (first, turned) = ([1.0, 0.2, 0.0, 0.1], [0.0, -0.1, 1.0, 0.2]);
-        let ahead = phase_ahead(&first, &turned, &[1]);
-        assert!((ahead - 0.5 * std::f64::consts::PI).abs() < 1e-15);
-        let other = [0.2, 1.0, 0.1, 0.3];
-        assert!(phase_ahead(&first, &other, &[1]).abs() < 1e-15);
+    fn every_harmonic_turns_by_its_number_times_the_phase_of_its_sector() {
+        let transform = SectorTransform::new(5);
+        let set = [0, 1, 3];
+        let size = 2 * padded(5);
+        let mut field = Field::zeros(1, 5);
+        (0..5).for_each(|n| field.set(n, Complex64::new(1.0 + n as f64, 0.5 - n as f64)));
+        let mut waves = Field::zeros(1, 5);
+        transform.to_waves(&field, &mut waves);
+        let of_one: Vec<f64> = waves.re.iter().chain(&waves.im).copied().collect();
+        let motions = of_one.repeat(3);
+        let phases = [0.7, -0.2, 0.0, 2.9, -1.3];
+        let turned = turned_ahead(&transform, &motions, &set, &phases);
+        for (harmonic, part) in set.iter().zip(turned.chunks_exact(size)) {
+            let (re, im) = part.split_at(size / 2);
+            let waves = Field {
+                re: re.to_vec(),
+                im: im.to_vec(),
+            };
+            let sectors = over_sectors(&transform, &waves);
+            for (n, phase) in phases.iter().enumerate() {
+                let expected = field.at(n) * Complex64::cis(f64::from(*harmonic) * phase);
+                assert!((sectors.at(n) - expected).norm() < 1e-13);
+            }
+        }
+        let found = phases_ahead(&transform, &motions, &turned, &set);
+        assert!(found.iter().zip(phases).all(|(a, b)| (a - b).abs() < 1e-13));
+    }
+
+    #[test]
+    fn motions_between_two_of_a_resonance_are_nearer_to_it_than_those_on_the_line() {
+        let transform = SectorTransform::new(7);
+        let set = [1, 3];
+        let [low, high, exact] = [-0.2, 0.8, 0.3].map(|at| resonant(&transform, &set, at));
+        let distance = |motions: &[f64]| {
+            let squares = motions.iter().zip(&exact).map(|(a, b)| (a - b).powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        let line: Vec<f64> = low.iter().zip(&high).map(|(a, b)| 0.5 * (a + b)).collect();
+        let turning = between_turning(&transform, &low, &high, &set, 0.5);
+        assert!(
+            distance(&turning) < 0.5 * distance(&line),
+            "{} {}",
+            distance(&turning),
+            distance(&line)
+        );
     }
 }

@@ -9,6 +9,7 @@ use super::contact_equation::{Buffers, ContactEquation, angular, damped};
 use super::contact_forces::ContactForces;
 use super::engine::{EngineWheel, Limit, ReceptanceEngine};
 use super::fields::Field;
+use super::motions::{between_turning, phases_ahead, turned_ahead};
 use super::wave_force::WaveForce;
 use super::wheel_harmonic::WheelHarmonic;
 
@@ -284,6 +285,30 @@ impl<'a> WheelSolver<'a> {
                 Some((harmonic, re.iter().enumerate().map(row).collect()))
             })
             .collect()
+    }
+
+    /// Motions a `share` of the way from those of one solution to those of another, along which every sector turns with its phase.
+    #[must_use]
+    pub fn between_turning(&self, low: &[f64], high: &[f64], share: f64) -> Vec<f64> {
+        between_turning(&self.engine.transform, low, high, &self.set, share)
+    }
+
+    /// Phases of harmonic 1, rad, by which every sector of the motions `to` of a solution is ahead of that of `from`.
+    #[must_use]
+    pub fn phases_ahead(&self, from: &[f64], to: &[f64]) -> Vec<f64> {
+        phases_ahead(&self.engine.transform, from, to, &self.set)
+    }
+
+    /// Motions of a solution whose sectors are ahead by phases of harmonic 1, rad.
+    #[must_use]
+    pub fn turned_ahead(&self, motions: &[f64], phases: &[f64]) -> Vec<f64> {
+        turned_ahead(&self.engine.transform, motions, &self.set, phases)
+    }
+
+    /// Contact forces whose sectors are ahead by phases of harmonic 1, rad.
+    #[must_use]
+    pub fn forces_ahead(&self, forces: &ContactForces, phases: &[f64]) -> ContactForces {
+        forces.turned_ahead(&self.engine.transform, phases)
     }
 
     /// Number of sectors.
