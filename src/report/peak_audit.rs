@@ -37,7 +37,9 @@ pub struct PeakAuditReport {
     pub missed_share: f64,
     /// Rows, `scenario/pattern`, whose peak the sweep beats by more.
     pub missed: Vec<String>,
-    /// Upper bound on the share of such rows in the study, one-sided, of Clopper & Pearson (1934); none without rows.
+    /// Rows, `scenario/pattern`, that are lower than the sweep by more than their stated error; none of a row that states nothing.
+    pub beyond_stated: Vec<String>,
+    /// Upper bound on the share of missed rows in the study, one-sided, of Clopper & Pearson (1934); none without rows.
     pub missed_upper_bound: Option<f64>,
     /// Confidence of that bound.
     pub confidence: f64,
@@ -52,15 +54,16 @@ impl PeakAuditReport {
     #[must_use]
     pub fn new(name: &str, seed: u64, rows: usize, records: &[PeakAuditRecord]) -> Self {
         let sweeps: Vec<_> = records.iter().filter_map(|record| record.swept).collect();
-        let missed: Vec<String> = records
-            .iter()
-            .filter(|record| {
-                record
-                    .under_read()
-                    .is_some_and(|share| share.is_nan() || share > MISSED)
-            })
-            .map(|record| format!("{}/{}", record.scenario.index, record.delivered.pattern))
-            .collect();
+        let lower_by = |most: fn(&PeakAuditRecord) -> Option<f64>| {
+            let is_lower = |record: &&PeakAuditRecord| {
+                let both = record.under_read().zip(most(record));
+                both.is_some_and(|(share, most)| share.is_nan() || share > most)
+            };
+            let rows = records.iter().filter(is_lower);
+            rows.map(|record| format!("{}/{}", record.scenario.index, record.delivered.pattern))
+                .collect::<Vec<String>>()
+        };
+        let missed = lower_by(|_| Some(MISSED));
         let under_read = records.iter().filter_map(PeakAuditRecord::under_read);
         Self {
             name: name.to_owned(),
@@ -77,6 +80,7 @@ impl PeakAuditReport {
                 .then(|| proportion_upper_bound(missed.len() as u64, sweeps.len() as u64)),
             confidence: CONFIDENCE,
             under_read: ErrorDistribution::of(under_read.map(|share| share.max(0.0))),
+            beyond_stated: lower_by(|record| record.delivered.stated_error),
             verified: missed.is_empty(),
             missed,
         }
@@ -115,8 +119,12 @@ impl fmt::Display for PeakAuditReport {
             percent(self.missed_upper_bound),
             100.0 * self.confidence
         )?;
-        if !self.missed.is_empty() {
-            writeln!(f, "missed (scenario/pattern): {}", self.missed.join(", "))?;
+        let lists = [
+            ("missed", &self.missed),
+            ("lower by more than stated", &self.beyond_stated),
+        ];
+        for (what, rows) in lists.into_iter().filter(|(_, rows)| !rows.is_empty()) {
+            writeln!(f, "{what} (scenario/pattern): {}", rows.join(", "))?;
         }
         writeln!(
             f,

@@ -396,11 +396,23 @@ fn a_dense_sweep_of_delivered_rows_counts_the_peaks_that_were_missed() {
 
     tamper(&place, |row| {
         row.peak_amplitude_m = row.peak_amplitude_m.map(|amplitude| 0.998 * amplitude);
+        row.stated_error = Some(if row.pattern % 2 == 0 { 1e-3 } else { 1e-2 });
     });
     forge_digest(&place);
     let missed = place.run(&sweep);
     assert_eq!(missed.code, 11);
-    assert_eq!(json(&missed)["missed"].as_array().map(Vec::len), Some(4));
+    let found = json(&missed);
+    assert_eq!(found["missed"].as_array().map(Vec::len), Some(4));
+    let is_beyond = |row: &&Value| {
+        let pattern = row.as_str().and_then(|row| row.rsplit('/').next());
+        pattern
+            .and_then(|id| id.parse().ok())
+            .is_some_and(|id: u32| id % 2 == 0)
+    };
+    let all = found["missed"].as_array().expect("a list");
+    let beyond: Vec<Value> = all.iter().filter(is_beyond).cloned().collect();
+    assert!(!beyond.is_empty() && beyond.len() < 4, "{all:?}");
+    assert_eq!(found["beyond_stated"], Value::from(beyond));
     let under_read = &json(&missed)["under_read"]["max"];
     assert!((under_read.as_f64().expect("a number") - 2e-3).abs() < 1e-3);
 }
