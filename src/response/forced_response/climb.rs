@@ -79,7 +79,7 @@ impl Climb {
             let has_fallen =
                 |known: &Known| way(known) > 0.0 && known.height_m <= (1.0 - FALL) * best_m;
             let is_flat = furthest < FURTHEST && !self.last_set().iter().any(has_fallen);
-            is_flat.then(|| top_hz + (furthest + 1.0) * side)
+            is_flat.then_some(top_hz + (furthest + 1.0) * side)
         };
         [-self.beside_hz, self.beside_hz]
             .into_iter()
