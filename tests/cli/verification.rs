@@ -396,7 +396,11 @@ fn a_dense_sweep_of_delivered_rows_counts_the_peaks_that_were_missed() {
 
     tamper(&place, |row| {
         row.peak_amplitude_m = row.peak_amplitude_m.map(|amplitude| 0.998 * amplitude);
-        row.stated_error = Some(if row.pattern % 2 == 0 { 1e-3 } else { 1e-2 });
+        row.stated_error = Some(if row.pattern.is_multiple_of(2) {
+            1e-3
+        } else {
+            1e-2
+        });
     });
     forge_digest(&place);
     let missed = place.run(&sweep);
@@ -407,7 +411,7 @@ fn a_dense_sweep_of_delivered_rows_counts_the_peaks_that_were_missed() {
         let pattern = row.as_str().and_then(|row| row.rsplit('/').next());
         pattern
             .and_then(|id| id.parse().ok())
-            .is_some_and(|id: u32| id % 2 == 0)
+            .is_some_and(|id: u32| id.is_multiple_of(2))
     };
     let all = found["missed"].as_array().expect("a list");
     let beyond: Vec<Value> = all.iter().filter(is_beyond).cloned().collect();
