@@ -17,7 +17,7 @@
 //! leave beyond it is one more force, that takes three or four solutions with all of them to know.
 
 use super::climb::{Climb, Known};
-use super::initial_guess::between_turning;
+use super::initial_guess::between_neighbours;
 use super::peak::{Peak, SearchPlan};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
@@ -372,7 +372,7 @@ impl CorrectedSearch<'_> {
     fn phases(&self, frequency_hz: f64) -> Option<Vec<f64>> {
         let points = &self.uncorrected.points;
         let solver = &self.uncorrected.solver;
-        let there = between_turning(points, solver, frequency_hz)?;
+        let there = between_neighbours(points, solver, frequency_hz)?;
         Some(solver.phases_ahead(&points[0].solution, &there))
     }
 
@@ -380,11 +380,11 @@ impl CorrectedSearch<'_> {
     /// what its own points have beside them.
     fn start(&self, sets: usize, frequency_hz: f64) -> Option<Vec<f64>> {
         let few_set = self.few.solver.harmonics();
-        let few = between_turning(&self.few.points, &self.few.solver, frequency_hz)?;
+        let few = between_neighbours(&self.few.points, &self.few.solver, frequency_hz)?;
         let (mut start, mut set) = (few.clone(), few_set);
         for points in &self.sets[..sets] {
             let larger = points.solver.harmonics();
-            let known = between_turning(&points.points, &points.solver, frequency_hz);
+            let known = between_neighbours(&points.points, &points.solver, frequency_hz);
             start = if let Some(known) = known {
                 let part = embedded(&known, larger, few_set);
                 let phases = self.few.solver.phases_ahead(&part, &few);

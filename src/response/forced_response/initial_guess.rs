@@ -138,7 +138,7 @@ pub(super) fn between(points: &[Point], frequency_hz: f64) -> Vec<Vec<f64>> {
 
 /// Motions between the solutions of `solver` next to a frequency, Hz, on either side; the nearest solution where there is none on one
 /// side.
-pub(super) fn between_turning(
+pub(super) fn between_neighbours(
     points: &[Point],
     solver: &WheelSolver<'_>,
     frequency_hz: f64,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::initial_guess::between_turning;
+use super::initial_guess::between_neighbours;
 use super::linear_peaks::LinearPeak;
 use super::observed_amplitude::{ObservedAmplitude, ObservedHarmonic};
 use super::options::ContactCondition;
@@ -151,7 +151,7 @@ impl<'a> ReceptancePoints<'a> {
     }
 
     fn solve(&mut self, frequency_hz: f64, tolerance: f64) -> Result<Point, Status> {
-        let known = between_turning(&self.points, &self.solver, frequency_hz);
+        let known = between_neighbours(&self.points, &self.solver, frequency_hz);
         let mut starts: Vec<Vec<f64>> = known.into_iter().collect();
         if let Some(guide) = self
             .settings
