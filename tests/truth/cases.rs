@@ -21,7 +21,19 @@ const LOADS_OF_STICKING: [f64; 2] = [0.01, 0.9];
 /// Standard deviations of the blades' stiffness, drawn alike.
 const STANDARD_DEVIATIONS: [f64; 3] = [0.01, 0.03, 0.06];
 
-pub const WHEELS: [&str; 6] = ["wheel8", "wheel24", "built-in", "odd", "half", "heavy-ring"];
+pub const WHEELS: [&str; 9] = [
+    "wheel8",
+    "wheel24",
+    "built-in",
+    "odd",
+    "half",
+    "heavy-ring",
+    "wedges",
+    "shrouds",
+    "ground",
+];
+/// Those of them with another damper than a ring.
+pub const OTHER_DAMPERS: [&str; 3] = ["wedges", "shrouds", "ground"];
 
 /// Numbers without pattern (Steele et al. 2014, `splitmix64`).
 struct Numbers(u64);
@@ -67,6 +79,16 @@ fn study_text(wheel: &str, numbers: &mut Numbers) -> String {
             digits(numbers.between(10.0, 25.0)),
         )
     };
+    let damped = |damper: &str, angle: &str, [low, high]: [f64; 2], numbers: &mut Numbers| {
+        format!(
+            "source = \"parametric\"\nparametric = {{ sectors = 9, damper = \"{damper}\", blade_height_m = {}, \
+             blade_stagger_angle_deg = {}, blade_twist_deg = {}, {angle} = {} }}",
+            digits(0.080 * numbers.between(0.85, 1.15)),
+            digits(numbers.between(20.0, 40.0)),
+            digits(numbers.between(10.0, 25.0)),
+            digits(numbers.between(low, high)),
+        )
+    };
     let bundle = |name| format!("source = \"bundle\"\nbundle = {{ path = \"../../{name}\" }}");
     let (ordinary, heavy, thin) = ([0.8, 1.4], [1.6, 2.2], [0.55, 0.75]);
     let (model, order) = match wheel {
@@ -74,12 +96,34 @@ fn study_text(wheel: &str, numbers: &mut Numbers) -> String {
         "built-in" => ("source = \"parametric\"".to_owned(), 3),
         "odd" => (parametric(13, ordinary, ordinary), 4),
         "half" => (parametric(12, ordinary, ordinary), 6),
+        "wedges" => (
+            damped("underplatform", "flank_angle_deg", [25.0, 45.0], numbers),
+            3,
+        ),
+        "shrouds" => (
+            damped("shroud", "shroud_angle_deg", [15.0, 45.0], numbers),
+            2,
+        ),
+        "ground" => (
+            damped(
+                "blade_to_ground",
+                "platform_height_m",
+                [0.005, 0.008],
+                numbers,
+            ),
+            3,
+        ),
         _ => (parametric(16, heavy, thin), 2),
     };
     let (friction, kt, kn) = match wheel {
         "wheel8" => (0.3, 4e8, 8e8),
         "wheel24" => (0.3, 1e8, 2e8),
         "built-in" => (0.15, 1e8, 1e8),
+        _ if OTHER_DAMPERS.contains(&wheel) => {
+            let kt = digits(10.0_f64.powf(numbers.between(7.2, 7.8)));
+            let kn = digits(kt * numbers.between(1.0, 2.0));
+            (digits(numbers.between(0.1, 0.4)), kt, kn)
+        }
         _ => {
             let kt = digits(10.0_f64.powf(numbers.between(7.7, 8.7)));
             let kn = digits(kt * numbers.between(1.0, 2.0));

@@ -78,7 +78,7 @@ const ENGINE_ORDER: u32 = 3;
 
 /// The model with what its contact touches in the next sector as further dofs of the high face, so that every pair lies in
 /// one sector: they have neither stiffness nor mass there.
-fn within_one_sector(mut model: SectorModel) -> SectorModel {
+pub fn within_one_sector(mut model: SectorModel) -> SectorModel {
     let mut copies: Vec<(usize, usize)> = Vec::new();
     let mut next = model.dofs.iter().map(|dof| dof.node).max().unwrap_or(0) + 1;
     for pair in &mut model.contact_pairs {

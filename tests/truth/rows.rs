@@ -9,8 +9,9 @@ use std::time::Instant;
 
 use faer::Mat;
 
-use super::cases::{Condition, Wheel, folder};
+use super::cases::{Condition, OTHER_DAMPERS, Wheel, folder};
 use super::contact::Period;
+use super::dampers::within_one_sector;
 use super::iteration::{Case, solve};
 use super::peak::{Peak, peak};
 use super::sector::Sector;
@@ -26,6 +27,8 @@ const CHECKED: usize = 10;
 const CHANGE_BY_MODES: f64 = 2e-4;
 const FEWEST_MODES: usize = 40;
 const MOST_MODES: usize = 320;
+/// With other dampers than rings, whose pairs more modes stiffen.
+const MOST_MODES_OF_OTHERS: usize = 640;
 
 /// A row of `truth.csv`.
 #[derive(Clone, Debug)]
@@ -145,21 +148,32 @@ pub fn sort(wheel: &str) {
 pub struct Sectors<'a> {
     wheel: &'a Wheel,
     made: BTreeMap<usize, OnceLock<Sector>>,
+    most_modes: usize,
 }
 
 impl<'a> Sectors<'a> {
     pub fn new(wheel: &'a Wheel) -> Self {
         let doubled = |modes: &usize| Some(2 * modes);
         let all = std::iter::successors(Some(FEWEST_MODES), doubled);
-        let made = all.take_while(|modes| *modes <= MOST_MODES);
+        let is_other = OTHER_DAMPERS.contains(&wheel.name.as_str());
+        let most_modes = if is_other {
+            MOST_MODES_OF_OTHERS
+        } else {
+            MOST_MODES
+        };
+        let made = all.take_while(|modes| *modes <= most_modes);
         Self {
             wheel,
             made: made.map(|modes| (modes, OnceLock::new())).collect(),
+            most_modes,
         }
     }
 
     pub fn with(&self, modes: usize) -> &Sector {
-        self.made[&modes].get_or_init(|| Sector::new(&self.wheel.model, modes))
+        self.made[&modes].get_or_init(|| {
+            let model = within_one_sector(self.wheel.model.clone());
+            Sector::new(&model, modes)
+        })
     }
 }
 
@@ -247,7 +261,7 @@ pub fn solve_row(
     let mut found = peak(sector, &case, &period, hint_hz, begin.as_ref());
     while let Some(Peak { top, points, .. }) = &found {
         row.points += points;
-        if row.change_by_modes < CHANGE_BY_MODES || row.modes == MOST_MODES {
+        if row.change_by_modes < CHANGE_BY_MODES || row.modes == sectors.most_modes {
             break;
         }
         let more = sectors.with(2 * row.modes);
