@@ -5,6 +5,7 @@ mod chains;
 mod cylinder;
 mod energy;
 mod limits;
+mod marched;
 mod published;
 mod rigid;
 mod sectors;
