@@ -33,6 +33,8 @@ pub(super) struct Known {
 pub(super) struct Climb {
     /// What is known of the top with every set so far.
     pub(super) known: Vec<Vec<Known>>,
+    /// Frequencies, Hz, that the last set so far began with.
+    pub(super) starts_hz: Vec<f64>,
     /// Distance of points beside the top, Hz.
     pub(super) beside_hz: f64,
 }
@@ -65,9 +67,20 @@ impl Climb {
         Some(tops.map(|at| points[at].frequency_hz).collect())
     }
 
-    /// A frequency beside the top, Hz, on a side on which no point serves, or on which the curve has not fallen. Both sides are looked at
+    /// A frequency, Hz, beside the best point of the last set, one of its tops or where it began, on a side that is not seen. The best moves
+    /// from one top to the next, and would leave the far side of the one before unseen. Tops as in [`Self::tops_hz`].
+    pub(super) fn unseen(&self, made_up: f64) -> Option<f64> {
+        let best_hz = self.best().frequency_hz;
+        let tops_hz = self.tops_hz(made_up).unwrap_or_default();
+        let mut all_hz = [vec![best_hz], tops_hz, self.starts_hz.clone()]
+            .concat()
+            .into_iter();
+        all_hz.find_map(|top_hz| self.unseen_beside(top_hz))
+    }
+
+    /// A frequency beside a top, Hz, on a side on which no point serves, or on which the curve has not fallen. Both sides are looked at
     /// with every set: a harmonic of the last one may meet a resonance of its own on the side that the sets before it have not shown.
-    pub(super) fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
+    fn unseen_beside(&self, top_hz: f64) -> Option<f64> {
         let best_m = self.best().height_m;
         let unseen = |side: f64| {
             let way = |known: &Known| (known.frequency_hz - top_hz) / side;
@@ -178,6 +191,7 @@ mod tests {
         });
         Climb {
             known: vec![known.collect()],
+            starts_hz: Vec::new(),
             beside_hz: 1.0,
         }
     }
@@ -189,6 +203,18 @@ mod tests {
         assert_eq!(two.tops_hz(0.02), Some(vec![100.0]));
         let flank = climb(&[(100.0, 1.0), (101.0, 0.99), (99.0, 0.98)]);
         assert_eq!(flank.tops_hz(0.05), Some(vec![100.0]));
+    }
+
+    #[test]
+    fn where_a_set_began_is_seen_on_both_sides_though_the_best_moved_away() {
+        let points = [(100.0, 0.98), (99.0, 0.99), (98.0, 1.0), (97.0, 0.9)];
+        let mut moved = climb(&points);
+        assert_eq!(moved.unseen(0.05), None);
+        moved.starts_hz = vec![100.0];
+        assert_eq!(moved.unseen(0.05), Some(101.0));
+        // And so is every top that another one parts from the best.
+        let parted = climb(&[&points[..], &[(96.0, 0.97)]].concat());
+        assert_eq!(parted.unseen(0.05), Some(95.0));
     }
 
     #[test]

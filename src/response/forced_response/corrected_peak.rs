@@ -263,6 +263,7 @@ impl CorrectedSearch<'_> {
         self.few.points.clone_from(&self.uncorrected.points);
         let mut climb = Climb {
             known: Vec::new(),
+            starts_hz: Vec::new(),
             beside_hz: self.distance_beside(top),
         };
         let mut highest = Highest {
@@ -271,9 +272,9 @@ impl CorrectedSearch<'_> {
         };
         let reach_hz = NEIGHBOURS * top.half_bandwidth_hz;
         for set in 0..self.sets.len() {
-            let starts_hz = climb.tops_hz(MADE_UP).unwrap_or(vec![top.frequency_hz]);
+            climb.starts_hz = climb.tops_hz(MADE_UP).unwrap_or(vec![top.frequency_hz]);
             climb.known.push(Vec::new());
-            for start_hz in starts_hz {
+            for start_hz in climb.starts_hz.clone() {
                 self.solve(&mut climb, start_hz, self.care.at_top)?;
             }
             if set == 0 {
@@ -337,7 +338,7 @@ impl CorrectedSearch<'_> {
                 return Ok((best.height_m, best.frequency_hz));
             } else if summit.largest > above {
                 self.solve(climb, summit.frequency_hz, self.care.at_top)?;
-            } else if let Some(side_hz) = climb.unseen_beside(best.frequency_hz) {
+            } else if let Some(side_hz) = climb.unseen(MADE_UP) {
                 self.solve(climb, side_hz, self.care.at_side)?;
             } else {
                 return Ok((best.height_m, best.frequency_hz));
