@@ -286,16 +286,15 @@ fn changes_of(tops: &[Vec<JudgedTop>], others: &[Judges<'_>]) -> Vec<Change> {
 
 /// The largest of the changes with friction: under the lowest, the middle and the highest load, and under those between.
 fn of_friction(changes: &[Change], conditions: &[ContactCondition]) -> [f64; 2] {
-    let loads = conditions
-        .iter()
-        .filter(|condition| condition.normal_load_n().is_some());
-    let loads: Vec<ContactCondition> = loads.copied().collect();
+    let loads = conditions.iter().map(|condition| condition.normal_load_n());
+    let mut loads: Vec<f64> = loads.flatten().collect();
+    loads.sort_by(f64::total_cmp);
     let places = [0, loads.len() / 2, loads.len().saturating_sub(1)];
-    let is_spread =
-        |load: ContactCondition| places.iter().any(|&place| loads.get(place) == Some(&load));
+    let spread = places.map(|place| loads.get(place).copied());
     [true, false].map(|wanted| {
         let wanted_changes = { changes.iter() }.filter(|((_, (_, condition)), _)| {
-            condition.normal_load_n().is_some() && is_spread(*condition) == wanted
+            let load = condition.normal_load_n();
+            load.is_some() && spread.contains(&load) == wanted
         });
         wanted_changes.map(|change| change.1).fold(0.0, f64::max)
     })
@@ -495,3 +494,6 @@ fn linear_change(
 fn linear_points(study: &Study, model: &ReducedModel) -> Result<PointSettings, TransformError> {
     PointSettings::new(&study.solver, &[1], None, model.contact.clone())
 }
+
+#[cfg(test)]
+mod tests;

@@ -72,7 +72,8 @@ pub fn pattern_source(study: &Study, model: &SectorModel) -> Result<PatternSourc
     })
 }
 
-/// Mistuned wheels by which the settings of `study` are chosen: of its law, but none of its population, or the first of its file.
+/// Mistuned wheels by which the settings of `study` are chosen: of its law, but none of its population, or the first of its
+/// file and the one that deviates most.
 ///
 /// # Errors
 /// The file of patterns does not fit to the wheel.
@@ -91,8 +92,14 @@ pub(crate) fn judging_patterns(
         }
         MistuningSource::File { .. } => {
             let source = pattern_source(study, model)?;
+            let deviates = |id: u32| {
+                let pattern = source.pattern(id, None);
+                pattern.map_or(0.0, |pattern| pattern.deviations.root_mean_square())
+            };
             let mut ids = source.ids();
+            let most = { ids.iter().copied() }.max_by(|&a, &b| deviates(a).total_cmp(&deviates(b)));
             ids.truncate(JUDGING_PATTERNS as usize);
+            ids.extend(most.filter(|most| !ids.contains(most)));
             (source, ids)
         }
     };

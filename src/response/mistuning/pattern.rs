@@ -16,6 +16,16 @@ pub enum Deviations {
     },
 }
 
+impl Deviations {
+    /// Root mean square of all of them.
+    #[must_use]
+    pub fn root_mean_square(&self) -> f64 {
+        let (Self::PerBlade(values) | Self::PerMode { values, .. }) = self;
+        let squares: f64 = values.iter().map(|value| value.powi(2)).sum();
+        (squares / values.len().max(1) as f64).sqrt()
+    }
+}
+
 /// One mistuning pattern.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pattern {
