@@ -235,3 +235,15 @@ fn thirty_rows_with_shrouds_are_the_full_contact_model() {
 fn mistuned_wheels_with_cylinders_are_the_full_contact_model() {
     hold(&KINDS[4], PATTERNS, MODES);
 }
+
+#[test]
+#[ignore = "minutes: 30 rows"]
+fn thirty_rows_with_a_ring_are_the_full_contact_model() {
+    hold(&KINDS[0], MANY_PATTERNS, MANY_MODES);
+}
+
+#[test]
+#[ignore = "minutes: 30 rows"]
+fn thirty_rows_on_the_ground_are_the_full_contact_model() {
+    hold(&KINDS[3], MANY_PATTERNS, MANY_MODES);
+}
