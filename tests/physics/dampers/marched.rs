@@ -12,7 +12,7 @@ use super::built_in::{KINDS, SECTORS};
 use crate::extremes::wheels::uneven;
 use crate::wheels::{ENGINE_ORDER, Wheel, full, pattern, solve_row};
 
-/// With it the periodic motions of these cases are stable; 0.004 leaves the march of most of them without a period.
+/// With it the periodic motions of these cases are stable.
 const LOSS_FACTOR: f64 = 0.02;
 /// Largest difference of the largest amplitude of a blade, relative.
 const BAR: f64 = 5e-3;
