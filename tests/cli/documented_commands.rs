@@ -9,11 +9,12 @@ use crate::blisk::{GOOD, Place};
 use crate::documentation::{PROGRAM, commands, pages};
 
 /// Study files of the documents, and the names of the studies that stand in for them.
-const STUDIES: [(&str, &str); 6] = [
+const STUDIES: [(&str, &str); 7] = [
     ("study.toml", "small"),
     ("data/study.toml", "small"),
     ("ring.toml", "quickstart"),
     ("studies/quickstart.toml", "quickstart"),
+    ("studies/underplatform.toml", "underplatform"),
     ("studies/calculix/study_rest.toml", "calculix-rest"),
     ("studies/calculix/study_speed.toml", "calculix-speed"),
 ];
