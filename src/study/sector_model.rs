@@ -219,7 +219,7 @@ fn check_contact(study: &Study, model: &SectorModel) -> Result<(), StudyError> {
 /// What is accepted in the place of a law along the first tangent, where a pair rubs along the second alone; none for other laws, and
 /// where no pair does.
 fn law_for_tangents(law: ContactLaw, model: &SectorModel) -> Option<String> {
-    if law != ContactLaw::MacroSlip1d {
+    if law.tangents() > 1 {
         return None;
     }
     let tangents = pair_tangents(model);

@@ -14,12 +14,6 @@ use rustfft::FftPlanner;
 use super::contact::random::Random;
 use super::wheels::{Wheel, full, springs};
 
-const LAWS: [ContactLaw; 4] = [
-    ContactLaw::MacroSlip1d,
-    ContactLaw::MacroSlip2d,
-    ContactLaw::Simplified3d,
-    ContactLaw::Coulomb3d,
-];
 const DAMPINGS: [Damping; 3] = [
     Damping::StructuralLossFactor(0.002),
     Damping::ModalRatio(0.001),
@@ -245,7 +239,7 @@ mod derivative {
         let mut random = Random(5);
         let wheel8 = Wheel::wheel8();
         let (mut columns, mut kinks, mut worst) = (0, 0, 0.0_f64);
-        for law in LAWS {
+        for law in ContactLaw::ALL {
             let mut mixed = 0.0_f64;
             for (damping, harmonics, tuned) in settings() {
                 let wheel = Wheel {
@@ -290,9 +284,10 @@ mod derivative {
 
     /// Share of the pairs in the state that is the hardest the law knows.
     fn share_at_work(law: ContactLaw, state: &Linearised) -> f64 {
-        match law {
-            ContactLaw::MacroSlip1d | ContactLaw::MacroSlip2d => state.slipping,
-            ContactLaw::Simplified3d | ContactLaw::Coulomb3d => state.separated,
+        if law.has_variable_load() {
+            state.separated
+        } else {
+            state.slipping
         }
     }
 

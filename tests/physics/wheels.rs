@@ -40,10 +40,7 @@ pub fn springs(law: ContactLaw, sector: PairParameters) -> ContactStiffness {
     ContactStiffness {
         normal_n_per_m: sector.normal_stiffness_n_per_m,
         tangential_1_n_per_m: kt,
-        tangential_2_n_per_m: match law {
-            ContactLaw::MacroSlip1d => 0.0,
-            ContactLaw::MacroSlip2d | ContactLaw::Simplified3d | ContactLaw::Coulomb3d => kt,
-        },
+        tangential_2_n_per_m: if law.tangents() == 1 { 0.0 } else { kt },
     }
 }
 

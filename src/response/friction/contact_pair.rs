@@ -83,26 +83,6 @@ impl PairParameters {
             friction_coefficient: factors.friction_coefficient * self.friction_coefficient,
         }
     }
-
-    /// Whether the pair certainly sticks throughout, in contact and with zero offset, if its
-    /// displacement along n, t1, t2 never exceeds `excursions_m`: `kt |x| < mu (N0 - kn |g|)`.
-    #[must_use]
-    pub fn surely_sticks(&self, law: ContactLaw, excursions_m: [f64; 3]) -> bool {
-        let [normal, first, second] = excursions_m;
-        let load = if law.has_variable_load() {
-            self.normal_load_n - self.normal_stiffness_n_per_m * normal
-        } else {
-            self.normal_load_n
-        };
-        let (lowest_load, tangential) = match law {
-            ContactLaw::MacroSlip1d => (load, first),
-            ContactLaw::MacroSlip2d | ContactLaw::Simplified3d => (load, first.max(second)),
-            ContactLaw::Coulomb3d => (load, first.hypot(second)),
-        };
-        lowest_load > 0.0
-            && self.tangential_stiffness_n_per_m * tangential
-                < self.friction_coefficient * lowest_load
-    }
 }
 
 /// Relative displacement `u_blisk - u_ring` of a pair over one period, m; each history has
@@ -229,17 +209,6 @@ impl ContactHistory {
         &self.normal_correction
     }
 
-    /// Tangential corrections along t1 and t2, N (`n_samples` each): the offsets of the sliders.
-    #[must_use]
-    pub fn tangential_correction_n(&self) -> [&[f64]; 2] {
-        match self.law {
-            ContactLaw::MacroSlip1d | ContactLaw::MacroSlip2d | ContactLaw::Simplified3d => {
-                self.sliders.each_ref().map(PeriodicSlider::offset_n)
-            }
-            ContactLaw::Coulomb3d => self.coupled.offset_n(),
-        }
-    }
-
     /// Slider of `coulomb_3d`.
     #[must_use]
     pub fn coupled_slider(&self) -> &CoupledSlider {
@@ -250,12 +219,5 @@ impl ContactHistory {
     #[must_use]
     pub fn sliders(&self) -> &[PeriodicSlider; 2] {
         &self.sliders
-    }
-
-    /// Mean friction force along t1 and t2 that the displacements without their means cause, N.
-    #[must_use]
-    pub fn mean_friction_n(&self) -> [f64; 2] {
-        let mean = |offset: &[f64]| offset.iter().sum::<f64>() / offset.len() as f64;
-        self.tangential_correction_n().map(mean)
     }
 }

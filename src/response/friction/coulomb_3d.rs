@@ -11,10 +11,21 @@
 //! `simplified_3d` gives; in general that law allows forces up to `sqrt(2) mu N`, since either
 //! tangent has a limit of its own, and its answer depends on how the tangents are turned.
 
-use super::{ContactHistory, PairDisplacement, PairParameters, PairState};
+use super::contact_march::LoadedStep;
+use super::friction_circle::slide_on_circle;
+use super::law_parts::{LawParts, TangentialFriction};
+use super::{ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState};
+
+pub(super) const LAW: LawParts = LawParts {
+    name: "coulomb_3d",
+    has_variable_load: true,
+    friction: TangentialFriction::FrictionCircle,
+    respond,
+    march,
+};
 
 /// Fills `history` with the response to `displacement`.
-pub(super) fn respond(
+fn respond(
     history: &mut ContactHistory,
     parameters: &PairParameters,
     displacement: PairDisplacement<'_>,
@@ -32,4 +43,22 @@ pub(super) fn respond(
         separated,
         unclosed: !history.coupled.is_closed(),
     };
+}
+
+/// A step in time: both directions on the friction circle of radius `mu N(t)`.
+fn march(parameters: &PairParameters, before: &PairMemory, displacement_m: [f64; 3]) -> PairMemory {
+    let step = LoadedStep::new(parameters, before, displacement_m);
+    let mut after = step.open(displacement_m);
+    if step.load_after > 0.0 {
+        let (mu, kt) = (
+            parameters.friction_coefficient,
+            parameters.tangential_stiffness_n_per_m,
+        );
+        (after.friction_n, after.slipping) = slide_on_circle(
+            step.start,
+            step.path.map(|path| kt * path),
+            [mu * step.load_before, mu * step.load_after],
+        );
+    }
+    after
 }

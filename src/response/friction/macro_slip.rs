@@ -4,19 +4,36 @@
 //! The normal spring is bilateral (no correction). Under `macro_slip_1d` nothing acts along t2, so its linear limits
 //! have no spring along t2 either. A pair without normal load counts as separated.
 
-use super::{ContactHistory, PairDisplacement, PairParameters, PairState};
+use super::law_parts::{LawParts, TangentialFriction};
+use super::{ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState};
 
-/// Fills `history` with the response to `displacement`.
-pub(super) fn respond(
+pub(super) const ALONG_ONE: LawParts = LawParts {
+    name: "macro_slip_1d",
+    has_variable_load: false,
+    friction: TangentialFriction::Jenkins { tangents: 1 },
+    respond: |history, parameters, displacement| respond(history, parameters, displacement, 1),
+    march: |parameters, before, displacement_m| march(parameters, before, displacement_m, 1),
+};
+pub(super) const ALONG_BOTH: LawParts = LawParts {
+    name: "macro_slip_2d",
+    has_variable_load: false,
+    friction: TangentialFriction::Jenkins { tangents: 2 },
+    respond: |history, parameters, displacement| respond(history, parameters, displacement, 2),
+    march: |parameters, before, displacement_m| march(parameters, before, displacement_m, 2),
+};
+
+/// Fills `history` with the response to `displacement`, with friction along the first `tangents`.
+fn respond(
     history: &mut ContactHistory,
     parameters: &PairParameters,
     displacement: PairDisplacement<'_>,
+    tangents: usize,
 ) {
     history.normal_load.fill(parameters.normal_load_n);
     history.normal_correction.fill(0.0);
     let mut slipping = false;
     for (tangent, slider) in history.sliders.iter_mut().enumerate() {
-        if tangent < history.law.tangents() {
+        if tangent < tangents {
             slipping |= slider.solve_drifting(
                 parameters.tangential_stiffness_n_per_m,
                 parameters.friction_coefficient,
@@ -33,6 +50,29 @@ pub(super) fn respond(
         separated: parameters.normal_load_n <= 0.0,
         unclosed: false,
     };
+}
+
+/// A step in time, with friction along the first `tangents`.
+fn march(
+    parameters: &PairParameters,
+    before: &PairMemory,
+    displacement_m: [f64; 3],
+    tangents: usize,
+) -> PairMemory {
+    let limit = parameters.friction_coefficient * parameters.normal_load_n;
+    let mut after = PairMemory {
+        displacement_m,
+        signed_load_n: parameters.normal_load_n,
+        ..PairMemory::default()
+    };
+    for tangent in 0..tangents {
+        let path = displacement_m[1 + tangent] - before.displacement_m[1 + tangent];
+        let spring = parameters.tangential_stiffness_n_per_m * path;
+        let trial = before.friction_n[tangent] + spring;
+        after.friction_n[tangent] = trial.clamp(-limit, limit);
+        after.slipping |= trial.abs() > limit;
+    }
+    after
 }
 
 #[cfg(test)]

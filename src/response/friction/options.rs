@@ -2,63 +2,17 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Contact law of a node pair.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+/// Contact law of a node pair. What each is stands in its file, and the list of all in `laws.rs`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ContactLaw {
     /// Friction along the first tangent only, limit `mu N0`; normal spring bilateral where given.
-    #[serde(rename = "macro_slip_1d")]
     MacroSlip1d,
     /// Friction along both tangents, each by itself, limit `mu N0`; normal spring bilateral where given.
-    #[serde(rename = "macro_slip_2d")]
     MacroSlip2d,
     /// Variable normal load `max(0, N0 + kn g)` and two independent tangential Jenkins elements.
-    #[serde(rename = "simplified_3d")]
     Simplified3d,
     /// Variable normal load `max(0, N0 + kn g)` and both tangents coupled by the friction circle.
-    #[serde(rename = "coulomb_3d")]
     Coulomb3d,
-}
-
-impl ContactLaw {
-    /// Whether the normal load follows the normal displacement.
-    #[must_use]
-    pub fn has_variable_load(self) -> bool {
-        match self {
-            Self::MacroSlip1d | Self::MacroSlip2d => false,
-            Self::Simplified3d | Self::Coulomb3d => true,
-        }
-    }
-
-    /// Name in a study.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::MacroSlip1d => "macro_slip_1d",
-            Self::MacroSlip2d => "macro_slip_2d",
-            Self::Simplified3d => "simplified_3d",
-            Self::Coulomb3d => "coulomb_3d",
-        }
-    }
-
-    /// Tangents along which there is friction, and a spring of the linear limits: t1, or both.
-    #[must_use]
-    pub fn tangents(self) -> usize {
-        match self {
-            Self::MacroSlip1d => 1,
-            Self::MacroSlip2d | Self::Simplified3d | Self::Coulomb3d => 2,
-        }
-    }
-
-    /// Springs along n, t1, t2 of a pair with these stiffnesses, N/m.
-    #[must_use]
-    pub fn springs(self, normal_n_per_m: f64, tangential_n_per_m: f64) -> [f64; 3] {
-        let second = match self.tangents() {
-            1 => 0.0,
-            _ => tangential_n_per_m,
-        };
-        [normal_n_per_m, tangential_n_per_m, second]
-    }
 }
 
 /// What a free ring does under mean friction.

@@ -7,10 +7,20 @@
 //!
 //! For y see [`PeriodicSlider`](super::PeriodicSlider).
 
-use super::{ContactHistory, PairDisplacement, PairParameters, PairState};
+use super::contact_march::LoadedStep;
+use super::law_parts::{LawParts, TangentialFriction};
+use super::{ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState};
+
+pub(super) const LAW: LawParts = LawParts {
+    name: "simplified_3d",
+    has_variable_load: true,
+    friction: TangentialFriction::Jenkins { tangents: 2 },
+    respond,
+    march,
+};
 
 /// Fills `history` with the response to `displacement`.
-pub(super) fn respond(
+fn respond(
     history: &mut ContactHistory,
     parameters: &PairParameters,
     displacement: PairDisplacement<'_>,
@@ -32,4 +42,20 @@ pub(super) fn respond(
         separated,
         unclosed: false,
     };
+}
+
+/// A step in time: two independent directions with the limit `mu N(t)`.
+fn march(parameters: &PairParameters, before: &PairMemory, displacement_m: [f64; 3]) -> PairMemory {
+    let step = LoadedStep::new(parameters, before, displacement_m);
+    let limit = parameters.friction_coefficient * step.load_after.max(0.0);
+    let mut after = step.open(displacement_m);
+    if step.load_after > 0.0 {
+        for ((friction, start), path) in after.friction_n.iter_mut().zip(step.start).zip(step.path)
+        {
+            let trial = start + parameters.tangential_stiffness_n_per_m * path;
+            *friction = trial.clamp(-limit, limit);
+            after.slipping |= trial.abs() > limit;
+        }
+    }
+    after
 }

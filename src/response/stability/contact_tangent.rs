@@ -65,7 +65,7 @@ pub(super) fn step_change(
     }
     let normal = pair.normal_stiffness_n_per_m;
     let mut friction = [FrictionChange::None; 2];
-    if law == ContactLaw::Coulomb3d && (after.slipping || before.separated()) {
+    if law.couples_tangents() && (after.slipping || before.separated()) {
         friction = differenced(law, pair, before, after).map(FrictionChange::Moves);
     } else {
         for (tangent, change) in friction.iter_mut().take(law.tangents()).enumerate() {
@@ -219,14 +219,8 @@ mod tests {
             [-0.8, 0.3, 0.0],
             [0.3, 0.25, 0.9],
         ];
-        let laws = [
-            ContactLaw::MacroSlip1d,
-            ContactLaw::MacroSlip2d,
-            ContactLaw::Simplified3d,
-            ContactLaw::Coulomb3d,
-        ];
         let (mut sticking, mut moving) = (0, 0);
-        for law in laws {
+        for law in ContactLaw::ALL {
             for mut start in starts {
                 if !law.has_variable_load() {
                     start.signed_load_n = 1.0;

@@ -33,9 +33,10 @@ pub(super) fn levels(
             HarmonicLevel::Set(_) => true,
             HarmonicLevel::Automatic(tolerance) => *tolerance <= accepted,
         },
-        // The springs of `macro_slip_1d` are others, and its error is beyond anything that is asked for.
+        // A law without a spring along t2 has other limits, and its error is beyond anything that is asked for.
         Knob::ContactLaw => {
-            let simpler = accuracy.simpler_contact_law && setting.law != ContactLaw::MacroSlip1d;
+            let has_its_springs = setting.law.tangents() == base.law.tangents();
+            let simpler = accuracy.simpler_contact_law && has_its_springs;
             simpler || setting.law == base.law
         }
         Knob::SamplesPerPeriod

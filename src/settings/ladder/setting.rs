@@ -312,12 +312,7 @@ impl LadderSpace {
     /// Laws that are simpler than that of the study, and this.
     #[must_use]
     pub fn laws(&self) -> Vec<ContactLaw> {
-        let all = [
-            ContactLaw::MacroSlip1d,
-            ContactLaw::MacroSlip2d,
-            ContactLaw::Simplified3d,
-            ContactLaw::Coulomb3d,
-        ];
+        let all = ContactLaw::ALL;
         let last = all.iter().position(|&law| law == self.law).unwrap_or(0);
         all[..=last].to_vec()
     }

@@ -160,11 +160,10 @@ fn resolve(
         .map(|table| contact_options(check, table));
     if let Some(contact) = &contact {
         normal_stiffness(check, contact);
-        if contact.law == ContactLaw::Coulomb3d && contact.ring == Ring::Creeping {
-            check.conflict(
-                "contact.ring",
-                "coulomb_3d is solved with a locked ring only; accepted: \"locked\"",
-            );
+        if contact.law.couples_tangents() && contact.ring == Ring::Creeping {
+            let law = contact.law.name();
+            let reason = format!("{law} is solved with a locked ring only; accepted: \"locked\"");
+            check.conflict("contact.ring", &reason);
         }
     }
     let variation = file
@@ -396,13 +395,13 @@ fn contact_options(check: &mut Check, table: &ContactTable) -> ContactOptions {
 
 fn normal_stiffness(check: &mut Check, contact: &ContactOptions) {
     let key = "contact.normal_stiffness_n_per_m";
-    match (contact.law, contact.normal_stiffness_n_per_m) {
-        (ContactLaw::Simplified3d | ContactLaw::Coulomb3d, None) => {
+    match contact.normal_stiffness_n_per_m {
+        None if contact.law.has_variable_load() => {
             check.missing(key);
         }
-        (_, Some(value)) => {
+        Some(value) => {
             check.judged(key, value);
         }
-        _ => {}
+        None => {}
     }
 }

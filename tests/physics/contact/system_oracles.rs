@@ -20,13 +20,6 @@ use blisk::response::mistuning::{ModalRows, StructuralModes};
 use super::super::wheels::{Wheel, full, relative, solve_row};
 use super::random::Random;
 
-const LAWS: [ContactLaw; 4] = [
-    ContactLaw::MacroSlip1d,
-    ContactLaw::MacroSlip2d,
-    ContactLaw::Simplified3d,
-    ContactLaw::Coulomb3d,
-];
-
 /// The mass under the force `force cos(omega t)` with a Jenkins element to the ground.
 fn oscillator(
     law: ContactLaw,
@@ -108,7 +101,7 @@ fn stiff_spring_and_many_harmonics_tend_to_den_hartog() {
         let g = (PI / b).sin() / (b * (1.0 + (PI / b).cos()));
         let formula = (v * v - (friction * g).powi(2)).sqrt();
         assert!((formula - exact).abs() < 1e-9, "{formula} {exact}");
-        for law in LAWS {
+        for law in ContactLaw::ALL {
             let mut x = vec![0.0; 2 * harmonics.len()];
             let mut values = Vec::new();
             // The spring is stiffened step by step, each solution the start of the next.
@@ -145,7 +138,7 @@ fn friction_alone_bounds_the_resonance_if_the_force_is_below_4_mu_n_over_pi() {
     // into friction, F = A w c_eq(A), whence A = (mu N / kt) / (1 - pi F / (4 mu N)) at most. Every
     // smaller amplitude belongs to one frequency below and one above.
     let (kt, limit) = (0.8, 1.0);
-    for law in LAWS {
+    for law in ContactLaw::ALL {
         for share in [0.3, 0.85, 0.99] {
             let force = share * 4.0 * limit / PI;
             let highest = limit / kt / (1.0 - share);
@@ -184,7 +177,7 @@ fn friction_alone_does_not_bound_the_resonance_if_the_force_is_above_4_mu_n_over
     let (kt, limit) = (0.8, 1.0);
     let harmonics = [1, 3, 5];
     let wave = 4.0 * limit / PI;
-    for law in LAWS {
+    for law in ContactLaw::ALL {
         for share in [1.05, 1.5] {
             let force = share * wave;
             let system = oscillator(law, &harmonics, 1 << 12, force, kt, limit);
@@ -231,7 +224,7 @@ fn the_share_of_the_period_in_slip_is_that_of_the_hysteresis_loop() {
     const SAMPLES: usize = 4096;
     let (kt, limit) = (2.0, 0.5);
     let least = limit / kt;
-    for law in LAWS {
+    for law in ContactLaw::ALL {
         let system = oscillator(law, &[1], SAMPLES, 1.0, kt, limit);
         let mut workspace = system.workspace();
         for ratio in [0.5, 0.999, 1.001, 1.5, 4.0, 100.0] {

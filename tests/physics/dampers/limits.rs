@@ -9,13 +9,6 @@ use super::built_in::{KINDS, SECTORS};
 use crate::extremes::wheels::uneven;
 use crate::wheels::{Wheel, full, pattern, relative, solve_row};
 
-const LAWS: [ContactLaw; 4] = [
-    ContactLaw::MacroSlip1d,
-    ContactLaw::MacroSlip2d,
-    ContactLaw::Simplified3d,
-    ContactLaw::Coulomb3d,
-];
-
 /// Peak of a mistuned wheel under a friction coefficient and a condition of its contact.
 fn peak(wheel: &Wheel, friction_coefficient: f64, condition: ContactCondition) -> ResponseRow {
     let sector = PairParameters {
@@ -45,7 +38,7 @@ fn amplitude_m(row: &ResponseRow) -> f64 {
 #[test]
 fn as_friction_vanishes_every_kind_slides_under_every_law() {
     for kind in &KINDS {
-        for law in LAWS {
+        for law in ContactLaw::ALL {
             let wheel = kind.wheel(law);
             let slide = amplitude_m(&peak(&wheel, 0.3, ContactCondition::Slide));
             // So high a load that no pair separates.
@@ -73,7 +66,7 @@ fn as_friction_vanishes_every_kind_slides_under_every_law() {
 #[test]
 fn no_load_and_much_load_are_the_linear_limits_of_every_kind() {
     for kind in &KINDS {
-        for law in LAWS {
+        for law in ContactLaw::ALL {
             let wheel = kind.wheel(law);
             let of = |condition| amplitude_m(&peak(&wheel, 0.3, condition));
             let [slide, stuck] = [ContactCondition::Slide, ContactCondition::Stuck].map(of);

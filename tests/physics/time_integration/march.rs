@@ -18,12 +18,7 @@ fn a_jenkins_loop_point_by_point() {
     let parameters = pair(3.0, 0.0, 2.0, 1.0);
     let path = [5.0, 3.5, 2.0, -5.0, -3.5, -2.0, 0.0];
     let expected = [3.0, 0.0, -3.0, -3.0, 0.0, 3.0, 3.0];
-    for law in [
-        ContactLaw::MacroSlip1d,
-        ContactLaw::MacroSlip2d,
-        ContactLaw::Simplified3d,
-        ContactLaw::Coulomb3d,
-    ] {
+    for law in ContactLaw::ALL {
         let mut memory = PairMemory::at_rest(&parameters);
         for (u, force) in path.into_iter().zip(expected) {
             memory = march(law, &parameters, &memory, [0.0, u, 0.0]);

@@ -331,16 +331,9 @@ pub(in crate::response::harmonic_balance) mod tests {
         (condensed, whole, shares)
     }
 
-    const LAWS: [ContactLaw; 4] = [
-        ContactLaw::MacroSlip1d,
-        ContactLaw::MacroSlip2d,
-        ContactLaw::Simplified3d,
-        ContactLaw::Coulomb3d,
-    ];
-
     #[test]
     fn the_step_by_contact_forces_is_that_of_the_whole_jacobian() {
-        for law in LAWS {
+        for law in ContactLaw::ALL {
             for harmonics in [&[1][..], &[1, 3], &[0, 1, 2]] {
                 let system = system(law, harmonics, 64);
                 let (mut condensed, whole, shares) = factored(&system, &state(&system));
@@ -360,7 +353,7 @@ pub(in crate::response::harmonic_balance) mod tests {
     #[test]
     fn the_step_by_contact_forces_undoes_a_small_one() {
         let change = 1e-7;
-        for law in LAWS {
+        for law in ContactLaw::ALL {
             let system = system(law, &[1, 3], 64);
             let x = state(&system);
             let (mut condensed, _, _) = factored(&system, &x);

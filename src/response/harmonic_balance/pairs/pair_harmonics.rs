@@ -163,7 +163,7 @@ impl PairHarmonics {
                 &mut self.scratch,
             );
         }
-        if self.law == ContactLaw::Coulomb3d {
+        if self.law.couples_tangents() {
             let slider = self.history.coupled_slider();
             if slider.is_slipping() {
                 self.transform
@@ -189,7 +189,7 @@ impl PairHarmonics {
     /// Blocks of the Jacobian that are not zero, into cleared blocks.
     fn differentiate(&mut self, parameters: &PairParameters, jacobian: &mut PairJacobian) {
         let variable_load = self.law.has_variable_load();
-        if self.law != ContactLaw::Coulomb3d {
+        if !self.law.couples_tangents() {
             self.history.locate_clips();
         }
         let Self {
@@ -207,7 +207,7 @@ impl PairHarmonics {
         if variable_load && history.state().separated {
             slopes.normal(sums, history.normal_load_n(), jacobian);
         }
-        if self.law == ContactLaw::Coulomb3d {
+        if self.law.couples_tangents() {
             let slopes = Slopes {
                 tangential_n_per_m: parameters.tangential_stiffness_n_per_m,
                 limit_n_per_m: slopes.limit(),
