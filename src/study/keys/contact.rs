@@ -16,12 +16,12 @@ const SPEED: Value = Number(Range::above(0.0).up_to(1e6));
 toml_table! {
     /// `[contact]`.
     pub(in crate::study) struct ContactTable {
-        law: ContactLaw = key(Name(&["simplified_3d", "coulomb_3d", "macro_slip_2d", "macro_slip_1d"]), "`\"simplified_3d\"`",
-            "`coulomb_3d` has the friction circle, `macro_slip_2d` a constant normal load ([formulation.md](formulation.md))"),
+        law: ContactLaw = key(Name(&ContactLaw::NAMES), "`\"simplified_3d\"`",
+            "from simple to full: `macro_slip_1d` and `macro_slip_2d` have a constant normal load, `coulomb_3d` the friction circle ([formulation.md](formulation.md))"),
         friction_coefficient: f64 = key(Number(Range::from_to(0.0, 10.0)), REQUIRED, ""),
         tangential_stiffness_n_per_m: f64 = key(ABOVE_ZERO, REQUIRED,
             "N/m per sector, shared out over the pairs by weight").and(", in N/m"),
-        normal_stiffness_n_per_m: f64 = key(ABOVE_ZERO, "required for `simplified_3d` and `coulomb_3d`; none otherwise",
+        normal_stiffness_n_per_m: f64 = key(ABOVE_ZERO, "required by laws with a variable normal load; none otherwise",
             "N/m per sector, shared out likewise").and(", in N/m").or_null(),
         ring: Ring = key(Name(&["locked", "creeping"]), "`\"locked\"`",
             "`creeping`: a ring that is free drifts so that friction has no mean along its rigid motions; not with `coulomb_3d` ([formulation.md](formulation.md))"),
