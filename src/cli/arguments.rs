@@ -73,11 +73,12 @@ pub enum Command {
     Status(StatusArguments),
     /// Amplitude of every blade over frequency, for one pattern and one contact condition.
     Response(ResponseArguments),
-    /// Solve one delivered row again and say whether it is the same bit for bit.
+    /// Solve one delivered row again; the older name of that question of `verify`.
+    #[command(hide = true)]
     Replay(ReplayArguments),
-    /// Solve a random sample of delivered rows again, on the same path and on the full-contact model.
+    /// Solve delivered rows again, a random sample or one, on the same path and on the full-contact model.
     ///
-    /// Writes verification.parquet into the results folder.
+    /// A sample writes verification.parquet into the results folder, one row writes nothing.
     Verify(VerifyArguments),
     /// Compare a percentile between scenarios, on common patterns where there are any.
     ///
@@ -178,7 +179,7 @@ pub const GROUPS: [(&str, &[&str]); 7] = [
     ("Model", &["model", "campbell", "import"]),
     ("Solve", &["run", "optimum", "estimate", "response"]),
     ("Read and decide", &["stats", "report", "plot", "compare"]),
-    ("Trust", &["tradeoff", "replay", "verify"]),
+    ("Trust", &["tradeoff", "verify"]),
     ("Several machines", &["status", "merge", "slurm"]),
     ("Set-up", &["schema", "completions", "man"]),
 ];

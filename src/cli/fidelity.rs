@@ -59,6 +59,22 @@ pub struct FidelityArguments {
 }
 
 impl FidelityArguments {
+    /// Whether any of them is on the command line, but for what is the default.
+    pub(super) fn is_stated(&self) -> bool {
+        self.fidelity != Fidelity::Reduced || self.harmonics.is_some() || self.samples.is_some()
+    }
+
+    /// Refuses other harmonics and samples for a row that is solved again on the model of the study.
+    pub(super) fn is_of_one_row(&self) -> Result<(), Failure> {
+        if self.fidelity == Fidelity::Reduced && self.is_stated() {
+            return Err(Failure::usage(
+                "a row is solved again with its own harmonics and samples; accepted: --harmonics and --samples with --fidelity full"
+                    .to_owned(),
+            ));
+        }
+        Ok(())
+    }
+
     /// The study with these harmonics and samples.
     pub(super) fn applied_to(&self, mut study: Study) -> Result<Study, Failure> {
         if study.accuracy.is_some() && (self.harmonics.is_some() || self.samples.is_some()) {

@@ -24,7 +24,8 @@ pub(super) fn command(
     let out = &arguments.out;
     let mut program = program.disable_help_subcommand(true);
     program.build();
-    let commands = program.get_subcommands().cloned();
+    let commands = program.get_subcommands().filter(|page| !page.is_hide_set());
+    let commands = commands.cloned();
     let pages: Vec<_> = std::iter::once(program.clone()).chain(commands).collect();
     for page in &pages {
         // A page is of a version, not of a build.

@@ -1,4 +1,4 @@
-//! `blisk replay`: one delivered row solved again.
+//! One delivered row solved again: a question of `blisk verify`, and of `replay`, its older name.
 
 use std::fmt::{self, Write};
 use std::path::PathBuf;
@@ -8,8 +8,8 @@ use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 use super::exit::Failure;
-use super::fidelity::{Fidelity, FidelityArguments};
-use super::{ExitStatus, output, verify};
+use super::fidelity::FidelityArguments;
+use super::{ExitStatus, output};
 use crate::campaign::{Replay, ReplayRequest, StoredStudy, replay};
 use crate::population::monte_carlo::{ResponseRow, harmonics_name};
 use crate::report::LengthUnit;
@@ -38,23 +38,27 @@ pub struct ReplayArguments {
 }
 
 pub(super) fn command(arguments: &ReplayArguments) -> Result<ExitStatus, Failure> {
-    let fidelity = &arguments.fidelity;
-    let overridden = fidelity.harmonics.is_some() || fidelity.samples.is_some();
-    if fidelity.fidelity == Fidelity::Reduced && overridden {
-        return Err(Failure::usage(
-            "a row is solved again with its own harmonics and samples; accepted: --harmonics and --samples with --fidelity full"
-                .to_owned(),
-        ));
-    }
+    arguments.fidelity.is_of_one_row()?;
     let stored = StoredStudy::open(&arguments.results, arguments.study.as_deref())?;
-    verify::warn_of_other_build(&stored);
+    warn_of_other_build(&stored);
+    let row = (arguments.scenario, arguments.pattern);
+    solved_again(&stored, row, &arguments.fidelity, arguments.json)
+}
+
+/// The row of a scenario and a pattern solved again, on the model of the study and on that of `fidelity`.
+pub(super) fn solved_again(
+    stored: &StoredStudy,
+    (scenario, pattern): (usize, u32),
+    fidelity: &FidelityArguments,
+    json: bool,
+) -> Result<ExitStatus, Failure> {
     let request = ReplayRequest {
-        scenario: arguments.scenario,
-        pattern: arguments.pattern,
+        scenario,
+        pattern,
         full: fidelity.full(&stored.study)?,
     };
-    let answer = ReplayAnswer(replay(&stored, &ReducedEngineSource, &request)?);
-    if arguments.json {
+    let answer = ReplayAnswer(replay(stored, &ReducedEngineSource, &request)?);
+    if json {
         output::json_only(&answer)?;
     } else {
         output::text(&answer)?;
@@ -64,6 +68,15 @@ pub(super) fn command(arguments: &ReplayArguments) -> Result<ExitStatus, Failure
     } else {
         ExitStatus::VerificationFailed
     })
+}
+
+/// Says so where rows are solved again by another build than the one that solved them.
+pub(super) fn warn_of_other_build(stored: &StoredStudy) {
+    if let Some(builds) = stored.other_build() {
+        output::message(&format!(
+            "warning: {builds}; a difference can be one of the builds"
+        ));
+    }
 }
 
 /// A row solved again, as the command tells it.

@@ -1,4 +1,4 @@
-//! `blisk verify`: a random sample of delivered rows solved again.
+//! `blisk verify`: delivered rows solved again, a random sample or one of them.
 
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
@@ -8,7 +8,9 @@ use serde::{Serialize, Serializer};
 use serde_json::json;
 
 use super::exit::Failure;
+use super::fidelity::FidelityArguments;
 use super::progress::RunProgress;
+use super::replay::{solved_again, warn_of_other_build};
 use super::scheduler::threads;
 use super::{ExitStatus, output};
 use crate::campaign::{
@@ -43,17 +45,25 @@ pub struct VerifyArguments {
     /// sample under friction. Writes no table.
     #[arg(long, conflicts_with = "dense_sweep")]
     time_domain: bool,
-    /// Scenario of that row, counted from 0.
-    #[arg(long, value_name = "I", requires_all = ["time_domain", "pattern"])]
+    /// Scenario of one row, counted from 0: it is solved again and compared bit for bit, in the place of a sample.
+    #[arg(
+        long,
+        value_name = "I",
+        requires = "pattern",
+        conflicts_with = "dense_sweep"
+    )]
     scenario: Option<usize>,
-    /// Pattern of that row.
-    #[arg(long, value_name = "ID", requires_all = ["time_domain", "scenario"])]
+    /// Id of the pattern of that row.
+    #[arg(long, value_name = "ID", requires = "scenario")]
     pattern: Option<u32>,
+    /// What that row is compared with besides.
+    #[command(flatten)]
+    fidelity: FidelityArguments,
     /// Set damaged files aside, into `damaged/`, and solve again what they held; draws no rows.
-    #[arg(long, conflicts_with_all = ["dense_sweep", "time_domain"])]
+    #[arg(long, conflicts_with_all = ["dense_sweep", "time_domain", "scenario"])]
     pub(super) repair: bool,
     /// Read all files and compare them with their checksums; draws no rows and changes nothing.
-    #[arg(long, conflicts_with_all = ["dense_sweep", "time_domain", "repair"])]
+    #[arg(long, conflicts_with_all = ["dense_sweep", "time_domain", "scenario", "repair"])]
     integrity: bool,
     /// Where the inputs lie now: beside this study file [default: that of the last run].
     #[arg(long, value_name = "FILE")]
@@ -72,6 +82,8 @@ pub struct VerifyArguments {
 enum Question {
     /// Is the peak the same on the full-contact model?
     FullModel,
+    /// Is this row, by scenario and pattern, the same bit for bit?
+    OneRow(usize, u32),
     /// A higher peak elsewhere?
     DenseSweep,
     /// Is the motion the same in time? Of one row, by scenario and pattern, or the first of the
@@ -93,6 +105,8 @@ impl VerifyArguments {
             Question::DenseSweep
         } else if self.time_domain {
             Question::TimeDomain(self.scenario.zip(self.pattern))
+        } else if let Some((scenario, pattern)) = self.scenario.zip(self.pattern) {
+            Question::OneRow(scenario, pattern)
         } else {
             Question::FullModel
         }
@@ -100,6 +114,13 @@ impl VerifyArguments {
 }
 
 pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure> {
+    let question = arguments.question();
+    if !matches!(question, Question::OneRow(..)) && arguments.fidelity.is_stated() {
+        return Err(Failure::usage(
+            "--fidelity, --harmonics and --samples are of one row; accepted: with --scenario and --pattern, without --time-domain"
+                .to_owned(),
+        ));
+    }
     let stored = || stored(&arguments.target, arguments.study.as_deref());
     let request = VerifyRequest {
         sample: arguments.sample as usize,
@@ -107,7 +128,12 @@ pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure
         threads: threads(arguments.threads),
     };
     let progress = RunProgress::new();
-    match arguments.question() {
+    match question {
+        Question::OneRow(scenario, pattern) => {
+            arguments.fidelity.is_of_one_row()?;
+            let row = (scenario, pattern);
+            solved_again(&stored()?, row, &arguments.fidelity, arguments.json)
+        }
         Question::FullModel => {
             let stored = stored()?;
             let report = verify(&stored, &ReducedEngineSource, request, &progress);
@@ -354,13 +380,4 @@ fn stored(target: &Path, study: Option<&Path>) -> Result<StoredStudy, Failure> {
     };
     warn_of_other_build(&stored);
     Ok(stored)
-}
-
-/// Says so where rows are solved again by another build than the one that solved them.
-pub(super) fn warn_of_other_build(stored: &StoredStudy) {
-    if let Some(builds) = stored.other_build() {
-        output::message(&format!(
-            "warning: {builds}; a difference can be one of the builds"
-        ));
-    }
 }

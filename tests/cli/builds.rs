@@ -230,7 +230,7 @@ fn what_is_solved_again_beside_rows_of_another_build_is_said_to_be_so_or_left_ou
     let place = solved();
     of_another_build(&place.path(RESULTS).join("manifest.json"));
     for command in [
-        &["replay", RESULTS, "--scenario", "1", "--pattern", "3"][..],
+        &["verify", RESULTS, "--scenario", "1", "--pattern", "3"][..],
         &["verify", RESULTS, "--sample", "1"],
     ] {
         let ended = place.run(command);

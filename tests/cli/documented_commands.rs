@@ -202,10 +202,6 @@ fn required(
         "import" => (&["wheel.toml"], &[("--out", "new")]),
         "stats" | "report" | "status" | "compare" => (&["results/small"], &[]),
         "plot" => (&["results/small", "amplitude"], &[]),
-        "replay" => (
-            &["results/small"],
-            &[("--scenario", "1"), ("--pattern", "5")],
-        ),
         "merge" => (&["shared/ring"], &[("--out", "shared/ring")]),
         "completions" => (&["bash"], &[]),
         "explain" => (&["solver"], &[]),

@@ -339,7 +339,7 @@ fn a_damaged_table_exits_with_8_and_is_repaired() {
         &["run", "study.toml", "--out", "undisturbed"][..],
         &["stats", "undisturbed"],
         &["verify", "undisturbed"],
-        &["replay", "undisturbed", "--scenario", "1", "--pattern", "3"],
+        &["verify", "undisturbed", "--scenario", "1", "--pattern", "3"],
         &["status", "undisturbed"],
     ] {
         let refused = place.run(command);

@@ -516,7 +516,7 @@ fn an_accepted_error_chooses_settings_that_hold_under_every_load_case() {
         assert!(errors.iter().any(|&error| error > 0.0), "{case}");
     }
     let replay = [
-        "replay",
+        "verify",
         "results/both",
         "--scenario",
         "5",

@@ -63,7 +63,7 @@ fn few_measured_wheels_are_read_one_by_one_instead_of_drawing_more() {
         .expect("the load");
     for wheel in ["0", "10", "20"] {
         let arguments = [
-            "replay",
+            "verify",
             "results/small",
             "--scenario",
             "1",
@@ -138,7 +138,7 @@ fn one_measured_wheel_has_peaks_and_nothing_is_said_of_percentiles() {
     assert!((said / lowest - 1.0).abs() < 1e-3, "{said}: {run}");
     // The summary has the peak and its factor, as the row has them.
     let arguments = [
-        "replay",
+        "verify",
         "results/small",
         "--scenario",
         "1",
@@ -217,7 +217,7 @@ fn a_few_measured_wheels_open_the_report_with_the_highest_of_them() {
     ];
     let numbers: Value = serde_json::from_str(&output(&place, &arguments)).expect("JSON");
     let group = &numbers["groups"][0];
-    // By the peaks of the report, which `replay` finds as well: the test above.
+    // By the peaks of the report, which `verify` finds as well: the test above.
     let measured = group["measured"].as_array().expect("a list");
     let peak = |own: &Value| own["peak_amplitude_m"].as_f64().expect("a peak");
     let highest = |load: u64| {
@@ -409,7 +409,7 @@ fn a_comparison_of_few_measured_wheels_is_one_of_their_peaks_and_says_so() {
             text.lines().all(|line| line.chars().count() <= 80),
             "{text}"
         );
-        // As the report has the peaks, which `replay` finds as well.
+        // As the report has the peaks, which `verify` finds as well.
         let report = ["report", "results/small", "--no-curves", "--json"];
         let report: Value = serde_json::from_str(&output(&place, &report)).expect("JSON");
         let measured = report["groups"][0]["measured"].as_array().expect("a list");

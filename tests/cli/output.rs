@@ -53,6 +53,7 @@ fn command_lines(name: &str) -> Vec<Vec<&str>> {
             "verify done --sample 1 --dense-sweep",
             "verify done --sample 1 --time-domain",
             "verify done --repair",
+            "verify done --scenario 1 --pattern 3",
         ],
         "compare" => &["compare done --percentile 50"],
         "optimum" => {
@@ -254,7 +255,7 @@ fn no_name_out_of_a_file_gives_orders_to_a_terminal() {
         &["explain", ORDERS],
         &["stats", &format!("--{ORDERS}")],
         &["plot", "done", ORDERS],
-        &["replay", "done", "--scenario", ORDERS, "--pattern", "1"],
+        &["verify", "done", "--scenario", ORDERS, "--pattern", "1"],
     ] {
         gives_no_orders(&place.run(line), &format!("{line:?}"));
     }

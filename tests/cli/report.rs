@@ -239,7 +239,7 @@ fn the_wheels_of_a_report_are_those_that_were_delivered() {
         let row = json(
             &place,
             &[
-                "replay",
+                "verify",
                 "results/small",
                 "--scenario",
                 &scenario.to_string(),

@@ -86,7 +86,7 @@ fn speeds_are_loads_of_a_run_and_more_of_them_are_solved_alone() {
     }
     // The folder is a study of its own: its rows are solved again from it.
     let replay = place.run(&[
-        "replay",
+        "verify",
         "results/small",
         "--scenario",
         "4",

@@ -362,7 +362,7 @@ fn a_study_that_stops_early_says_so_and_one_that_misses_its_target_ends_with_6()
     assert!(!place.path("small-slurm.sh").exists());
     // A row of a study that stopped is solved again as any other.
     let replayed = place.run(&[
-        "replay",
+        "verify",
         "results/small",
         "--scenario",
         "1",

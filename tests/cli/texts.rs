@@ -167,7 +167,7 @@ fn amplitudes_have_one_unit_in_every_text_and_loads_are_named_per_sector() {
     for arguments in [
         "compare results/small",
         "stats results/small --tails",
-        "replay results/small --scenario 1 --pattern 3",
+        "verify results/small --scenario 1 --pattern 3",
         "optimum study.toml --between 50:200 --resolution 1",
         "estimate study.toml --solves 120 --out results/estimate",
         "response study.toml --pattern tuned --load 50 --frequencies 340:370:5 --out c.csv",

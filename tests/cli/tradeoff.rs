@@ -184,7 +184,7 @@ fn an_accepted_error_chooses_settings_once_and_records_the_evidence() {
         "{}",
         again.stderr
     );
-    let replay = place.run(&["replay", "one", "--scenario", "1", "--pattern", "3"]);
+    let replay = place.run(&["verify", "one", "--scenario", "1", "--pattern", "3"]);
     assert!(replay.stdout.contains("bit-identical"), "{}", replay.stdout);
 }
 
@@ -327,7 +327,7 @@ fn the_contact_law_of_the_study_is_replaced_where_it_may_be_and_said_to_be() {
         let chosen = &manifest(&place, results)["chosen"]["accuracy"];
         assert_eq!(chosen["setting"]["contact_law"], expected);
         assert_eq!(chosen["met"], true);
-        let replay = place.run(&["replay", results, "--scenario", "0", "--pattern", "1"]);
+        let replay = place.run(&["verify", results, "--scenario", "0", "--pattern", "1"]);
         assert_eq!(replay.code, 0, "{}", replay.stderr);
         assert!(replay.stdout.contains("bit-identical"), "{}", replay.stdout);
     }

@@ -1,4 +1,4 @@
-//! `replay`, `verify` and `--fidelity full` on a wheel of six masses.
+//! `verify`, of a sample and of one row, and `--fidelity full` on a wheel of six masses.
 
 use std::fmt::Write;
 
@@ -74,7 +74,7 @@ fn every_delivered_row_is_replayed_bit_for_bit() {
     let place = solved();
     for (scenario, pattern) in [("0", "0"), ("1", "3"), ("1", "9"), ("2", "5")] {
         let replay = place.run(&[
-            "replay",
+            "verify",
             RESULTS,
             "--scenario",
             scenario,
@@ -88,15 +88,38 @@ fn every_delivered_row_is_replayed_bit_for_bit() {
         assert_eq!(value["delivered"], value["replayed"]);
         assert!(value.get("full").is_none());
     }
-    let text = place.run(&["replay", RESULTS, "--scenario", "1", "--pattern", "3"]);
+    let row = [RESULTS, "--scenario", "1", "--pattern", "3"];
+    let text = place.run(&[&["verify"], &row[..]].concat());
     assert!(text.stdout.contains("bit-identical"), "{}", text.stdout);
+    // The older name, which the help leaves out.
+    let replay = place.run(&[&["replay"], &row[..]].concat());
+    assert_eq!((replay.code, &replay.stdout), (0, &text.stdout));
+    assert!(!place.run(&["--help"]).stdout.contains("replay"));
+}
+
+#[test]
+fn questions_of_one_row_and_of_a_sample_are_not_mixed() {
+    let place = Place::new();
+    for line in [
+        "verify results --fidelity full",
+        "verify results --harmonics 1,3",
+        "verify results --scenario 1",
+        "verify results --pattern 1",
+        "verify results --scenario 1 --pattern 3 --dense-sweep",
+        "verify results --scenario 1 --pattern 3 --integrity",
+        "verify results --scenario 1 --pattern 3 --time-domain --samples 128",
+    ] {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let ended = place.run(&words);
+        assert_eq!(ended.code, 2, "{line}: {}", ended.stderr);
+    }
 }
 
 #[test]
 fn a_row_is_compared_with_the_full_model() {
     let place = solved();
     let row = [
-        "replay",
+        "verify",
         RESULTS,
         "--scenario",
         "1",
@@ -136,14 +159,14 @@ fn a_row_is_compared_with_the_full_model() {
 #[test]
 fn a_row_or_folder_that_is_not_there_is_named() {
     let place = solved();
-    let absent = place.run(&["replay", RESULTS, "--scenario", "3", "--pattern", "0"]);
+    let absent = place.run(&["verify", RESULTS, "--scenario", "3", "--pattern", "0"]);
     assert_eq!(absent.code, 2);
     assert!(
         absent.stderr.contains("a scenario below 3"),
         "{}",
         absent.stderr
     );
-    let absent = place.run(&["replay", RESULTS, "--scenario", "0", "--pattern", "10"]);
+    let absent = place.run(&["verify", RESULTS, "--scenario", "0", "--pattern", "10"]);
     assert_eq!(absent.code, 2);
     assert_eq!(place.run(&["verify", "nowhere.toml"]).code, 7);
     std::fs::create_dir(place.path("empty")).expect("a folder");
@@ -226,7 +249,7 @@ fn a_tampered_table_fails_the_verification() {
     assert_eq!(forged.code, 11, "{}", forged.stderr);
     let value = json(&forged);
     assert_eq!(value["different_replays"], serde_json::json!(["1/4"]));
-    let row = ["replay", RESULTS, "--scenario", "1", "--pattern"];
+    let row = ["verify", RESULTS, "--scenario", "1", "--pattern"];
     let replay = |pattern: &str| place.run(&[&row[..], &[pattern]].concat());
     assert_eq!((replay("4").code, replay("5").code), (11, 0));
     assert!(replay("4").stdout.contains("NOT the same"));
@@ -260,7 +283,7 @@ fn an_input_that_changed_since_is_refused() {
     let place = Place::with(&study);
     place.write("patterns.csv", &patterns);
     assert_eq!(place.run(&["run", "study.toml"]).code, 0);
-    let replay = || place.run(&["replay", RESULTS, "--scenario", "1", "--pattern", "7"]);
+    let replay = || place.run(&["verify", RESULTS, "--scenario", "1", "--pattern", "7"]);
     assert_eq!(replay().code, 0, "{}", replay().stderr);
     // Inputs are found beside the study file of the run, or of the one given.
     std::fs::create_dir(place.path("moved")).expect("a folder");
@@ -269,7 +292,7 @@ fn an_input_that_changed_since_is_refused() {
     }
     assert_eq!(replay().code, 7, "{}", replay().stderr);
     let moved = [
-        "replay",
+        "verify",
         RESULTS,
         "--scenario",
         "1",

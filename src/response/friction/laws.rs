@@ -92,10 +92,7 @@ impl<'de> Deserialize<'de> for ContactLaw {
         let name = String::deserialize(deserializer)?;
         let is_named = |law: &Self| law.name() == name;
         let law = Self::ALL.into_iter().find(is_named);
-        law.ok_or_else(|| {
-            let names = Self::NAMES.join(", ");
-            D::Error::custom(format!("no contact law {name}; accepted: {names}"))
-        })
+        law.ok_or_else(|| D::Error::unknown_variant(&name, &Self::NAMES))
     }
 }
 
