@@ -27,7 +27,9 @@ const CHECKED: usize = 10;
 const CHANGE_BY_MODES: f64 = 2e-4;
 const FEWEST_MODES: usize = 40;
 const MOST_MODES: usize = 320;
-/// With other dampers than rings, whose pairs more modes stiffen.
+/// With wedges: a peak may be the same with 80 and 160 modes, and another one with 320.
+const FEWEST_MODES_WITH_WEDGES: usize = 160;
+/// With other dampers than rings, whose pairs more modes soften.
 const MOST_MODES_OF_OTHERS: usize = 640;
 
 /// A row of `truth.csv`.
@@ -148,6 +150,7 @@ pub fn sort(wheel: &str) {
 pub struct Sectors<'a> {
     wheel: &'a Wheel,
     made: BTreeMap<usize, OnceLock<Sector>>,
+    fewest_modes: usize,
     most_modes: usize,
 }
 
@@ -162,8 +165,14 @@ impl<'a> Sectors<'a> {
             MOST_MODES
         };
         let made = all.take_while(|modes| *modes <= most_modes);
+        let fewest_modes = if wheel.name == "wedges" {
+            FEWEST_MODES_WITH_WEDGES
+        } else {
+            FEWEST_MODES
+        };
         Self {
             wheel,
+            fewest_modes,
             made: made.map(|modes| (modes, OnceLock::new())).collect(),
             most_modes,
         }
@@ -245,7 +254,7 @@ pub fn solve_row(
         amplitude_m: None,
         frequency_hz: hint_hz,
         blade: 0,
-        modes: FEWEST_MODES,
+        modes: sectors.fewest_modes,
         change_by_modes: f64::INFINITY,
         change_by_harmonics: None,
         opening_pairs: 0,
