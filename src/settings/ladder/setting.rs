@@ -398,10 +398,14 @@ pub(in crate::settings) mod tests {
                 .collect::<Vec<_>>()
         };
         assert_eq!(of(ContactLaw::MacroSlip1d), ["macro_slip_1d"]);
+        assert_eq!(
+            of(ContactLaw::MacroSlip2d),
+            ["macro_slip_1d", "macro_slip_2d"]
+        );
         let to_simplified = of(ContactLaw::Simplified3d);
         assert_eq!(to_simplified.last(), Some(&"simplified_3d"));
-        assert!(to_simplified.contains(&"macro_slip_2d"));
         assert!(!to_simplified.contains(&"coulomb_3d"));
+        assert_eq!(of(ContactLaw::Coulomb3d), ContactLaw::NAMES);
     }
 
     #[test]
