@@ -65,7 +65,7 @@ impl FidelityArguments {
     }
 
     /// Refuses other harmonics and samples for a row that is solved again on the model of the study.
-    pub(super) fn is_of_one_row(&self) -> Result<(), Failure> {
+    pub(super) fn check_for_one_row(&self) -> Result<(), Failure> {
         if self.fidelity == Fidelity::Reduced && self.is_stated() {
             return Err(Failure::usage(
                 "a row is solved again with its own harmonics and samples; accepted: --harmonics and --samples with --fidelity full"

@@ -38,7 +38,7 @@ pub struct ReplayArguments {
 }
 
 pub(super) fn command(arguments: &ReplayArguments) -> Result<ExitStatus, Failure> {
-    arguments.fidelity.is_of_one_row()?;
+    arguments.fidelity.check_for_one_row()?;
     let stored = StoredStudy::open(&arguments.results, arguments.study.as_deref())?;
     warn_of_other_build(&stored);
     let row = (arguments.scenario, arguments.pattern);

@@ -130,7 +130,7 @@ pub(super) fn command(arguments: &VerifyArguments) -> Result<ExitStatus, Failure
     let progress = RunProgress::new();
     match question {
         Question::OneRow(scenario, pattern) => {
-            arguments.fidelity.is_of_one_row()?;
+            arguments.fidelity.check_for_one_row()?;
             let row = (scenario, pattern);
             solved_again(&stored()?, row, &arguments.fidelity, arguments.json)
         }
