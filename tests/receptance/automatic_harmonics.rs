@@ -97,3 +97,17 @@ fn automatic_harmonics_find_the_tops_of_wheels_whose_contacts_open() {
     let largest = largest_difference(&own, &whole);
     assert!(largest <= 3e-3, "{largest:.2e}");
 }
+
+/// The fallback has fewer harmonics: it is for rows without a peak, and no better for those that state a large error.
+#[test]
+fn automatic_harmonics_are_not_exchanged_for_fewer_where_a_row_is_beyond_its_tolerance() {
+    faer::set_global_parallelism(faer::Par::Seq);
+    let beyond = |what: &str| {
+        let settings = "[solver]\nharmonic_tolerance = 1e-5\nrows_beyond_tolerance";
+        rows("[800]", &format!("{settings} = \"{what}\"\n"))
+    };
+    let (flagged, resolved) = (beyond("flag"), beyond("resolve"));
+    let inexact = |row: &ResponseRow| row.error_within_tolerance == Some(false);
+    assert!(flagged.iter().all(inexact));
+    assert_eq!(flagged, resolved);
+}

@@ -21,8 +21,7 @@ pub struct LoadCaseSolver {
 #[derive(Debug)]
 struct Fallback {
     rows: RowSolver,
-    /// Whether rows with an error beyond its tolerance go there too, besides those that separate or, on tuned receptances,
-    /// have no peak.
+    /// Whether rows of a basis with an error beyond its tolerance go there too, besides those that separate.
     inexact_rows: bool,
     /// Tuned peaks on that solver, for each of its chosen sets, found when first asked for.
     tuned: Vec<OnceLock<TunedReference>>,
@@ -47,9 +46,9 @@ impl From<RowSolver> for LoadCaseSolver {
 
 impl LoadCaseSolver {
     /// This solver with `finer` for the rows that it is not good enough for, each with the tuned reference of `finer`. On a
-    /// basis these are the rows whose contacts separate, on tuned receptances the rows without a peak; with `inexact_rows`, also
-    /// those whose sampling or harmonic error exceeds its tolerance. Only scenarios for which `finer` has a chosen set are
-    /// solved again.
+    /// basis these are the rows whose contacts separate, and with `inexact_rows` those whose sampling or harmonic error exceeds its
+    /// tolerance. On tuned receptances, where `finer` has fewer harmonics, they are the rows without a peak. Only scenarios for which
+    /// `finer` has a chosen set are solved again.
     #[must_use]
     pub fn with_fallback(self, finer: RowSolver, inexact_rows: bool) -> Self {
         let fallback = Fallback {
@@ -97,10 +96,10 @@ impl LoadCaseSolver {
         let wanted = if self.rows.on_receptances.is_some() {
             failed
         } else {
-            row.separated_fraction.is_some_and(|share| share > 0.0)
+            let separates = row.separated_fraction.is_some_and(|share| share > 0.0);
+            separates || fallback.inexact_rows && row.error_within_tolerance == Some(false)
         };
-        let inexact = row.error_within_tolerance == Some(false);
-        if !(wanted || inexact && fallback.inexact_rows) {
+        if !wanted {
             return None;
         }
         let mut choices = fallback.rows.choices().enumerate();
