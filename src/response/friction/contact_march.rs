@@ -48,6 +48,12 @@ impl PairMemory {
     }
 }
 
+/// A step of a Jenkins element whose spring is stretched by `spring_n` more: friction after it, N, and whether the limit was reached.
+pub(super) fn jenkins_step(before_n: f64, spring_n: f64, limit_n: f64) -> (f64, bool) {
+    let trial = before_n + spring_n;
+    (trial.clamp(-limit_n, limit_n), trial.abs() > limit_n)
+}
+
 /// The part of a step that is spent in contact.
 pub(super) struct LoadedStep {
     /// Load where that part begins, and signed load at the end of the step, N.

@@ -13,13 +13,14 @@
 
 use super::contact_march::LoadedStep;
 use super::friction_circle::slide_on_circle;
-use super::law_parts::{LawParts, TangentialFriction};
+use super::law_parts::{LawParts, SideBySide, TangentialFriction};
 use super::{ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState};
 
 pub(super) const LAW: LawParts = LawParts {
     name: "coulomb_3d",
     has_variable_load: true,
     friction: TangentialFriction::FrictionCircle,
+    side_by_side: SideBySide::No,
     respond,
     march,
 };
@@ -29,7 +30,7 @@ fn respond(
     history: &mut ContactHistory,
     parameters: &PairParameters,
     displacement: PairDisplacement<'_>,
-) {
+) -> PairState {
     let separated = history.press(parameters, displacement.normal);
     let slipping = history.coupled.solve_drifting(
         parameters.tangential_stiffness_n_per_m,
@@ -38,11 +39,11 @@ fn respond(
         &history.normal_load,
         history.drift_m,
     );
-    history.state = PairState {
+    PairState {
         slipping,
         separated,
         unclosed: !history.coupled.is_closed(),
-    };
+    }
 }
 
 /// A step in time: both directions on the friction circle of radius `mu N(t)`.

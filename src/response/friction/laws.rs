@@ -1,9 +1,9 @@
-//! All contact laws, what each is, and what it makes of a pair: the one place that chooses between them.
+//! All contact laws, what each is, and what it makes of a pair.
 
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::law_parts::{LawParts, TangentialFriction};
+use super::law_parts::{LawParts, SideBySide, TangentialFriction};
 use super::{
     ContactHistory, ContactLaw, PairDisplacement, PairMemory, PairParameters, PairState,
     PeriodicSlider, coulomb_3d, macro_slip, simplified_3d,
@@ -53,6 +53,12 @@ impl ContactLaw {
     #[must_use]
     pub fn friction(self) -> TangentialFriction {
         self.parts().friction
+    }
+
+    /// How all pairs of a wheel are evaluated at once, if they can be.
+    #[must_use]
+    pub fn side_by_side(self) -> SideBySide {
+        self.parts().side_by_side
     }
 
     /// Whether the friction along one tangent depends on the motion along the other.
@@ -150,7 +156,7 @@ impl ContactHistory {
             "samples of the closing"
         );
         self.law = law;
-        (law.parts().respond)(self, parameters, displacement);
+        self.state = (law.parts().respond)(self, parameters, displacement);
         self.state
     }
 

@@ -4,13 +4,15 @@
 //! The normal spring is bilateral (no correction). Under `macro_slip_1d` nothing acts along t2, so its linear limits
 //! have no spring along t2 either. A pair without normal load counts as separated.
 
-use super::law_parts::{LawParts, TangentialFriction};
+use super::contact_march::jenkins_step;
+use super::law_parts::{LawParts, SideBySide, TangentialFriction};
 use super::{ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState};
 
 pub(super) const ALONG_ONE: LawParts = LawParts {
     name: "macro_slip_1d",
     has_variable_load: false,
     friction: TangentialFriction::Jenkins { tangents: 1 },
+    side_by_side: SideBySide::ConstantLimit,
     respond: |history, parameters, displacement| respond(history, parameters, displacement, 1),
     march: |parameters, before, displacement_m| march(parameters, before, displacement_m, 1),
 };
@@ -18,6 +20,7 @@ pub(super) const ALONG_BOTH: LawParts = LawParts {
     name: "macro_slip_2d",
     has_variable_load: false,
     friction: TangentialFriction::Jenkins { tangents: 2 },
+    side_by_side: SideBySide::ConstantLimit,
     respond: |history, parameters, displacement| respond(history, parameters, displacement, 2),
     march: |parameters, before, displacement_m| march(parameters, before, displacement_m, 2),
 };
@@ -28,7 +31,7 @@ fn respond(
     parameters: &PairParameters,
     displacement: PairDisplacement<'_>,
     tangents: usize,
-) {
+) -> PairState {
     history.normal_load.fill(parameters.normal_load_n);
     history.normal_correction.fill(0.0);
     let mut slipping = false;
@@ -45,11 +48,11 @@ fn respond(
             slider.rest();
         }
     }
-    history.state = PairState {
+    PairState {
         slipping,
         separated: parameters.normal_load_n <= 0.0,
         unclosed: false,
-    };
+    }
 }
 
 /// A step in time, with friction along the first `tangents`.
@@ -68,9 +71,9 @@ fn march(
     for tangent in 0..tangents {
         let path = displacement_m[1 + tangent] - before.displacement_m[1 + tangent];
         let spring = parameters.tangential_stiffness_n_per_m * path;
-        let trial = before.friction_n[tangent] + spring;
-        after.friction_n[tangent] = trial.clamp(-limit, limit);
-        after.slipping |= trial.abs() > limit;
+        let (friction, slips) = jenkins_step(before.friction_n[tangent], spring, limit);
+        after.friction_n[tangent] = friction;
+        after.slipping |= slips;
     }
     after
 }

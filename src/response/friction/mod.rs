@@ -16,7 +16,7 @@ mod simplified_3d;
 pub use contact_march::PairMemory;
 pub use contact_pair::{ContactHistory, PairDisplacement, PairParameters, PairState};
 pub use coulomb_slider::{CoupledSlider, Slip};
-pub use law_parts::TangentialFriction;
+pub use law_parts::{SideBySide, TangentialFriction};
 pub use laws::march;
 pub use options::{ContactLaw, ContactOptions, Ring};
 pub use periodic_slider::PeriodicSlider;

@@ -7,14 +7,15 @@
 //!
 //! For y see [`PeriodicSlider`](super::PeriodicSlider).
 
-use super::contact_march::LoadedStep;
-use super::law_parts::{LawParts, TangentialFriction};
+use super::contact_march::{LoadedStep, jenkins_step};
+use super::law_parts::{LawParts, SideBySide, TangentialFriction};
 use super::{ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState};
 
 pub(super) const LAW: LawParts = LawParts {
     name: "simplified_3d",
     has_variable_load: true,
     friction: TangentialFriction::Jenkins { tangents: 2 },
+    side_by_side: SideBySide::VariableLimit,
     respond,
     march,
 };
@@ -24,7 +25,7 @@ fn respond(
     history: &mut ContactHistory,
     parameters: &PairParameters,
     displacement: PairDisplacement<'_>,
-) {
+) -> PairState {
     let separated = history.press(parameters, displacement.normal);
     let mut slipping = false;
     let directions = displacement.tangential.into_iter().zip(history.drift_m);
@@ -37,11 +38,11 @@ fn respond(
             drift,
         );
     }
-    history.state = PairState {
+    PairState {
         slipping,
         separated,
         unclosed: false,
-    };
+    }
 }
 
 /// A step in time: two independent directions with the limit `mu N(t)`.
@@ -52,9 +53,10 @@ fn march(parameters: &PairParameters, before: &PairMemory, displacement_m: [f64;
     if step.load_after > 0.0 {
         for ((friction, start), path) in after.friction_n.iter_mut().zip(step.start).zip(step.path)
         {
-            let trial = start + parameters.tangential_stiffness_n_per_m * path;
-            *friction = trial.clamp(-limit, limit);
-            after.slipping |= trial.abs() > limit;
+            let spring = parameters.tangential_stiffness_n_per_m * path;
+            let (force, slips) = jenkins_step(start, spring, limit);
+            *friction = force;
+            after.slipping |= slips;
         }
     }
     after

@@ -13,7 +13,7 @@ use super::{
     ContactInterface, ContactShares, MacroSlipPairs, PairHarmonics, PairJacobian,
     Simplified3dPairs, WheelPairs,
 };
-use crate::response::friction::TangentialFriction;
+use crate::response::friction::SideBySide;
 use crate::response::harmonic_balance::HarmonicTransform;
 
 /// The contact pairs of a wheel under their law.
@@ -180,20 +180,20 @@ impl InterfaceForces {
             active: &mut workspace.active,
             jacobians: &mut workspace.jacobians,
         };
-        match law.friction() {
-            TangentialFriction::Jenkins { tangents: 2 } if law.has_variable_load() => {
+        match law.side_by_side() {
+            SideBySide::VariableLimit => {
                 let together = workspace
                     .together_3d
                     .get_or_insert_with(|| Simplified3dPairs::new(count, &self.transform));
                 Some(together.correct(derivative, wheel))
             }
-            TangentialFriction::Jenkins { tangents } if !law.has_variable_load() => {
-                let together = workspace
-                    .together
-                    .get_or_insert_with(|| MacroSlipPairs::new(tangents * count, &self.transform));
+            SideBySide::ConstantLimit => {
+                let together = workspace.together.get_or_insert_with(|| {
+                    MacroSlipPairs::new(law.tangents() * count, &self.transform)
+                });
                 Some(together.correct(derivative, wheel))
             }
-            _ => None,
+            SideBySide::No => None,
         }
     }
 }
