@@ -146,14 +146,37 @@ const WITH_MANY_HARMONICS: [(Start, Attempt); 8] = [
 const RENEWED: Plan = plan(&[0, 10, 25], 160, FirstOfFundamental);
 const RENEWED_RESONANT: Plan = plan(&[0, 10, 25], 160, Resonant);
 
-/// The attempts with so many harmonics.
-pub(super) fn attempts(harmonics: usize) -> &'static [(Start, Attempt)] {
-    if harmonics <= FEW_HARMONICS {
+/// The attempts with so many harmonics, in their order; without a known start the linear response begins.
+pub(super) fn attempts(
+    harmonics: usize,
+    has_known: bool,
+) -> impl Iterator<Item = &'static (Start, Attempt)> {
+    let attempts: &[_] = if harmonics <= FEW_HARMONICS {
         &WITH_FEW_HARMONICS
     } else {
         &WITH_MANY_HARMONICS
-    }
+    };
+    let known = attempts
+        .iter()
+        .filter(move |(start, _)| has_known || *start != Known);
+    known.skip_while(move |(start, _)| !has_known && *start == Best)
 }
 
 /// For the errors of a solution, from that solution: what is left counts, so every step does.
 pub(super) const BESIDE: Plan = combining_all(plan(&[0], 120, FirstOfFundamental));
+
+#[cfg(test)]
+mod tests {
+    use super::{Best, FEW_HARMONICS, Known, Linear, attempts};
+
+    #[test]
+    fn without_a_known_start_the_linear_response_begins() {
+        for harmonics in [1, FEW_HARMONICS, FEW_HARMONICS + 1, 16] {
+            let starts = |has_known: bool| attempts(harmonics, has_known).map(|(start, _)| *start);
+            assert!(starts(false).next() == Some(Linear));
+            assert!(starts(false).all(|start| start != Known));
+            assert!(starts(true).next() == Some(Known));
+            assert!(starts(true).any(|start| start == Best));
+        }
+    }
+}

@@ -19,8 +19,8 @@ use super::preconditioner::Preconditioner;
 /// What decides that an attempt is over.
 struct Judge {
     tolerance: f64,
-    /// The residual that the attempt began with.
-    first: f64,
+    /// The residual that the attempt began with; none before its first step.
+    first: Option<f64>,
     /// The smallest residual of so many steps, and one more.
     least: Vec<f64>,
 }
@@ -36,7 +36,7 @@ impl Judge {
     fn of(tolerance: f64) -> Self {
         Self {
             tolerance,
-            first: f64::INFINITY,
+            first: None,
             least: Vec::new(),
         }
     }
@@ -50,10 +50,11 @@ impl Judge {
     }
 
     /// How an attempt is lost by its residual; none while it is not.
-    fn lost(&self, residual: f64) -> Option<Status> {
+    fn lost(&mut self, residual: f64) -> Option<Status> {
+        let first = *self.first.get_or_insert(residual);
         if !residual.is_finite() {
             Some(Status::NonFinite)
-        } else if residual > Self::DIVERGED * self.first.max(1.0) {
+        } else if residual > Self::DIVERGED * first.max(1.0) {
             Some(Status::Diverged)
         } else {
             None
@@ -77,6 +78,7 @@ impl Judge {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Outcome {
     pub(super) status: Status,
+    /// Steps of the iteration; in Newton's method products with the derivative.
     pub(super) iterations: u64,
     /// Tangents taken.
     pub(super) tangents: u64,
@@ -94,10 +96,7 @@ impl ContactEquation<'_> {
     pub(super) fn solve(&mut self, starts: &[Vec<f64>], tolerance: f64) -> Outcome {
         let linear = self.linear_start();
         let known = self.best_of(starts);
-        let attempts = attempts(self.harmonics.len()).iter();
-        let attempts = attempts.filter(|(start, _)| known.is_some() || *start != Known);
-        // Without a known start the linear response begins.
-        let attempts = attempts.skip_while(|(start, _)| known.is_none() && *start == Best);
+        let attempts = attempts(self.harmonics.len(), known.is_some());
         let mut best = (f64::INFINITY, linear.clone());
         let mut total = Outcome::none();
         for (rung, (start, attempt)) in attempts.enumerate() {
@@ -151,9 +150,6 @@ impl ContactEquation<'_> {
         for iteration in 0..plan.iterations {
             let renew = plan.renewals.contains(&iteration);
             (outcome.residual, outcome.shares) = self.residual_with_tangent(renew);
-            if iteration == 0 {
-                judge.first = outcome.residual;
-            }
             if let Some(status) = judge.lost(outcome.residual) {
                 outcome.status = status;
                 break;
@@ -183,12 +179,12 @@ impl ContactEquation<'_> {
     fn newton(&mut self, plan: &NewtonPlan, tolerance: f64) -> Outcome {
         self.contact.couple(true);
         let mut outcome = Outcome::none();
-        let judge = Judge::of(tolerance);
+        let mut judge = Judge::of(tolerance);
         for _ in 0..NEWTON_STEPS {
             (outcome.residual, outcome.shares) = self.residual(true);
             let settled = judge.settled(outcome.residual, 0.0, &outcome.shares);
             let settled = settled.filter(|status| *status == Status::Ok);
-            if let Some(status) = settled.or(judge.lost(outcome.residual)) {
+            if let Some(status) = settled.or_else(|| judge.lost(outcome.residual)) {
                 outcome.status = status;
                 break;
             }
@@ -244,7 +240,8 @@ impl ContactEquation<'_> {
         right
     }
 
-    /// Moves by the largest of the step, its half and so on after which less than `before` is left; false if there is none.
+    /// Moves by the largest of the step, its half and so on after which less than `before` is left; false, and nothing moved, if there
+    /// is none.
     fn moves_by(
         &mut self,
         step: &[f64],
@@ -270,6 +267,7 @@ impl ContactEquation<'_> {
             }
             factor *= 0.5;
         }
+        unflatten(&from, &mut self.buffers.motions);
         false
     }
 }
@@ -319,5 +317,40 @@ impl Outcome {
             retries: self.retries + u64::from(rung > 0),
             ..next
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ContactShares, Judge, Status};
+
+    #[test]
+    fn the_judge_ends_what_grows_and_what_stalls() {
+        let mut judge = Judge::of(1e-6);
+        assert_eq!(judge.lost(5.0), None);
+        assert_eq!(judge.lost(4.9e3), None);
+        assert_eq!(judge.lost(5.1e3), Some(Status::Diverged));
+        assert_eq!(judge.lost(f64::NAN), Some(Status::NonFinite));
+        // A residual below 1 may grow to as much as one of 1.
+        assert_eq!(Judge::of(1e-6).lost(1e-3), None);
+        let mut flat = Judge::of(1e-6);
+        let first = (0..100).position(|_| flat.stalls(0.5));
+        assert_eq!(first, Some(Judge::PATIENCE));
+        let mut falling = Judge::of(1e-6);
+        assert!(!(0..100).any(|step| falling.stalls(0.99_f64.powi(step))));
+    }
+
+    #[test]
+    fn a_solution_has_a_small_residual_a_small_step_and_closed_pairs() {
+        let judge = Judge::of(1e-6);
+        let closed = ContactShares::default();
+        let unclosed = ContactShares {
+            unclosed: 0.1,
+            ..closed
+        };
+        assert_eq!(judge.settled(1e-6, 1e-7, &closed), Some(Status::Ok));
+        assert_eq!(judge.settled(1e-6, 1e-5, &closed), None);
+        assert_eq!(judge.settled(1e-5, 0.0, &closed), None);
+        assert_eq!(judge.settled(1e-7, 0.0, &unclosed), Some(Status::Stagnated));
     }
 }
