@@ -49,9 +49,12 @@ pub struct ResponseRow {
     pub mean_friction_axial_n: Option<f64>,
     /// Shortcut used, or `"none"`.
     pub shortcut: String,
-    /// Relative change of the amplitude by one Newton correction at 4 times the samples.
+    /// Relative change of the amplitude by finer sampling. On a basis it is one Newton correction at 4 times the samples. On tuned
+    /// receptances the peak is solved on with more samples; where fewer harmonics led to an automatic set of all, the change is
+    /// that of the wheels that judge.
     pub sampling_error: Option<f64>,
-    /// Relative change of the amplitude by the harmonics up to 15 outside of the set.
+    /// Relative change of the amplitude by the harmonics up to 15 outside of the set, or by those up to 25 where the set has all
+    /// up to 15.
     pub harmonic_error: Option<f64>,
     /// Bound on the relative error of the amplitude, see `stated_error.rs`.
     pub stated_error: Option<f64>,
