@@ -30,11 +30,12 @@ pub struct ResponseRow {
     pub harmonics: String,
     /// Nonlinear solves used.
     pub nonlinear_solves: u64,
-    /// Newton iterations used.
+    /// Steps of the iteration; in Newton's method on tuned receptances products with the derivative.
     pub newton_iterations: u64,
     /// Jacobians assembled and factored.
     pub factorisations: u64,
-    /// Nonlinear solves that needed more than the first attempt of the retry ladder.
+    /// On a basis the nonlinear solves that needed more than their first attempt; on tuned receptances every attempt after the
+    /// first of a solve.
     pub retries: u64,
     /// Residual at the peak: on tuned receptances of the contact motions relative to them, on a basis of the forces relative to the
     /// excitation.
