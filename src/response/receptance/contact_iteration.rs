@@ -2,7 +2,7 @@
 //!
 //! A step is `-P r` with the inverse P of `I + A G'` for the mean tangent G' of the contact; Anderson's acceleration makes up for
 //! what the mean leaves out. What is approximate stands in P alone. Such an attempt ends by the residual and the next step.
-//! An attempt by Newton's method ends by the residual alone. The order of both stands in `attempts.rs`.
+//! An attempt by Newton's method ends by the residual alone. Either can follow the other, in the order of `attempts.rs`.
 
 use crate::linalg::gmres;
 use crate::response::harmonic_balance::{ContactShares, Status};
