@@ -1,4 +1,4 @@
-//! A TOML file against the keys that it may have: unknown and missing keys, types and ranges, all at once.
+//! Where a wrong key or value of an import file is refused: unknown and missing keys, types and ranges, all at once.
 
 use toml::{Table, Value as Written};
 

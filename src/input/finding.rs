@@ -1,4 +1,4 @@
-//! What is wrong in a TOML file: where, which key, which value, and what is accepted.
+//! The messages on what is wrong in a study file or an import file: line, key, value, and what is accepted.
 
 use std::fmt;
 use std::path::Path;

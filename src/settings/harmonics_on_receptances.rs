@@ -1,4 +1,7 @@
-//! Harmonics and fixed-interface modes of a study on tuned receptances, judged by the tuned wheel and by mistuned ones.
+//! The judgement of harmonics and models on tuned receptances by the tuned wheel and mistuned ones: which loads have fewer
+//! harmonics, and what is left out.
+//!
+//! The set that is judged is chosen in `reduced_study.rs`.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! What a study is solved on: its reduced models and harmonic sets, under each of its force vectors.
+//! What a study is solved on: its reduced models, and its harmonics, all up to 15 on tuned receptances where it says none.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -30,11 +30,13 @@ asks for is not ready on receptances. Both share the search, the contact laws an
 | where is mistuning applied? | [elimination.rs](../src/response/receptance/elimination.rs) | [wheel_basis.rs](../src/response/mistuning/wheel_basis.rs) |
 | what is the equation? | [contact_equation.rs](../src/response/receptance/contact_equation.rs) | [system.rs](../src/response/harmonic_balance/equation/system.rs) |
 | what is the preconditioner, or the Jacobian? | [preconditioner.rs](../src/response/receptance/preconditioner.rs) | [jacobian.rs](../src/response/harmonic_balance/equation/jacobian.rs) |
-| what decides that a solve has converged? | [contact_iteration.rs](../src/response/receptance/contact_iteration.rs) | [newton_verdict.rs](../src/response/harmonic_balance/solver/newton_verdict.rs) |
-| what is tried where it does not? | [contact_iteration.rs](../src/response/receptance/contact_iteration.rs), then [load_case_solvers.rs](../src/population/monte_carlo/load_case_solvers.rs) | [attempts_on_basis.rs](../src/response/forced_response/attempts_on_basis.rs) |
-| which harmonics? | [harmonics_on_receptances.rs](../src/settings/harmonics_on_receptances.rs) | [harmonics_on_basis.rs](../src/settings/harmonics_on_basis.rs) |
+| what decides that a solve has converged? | [contact_iteration.rs](../src/response/receptance/contact_iteration.rs) (`Judge`) | [newton_verdict.rs](../src/response/harmonic_balance/solver/newton_verdict.rs); in a search also [newton_iteration.rs](../src/response/harmonic_balance/solver/newton_iteration.rs) |
+| what is tried where it does not? | [attempts.rs](../src/response/receptance/attempts.rs), then [load_case_solvers.rs](../src/population/monte_carlo/load_case_solvers.rs) | [attempts_on_basis.rs](../src/response/forced_response/attempts_on_basis.rs) |
+| which harmonics does a study take that says none? | [reduced_study.rs](../src/settings/reduced_study.rs) (`reduced_on_receptances`), then [harmonics_on_receptances.rs](../src/settings/harmonics_on_receptances.rs) | [harmonics_on_basis.rs](../src/settings/harmonics_on_basis.rs) |
 | how is the peak found? | [corrected_peak.rs](../src/response/forced_response/corrected_peak.rs) | [peak.rs](../src/response/forced_response/peak.rs) |
 | which errors are measured? | [receptance_errors.rs](../src/response/forced_response/receptance_errors.rs) | [a_posteriori.rs](../src/response/forced_response/a_posteriori.rs) |
+| which rows are already solved when an interrupted run continues? | [parts.rs](../src/population/table/parts.rs) | the same |
+| where is a wrong value of a key refused, and where is the message made? | [check.rs](../src/study/checks/check.rs), then [finding.rs](../src/input/finding.rs) | the same |
 
 ## Order
 

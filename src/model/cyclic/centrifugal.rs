@@ -1,4 +1,6 @@
-//! Static equilibrium of damper and blisk under rotation: how hard each contact pair is pressed by ring or damper body.
+//! The load of each contact pair under rotation: how hard a ring or an underplatform damper (wedge or cylinder) presses it.
+//!
+//! It is that of the static equilibrium of damper and blisk.
 //!
 //! In nodal diameter 0, per square of the angular velocity Omega, with x the radius of every node along r,
 //!

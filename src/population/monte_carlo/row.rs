@@ -30,11 +30,12 @@ pub struct ResponseRow {
     pub harmonics: String,
     /// Nonlinear solves used.
     pub nonlinear_solves: u64,
-    /// Newton iterations used.
+    /// Steps of the iteration; in Newton's method on tuned receptances products with the derivative.
     pub newton_iterations: u64,
     /// Jacobians assembled and factored.
     pub factorisations: u64,
-    /// Nonlinear solves that needed more than the first attempt of the retry ladder.
+    /// On a basis the nonlinear solves that needed more than their first attempt; on tuned receptances every attempt after the
+    /// first of a solve.
     pub retries: u64,
     /// Residual at the peak: on tuned receptances of the contact motions relative to them, on a basis of the forces relative to the
     /// excitation.
@@ -49,9 +50,12 @@ pub struct ResponseRow {
     pub mean_friction_axial_n: Option<f64>,
     /// Shortcut used, or `"none"`.
     pub shortcut: String,
-    /// Relative change of the amplitude by one Newton correction at 4 times the samples.
+    /// Relative change of the amplitude by finer sampling. On a basis it is one Newton correction at 4 times the samples. On tuned
+    /// receptances the peak is solved on with more samples; where fewer harmonics led to an automatic set of all, the change is
+    /// that of the wheels that judge.
     pub sampling_error: Option<f64>,
-    /// Relative change of the amplitude by the harmonics up to 15 outside of the set.
+    /// Relative change of the amplitude by the harmonics up to 15 outside of the set, or by those up to 25 where the set has all
+    /// up to 15.
     pub harmonic_error: Option<f64>,
     /// Bound on the relative error of the amplitude, see `stated_error.rs`.
     pub stated_error: Option<f64>,

@@ -1,4 +1,6 @@
-//! Stored rows: parts, one finished file per block of patterns, and finished tables of rows.
+//! The rows that are already solved and stored, from which an interrupted run continues.
+//!
+//! They stand in parts, one finished file per block of patterns, and in finished tables of rows.
 //!
 //! A part is named `part-<first pattern>-<digest>.parquet`: its name is its checksum, and no part is
 //! ever written over. Their header lists them. Every file of rows says in its metadata what the rows of each of its scenarios
@@ -55,7 +57,7 @@ impl RowStore {
         Self { schema, files }
     }
 
-    /// Which rows are stored.
+    /// Which rows are stored: a run solves the others.
     ///
     /// # Errors
     /// A file cannot be read or is damaged.

@@ -18,10 +18,11 @@ use crate::response::harmonic_balance::{
 /// Relative changes of the largest amplitude; positive where it would grow.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorEstimate {
-    /// By one Newton correction of the same equations with 4 times the samples per period, or of those of the law in whose
-    /// place another one was taken.
+    /// By finer sampling, and by the law in whose place another one was taken. On a basis it is one Newton correction with 4
+    /// times the samples per period, at least 256. On tuned receptances the point is solved on from its solution, with the
+    /// samples of the enlarged set.
     pub sampling: f64,
-    /// By the harmonics up to 15 that are not in the set.
+    /// By the harmonics up to 15 that are not in the set, or by those up to 25 where the set has all up to 15.
     pub harmonics: f64,
     /// What the estimate of the harmonics may still be off by.
     pub unsettled: f64,

@@ -1,4 +1,4 @@
-//! The ways to a solution at one frequency.
+//! What is tried where a point on a basis does not converge: the attempts at its solution, in their order.
 
 use crate::response::harmonic_balance::Steps;
 

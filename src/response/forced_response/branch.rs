@@ -107,7 +107,7 @@ impl ResponseTrace {
         joined
     }
 
-    /// Amplitudes of every blade, m, at a frequency asked for: one entry per passage of the curve.
+    /// The points at a frequency asked for, Hz: one per passage of the curve.
     #[must_use]
     pub fn at(&self, frequency_hz: f64) -> Vec<&BranchPoint> {
         self.points

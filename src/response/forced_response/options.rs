@@ -10,7 +10,8 @@ const SAMPLES_STEP: usize = 16;
 /// Temporal harmonics of the solution.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Harmonics {
-    /// Chosen by the program per engine order and normal load, by the tuned wheel.
+    /// On tuned receptances 0 to 15, odd ones under a constant normal load, or up to 5 where a peak is not found with all. On a
+    /// basis a set per engine order and normal load, chosen by the tuned full contact model.
     Auto,
     /// This set, ascending; contains 1.
     Set(Vec<u32>),
@@ -19,7 +20,8 @@ pub enum Harmonics {
 /// Harmonics with which the tops of a row are sought, before the whole set is solved there.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SearchHarmonics {
-    /// Harmonic 1 where the equation of the whole set is large, else all.
+    /// Harmonic 1 on tuned receptances, and 0 to 3 where contacts open and an automatic set of all harmonics has these. On a
+    /// basis harmonic 1 where the equation of the whole set is large, and far below the peak where contact rows are few; else all.
     Auto,
     /// The whole set, without a search before.
     All,
@@ -75,10 +77,11 @@ pub struct SolverOptions {
     /// Time samples per period of the alternating frequency/time method; an automatic set takes at least
     /// 12 per period of its highest harmonic. Default 128.
     pub samples_per_period: usize,
-    /// Bound on the residual force relative to the excitation. Default 1e-8.
+    /// Bound on the residual. On a basis it is of the forces, relative to the excitation. On tuned receptances it is of the
+    /// contact motions, relative to them, and harmonic k counts by `1/k`. Default 1e-8.
     pub residual_tolerance: f64,
-    /// Whether it was asked for. Where it was not, the peak of a row with an automatic harmonic set on tuned receptances is solved to
-    /// half of the tolerance of the peak.
+    /// Whether it was asked for. Where it was not, the peak of a row with an automatic set of all harmonics on tuned receptances is
+    /// solved to a tenth of the tolerance of the peak, and to a fifth where contacts open.
     pub residual_is_stated: bool,
     /// Relative tolerance of the peak amplitude in the peak search. Default 1e-3.
     pub peak_tolerance: f64,

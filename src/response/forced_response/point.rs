@@ -8,11 +8,12 @@ use crate::response::harmonic_balance::ContactShares;
 pub struct Work {
     /// Points solved nonlinearly.
     pub nonlinear_solves: u64,
-    /// Newton iterations, all attempts.
+    /// Steps of the iteration, all attempts. In Newton's method on tuned receptances these are products with the derivative.
     pub newton_iterations: u64,
     /// Jacobians assembled and factored.
     pub factorisations: u64,
-    /// Points that needed more than the first attempt.
+    /// On a basis the points that needed more than the first attempt; on tuned receptances every attempt after the first of a
+    /// point.
     pub retries: u64,
     /// Folds of the response curve passed by continuation.
     pub folds: u64,
@@ -37,12 +38,14 @@ impl Work {
 pub struct Point {
     /// Frequency, Hz.
     pub frequency_hz: f64,
-    /// Real unknowns of the harmonic balance, see [`crate::response::harmonic_balance::HarmonicSystem`]; for a
-    /// linear limit those of harmonic 1 alone.
+    /// On a basis the real unknowns of the harmonic balance, see [`crate::response::harmonic_balance::HarmonicSystem`]; for a
+    /// linear limit those of harmonic 1 alone. On tuned receptances the motions at the contact of every harmonic over the
+    /// waves, as [`crate::response::receptance::WheelSolution::motions`]; none for a linear limit without iteration.
     pub solution: Vec<f64>,
     /// Amplitude of every blade, m.
     pub amplitudes_m: Vec<f64>,
-    /// Residual relative to the excitation; 0 for a linear limit.
+    /// Residual: on a basis of the forces, relative to the excitation; on tuned receptances of the contact motions, relative to
+    /// them, and harmonic k counts by `1/k`. It is 0 for a linear limit without iteration.
     pub residual: f64,
     /// Shares of slipping and separated pairs.
     pub shares: ContactShares,

@@ -1,4 +1,4 @@
-//! Points, peaks and errors of rows on the receptances of the tuned wheel.
+//! The solver of the points of a row on tuned receptances, and the contact that it solves them with.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The peak of a row in two stages: the whole band with few harmonics, the tops found there with all of them.
+//! The peak of a row on a basis in two stages: the whole band with few harmonics, the tops found there with all of them.
 //!
 //! Higher harmonics change the height of a peak by some percent and hardly its place, but each of them costs as
 //! much as the first. So the search that proves that nothing higher hides is made with few harmonics, and the set of
@@ -6,6 +6,9 @@
 //! by more than harmonics can make up for. Beside the solution with few harmonics the rest comes by the derivatives
 //! of harmonics by themselves (see [`crate::response::harmonic_balance::Steps::ByHarmonic`]). Where
 //! the few find no peak, a contact opens, or a top is lost on the way, the search is made with the whole set.
+//!
+//! Rows on tuned receptances have their second stage in `corrected_peak.rs`. It takes the tops of few harmonics from here
+//! (`tops_of_few`), and the bounds by which tops are followed.
 
 use super::excited::Excited;
 use super::options::ContactCondition;

@@ -1,4 +1,4 @@
-//! The strategy of the contact iteration: what is tried, in which order, until an attempt ends with a solution.
+//! What is tried where a point on tuned receptances does not converge: the attempts of the contact iteration, in their order.
 
 use super::contact_equation::PreconditionedShapes::{self, FirstOfFundamental, Resonant};
 

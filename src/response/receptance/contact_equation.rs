@@ -52,7 +52,8 @@ pub(super) struct ContactEquation<'a> {
 pub(super) struct Buffers {
     pub(super) motions: Vec<Field>,
     pub(super) residual: Vec<Field>,
-    /// Correction of the contact forces at the motions last evaluated, waves.
+    /// Correction of the contact forces at the motions last evaluated, waves. A residual adds the load of the equation to it; a
+    /// product with the derivative leaves `G' v` here.
     pub(super) forces: Vec<Field>,
     sectors: Field,
     pub(super) acceleration: Acceleration,

@@ -1,8 +1,8 @@
 //! The motions at the contact of a mistuned wheel at one frequency: a preconditioned, accelerated iteration.
 //!
 //! A step is `-P r` with the inverse P of `I + A G'` for the mean tangent G' of the contact; Anderson's acceleration makes up for
-//! what the mean leaves out. What is approximate stands in P alone. Where the first attempts by these steps end without
-//! a solution, Newton's method goes on from the best of them; the strategy stands in `attempts.rs`.
+//! what the mean leaves out. What is approximate stands in P alone. Such an attempt ends by the residual and the next step.
+//! An attempt by Newton's method ends by the residual alone. Either can follow the other, in the order of `attempts.rs`.
 
 use crate::linalg::gmres;
 use crate::response::harmonic_balance::{ContactShares, Status};
@@ -61,8 +61,8 @@ impl Judge {
         }
     }
 
-    /// Whether the residual and the step that it leads to are within the tolerance. Forces of a pair without a periodic state prove
-    /// nothing.
+    /// Whether the residual and the step that it leads to are within the tolerance; Newton's method asks with a step of 0. Forces of a
+    /// pair without a periodic state prove nothing.
     fn settled(&self, residual: f64, step: f64, shares: &ContactShares) -> Option<Status> {
         let is_closed = shares.unclosed == 0.0;
         let status = if is_closed {

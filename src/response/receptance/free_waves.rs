@@ -1,4 +1,4 @@
-//! The wheel of an engine without its contact springs, one wave after the other: what a march in time is made of.
+//! The wheel of an engine without its contact springs, one wave after the other: what the march in time of `response/stability` is made of.
 
 use super::blade_shapes::{ShapesWanted, blade_shapes, in_shapes};
 use super::engine::{EngineWheel, Limit, ReceptanceEngine};

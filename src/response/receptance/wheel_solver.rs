@@ -245,7 +245,7 @@ impl<'a> WheelSolver<'a> {
         self.load = Some(load);
     }
 
-    /// Contact forces at the solution last solved.
+    /// Contact forces at the solution last solved, with those of [`Self::load_contact`] added.
     #[must_use]
     pub fn contact_forces(&self) -> ContactForces {
         ContactForces {
@@ -254,7 +254,7 @@ impl<'a> WheelSolver<'a> {
         }
     }
 
-    /// The contact's own forces at the motions of a solution; none for a linear limit.
+    /// The contact's own forces at the motions of a solution, without those of [`Self::load_contact`]; none for a linear limit.
     pub fn contact_forces_at(&mut self, motions: &[f64]) -> Option<ContactForces> {
         self.equation()?.evaluate_forces(motions);
         Some(self.contact_forces())

@@ -1,4 +1,4 @@
-//! Findings of the checks of a study file, each at its key.
+//! Where a wrong value of a key of a study file is refused: a finding at the key, with what the key accepts.
 
 use crate::input::{Finding, KeySpec, Problem, SourceMap};
 use crate::study::keys::{OptionsTable, study_key};

@@ -1,4 +1,4 @@
-//! From the study file as written to a [`Study`]: ranges, defaults and cross-checks, all at once.
+//! From the text of a study file to a [`Study`]: calls the checks of all tables, and tells all that is wrong at once.
 
 use std::path::Path;
 

@@ -1,4 +1,7 @@
-//! Derivative of the force of one contact pair by its displacement, in harmonic space.
+//! The blocks of the derivative of a pair's force by its displacement, computed in `pair_harmonics.rs` and `clip_slopes.rs`.
+//!
+//! Under `coulomb_3d` it is computed in `coupled_derivative.rs`. Pairs under a constant normal load side by side have it from
+//! `macro_slip_pairs.rs`.
 
 /// Derivative of a pair's correction coefficients, N/m; every block is `n_coefficients *
 /// n_coefficients`, row after row, a row per coefficient of the correction and a column per
