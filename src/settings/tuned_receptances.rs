@@ -378,8 +378,8 @@ impl Shaped {
         factor: usize,
         mut tried: Vec<BasisError>,
     ) -> Result<Self, PipelineError> {
-        let exact = engine.receptances.is_exact();
-        let finer = (!exact).then(|| engine.with_shape_factor(study, excitations, 2 * factor));
+        let is_whole = engine.receptances.acts_on_cantilever_modes();
+        let finer = (!is_whole).then(|| engine.with_shape_factor(study, excitations, 2 * factor));
         let finer = finer.transpose()?;
         let error = match &finer {
             None => Some(0.0),

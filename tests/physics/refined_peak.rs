@@ -2,7 +2,7 @@
 
 use blisk::response::forced_response::{
     FrequencyBand, Harmonics, Peak, PointSettings, Search, SearchHarmonics, SolverOptions,
-    mistuned_window, peak, refined_peak, tuned_span,
+    mistuned_window, peak, refined, tuned_span,
 };
 use blisk::response::friction::Ring;
 use blisk::response::harmonic_balance::Status;
@@ -34,10 +34,10 @@ fn both(wheel: &Wheel, deviations: &[f64], load: f64) -> [Peak; 2] {
         settings: settings.search().unwrap(),
     };
     let (load, tolerance) = (full(load), options.peak_tolerance);
-    [
-        peak(&excited, load, &settings, window, tolerance),
-        refined_peak(&excited, search, load, &settings, window, tolerance),
-    ]
+    let one = peak(&excited, load, &settings, window, tolerance);
+    let two = refined(&excited, search, load, &settings, window, tolerance);
+    let two = two.unwrap_or_else(|_| peak(&excited, load, &settings, window, tolerance));
+    [one, two]
 }
 
 fn amplitude(peak: &Peak) -> f64 {

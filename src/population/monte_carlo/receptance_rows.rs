@@ -7,14 +7,13 @@ use super::row::MistunedPeak;
 use super::{CurveResult, Scenario, TunedReference, WheelState, harmonics_name};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
-    ContactCondition, EngineRow, ErrorEstimate, FrequencyBand, LinearPeak, PointSettings,
-    ReceptancePeak, SearchPlan, TopBeside, Window, linear_peaks_of, mistuned_window,
-    receptance_curve, receptance_errors, receptance_peak, receptance_plan, receptance_state,
-    receptance_top_beside, tuned_span_of,
+    ContactCondition, EngineRow, ErrorEstimate, FrequencyBand, PointSettings, ReceptancePeak,
+    SearchPlan, TopBeside, Window, mistuned_window, receptance_curve, receptance_errors,
+    receptance_peak, receptance_plan, receptance_state, receptance_top_beside, tuned_span_of,
 };
 use crate::response::harmonic_balance::{ContactShares, Status};
 use crate::response::mistuning::Pattern;
-use crate::response::receptance::{EngineWheel, ReceptanceEngine, WaveForce, embedded};
+use crate::response::receptance::{EngineWheel, ReceptanceEngine, Resonance, WaveForce, embedded};
 
 /// Samples per period of a search with few harmonics: what it finds is only where to look.
 pub(super) const SEARCH_SAMPLES: usize = 32;
@@ -86,13 +85,13 @@ impl ReceptanceRows {
         })
     }
 
-    fn tuned_limits(&self, engine_order: u32, condition: ContactCondition) -> Vec<Vec<LinearPeak>> {
+    fn tuned_limits(&self, engine_order: u32, condition: ContactCondition) -> Vec<Vec<Resonance>> {
         let Some(row) = self.row(None, engine_order, condition) else {
             return Vec::new();
         };
         let limits = condition.bounding_limits().into_iter();
         limits
-            .map(|limit| linear_peaks_of(row.engine.tuned_peaks(limit, row.force)))
+            .map(|limit| row.engine.tuned_peaks(limit, row.force))
             .collect()
     }
 

@@ -18,6 +18,7 @@ use crate::response::forced_response::{
 };
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::{Pattern, StructuralModes};
+use crate::response::receptance::SHIFT_BY_DEVIATION;
 
 /// Modes within this share of the frequency of the tuned peak, besides what mistuning moves them.
 const REACH: f64 = 0.3;
@@ -168,7 +169,7 @@ impl Surrogate<'_> {
 
     /// Orthonormal basis of the modes near the tuned peak, of all linear springs together.
     fn shapes(&self, change: &Matrix<f64>, largest_deviation: f64) -> Option<Matrix<f64>> {
-        let reach = REACH + 0.6 * largest_deviation;
+        let reach = REACH + SHIFT_BY_DEVIATION * largest_deviation;
         let mut found: Option<Matrix<f64>> = None;
         for springs in &self.contact_stiffness {
             let near = self.near_modes(change, springs, reach)?;

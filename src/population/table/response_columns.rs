@@ -178,7 +178,12 @@ pub(super) const COLUMNS: &[Column<WrittenRow, ResponseRow>] = &[
         "Temporal harmonics of the solution, for instance 1-3"
     ),
     field!(Int64, nonlinear_solves, "1", "Nonlinear solves used"),
-    field!(Int64, newton_iterations, "1", "Newton iterations used"),
+    field!(
+        Int64,
+        newton_iterations,
+        "1",
+        "Steps of the iteration, all attempts; in Newton's method on tuned receptances products with the derivative"
+    ),
     field!(
         Float64,
         residual,
@@ -207,7 +212,7 @@ pub(super) const COLUMNS: &[Column<WrittenRow, ResponseRow>] = &[
         Int64,
         retries,
         "1",
-        "Nonlinear solves that needed more than the first attempt of the retry ladder"
+        "Nonlinear solves that needed more than their first attempt; on tuned receptances every further attempt"
     ),
     field!(
         Int64,
@@ -231,13 +236,13 @@ pub(super) const COLUMNS: &[Column<WrittenRow, ResponseRow>] = &[
         Float64,
         sampling_error,
         "1",
-        "Relative change of the peak amplitude by one Newton correction at 4 times the samples per period and under the law of the study"
+        "Relative change of the peak amplitude by finer sampling of a period and under the law of the study"
     ),
     field!(
         Float64,
         harmonic_error,
         "1",
-        "Relative change of the peak amplitude by the harmonics up to 15 outside of the set"
+        "Relative change of the peak amplitude by the harmonics outside of the set: up to 15, or 25 where it has all of those"
     ),
     field!(
         Float64,

@@ -231,13 +231,13 @@ pub const SCENARIO_COLUMNS: &[ColumnSpec] = &[
         "tuned_sampling_error",
         Float64,
         "1",
-        "Relative change of the tuned peak by one Newton correction at 4 times the samples per period",
+        "Relative change of the tuned peak by finer sampling of a period",
     ),
     ColumnSpec::new(
         "tuned_harmonic_error",
         Float64,
         "1",
-        "Relative change of the tuned peak by the harmonics up to 15 outside of the set",
+        "Relative change of the tuned peak by the harmonics outside of the set: up to 15, or 25 where it has all of those",
     ),
     ColumnSpec::new(
         "tuned_stable",

@@ -28,14 +28,6 @@ pub struct ErrorEstimate {
     pub unsettled: f64,
 }
 
-impl ErrorEstimate {
-    /// Bound on the relative error of the amplitude by samples and harmonics together.
-    #[must_use]
-    pub fn bound(&self) -> f64 {
-        self.sampling.abs() + self.harmonics.abs() + self.unsettled
-    }
-}
-
 /// Errors of a solution, and what each harmonic outside of its set has to do with them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Screening {

@@ -21,14 +21,14 @@ use super::initial_guess::between_neighbours;
 use super::peak::{Peak, SearchPlan};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
-use super::point_source::{PointSource, opens};
+use super::point_source::{PointSource, opens, point_at};
 use super::receptance_points::{EngineRow, ReceptancePoints};
-use super::refined_peak::{
+use super::search::find_peak;
+use super::search::{Envelope, SearchSettings, VERTEX_SHARE};
+use super::tops::{
     EXTENSIONS, HUMP, MADE_UP, NEIGHBOURS, POINTS_OF_TOP, Top, inside_of_band, summit_of,
     tops_of_few,
 };
-use super::search::find_peak;
-use super::search::{Envelope, SearchSettings, VERTEX_SHARE};
 use crate::response::harmonic_balance::Status;
 use crate::response::receptance::{ContactForces, embedded, overlay};
 
@@ -200,13 +200,8 @@ impl CorrectedSearch<'_> {
         let is_guided = self.sets.len() > 1 || self.follows;
         let all = self.sets.last_mut().ok_or(Status::NotBracketed)?;
         if is_guided && !all.residual_is_stated() {
-            let same = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
-            return all
-                .points
-                .iter()
-                .find(same)
-                .cloned()
-                .ok_or(Status::NotBracketed);
+            let point = point_at(&all.points, frequency_hz).cloned();
+            return point.ok_or(Status::NotBracketed);
         }
         all.finished(frequency_hz)
     }
@@ -361,7 +356,7 @@ impl CorrectedSearch<'_> {
         let phases = self.phases(frequency_hz)?;
         let sets = climb.known.len();
         let (force, growth) = climb.left(sets, frequency_hz, &phases, &self.few.solver)?;
-        self.few.solver.load_contact(force);
+        self.few.solver.add_forces(force);
         let mut amplitudes_m = self.few.amplitudes_at(frequency_hz)?;
         for (amplitude_m, growth) in amplitudes_m.iter_mut().zip(growth) {
             *amplitude_m *= growth;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::linear_peaks::{LinearModes, LinearPeak};
+use super::linear_peaks::LinearModes;
 use super::options::ContactCondition;
 use crate::linalg::{Complex64, LuWorkspace};
 use crate::model::ReducedModel;
@@ -12,6 +12,7 @@ use crate::response::harmonic_balance::{
     ContactStiffnessMatrix, Damping, HarmonicBlock, Structure, linear_response,
 };
 use crate::response::mistuning::{ContactFactors, StructuralModes, WheelBasis};
+use crate::response::receptance::Resonance;
 
 /// One linear structure with both linear contact stiffnesses.
 #[derive(Debug, Clone)]
@@ -126,7 +127,7 @@ impl LimitModes {
         condition: ContactCondition,
         structure: &Structure,
         force: &[Complex64],
-    ) -> Vec<Vec<LinearPeak>> {
+    ) -> Vec<Vec<Resonance>> {
         let limits = match condition {
             ContactCondition::Full { .. } => vec![&self.stuck, &self.slide],
             ContactCondition::Stuck => vec![&self.stuck],
@@ -268,7 +269,7 @@ impl Excited {
 
     /// Resonances of the linear limits that bound `condition`.
     #[must_use]
-    pub fn linear_peaks(&self, condition: ContactCondition) -> Vec<Vec<LinearPeak>> {
+    pub fn linear_peaks(&self, condition: ContactCondition) -> Vec<Vec<Resonance>> {
         self.modes
             .peaks(condition, &self.linear.structure, &self.force)
     }

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use crate::linalg::{Complex64, Matrix, hermitian_eigen};
 use crate::response::harmonic_balance::{ContactStiffnessMatrix, Structure};
 use crate::response::mistuning::ModalRows;
+use crate::response::receptance::Resonance;
 
 /// Undamped modes of a structure with linear contact springs, over the structure's own modes.
 #[derive(Debug, Clone)]
@@ -15,17 +16,6 @@ pub struct LinearModes {
     shapes: Option<ModalRows>,
     /// Norm over r, theta, z of the observed displacement, `blades x modes`.
     observed: Matrix<f64>,
-}
-
-/// One resonance under one excitation, by its own mode alone.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LinearPeak {
-    /// Resonance frequency, Hz.
-    pub frequency_hz: f64,
-    /// Largest amplitude over the blades, m.
-    pub amplitude_m: f64,
-    /// Half of the bandwidth at -3 dB, Hz.
-    pub half_bandwidth_hz: f64,
 }
 
 impl LinearModes {
@@ -57,7 +47,7 @@ impl LinearModes {
 
     /// Resonances with a frequency above zero under the modal force `force`.
     #[must_use]
-    pub fn peaks(&self, structure: &Structure, force: &[Complex64]) -> Vec<LinearPeak> {
+    pub fn peaks(&self, structure: &Structure, force: &[Complex64]) -> Vec<Resonance> {
         let damping = self.damping(structure);
         (0..self.omega.len())
             .filter(|&mode| self.omega[mode] > 0.0)
@@ -70,7 +60,7 @@ impl LinearModes {
                     .iter()
                     .copied()
                     .fold(0.0, f64::max);
-                LinearPeak {
+                Resonance {
                     frequency_hz: omega / TAU,
                     amplitude_m: if damping > 0.0 {
                         reach * drive / damping

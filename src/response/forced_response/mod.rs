@@ -26,13 +26,13 @@ mod refined_peak;
 mod row_equation;
 mod screened;
 mod search;
+mod tops;
 
 pub use a_posteriori::{ErrorEstimate, Screening, estimate_errors, screen};
 pub use branch::{BranchPlace, BranchPoint, ResponseTrace};
 pub use dense_sweep::{DensePeak, dense_peak};
 pub use error_settings::ErrorSettings;
 pub use excited::{Excited, LimitsWanted, LinearStructure, Wheel, wheel_force};
-pub use linear_peaks::LinearPeak;
 pub use observed_amplitude::{ObservedAmplitude, ObservedBlock};
 pub use options::{
     AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, RowsBeyondTolerance,
@@ -50,8 +50,8 @@ pub use receptance_errors::{
 };
 pub use receptance_peak::{ReceptancePeak, receptance_peak};
 pub use receptance_points::{
-    ContactMotion, EngineRow, linear_peaks_of, receptance_contact_motion, receptance_curve,
-    receptance_plan, receptance_state,
+    ContactMotion, EngineRow, receptance_contact_motion, receptance_curve, receptance_plan,
+    receptance_state,
 };
-pub use refined_peak::{Search, refined, refined_peak};
+pub use refined_peak::{Search, refined};
 pub use search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};

@@ -2,7 +2,6 @@
 
 use super::excited::Excited;
 use super::folded_peak::falls_off;
-use super::linear_peaks::LinearPeak;
 use super::options::{ContactCondition, FrequencyBand};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
@@ -14,6 +13,7 @@ use super::search::{Envelope, SearchSettings};
 use super::search::{SearchEnd, SearchResult, find_peak};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{Status, condensing_pays};
+use crate::response::receptance::{Resonance, reach_of_mistuning, resonances_that_count};
 
 /// Tolerance of peaks of linear limits, which cost almost nothing.
 const LINEAR_PEAK_TOLERANCE: f64 = 4e-11;
@@ -97,10 +97,10 @@ pub fn tuned_span(
 
 /// [`tuned_span`] from the resonances of the linear limits.
 #[must_use]
-pub fn tuned_span_of(limits: &[Vec<LinearPeak>], tuned_peak_hz: Option<f64>) -> Option<(f64, f64)> {
+pub fn tuned_span_of(limits: &[Vec<Resonance>], tuned_peak_hz: Option<f64>) -> Option<(f64, f64)> {
     limits
         .iter()
-        .flat_map(|limit| dominant(limit))
+        .flat_map(|limit| resonances_that_count(limit))
         .map(|peak| peak.frequency_hz)
         .chain(tuned_peak_hz)
         .fold(None, |span: Option<(f64, f64)>, f| {
@@ -109,28 +109,14 @@ pub fn tuned_span_of(limits: &[Vec<LinearPeak>], tuned_peak_hz: Option<f64>) -> 
         })
 }
 
-/// Window of a mistuned wheel: resonances within `0.6 max|delta| + 5 %` of where the tuned wheel
-/// answers.
+/// Window of a mistuned wheel: resonances within [`reach_of_mistuning`] of where the tuned wheel answers.
 #[must_use]
 pub fn mistuned_window(span_hz: (f64, f64), largest_deviation: f64, band: FrequencyBand) -> Window {
-    let share = 0.6 * largest_deviation + 0.05;
+    let reach = reach_of_mistuning(largest_deviation);
     Window {
-        resonances_hz: Some((span_hz.0 * (1.0 - share), span_hz.1 * (1.0 + share))),
+        resonances_hz: Some((span_hz.0 * (1.0 - reach), span_hz.1 * (1.0 + reach))),
         band,
     }
-}
-
-/// The resonances of one limit that count: those above half of its highest.
-fn dominant(limit: &[LinearPeak]) -> Vec<LinearPeak> {
-    let highest = limit
-        .iter()
-        .map(|peak| peak.amplitude_m)
-        .fold(0.0, f64::max);
-    limit
-        .iter()
-        .copied()
-        .filter(|peak| peak.amplitude_m > 0.5 * highest)
-        .collect()
 }
 
 /// Where the linear limits of a row say that its peak can lie, and how wide a peak is there.
@@ -143,7 +129,7 @@ pub struct SearchPlan {
     /// First frequencies to try where points have slopes, which say more of what lies between, ascending, Hz.
     pub sparse_starts_hz: Vec<f64>,
     /// Resonances of the stuck limit, or of the limit itself, in the band and within its width of it.
-    pub stuck: Vec<LinearPeak>,
+    pub stuck: Vec<Resonance>,
     /// Least width of a peak.
     pub envelope: Envelope,
     /// Times the band may be widened while the largest value lies at its end.
@@ -167,11 +153,14 @@ pub fn search_plan(
 /// # Errors
 /// A resonance is not finite, or nothing answers the excitation.
 pub(super) fn search_plan_of(
-    limits: &[Vec<LinearPeak>],
+    limits: &[Vec<Resonance>],
     window: Window,
 ) -> Result<SearchPlan, Status> {
     let limits = within(limits, window);
-    let candidates: Vec<LinearPeak> = limits.iter().flat_map(|limit| dominant(limit)).collect();
+    let candidates: Vec<Resonance> = limits
+        .iter()
+        .flat_map(|limit| resonances_that_count(limit))
+        .collect();
     if candidates.iter().any(|peak| !peak.amplitude_m.is_finite()) {
         return Err(Status::NonFinite);
     }
@@ -422,7 +411,7 @@ fn failure_beyond(solver: &impl PointSource, best: Option<&Sample>) -> Option<St
 
 /// Resonances of each limit inside the window, or all of them where none of a limit is: a
 /// nonlinear peak lies between those of its limits, which may both be outside of a fixed band.
-fn within(limits: &[Vec<LinearPeak>], window: Window) -> Vec<Vec<LinearPeak>> {
+fn within(limits: &[Vec<Resonance>], window: Window) -> Vec<Vec<Resonance>> {
     let (low, high) = match (window.band, window.resonances_hz) {
         (FrequencyBand::Fixed { start_hz, stop_hz }, _) => (start_hz, stop_hz),
         (FrequencyBand::Auto, Some(range)) => range,
@@ -431,12 +420,12 @@ fn within(limits: &[Vec<LinearPeak>], window: Window) -> Vec<Vec<LinearPeak>> {
     limits
         .iter()
         .map(|limit| {
-            let inside: Vec<LinearPeak> = limit
+            let inside: Vec<Resonance> = limit
                 .iter()
                 .copied()
                 .filter(|peak| peak.frequency_hz >= low && peak.frequency_hz <= high)
                 .collect();
-            if dominant(&inside).is_empty() {
+            if resonances_that_count(&inside).is_empty() {
                 limit.clone()
             } else {
                 inside
@@ -446,15 +435,15 @@ fn within(limits: &[Vec<LinearPeak>], window: Window) -> Vec<Vec<LinearPeak>> {
 }
 
 /// The resonances in a band and within its width of it: another family further away is a peak of its own.
-fn near_band(resonances: &[LinearPeak], (low, high): (f64, f64)) -> Vec<LinearPeak> {
+fn near_band(resonances: &[Resonance], (low, high): (f64, f64)) -> Vec<Resonance> {
     let width = high - low;
     let is_near =
-        |peak: &&LinearPeak| peak.frequency_hz > low - width && peak.frequency_hz < high + width;
+        |peak: &&Resonance| peak.frequency_hz > low - width && peak.frequency_hz < high + width;
     resonances.iter().filter(is_near).copied().collect()
 }
 
 /// From the lowest to the highest candidate, widened by 1 % and 10 half-bandwidths.
-fn band_of(candidates: &[LinearPeak]) -> (f64, f64) {
+fn band_of(candidates: &[Resonance]) -> (f64, f64) {
     candidates
         .iter()
         .fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), peak| {
@@ -475,8 +464,8 @@ fn thinned(mut points: Vec<f64>, distance: f64) -> Vec<f64> {
 
 /// Every candidate resonance, and as many points `between` the dominant ones of the limits.
 fn starting_points(
-    limits: &[Vec<LinearPeak>],
-    candidates: &[LinearPeak],
+    limits: &[Vec<Resonance>],
+    candidates: &[Resonance],
     between: usize,
 ) -> Vec<f64> {
     let mut starts: Vec<f64> = candidates.iter().map(|peak| peak.frequency_hz).collect();

@@ -10,6 +10,7 @@ use super::observed_amplitude::ObservedBlock;
 use super::options::ContactCondition;
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
+use super::point_source::point_at;
 use super::row_equation::{RowEquation, real_parts};
 use crate::linalg::{Complex64, LuWorkspace};
 use crate::response::friction::Ring;
@@ -191,8 +192,7 @@ impl<'a> PointSolver<'a> {
 
     /// Amplitude of every blade, m, at a frequency, Hz, that may have been solved before; none where it cannot be.
     pub(super) fn amplitudes_at(&mut self, frequency_hz: f64) -> Option<Vec<f64>> {
-        let known = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
-        if let Some(point) = self.known.solved.iter().find(known) {
+        if let Some(point) = point_at(&self.known.solved, frequency_hz) {
             return Some(point.amplitudes_m.clone());
         }
         let point = self.solve(frequency_hz).ok()?;

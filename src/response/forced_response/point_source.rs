@@ -1,11 +1,11 @@
 //! What a search asks of a solver of points, and which resonances of the stuck limit it has to look at: a mode that hardly slips keeps its
 //! height and is as narrow as without friction, while friction holds the others far below their linear heights.
 
-use super::linear_peaks::LinearPeak;
 use super::point::{Point, Work};
 use super::point_solver::PointSolver;
 use super::search::{Curve, Reading, Sample};
 use crate::response::harmonic_balance::Status;
+use crate::response::receptance::Resonance;
 
 /// Share of pairs that slip beside a resonance that may be one with stuck contact.
 const STICKS: f64 = 0.5;
@@ -74,7 +74,7 @@ impl PointSource for PointSolver<'_> {
 /// The points of a solver, and the resonances of the stuck limit, ascending in frequency, that may stand above them.
 pub(super) struct Watched<'a, S> {
     pub(super) solver: &'a mut S,
-    pub(super) stuck: &'a [LinearPeak],
+    pub(super) stuck: &'a [Resonance],
 }
 
 impl<S: PointSource> Curve for Watched<'_, S> {
@@ -112,12 +112,12 @@ pub(super) fn point_at(points: &[Point], frequency_hz: f64) -> Option<&Point> {
 /// The frequency, Hz, of a resonance that may be higher than the best, that no sample is near enough to have seen, and that lies outside of
 /// the samples or where the contact of one beside it sticks: the band of a search is that of the high resonances alone.
 pub(super) fn unseen(
-    stuck: &[LinearPeak],
+    stuck: &[Resonance],
     samples: &[Sample],
     best: usize,
     sticks: impl Fn(f64) -> bool,
 ) -> Option<f64> {
-    let is_unseen = |peak: &&LinearPeak| {
+    let is_unseen = |peak: &&Resonance| {
         let below = |sample: &Sample| sample.frequency_hz < peak.frequency_hz;
         let right = samples.partition_point(below);
         let beside = || {

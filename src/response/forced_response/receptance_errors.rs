@@ -50,7 +50,7 @@ pub fn receptance_errors(
     let (motions, alone, own_unsettled) = settled(solver, &point.solution, harmonics)?;
     let solver = row
         .solver(settings, enlarged, *law)
-        .with_tangents(row.contact(settings, tangents, *law));
+        .with_coarse_contact(row.contact(settings, tangents, *law));
     let (_, after, unsettled) = settled(solver, &motions, harmonics)?;
     let largest = |amplitudes: Vec<f64>| amplitudes.into_iter().fold(0.0, f64::max);
     let height = largest(amplitude.of_observed(&before));

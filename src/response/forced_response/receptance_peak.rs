@@ -5,7 +5,7 @@ use super::peak::{Peak, Window, peak_by};
 use super::point::Work;
 use super::point_settings::PointSettings;
 use super::receptance_points::{EngineRow, ReceptancePoints, receptance_plan};
-use super::refined_peak::with_work;
+use super::tops::with_work;
 
 /// The peak of a row on tuned receptances.
 #[derive(Debug, Clone)]

@@ -3,13 +3,12 @@
 use std::sync::Arc;
 
 use super::initial_guess::between_neighbours;
-use super::linear_peaks::LinearPeak;
 use super::observed_amplitude::{ObservedAmplitude, ObservedHarmonic};
 use super::options::ContactCondition;
 use super::peak::{SearchPlan, Window, search_plan_of};
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
-use super::point_source::PointSource;
+use super::point_source::{PointSource, point_at};
 use crate::linalg::Complex64;
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{HarmonicTransform, PairContact, Status, WheelContact};
@@ -55,32 +54,13 @@ impl ContactCondition {
     }
 }
 
-impl From<Resonance> for LinearPeak {
-    fn from(resonance: Resonance) -> Self {
-        Self {
-            frequency_hz: resonance.frequency_hz,
-            amplitude_m: resonance.amplitude_m,
-            half_bandwidth_hz: resonance.half_bandwidth_hz,
-        }
-    }
-}
-
-/// Resonances as a search takes them.
-#[must_use]
-pub fn linear_peaks_of(resonances: Vec<Resonance>) -> Vec<LinearPeak> {
-    resonances.into_iter().map(LinearPeak::from).collect()
-}
-
 impl<'a> EngineRow<'a> {
     /// Resonances of the linear limits that bound the condition, the stuck one first; none if they are not found.
     #[must_use]
-    pub fn linear_peaks(&self) -> Option<Vec<Vec<LinearPeak>>> {
+    pub fn linear_peaks(&self) -> Option<Vec<Vec<Resonance>>> {
         let limits = self.condition.bounding_limits().into_iter();
         limits
-            .map(|limit| {
-                let peaks = self.engine.peaks(limit, self.wheel, self.force)?;
-                Some(linear_peaks_of(peaks))
-            })
+            .map(|limit| self.engine.peaks(limit, self.wheel, self.force))
             .collect()
     }
 
@@ -258,8 +238,7 @@ impl<'a> ReceptancePoints<'a> {
 
 impl PointSource for ReceptancePoints<'_> {
     fn amplitudes_at(&mut self, frequency_hz: f64) -> Option<Vec<f64>> {
-        let known = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
-        if let Some(point) = self.points.iter().find(known) {
+        if let Some(point) = point_at(&self.points, frequency_hz) {
             return Some(point.amplitudes_m.clone());
         }
         if self.failures.len() > self.most_failures() {

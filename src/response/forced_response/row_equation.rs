@@ -11,8 +11,7 @@ use super::point_settings::PointSettings;
 use crate::linalg::{Complex64, LuWorkspace};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{
-    ContactInterface, HarmonicSystem, NewtonWorkspace, Status, Steps, response_slope, solve,
-    solve_creeping,
+    HarmonicSystem, NewtonWorkspace, Status, Steps, response_slope, solve, solve_creeping,
 };
 
 /// The equation of one row, with the buffers of its solver.
@@ -42,11 +41,7 @@ impl<'a> RowEquation<'a> {
             return None;
         };
         let (law, sector) = settings.contact?;
-        let interface = ContactInterface {
-            law,
-            geometry: settings.geometry.clone(),
-            pairs: sector.pairs_under(normal_load_n, &settings.geometry, &settings.factors),
-        };
+        let interface = settings.interface(law, sector, normal_load_n);
         let system = HarmonicSystem::new(
             excited.blocks.clone(),
             excited.force.clone(),

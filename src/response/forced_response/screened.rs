@@ -5,11 +5,11 @@
 
 use super::excited::Excited;
 use super::initial_guess::NEAR;
-use super::linear_peaks::LinearPeak;
 use super::point::{Point, Work};
 use super::point_solver::PointSolver;
 use super::point_source::{point_at, sticks, unseen};
 use super::search::{Curve, Reading, Sample};
+use crate::response::receptance::Resonance;
 
 /// Share of its height that a point may gain by the harmonics left out. Harmonic 3 raised the highest blade of a lumped wheel
 /// by 6 %, and lowered that of another by a fifth, which is why the highest place of few harmonics is solved with all at
@@ -24,7 +24,7 @@ pub(super) struct Screened<'a, 'search> {
     /// Highest amplitude with all harmonics so far, m.
     highest_m: f64,
     /// Resonances of the stuck limit.
-    stuck: &'search [LinearPeak],
+    stuck: &'search [Resonance],
 }
 
 impl<'a, 'search> Screened<'a, 'search> {
@@ -33,7 +33,7 @@ impl<'a, 'search> Screened<'a, 'search> {
     pub(super) fn new(
         solver: PointSolver<'a>,
         few: Option<(&'search Excited, PointSolver<'search>)>,
-        stuck: &'search [LinearPeak],
+        stuck: &'search [Resonance],
     ) -> Self {
         let pays = |(_, few): &(_, PointSolver<'_>)| few.is_sloped() && solver.is_sloped();
         Self {

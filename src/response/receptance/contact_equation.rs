@@ -9,9 +9,6 @@
 //! with the answer A of the wheel to contact forces ([`super::wheel_harmonic`]) and the correction G of the contact forces to
 //! those of stuck springs, all harmonics together.
 
-use std::f64::consts::TAU;
-
-use crate::linalg::Complex64;
 use crate::response::harmonic_balance::{ContactShares, WheelContact};
 
 use super::acceleration::Acceleration;
@@ -35,14 +32,14 @@ pub(super) enum PreconditionedShapes {
 pub(super) struct ContactEquation<'a> {
     pub(super) transform: &'a SectorTransform,
     pub(super) contact: &'a mut WheelContact,
-    /// The contact with fewer samples, from which tangents are taken; none: they are taken from `contact`.
-    pub(super) tangents: Option<&'a mut WheelContact>,
+    /// The contact with fewer samples, from which derivatives are taken; none: they are taken from `contact`.
+    pub(super) coarse_contact: Option<&'a mut WheelContact>,
     /// A harmonic of the set each, in its order.
     pub(super) harmonics: &'a mut [WheelHarmonic],
     /// `u_lin` of harmonic 1, at this place of the set.
     pub(super) linear: &'a Field,
     /// Forces on the contact besides its own, a field per harmonic.
-    pub(super) load: Option<&'a ContactForces>,
+    pub(super) added_forces: Option<&'a ContactForces>,
     pub(super) fundamental: usize,
     pub(super) buffers: &'a mut Buffers,
 }
@@ -52,7 +49,7 @@ pub(super) struct ContactEquation<'a> {
 pub(super) struct Buffers {
     pub(super) motions: Vec<Field>,
     pub(super) residual: Vec<Field>,
-    /// Correction of the contact forces at the motions last evaluated, waves. A residual adds the load of the equation to it; a
+    /// Correction of the contact forces at the motions last evaluated, waves. A residual adds the forces of the equation besides its own to it; a
     /// product with the derivative leaves `G' v` here.
     pub(super) forces: Vec<Field>,
     sectors: Field,
@@ -144,8 +141,8 @@ impl ContactEquation<'_> {
                 forces,
                 ..
             } = &mut *self.buffers;
-            if let Some(load) = self.load {
-                forces[place].add(1.0, &load.fields[place]);
+            if let Some(added) = self.added_forces {
+                forces[place].add(1.0, &added.fields[place]);
             }
             residual[place].clone_from(&motions[place]);
             if place == self.fundamental {
@@ -161,7 +158,7 @@ impl ContactEquation<'_> {
     pub(super) fn preconditioners(&self, shapes: PreconditionedShapes) -> Vec<Preconditioner> {
         let pairs = self.contact.pair_rows();
         let harmonics = self.harmonics.iter().enumerate();
-        let contact: &WheelContact = self.tangents.as_deref().unwrap_or(self.contact);
+        let contact: &WheelContact = self.coarse_contact.as_deref().unwrap_or(self.contact);
         harmonics
             .map(|(place, harmonic)| {
                 let tangent = contact.mean_tangent(place);
@@ -223,11 +220,11 @@ impl ContactEquation<'_> {
 
     /// [`Self::residual`]; the derivative is that of the contact with fewer samples, if there is one.
     pub(super) fn residual_with_tangent(&mut self, wanted: bool) -> (f64, ContactShares) {
-        let apart = wanted && self.tangents.is_some();
+        let apart = wanted && self.coarse_contact.is_some();
         let found = self.residual(wanted && !apart);
-        if let Some(tangents) = self.tangents.as_mut().filter(|_| apart) {
-            tangents.motion_mut().copy_from_slice(self.contact.motion());
-            tangents.evaluate(true);
+        if let Some(coarse) = self.coarse_contact.as_mut().filter(|_| apart) {
+            coarse.motion_mut().copy_from_slice(self.contact.motion());
+            coarse.evaluate(true);
         }
         found
     }
@@ -249,16 +246,4 @@ impl ContactEquation<'_> {
         flatten(&fields, 1.0, &mut flat);
         flat
     }
-}
-
-/// Angular frequency of a harmonic.
-pub(super) fn angular(harmonic: u32, frequency_hz: f64) -> f64 {
-    f64::from(harmonic) * TAU * frequency_hz
-}
-
-/// A deviation as it enters the dynamic stiffness of a harmonic: with the structural loss factor, of which the static
-/// harmonic 0 has none.
-pub(super) fn damped(deviation: f64, loss_factor: f64, harmonic: u32) -> Complex64 {
-    let loss = if harmonic == 0 { 0.0 } else { loss_factor };
-    Complex64::new(deviation, deviation * loss)
 }

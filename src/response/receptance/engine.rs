@@ -15,7 +15,9 @@ use super::blade_shapes::{
     Participation, ShapesWanted, blade_shapes, in_cantilever_modes, in_shapes, strain_coordinates,
 };
 use super::fields::SectorTransform;
-use super::resonances::{BandModes, MistunedModes, Resonance};
+use super::resonances::{
+    BandModes, MistunedModes, Resonance, reach_of_mistuning, resonances_that_count,
+};
 use super::tables::Receptances;
 use super::tuned_wheel::TunedDiameter;
 use super::wave_force::WaveForce;
@@ -26,8 +28,6 @@ const SHAPES: [usize; 2] = [3, 2];
 const SHAPE_FREQUENCIES: [usize; 2] = [9, 5];
 /// Relative margin of the band whose modes make the resonances of a limit.
 const BAND_MARGIN: f64 = 0.1;
-/// Share of the highest tuned resonance from which on others count.
-const COUNTS: f64 = 0.5;
 
 /// A Craig-Bampton model with every contact degree of freedom, its blade strain in few coordinates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -112,7 +112,7 @@ pub(super) struct Pencil {
     pub(super) diameters: Vec<TunedDiameter>,
     /// What takes part in all strain coordinates, or in exactly the cantilever modes.
     strain: Participation,
-    exact: bool,
+    in_cantilever_modes: bool,
     /// Motion times spring of the contact rows under the excitation, N.
     contact_forces: Vec<f64>,
     /// Frequencies of harmonic 1, rad/s.
@@ -158,16 +158,16 @@ impl ReceptanceEngine {
             Damping::StructuralLossFactor(eta) => eta,
             Damping::ModalRatio(_) | Damping::Rayleigh { .. } => 0.0,
         };
-        let exact = match options.projection {
+        let cantilever_modes = match options.projection {
             Projection::Exact => None,
             Projection::CantileverModes => Some(in_cantilever_modes(model)?),
         };
-        let strain = exact.as_ref().unwrap_or(&engine_model.strain);
+        let strain = cantilever_modes.as_ref().unwrap_or(&engine_model.strain);
         let diameters = under_limits(model, options.damping)?;
         let band = band(&diameters, model.sectors, options);
         let pencils = diameters.map(|diameters| Pencil {
             strain: strain.clone(),
-            exact: exact.is_some(),
+            in_cantilever_modes: cantilever_modes.is_some(),
             contact_forces: contact_forces(&diameters, band, &options.forces),
             band,
             forces: options.forces.clone(),
@@ -201,8 +201,8 @@ impl ReceptanceEngine {
 
     /// Whether deviations act on exactly the cantilever modes, so that no shape is left out.
     #[must_use]
-    pub fn is_exact(&self) -> bool {
-        self.pencils.iter().all(|pencil| pencil.exact)
+    pub fn acts_on_cantilever_modes(&self) -> bool {
+        self.pencils.iter().all(|pencil| pencil.in_cantilever_modes)
     }
 
     /// Largest relative error of the interpolated receptances so far.
@@ -343,7 +343,7 @@ impl Pencil {
     }
 
     fn shapes(&self, harmonic: u32) -> Option<Participation> {
-        if self.exact {
+        if self.in_cantilever_modes {
             return Some(self.strain.clone());
         }
         let place = usize::from(harmonic != 1);
@@ -409,8 +409,8 @@ fn band(
     }
     let span = tuned_span(diameters, sectors, &options.forces);
     span.map_or((0.0, 0.0), |(low, high)| {
-        let share = 0.6 * options.deviation + 0.05;
-        (low * (1.0 - share), high * (1.0 + share))
+        let reach = reach_of_mistuning(options.deviation);
+        (low * (1.0 - reach), high * (1.0 + reach))
     })
 }
 
@@ -434,17 +434,8 @@ fn tuned_span(
             (f64::MIN_POSITIVE, f64::MAX),
         );
         for force in forces {
-            let peaks = all.tuned_peaks(diameters, force);
-            let highest = peaks
-                .iter()
-                .map(|peak| peak.amplitude_m)
-                .fold(0.0, f64::max);
-            let count = |peak: &&Resonance| peak.amplitude_m > COUNTS * highest;
-            for omega in peaks
-                .iter()
-                .filter(count)
-                .map(|peak| TAU * peak.frequency_hz)
-            {
+            for resonance in resonances_that_count(&all.tuned_peaks(diameters, force)) {
+                let omega = TAU * resonance.frequency_hz;
                 let (low, high) = span.unwrap_or((omega, omega));
                 span = Some((low.min(omega), high.max(omega)));
             }

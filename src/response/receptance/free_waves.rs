@@ -43,7 +43,7 @@ impl ReceptanceEngine {
     pub fn free_wheel(&self, wheel: &EngineWheel, omega: f64) -> Option<FreeWheel> {
         let pencil = self.pencil(Limit::Stuck);
         let frequencies = SHAPE_FREQUENCIES.map(|share| share * omega);
-        let participation = if self.is_exact() {
+        let participation = if self.acts_on_cantilever_modes() {
             pencil.strain().clone()
         } else {
             let wanted = ShapesWanted {

@@ -33,6 +33,6 @@ pub use engine::{
 };
 pub use free_waves::{FreeWave, FreeWheel};
 pub use motions::{embedded, overlay};
-pub use resonances::Resonance;
+pub use resonances::{Resonance, SHIFT_BY_DEVIATION, reach_of_mistuning, resonances_that_count};
 pub use wave_force::WaveForce;
 pub use wheel_solver::{SolutionWork, WheelSolution, WheelSolver};

@@ -22,6 +22,28 @@ pub struct Resonance {
     pub half_bandwidth_hz: f64,
 }
 
+/// Share of the highest resonance of a linear limit above which others count.
+const COUNTS: f64 = 0.5;
+/// Relative shift of a resonance over the largest deviation of a blade stiffness at most: half of it, and what modes that meet add.
+pub const SHIFT_BY_DEVIATION: f64 = 0.6;
+/// Relative margin besides.
+const MARGIN: f64 = 0.05;
+
+/// The resonances of one linear limit that count.
+#[must_use]
+pub fn resonances_that_count(limit: &[Resonance]) -> Vec<Resonance> {
+    let heights = limit.iter().map(|resonance| resonance.amplitude_m);
+    let highest = heights.fold(0.0, f64::max);
+    let counts = |resonance: &&Resonance| resonance.amplitude_m > COUNTS * highest;
+    limit.iter().filter(counts).copied().collect()
+}
+
+/// Relative distance from the resonances of the tuned wheel within which those of wheels with deviations up to this one are sought.
+#[must_use]
+pub fn reach_of_mistuning(largest_deviation: f64) -> f64 {
+    SHIFT_BY_DEVIATION * largest_deviation + MARGIN
+}
+
 /// The modes of a tuned wheel with linear springs in a band, those of all waves.
 #[derive(Debug)]
 pub(super) struct BandModes {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::linalg::Complex64;
 use crate::response::harmonic_balance::{ContactShares, PairContact, Status, WheelContact};
 
-use super::contact_equation::{Buffers, ContactEquation, angular, damped};
+use super::contact_equation::{Buffers, ContactEquation};
 use super::contact_forces::ContactForces;
 use super::engine::{EngineWheel, Limit, ReceptanceEngine};
 use super::fields::Field;
@@ -21,11 +21,11 @@ pub struct WheelSolver<'a> {
     force: &'a WaveForce,
     set: Vec<u32>,
     contact: Option<WheelContact>,
-    tangents: Option<WheelContact>,
+    coarse_contact: Option<WheelContact>,
     harmonics: Vec<WheelHarmonic>,
     linear: Field,
     /// Forces on the contact besides its own.
-    load: Option<ContactForces>,
+    added_forces: Option<ContactForces>,
     buffers: Buffers,
     /// Tuned response to the excitation of the motions [contact, strain, observed].
     excited: Vec<Complex64>,
@@ -76,20 +76,20 @@ impl<'a> WheelSolver<'a> {
             force,
             set,
             contact,
-            tangents: None,
+            coarse_contact: None,
             harmonics: Vec::new(),
             linear: Field::default(),
-            load: None,
+            added_forces: None,
             buffers: Buffers::default(),
             excited: Vec::new(),
         }
     }
 
-    /// This solver with tangents from `contact`, which is its contact with fewer samples; none: from its contact itself.
+    /// This solver with derivatives from `contact`, which is its contact with fewer samples; none: from its contact itself.
     #[must_use]
-    pub fn with_tangents(self, contact: Option<WheelContact>) -> Self {
+    pub fn with_coarse_contact(self, contact: Option<WheelContact>) -> Self {
         Self {
-            tangents: contact,
+            coarse_contact: contact,
             ..self
         }
     }
@@ -120,10 +120,10 @@ impl<'a> WheelSolver<'a> {
         Some(ContactEquation {
             transform: &self.engine.transform,
             contact,
-            tangents: self.tangents.as_mut(),
+            coarse_contact: self.coarse_contact.as_mut(),
             harmonics: &mut self.harmonics,
             linear: &self.linear,
-            load: self.load.as_ref(),
+            added_forces: self.added_forces.as_ref(),
             fundamental,
             buffers: &mut self.buffers,
         })
@@ -241,11 +241,11 @@ impl<'a> WheelSolver<'a> {
     }
 
     /// From now on these forces, in the harmonics of the solver, act on the contact besides its own.
-    pub fn load_contact(&mut self, load: ContactForces) {
-        self.load = Some(load);
+    pub fn add_forces(&mut self, added: ContactForces) {
+        self.added_forces = Some(added);
     }
 
-    /// Contact forces at the solution last solved, with those of [`Self::load_contact`] added.
+    /// Contact forces at the solution last solved, with those of [`Self::add_forces`] added.
     #[must_use]
     pub fn contact_forces(&self) -> ContactForces {
         ContactForces {
@@ -254,7 +254,7 @@ impl<'a> WheelSolver<'a> {
         }
     }
 
-    /// The contact's own forces at the motions of a solution, without those of [`Self::load_contact`]; none for a linear limit.
+    /// The contact's own forces at the motions of a solution, without those of [`Self::add_forces`]; none for a linear limit.
     pub fn contact_forces_at(&mut self, motions: &[f64]) -> Option<ContactForces> {
         self.equation()?.evaluate_forces(motions);
         Some(self.contact_forces())
@@ -328,4 +328,16 @@ impl<'a> WheelSolver<'a> {
     pub fn harmonics(&self) -> &[u32] {
         &self.set
     }
+}
+
+/// Angular frequency of a harmonic.
+fn angular(harmonic: u32, frequency_hz: f64) -> f64 {
+    f64::from(harmonic) * TAU * frequency_hz
+}
+
+/// A deviation as it enters the dynamic stiffness of a harmonic: with the structural loss factor, of which the static
+/// harmonic 0 has none.
+fn damped(deviation: f64, loss_factor: f64, harmonic: u32) -> Complex64 {
+    let loss = if harmonic == 0 { 0.0 } else { loss_factor };
+    Complex64::new(deviation, deviation * loss)
 }
