@@ -9,6 +9,7 @@ use super::progress::RunProgress;
 use super::scheduler::{ShardArgument, threads};
 use super::{ExitStatus, output};
 use crate::campaign::{RunRequest, run, run_shard, set_other_builds_aside};
+use crate::population::table::Shard;
 use crate::settings::ReducedEngineSource;
 use crate::study::{AccuracyOptions, Study};
 
@@ -61,40 +62,37 @@ pub(super) fn command(arguments: RunArguments) -> Result<ExitStatus, Failure> {
         results: &results,
         threads: threads(arguments.threads),
     };
-    let outcome = match shard {
+    let ran = match shard {
         None => run(request, &ReducedEngineSource, &progress),
         Some(shard) => run_shard(request, shard, &ReducedEngineSource, &progress),
     };
     progress.finish();
-    let outcome = outcome?;
-    let what = shard.map_or_else(String::new, |shard| format!("shard {shard} of "));
-    if outcome.rows_solved == 0 {
-        output::message(&format!(
-            "{what}{} is complete, nothing to solve",
-            results.display()
-        ));
-    } else {
-        let place = results.display();
-        let place = shard.map_or_else(
-            || format!("results in {place}"),
-            |shard| {
-                let (number, count) = (shard.number, shard.count);
-                format!(
-                    "shard in {place}/shards/{number}-of-{count}; when all are solved: blisk merge {place} --out {place}"
-                )
-            },
-        );
-        output::message(&format!(
-            "solved {} rows, reused {}; {place}",
-            outcome.rows_solved, outcome.rows_reused
-        ));
-    }
+    let outcome = ran?;
+    let rows = (outcome.rows_solved, outcome.rows_reused);
+    output::message(&said(rows, shard, &results));
     if shard.is_some() {
         // Statistics are those of the whole, once it is merged.
         return Ok(ExitStatus::Done);
     }
     output::result(arguments.json, &outcome.summary)?;
     Ok(super::stats::status_of(&outcome.summary))
+}
+
+/// What is said of a run that solved and reused as many rows, into the folder `results` or into that of
+/// a shard in it.
+fn said((solved, reused): (u64, u64), shard: Option<Shard>, results: &Path) -> String {
+    let folder = results.display();
+    match shard {
+        None if solved == 0 => format!("{folder} is complete, nothing to solve"),
+        None => format!("solved {solved} rows, reused {reused}; results in {folder}"),
+        Some(shard) if solved == 0 => {
+            format!("shard {shard} of {folder} is complete, nothing to solve")
+        }
+        Some(Shard { number, count }) => format!(
+            "solved {solved} rows, reused {reused}; shard in {folder}/shards/{number}-of-{count}; when all are \
+             solved: blisk merge {folder} --out {folder}"
+        ),
+    }
 }
 
 /// `1%` or `0.01`.
@@ -107,4 +105,45 @@ fn accuracy(text: &str) -> Result<AccuracyOptions, String> {
         .filter(|&error| AccuracyOptions::accepts(error))
         .map(AccuracyOptions::within)
         .ok_or_else(|| "accepted: a relative error from 0.1% to 20%, like 1% or 0.01".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Path, Shard, said};
+
+    const SECOND: Option<Shard> = Some(Shard {
+        number: 2,
+        count: 8,
+    });
+
+    fn of(rows: (u64, u64), shard: Option<Shard>) -> String {
+        said(rows, shard, Path::new("results/fan"))
+    }
+
+    #[test]
+    fn a_run_without_rows_to_solve_says_that_the_folder_is_complete() {
+        assert_eq!(
+            of((0, 40), None),
+            "results/fan is complete, nothing to solve"
+        );
+    }
+
+    #[test]
+    fn a_run_that_solved_rows_says_how_many_and_where_they_are() {
+        let expected = "solved 30 rows, reused 10; results in results/fan";
+        assert_eq!(of((30, 10), None), expected);
+    }
+
+    #[test]
+    fn a_shard_that_solved_rows_says_how_all_are_merged() {
+        let expected = "solved 5 rows, reused 0; shard in results/fan/shards/2-of-8; when all are solved: \
+                        blisk merge results/fan --out results/fan";
+        assert_eq!(of((5, 0), SECOND), expected);
+    }
+
+    #[test]
+    fn a_shard_without_rows_to_solve_says_which_one_is_complete() {
+        let expected = "shard 2/8 of results/fan is complete, nothing to solve";
+        assert_eq!(of((0, 5), SECOND), expected);
+    }
 }

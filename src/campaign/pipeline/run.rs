@@ -16,6 +16,7 @@ use crate::campaign::store::{
 use crate::population::monte_carlo::{
     Interruption, Scenario, block_size, plan_blocks, solve_blocks,
 };
+use crate::population::statistics::StopOutcome;
 use crate::population::table::{
     Manifest, PartSink, RowStore, RunRecord, Shard, is_folder, remove_leftovers,
 };
@@ -107,6 +108,7 @@ pub(in crate::campaign) struct RunScope<'a> {
     pub(in crate::campaign) held: u64,
 }
 
+/// Creates or continues what `scope` says of the study of `request`.
 pub(in crate::campaign) fn run_in(
     request: RunRequest<'_>,
     scope: RunScope<'_>,
@@ -114,7 +116,6 @@ pub(in crate::campaign) fn run_in(
     progress: &dyn Progress,
 ) -> Result<RunOutcome, PipelineError> {
     let RunRequest { study, results, .. } = request;
-    let shard = scope.shard;
     let clock = Clock::start();
     let digest = StudyDigest::of(study)?;
     let mut folder = ResultsFolder::open(results)?;
@@ -125,10 +126,8 @@ pub(in crate::campaign) fn run_in(
     if let Some(holder) = folder.broken_off() {
         progress.taken_over(&holder.to_string());
     }
-    let found = folder.find(study, &digest, shard)?;
-    if let Found::Finished(manifest) = &found
-        && is_complete(manifest, study)
-    {
+    let found = folder.find(study, &digest, scope.shard)?;
+    if let Some(manifest) = found.finished().filter(|own| is_complete(own, study)) {
         return Ok(RunOutcome {
             rows_reused: manifest.counts.planned,
             rows_solved: 0,
@@ -139,76 +138,29 @@ pub(in crate::campaign) fn run_in(
     progress.stage(Stage::LoadModel);
     let model = load_sector_model(study)?;
     let patterns = pattern_source(study, &model)?;
-    let held = match &found {
-        Found::Finished(manifest) => manifest.patterns,
-        _ => scope.held,
-    };
+    let held = { found.finished() }.map_or(scope.held, |manifest| manifest.patterns);
     let job = Job {
         request,
+        shard: scope.shard,
+        clock,
+        digest,
         goal: Goal::new(study, held),
-        found: &found,
-        patterns: &patterns,
+        found,
+        patterns,
+        pool: pool_of(request.threads)?,
         progress,
     };
-    let tables = |size, facts: Facts| {
-        let all = patterns.ids();
-        let first = &all[..all.len().min(size as usize)];
-        let ids = shard.map_or(first, |shard| shard.of(first)).to_vec();
-        TableWork::new(study, &digest, &patterns, (shard, ids), facts)
-    };
-    let pool = pool_of(request.threads)?;
-    let mut ended = None;
-    if let Some((size, facts)) = job.facts_of_stored_rows() {
-        // Motions are looked at by an engine.
-        if !TableWork::wants_engine(study, shard) {
-            ended = pool.install(|| job.end(&tables(size, facts), 0, None))?;
-        }
+    if let Some(ended) = job.end_of_stored_rows()? {
+        return job.publish(ended, None);
     }
-    if ended.is_none() {
-        progress.stage(Stage::Reduce);
-        let engine = pool
-            .install(|| source.build_watched(study, &model, Some(scope.model_cache), progress))?;
-        progress.stage(Stage::Tuned);
-        let facts = pool.install(|| Facts::solve(engine.as_ref(), study, &digest, progress));
-        let mut solved = 0;
-        for &size in job.goal.ends() {
-            let tables = tables(size, facts.clone());
-            let rows = job.solve(&pool, engine.as_ref(), &tables, &mut folder)?;
-            solved += rows.solved;
-            let stored = rows.stored();
-            if stored < tables.planned() {
-                let rows = RowCounts {
-                    solved,
-                    reused: stored - solved,
-                };
-                clock
-                    .record(&study.path, request.threads, rows, BTreeMap::new())
-                    .write(results)?;
-                return Err(PipelineError::Interrupted {
-                    folder: results.to_owned(),
-                    stored,
-                    planned: tables.planned(),
-                });
-            }
-            ended = pool.install(|| job.end(&tables, solved, Some(engine.as_ref())))?;
-            if ended.is_some() {
-                break;
-            }
-        }
-    }
-    let Some((outcome, manifest)) = ended else {
-        return Err(PipelineError::Unfinished {
-            folder: results.to_owned(),
-        });
-    };
-    let rows = RowCounts {
-        solved: outcome.rows_solved,
-        reused: outcome.rows_reused,
-    };
-    clock
-        .record(&study.path, request.threads, rows, manifest.tables)
-        .write(results)?;
-    Ok(outcome)
+    progress.stage(Stage::Reduce);
+    let build = || source.build_watched(study, &model, Some(scope.model_cache), progress);
+    let engine = job.pool.install(build)?;
+    progress.stage(Stage::Tuned);
+    let solve = || Facts::solve(engine.as_ref(), study, &job.digest, progress);
+    let facts = job.pool.install(solve);
+    let ended = job.solve_to_an_end(engine.as_ref(), &facts, &mut folder)?;
+    job.publish(ended, Some(engine.as_ref()))
 }
 
 /// Threads of a run.
@@ -230,26 +182,62 @@ pub(in crate::campaign) struct RowCounts {
 }
 
 impl RowCounts {
+    /// Of `stored` rows, `solved` are those of this run.
+    fn of(stored: u64, solved: u64) -> Self {
+        Self {
+            solved,
+            reused: stored - solved,
+        }
+    }
+
     fn stored(self) -> u64 {
         self.solved + self.reused
     }
 }
 
-/// A run that has something to do.
+/// A run that has something to do, with what its steps need.
 struct Job<'a> {
     request: RunRequest<'a>,
+    shard: Option<Shard>,
+    clock: Clock,
+    digest: StudyDigest,
     goal: Goal,
-    found: &'a Found,
-    patterns: &'a PatternSource,
+    found: Found,
+    patterns: PatternSource,
+    pool: ThreadPool,
     progress: &'a dyn Progress,
 }
 
+/// The rows that a study ends with.
+struct Ended<'a> {
+    /// The tables to be made of them.
+    tables: TableWork<'a>,
+    /// Where they are stored.
+    store: RowStore,
+    /// What the stopping rule of the study saw, if it has one.
+    stop: Option<StopOutcome>,
+    /// How many of them this run solved.
+    solved: u64,
+}
+
 impl Job<'_> {
-    /// The manifest of what is stored.
-    fn stored(&self) -> Option<&Manifest> {
-        match self.found {
-            Found::Nothing => None,
-            Found::Unfinished(manifest) | Found::Finished(manifest) => Some(manifest),
+    /// The tables of the first `size` patterns, or of the share that a shard has of these.
+    fn tables(&self, size: u64, facts: Facts) -> TableWork<'_> {
+        let all = self.patterns.ids();
+        let first = &all[..all.len().min(size as usize)];
+        let ids = self.shard.map_or(first, |shard| shard.of(first)).to_vec();
+        let (study, share) = (self.request.study, (self.shard, ids));
+        TableWork::new(study, &self.digest, &self.patterns, share, facts)
+    }
+
+    /// The end of the study if no row of it is to be solved, and nothing else needs an engine.
+    fn end_of_stored_rows(&self) -> Result<Option<Ended<'_>>, PipelineError> {
+        match self.facts_of_stored_rows() {
+            // Motions are looked at by an engine.
+            Some((size, facts)) if !TableWork::wants_engine(self.request.study, self.shard) => {
+                self.look(self.tables(size, facts), 0)
+            }
+            _ => Ok(None),
         }
     }
 
@@ -257,17 +245,45 @@ impl Job<'_> {
     /// their rows are stored: in another order, with other tables asked for, or another rule to stop.
     fn facts_of_stored_rows(&self) -> Option<(u64, Facts)> {
         let &size = self.goal.ends().first()?;
-        match self.found {
-            Found::Finished(manifest) if manifest.patterns == size => {
-                Some((size, Facts::stored(manifest, self.request.study)?))
+        let manifest = { self.found.finished() }.filter(|own| own.patterns == size)?;
+        Some((size, Facts::stored(manifest, self.request.study)?))
+    }
+
+    /// Solves the rows up to one possible end after the other, until the study ends.
+    fn solve_to_an_end(
+        &self,
+        engine: &dyn Engine,
+        facts: &Facts,
+        folder: &mut ResultsFolder,
+    ) -> Result<Ended<'_>, PipelineError> {
+        let results = self.request.results;
+        let mut solved = 0;
+        for &size in self.goal.ends() {
+            let tables = self.tables(size, facts.clone());
+            let rows = self.solve(engine, &tables, folder)?;
+            solved += rows.solved;
+            let (stored, planned) = (rows.stored(), tables.planned());
+            if stored < planned {
+                // Tables are made at an end only.
+                self.record(RowCounts::of(stored, solved), BTreeMap::new())?;
+                return Err(PipelineError::Interrupted {
+                    folder: results.to_owned(),
+                    stored,
+                    planned,
+                });
             }
-            _ => None,
+            if let Some(ended) = self.look(tables, solved)? {
+                return Ok(ended);
+            }
         }
+        Err(PipelineError::Unfinished {
+            folder: results.to_owned(),
+        })
     }
 
     /// Rows of the finished study for those of `scenarios` that it has, at most `patterns` of each.
     fn held_rows(&self, scenarios: &[Scenario], patterns: u64) -> u64 {
-        let Found::Finished(manifest) = self.found else {
+        let Some(manifest) = self.found.finished() else {
             return 0;
         };
         let has = |scenario: &&Scenario| {
@@ -286,8 +302,7 @@ impl Job<'_> {
     /// The rows stored.
     fn store(&self, tables: &TableWork) -> Result<RowStore, PipelineError> {
         let results = self.request.results;
-        let finished = self
-            .stored()
+        let finished = { self.found.manifest() }
             .map_or_else(Vec::new, |manifest| finished_rows(results, manifest));
         Ok(RowStore::open(results, tables.schema().clone(), finished)?)
     }
@@ -295,13 +310,12 @@ impl Job<'_> {
     /// Solves the rows that are not stored yet.
     fn solve(
         &self,
-        pool: &ThreadPool,
         engine: &dyn Engine,
         tables: &TableWork,
         folder: &mut ResultsFolder,
     ) -> Result<RowCounts, PipelineError> {
         let results = self.request.results;
-        if !matches!(self.found, Found::Finished(_)) {
+        if self.found.finished().is_none() {
             tables.unfinished().write(results)?;
         }
         self.progress.stage(Stage::Rows);
@@ -314,23 +328,23 @@ impl Job<'_> {
         let held = self.held_rows(scenarios, ids.len() as u64);
         let anew = held.saturating_sub(reused);
         if anew > 0 {
-            let why = { self.stored() }
+            let why = { self.found.manifest() }
                 .map_or_else(String::new, |stored| why_anew(stored, &tables.unfinished()));
             self.progress.solves_anew(anew, &why);
         }
-        let at_a_time = pool.current_num_threads() * scenarios.len();
+        let at_a_time = self.pool.current_num_threads() * scenarios.len();
         self.progress.rows_at_a_time(at_a_time as u64);
         self.progress.begin_rows(tables.planned(), reused);
         let rows = RowWork {
             engine,
-            patterns: self.patterns,
+            patterns: &self.patterns,
             scenarios,
             tuned: tables.tuned(),
             progress: self.progress,
         };
         let mut sink = PartSink::new(results, tables.schema())?;
         let solved = solve_blocks(
-            pool,
+            &self.pool,
             &blocks,
             |block, id| rows.of_pattern(id, &block.scenarios),
             &mut sink,
@@ -340,29 +354,58 @@ impl Job<'_> {
         Ok(RowCounts { solved, reused })
     }
 
-    /// Writes the tables of the rows stored, if the study ends with them; `solved` are those of this
-    /// run.
-    fn end(
+    /// The end of the study, if it ends with the rows of `tables`, which are stored; `solved` are those
+    /// of this run.
+    fn look<'a>(
         &self,
-        tables: &TableWork,
+        tables: TableWork<'a>,
         solved: u64,
-        engine: Option<&dyn Engine>,
-    ) -> Result<Option<(RunOutcome, Manifest)>, PipelineError> {
-        let store = self.store(tables)?;
+    ) -> Result<Option<Ended<'a>>, PipelineError> {
+        let store = self.store(&tables)?;
         let scenarios = tables.schema().scenarios.len();
-        let verdict = self.goal.look(&store, tables.ids(), scenarios)?;
-        if !verdict.ends {
-            return Ok(None);
-        }
+        let look = || self.goal.look(&store, tables.ids(), scenarios);
+        let verdict = self.pool.install(look)?;
+        Ok(verdict.ends.then_some(Ended {
+            tables,
+            store,
+            stop: verdict.outcome,
+            solved,
+        }))
+    }
+
+    /// Writes the tables of the rows that the study ends with, and the record of this run.
+    fn publish(
+        &self,
+        ended: Ended<'_>,
+        engine: Option<&dyn Engine>,
+    ) -> Result<RunOutcome, PipelineError> {
         self.progress.stage(Stage::Tables);
-        let results = self.request.results;
-        let (manifest, summary) = tables.publish(&store, results, verdict.outcome, engine)?;
-        let outcome = RunOutcome {
+        let Ended {
+            tables,
+            store,
+            stop,
+            solved,
+        } = ended;
+        let rows = RowCounts::of(tables.planned(), solved);
+        let publish = || tables.publish(&store, self.request.results, stop, engine);
+        let (manifest, summary) = self.pool.install(publish)?;
+        self.record(rows, manifest.tables)?;
+        Ok(RunOutcome {
             summary,
-            rows_solved: solved,
-            rows_reused: tables.planned() - solved,
-        };
-        Ok(Some((outcome, manifest)))
+            rows_solved: rows.solved,
+            rows_reused: rows.reused,
+        })
+    }
+
+    /// Writes down this run, with the digests of the tables that it made.
+    fn record(
+        &self,
+        rows: RowCounts,
+        tables: BTreeMap<String, String>,
+    ) -> Result<(), PipelineError> {
+        let RunRequest { study, threads, .. } = self.request;
+        let record = self.clock.record(&study.path, threads, rows, tables);
+        Ok(record.write(self.request.results)?)
     }
 }
 

@@ -47,6 +47,24 @@ pub(in crate::campaign) enum Found {
     Finished(Box<Manifest>),
 }
 
+impl Found {
+    /// The manifest of what is stored, finished or not.
+    pub(in crate::campaign) fn manifest(&self) -> Option<&Manifest> {
+        match self {
+            Self::Nothing => None,
+            Self::Unfinished(manifest) | Self::Finished(manifest) => Some(manifest),
+        }
+    }
+
+    /// The manifest of a finished run.
+    pub(in crate::campaign) fn finished(&self) -> Option<&Manifest> {
+        match self {
+            Self::Finished(manifest) => Some(manifest),
+            Self::Nothing | Self::Unfinished(_) => None,
+        }
+    }
+}
+
 impl ResultsFolder {
     /// Makes the folder if need be, locks it, and completes what an interrupted process had decided.
     pub(in crate::campaign) fn open(path: &Path) -> Result<Self, PipelineError> {
