@@ -3,6 +3,8 @@
 //! `build.rs` makes the identity. It stands as `build` in manifests, in the headers of parts, in the records of runs and
 //! in the keys of cached models; never in a Parquet file or in the digest of a study, which are of the study alone.
 
+use serde::Serialize;
+
 /// Version of the program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -25,4 +27,11 @@ pub const IN_WORDS: &str = concat!(
 #[must_use]
 pub fn named(build: &str) -> &str {
     if build.is_empty() { "(none)" } else { build }
+}
+
+/// What two values that are the same to the last bit have in common, and no other value of their type: numbers in the order of the
+/// fields, whatever these are called.
+#[must_use]
+pub fn bytes_of(value: &impl Serialize) -> Vec<u8> {
+    postcard::to_stdvec(value).expect("numbers in memory can be written to memory")
 }

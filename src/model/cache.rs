@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use thiserror::Error;
 
 use super::sector::SectorModel;
-use crate::identity;
+use crate::identity::{self, bytes_of};
 
 /// Layout and meaning of the stored bytes; part of every digest, so that an older file is never misread.
 const LAYOUT: u32 = 6;
@@ -26,32 +26,30 @@ pub struct CacheError {
     pub source: io::Error,
 }
 
-/// Digest, hexadecimal, of a sector model and of the settings `key` of its reduction.
+/// Digest, hexadecimal, of a sector model and of all that its reduction depends on besides, for this build.
 #[must_use]
-pub fn reduction_digest(model: &SectorModel, key: &str) -> String {
+pub fn reduction_digest(model: &SectorModel, key: &(impl Serialize + ?Sized)) -> String {
+    let layout = format!("{LAYOUT} build {}", identity::BUILD);
+    let parts = (layout, key, sector_digest(model));
+    blake3::hash(&bytes_of(&parts)).to_hex().to_string()
+}
+
+/// Digest, hexadecimal, of a sector model.
+#[must_use]
+pub fn sector_digest(model: &SectorModel) -> String {
     let mut hasher = blake3::Hasher::new();
-    let mut text = |part: &str| {
-        hasher.update(&(part.len() as u64).to_le_bytes());
-        hasher.update(part.as_bytes());
+    let mut part = |bytes: Vec<u8>| {
+        hasher.update(&(bytes.len() as u64).to_le_bytes());
+        hasher.update(&bytes);
     };
-    text(&format!("{LAYOUT} build {}", identity::BUILD));
-    text(key);
-    text(&format!(
-        "{:?} {} {:?} {:?} {:?} {:?} {:?}",
-        model.name,
-        model.sectors,
-        model.dofs,
-        model.cyclic_pairs,
-        model.contact_pairs,
-        model.force,
-        model.observed,
-    ));
-    if !model.load_case_forces.is_empty() {
-        text(&format!("{:?}", model.load_case_forces));
+    part(bytes_of(&(&model.name, model.sectors, &model.dofs)));
+    part(bytes_of(&(&model.cyclic_pairs, &model.contact_pairs)));
+    part(bytes_of(&model.load_case_forces.len()));
+    for force in std::iter::once(&model.force).chain(&model.load_case_forces) {
+        let numbers = force.iter().map(|(dof, force)| (dof, force.re, force.im));
+        part(bytes_of(&numbers.collect::<Vec<_>>()));
     }
-    if !model.rigid_points.is_empty() {
-        text(&format!("rigid {:?}", model.rigid_points));
-    }
+    part(bytes_of(&(&model.observed, &model.rigid_points)));
     for matrix in [&model.stiffness, &model.mass, &model.blade_stiffness] {
         for (row, column, value) in matrix.lower_entries() {
             hasher.update(&(row as u64).to_le_bytes());

@@ -7,6 +7,7 @@ pub mod reduction;
 pub mod sector;
 
 pub use cache::{
-    CacheError, is_whole_entry, read_cached, reduction_digest, write_cached, writer_of_leftover,
+    CacheError, is_whole_entry, read_cached, reduction_digest, sector_digest, write_cached,
+    writer_of_leftover,
 };
 pub use reduced_model::{NodalDiameterReport, ReducedModel, ReducedNodalDiameter};

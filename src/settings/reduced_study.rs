@@ -16,6 +16,7 @@ use super::harmonics_on_receptances::{JudgingWheels, choice_of};
 use super::progress::Progress;
 use super::row_settings::{contact_stiffness, row_settings};
 use super::tuned_receptances::{COMPANION_MODES, Refined, engine_of, engine_options, refined};
+use crate::identity::bytes_of;
 use crate::model::cyclic::pair_tangents;
 use crate::model::reduction::{Basis, BasisChoice, Reduction, WHOLE_SPACE_DOFS};
 use crate::model::sector::SectorModel;
@@ -178,25 +179,35 @@ pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> Result<String
     let settings = row_settings(study);
     let stiffness = contact_stiffness(study.contact.as_ref());
     let sensitivity = sensitivity_vectors(study);
-    let mut key = format!(
-        "{:?} {stiffness:?} {sensitivity} {:?} {settings:?} {:?} {:?} {:?} {:?} {:?}",
-        study.reduction,
-        study.mistuning.cantilever_mode_count,
-        study.engine_orders,
-        study.contacts,
-        study.contact_variations,
-        study.nodal_diameter_damping,
-        study.amplitudes_n
-    );
-    if !study.load_cases.is_empty() {
-        key = format!("{key} {:?}", study.load_cases);
-    }
-    if is_on_receptances(study, model) {
-        let projection = study.mistuning.projection;
-        let deviation = expected_deviation(study);
+    let judged_by = if is_on_receptances(study, model) {
         let patterns = judging_patterns(study, model)?;
-        key = format!("{key} {projection:?} {deviation} {patterns:?}");
-    }
+        Some((
+            study.mistuning.projection,
+            expected_deviation(study),
+            patterns,
+        ))
+    } else {
+        None
+    };
+    let key = (
+        (
+            &study.reduction,
+            study.mistuning.cantilever_mode_count,
+            stiffness,
+            sensitivity,
+        ),
+        (
+            &study.engine_orders,
+            &study.contacts,
+            &study.contact_variations,
+        ),
+        (
+            &study.nodal_diameter_damping,
+            &study.amplitudes_n,
+            &study.load_cases,
+        ),
+        (settings, judged_by),
+    );
     Ok(reduction_digest(model, &key))
 }
 
@@ -451,7 +462,7 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
 pub(super) fn models_digest(study: &Study, stored: &Stored) -> String {
     let mut hasher = blake3::Hasher::new();
     let mut add_model = |model: &ReducedModel, error: f64| {
-        hasher.update(&written(model));
+        hasher.update(&bytes_of(model));
         if !stored.is_on_receptances() {
             hasher.update(&error.to_bits().to_le_bytes());
         }
@@ -461,14 +472,9 @@ pub(super) fn models_digest(study: &Study, stored: &Stored) -> String {
         add_model(&beyond.model, beyond.basis_error);
     }
     if let Some(engine) = &stored.engine {
-        hasher.update(&written(engine));
+        hasher.update(&bytes_of(engine));
         let options = engine_options(study, &excitations(study), &engine.model);
-        hasher.update(format!("{options:?}").as_bytes());
+        hasher.update(&options.bytes());
     }
     hasher.finalize().to_hex().to_string()
-}
-
-/// The bytes of a model.
-fn written(model: &impl Serialize) -> Vec<u8> {
-    postcard::to_stdvec(model).expect("numbers in memory can be written to memory")
 }

@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
+use serde::Serialize;
+
 use crate::population::monte_carlo::LoadCaseName;
 
 /// Where the force vector of a load case comes from.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum ForceSource {
     /// The force vector of the model.
     Model,
@@ -26,7 +28,7 @@ pub enum ForceSource {
 }
 
 /// One load case.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LoadCase {
     /// Name.
     pub name: LoadCaseName,

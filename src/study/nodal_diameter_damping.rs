@@ -1,9 +1,11 @@
 //! `[nodal_diameter_damping]`: damping ratios by nodal diameter, for instance aerodynamic ones.
 
+use serde::Serialize;
+
 use crate::model::reduction::{DampedModes, NodalDiameterDamping};
 
 /// Damping ratios by nodal diameter as a study has them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NodalDiameterTable {
     /// Nodal diameters with their ratios, as written; the others have none.
     pub ratios: Vec<(u32, f64)>,

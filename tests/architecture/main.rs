@@ -215,6 +215,41 @@ fn only_the_platform_asks_the_operating_system() {
     complain("a file outside src/platform asks the system", &violations);
 }
 
+/// Whether a statement of the program digests text for a developer, which changes with a name, makes a key of it, or compares it.
+fn compares_debug_text(text: &str) -> bool {
+    let program = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let statements = program
+        .split(';')
+        .filter(|statement| statement.contains(":?}"));
+    let mut joined = statements.map(|statement| statement.split_whitespace().collect::<String>());
+    let compares = ["as_bytes()", "==format!", "!=format!", "key=format!"];
+    joined.any(|statement| compares.iter().any(|word| statement.contains(word)))
+}
+
+#[test]
+fn no_digest_is_made_of_debug_text() {
+    let files = source_files().into_iter();
+    let found = files.filter(|source| compares_debug_text(&source.text));
+    let violations: Vec<String> = found.map(|source| source.name).collect();
+    complain(
+        "a digest or a comparison of rows is made of debug text",
+        &violations,
+    );
+}
+
+#[test]
+fn a_digest_of_debug_text_is_found() {
+    let digest = "fn f() { blake3::hash(format!(\"{x:?}\").as_bytes()) }";
+    assert!(compares_debug_text(digest));
+    assert!(compares_debug_text(
+        "format!(\"{a:?}\") == format!(\"{b:?}\")"
+    ));
+    assert!(!compares_debug_text(
+        "fn f() { blake3::hash(x) }\n#[cfg(test)]\n\"{x:?}\""
+    ));
+    assert!(!compares_debug_text("fn f() { format!(\"{x:?}\") }"));
+}
+
 #[test]
 fn one_file_prints() {
     let macros = ["print!", "println!", "eprint!", "eprintln!", "dbg!"];

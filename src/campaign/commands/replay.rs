@@ -1,6 +1,9 @@
 //! One delivered row solved again: on the same path, and on the full-contact model where asked for.
 
+use serde::Serialize;
+
 use crate::campaign::store::{StoredModel, StoredStudy};
+use crate::identity::bytes_of;
 use crate::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
 use crate::population::table::VerificationRecord;
 use crate::response::mistuning::Pattern;
@@ -128,8 +131,8 @@ fn full_peaks(
 
 /// Whether two results agree in every bit: their printed forms name every field and hold as many
 /// digits as it takes.
-pub(super) fn same_bits(a: &impl std::fmt::Debug, b: &impl std::fmt::Debug) -> bool {
-    format!("{a:?}") == format!("{b:?}")
+pub(super) fn same_bits<T: Serialize>(a: &T, b: &T) -> bool {
+    bytes_of(a) == bytes_of(b)
 }
 
 /// The harmonic set of the column `harmonics`; none where it is empty.

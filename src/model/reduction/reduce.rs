@@ -3,6 +3,8 @@
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
+use serde::Serialize;
+
 use rayon::prelude::*;
 
 use super::basis::basis_of;
@@ -35,7 +37,7 @@ pub struct Reduction<'a> {
 }
 
 /// Per-sector contact stiffness, N/m, in normal, first and second tangential direction.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ContactStiffness {
     /// Normal stiffness kn; 0 where the law has none.
     pub normal_n_per_m: f64,

@@ -13,7 +13,7 @@ const LEAST_TANGENT: f64 = 1e-6;
 pub(super) const MAX_SECTORS: usize = 10_000;
 
 /// Component of a displacement or of a rotation in the cylindrical frame at the node's own angle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 pub enum Component {
     /// Radial, `r`.
     Radial,
@@ -68,7 +68,7 @@ pub enum Body {
 }
 
 /// A degree of freedom: one component of one node.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Dof {
     /// Node id, from 0.
     pub node: usize,
@@ -81,7 +81,7 @@ pub struct Dof {
 }
 
 /// A point of a rigid body: it has no dofs of its own but moves with the six of another node.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct RigidPoint {
     /// Number of the point, as contact pairs name it; no node of the dofs has it.
     pub node: usize,
@@ -92,7 +92,7 @@ pub struct RigidPoint {
 }
 
 /// One of the two sides that meet in a contact pair of sector n.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 pub enum ContactSide {
     /// A node of sector n.
     Node(usize),
@@ -114,7 +114,7 @@ impl ContactSide {
 }
 
 /// A pair of facing points in contact.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ContactPair {
     /// Side whose surface has the normal: the blisk of a ring damper.
     pub first: ContactSide,
@@ -129,7 +129,7 @@ pub struct ContactPair {
 }
 
 /// A node whose displacement is reported; the first of a model carries the peak metric.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ObservedNode {
     /// Name shown to the user.
     pub name: String,

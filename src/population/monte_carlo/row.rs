@@ -1,12 +1,14 @@
 //! One row of `responses.parquet`: what became of one (scenario, pattern), and its amplification factor.
 
+use serde::Serialize;
+
 use super::Scenario;
 use crate::response::forced_response::{ErrorEstimate, Peak};
 use crate::response::harmonic_balance::Status;
 use crate::response::mistuning::PairFactors;
 
 /// Result of one pattern under one scenario. Values of a failed row are `None`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ResponseRow {
     /// Scenario index.
     pub scenario: usize,
@@ -106,7 +108,7 @@ pub(super) struct MistunedPeak {
 }
 
 /// Peak of the tuned wheel of a scenario, the denominator of its amplification factors.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TunedReference {
     /// Scenario index.
     pub scenario: usize,

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use serde::Serialize;
+
 use super::{ErrorTolerance, HarmonicChoice, sampling_tolerance};
 use crate::model::ReducedModel;
 use crate::response::forced_response::{ContactCondition, PointSettings, SolverOptions};
@@ -10,7 +12,7 @@ use crate::response::harmonic_balance::{Damping, TransformError};
 use crate::response::mistuning::{Pattern, Projection};
 
 /// What a study says about the physics of a row.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct RowSettings {
     /// Harmonic set under the contact law, ascending, with 1.
     pub harmonics: Vec<u32>,

@@ -15,6 +15,7 @@ use super::places::PARTS;
 use super::responses::ResponseWriter;
 use super::row_file::{RowCursor, RowFile};
 use super::{TableError, TableHeader};
+use crate::identity::bytes_of;
 use crate::population::monte_carlo::{PatternBlock, ResponseRow, RowSink, Scenario, StoredRows};
 
 /// What the rows of a study are, for its files.
@@ -183,7 +184,7 @@ struct OpenFile<'a> {
 /// A row that two files hold has to be the same in both.
 fn agrees(known: Option<&ResponseRow>, row: &ResponseRow, path: &Path) -> Result<(), TableError> {
     match known {
-        Some(known) if format!("{known:?}") != format!("{row:?}") => {
+        Some(known) if bytes_of(known) != bytes_of(row) => {
             let pattern = row.pattern;
             let reason = format!("another file has other values of pattern {pattern}");
             Err(TableError::damaged(path, reason))

@@ -19,9 +19,9 @@
 use super::climb::{Climb, Known};
 use super::initial_guess::between_neighbours;
 use super::peak::{Peak, SearchPlan};
-use super::point::{Point, Work};
+use super::point::{Point, Work, point_at};
 use super::point_settings::PointSettings;
-use super::point_source::{PointSource, opens, point_at};
+use super::point_source::{PointSource, opens};
 use super::receptance_points::{EngineRow, ReceptancePoints};
 use super::search::find_peak;
 use super::search::{Envelope, SearchSettings, VERTEX_SHARE};

@@ -93,3 +93,9 @@ impl Point {
         })
     }
 }
+
+/// The point at exactly this frequency, Hz.
+pub(super) fn point_at(points: &[Point], frequency_hz: f64) -> Option<&Point> {
+    let same = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
+    points.iter().find(same)
+}

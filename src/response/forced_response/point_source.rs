@@ -1,7 +1,7 @@
 //! What a search asks of a solver of points, and which resonances of the stuck limit it has to look at: a mode that hardly slips keeps its
 //! height and is as narrow as without friction, while friction holds the others far below their linear heights.
 
-use super::point::{Point, Work};
+use super::point::{Point, Work, point_at};
 use super::point_solver::PointSolver;
 use super::search::{Curve, Reading, Sample};
 use crate::response::harmonic_balance::Status;
@@ -101,12 +101,6 @@ pub(super) fn opens(points: &[Point]) -> bool {
 /// Whether few pairs slip at a point.
 pub(super) fn sticks(point: &Point) -> bool {
     point.shares.slipping < STICKS
-}
-
-/// The point at exactly this frequency, Hz.
-pub(super) fn point_at(points: &[Point], frequency_hz: f64) -> Option<&Point> {
-    let same = |point: &&Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
-    points.iter().find(same)
 }
 
 /// The frequency, Hz, of a resonance that may be higher than the best, that no sample is near enough to have seen, and that lies outside of

@@ -5,9 +5,10 @@
 
 use super::excited::Excited;
 use super::initial_guess::NEAR;
+use super::point::point_at;
 use super::point::{Point, Work};
 use super::point_solver::PointSolver;
-use super::point_source::{point_at, sticks, unseen};
+use super::point_source::{sticks, unseen};
 use super::search::{Curve, Reading, Sample};
 use crate::response::receptance::Resonance;
 

@@ -1,12 +1,14 @@
 //! One pair of contact nodes: its parameters, its displacement history and what the chosen law
 //! makes of it.
 
+use serde::Serialize;
+
 use super::{ContactLaw, ContactOptions, CoupledSlider, PeriodicSlider};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::mistuning::{ContactFactors, PairFactors};
 
 /// Parameters of one pair: the per-sector values of the study times the weight of the pair.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PairParameters {
     /// Static normal load N0 of the pair, N, >= 0.
     pub normal_load_n: f64,

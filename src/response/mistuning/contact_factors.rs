@@ -1,7 +1,9 @@
 //! What the contact of one wheel is, relative to the nominal one.
 
+use serde::Serialize;
+
 /// Factors on the nominal parameters of one contact pair.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PairFactors {
     /// On the coefficient of friction.
     pub friction_coefficient: f64,
@@ -36,7 +38,7 @@ impl PairFactors {
 }
 
 /// Factors of every pair of a wheel, sector after sector; without any, the contact is nominal.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct ContactFactors {
     pairs: Vec<PairFactors>,
 }

@@ -75,7 +75,7 @@ pub enum VariesPer {
 }
 
 /// Law of a factor on a nominal parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum FactorLaw {
     /// `1 + s z`: z of zero mean and unit standard deviation.
     Relative(Distribution),
@@ -84,7 +84,7 @@ pub enum FactorLaw {
 }
 
 /// How one parameter varies.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ContactVariation {
     /// The parameter.
     pub quantity: ContactQuantity,

@@ -1,9 +1,11 @@
 //! One mistuning pattern: the deviation of every blade of a wheel, and its contact.
 
+use serde::Serialize;
+
 use super::ContactFactors;
 
 /// Relative deviations of the blades of one wheel, in blade order.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum Deviations {
     /// One deviation of the blade stiffness per blade, all modes alike; length N sectors.
     PerBlade(Vec<f64>),
@@ -27,7 +29,7 @@ impl Deviations {
 }
 
 /// One mistuning pattern.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Pattern {
     /// Id, from 0 or as in the file of patterns.
     pub id: u32,

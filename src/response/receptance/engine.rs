@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
+use crate::identity::bytes_of;
 use crate::linalg::{Complex64, Matrix};
 use crate::model::ReducedModel;
 use crate::model::cyclic::NodalDiameter;
@@ -95,6 +96,22 @@ pub struct EngineOptions {
     pub deviation: f64,
     /// The band that is asked for, Hz; none for that of the resonances.
     pub band_hz: Option<(f64, f64)>,
+}
+
+impl EngineOptions {
+    /// What engines for two options differ by.
+    #[must_use]
+    pub fn bytes(&self) -> Vec<u8> {
+        let Self {
+            damping,
+            projection,
+            forces,
+            deviation,
+            band_hz,
+        } = self;
+        let forces: Vec<_> = forces.iter().map(WaveForce::parts).collect();
+        bytes_of(&(damping, projection, forces, deviation, band_hz))
+    }
 }
 
 /// Receptances of the tuned wheel, shared by all threads.

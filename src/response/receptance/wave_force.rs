@@ -25,6 +25,17 @@ impl WaveForce {
         }
     }
 
+    /// Nodal diameter, whether it is the conjugate one, and the modal force: what two excitations differ by.
+    #[must_use]
+    pub fn parts(&self) -> (usize, bool, Vec<[f64; 2]>) {
+        let modal = self.modal.iter().map(|force| [force.re, force.im]);
+        (
+            self.diameter.index,
+            self.diameter.conjugate,
+            modal.collect(),
+        )
+    }
+
     /// Place of the wave among the N of the wheel.
     pub(super) fn wave(&self, sectors: usize) -> usize {
         if self.diameter.conjugate {

@@ -8,7 +8,7 @@ use super::validate_excitation::excitation_table;
 use super::validate_loads::{normal_load_table, sweep_table};
 use super::validate_mistuning::mistuning_table;
 use super::validate_stop::stop_table;
-use crate::model::reduction_digest;
+use crate::model::sector_digest;
 use crate::study::keys::contact::ContactTable;
 use crate::study::keys::solver::{AccuracyTable, OutputTable, SolverTable};
 use crate::study::keys::study_file::{HeadTable, SCHEMA, StudyFile};
@@ -33,7 +33,7 @@ pub(super) fn resolved(study: &Study) -> Value {
         }
     }
     if let ModelSource::Given(model) = &study.model {
-        resolved["model"] = json!({ "source": "given", "digest": reduction_digest(model, "") });
+        resolved["model"] = json!({ "source": "given", "digest": sector_digest(model) });
     }
     resolved
 }

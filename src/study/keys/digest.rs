@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::study_key;
 use crate::identity;
+use crate::identity::bytes_of;
 use crate::input::Effect;
 use crate::population::monte_carlo::Scenario;
 use crate::population::table::digest_file;
@@ -91,11 +92,9 @@ impl StudyDigest {
             scenario.engine_order,
             scenario.standard_deviation,
             scenario.contact,
+            &scenario.load_case,
         );
-        hasher.update(format!("{keys:?}\n{engine}").as_bytes());
-        if let Some(load_case) = &scenario.load_case {
-            hasher.update(format!("\n{load_case}").as_bytes());
-        }
+        hasher.update(&bytes_of(&(keys, engine)));
         hasher.finalize().to_hex().to_string()
     }
 
