@@ -8,7 +8,7 @@
 use crate::linalg::{Complex64, Matrix, hermitian_eigen};
 use crate::model::ReducedModel;
 
-use super::tuned_wheel::TunedDiameter;
+use super::tuned_diameter::TunedDiameter;
 use super::wave_force::WaveForce;
 
 /// Strain coordinates kept at most.

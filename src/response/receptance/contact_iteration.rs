@@ -2,14 +2,14 @@
 //!
 //! A step is `-P r` with the inverse P of `I + A G'` for the mean tangent G' of the contact; Anderson's acceleration makes up for
 //! what the mean leaves out. What is approximate stands in P alone. Such an attempt ends by the residual and the next step.
-//! An attempt by Newton's method ends by the residual alone. Either can follow the other, in the order of `attempts.rs`.
+//! An attempt by Newton's method ends by the residual alone. Either can follow the other, in the order of `attempts_on_receptances.rs`.
 
 use crate::linalg::gmres;
 use crate::response::harmonic_balance::{ContactShares, Status};
 
-use super::attempts::Attempt::{Accelerated, Newton};
-use super::attempts::Start::{Best, Known, Linear};
-use super::attempts::{BESIDE, DAMPING, NEWTON_STEPS, NewtonPlan, Plan, attempts};
+use super::attempts_on_receptances::Attempt::{Accelerated, Newton};
+use super::attempts_on_receptances::Start::{Best, Known, Linear};
+use super::attempts_on_receptances::{BESIDE, DAMPING, NEWTON_STEPS, NewtonPlan, Plan, attempts};
 use super::contact_equation::PreconditionedShapes::FirstOfFundamental;
 use super::contact_equation::{Buffers, ContactEquation};
 use super::fields::{Field, flatten, unflatten};

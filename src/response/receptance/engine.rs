@@ -16,11 +16,11 @@ use super::blade_shapes::{
     Participation, ShapesWanted, blade_shapes, in_cantilever_modes, in_shapes, strain_coordinates,
 };
 use super::fields::SectorTransform;
+use super::receptance_tables::Receptances;
 use super::resonances::{
     BandModes, MistunedModes, Resonance, reach_of_mistuning, resonances_that_count,
 };
-use super::tables::Receptances;
-use super::tuned_wheel::TunedDiameter;
+use super::tuned_diameter::TunedDiameter;
 use super::wave_force::WaveForce;
 
 /// Blade shapes of harmonic 1, and of every other one.
@@ -120,12 +120,12 @@ pub struct ReceptanceEngine {
     pub(super) transform: SectorTransform,
     pub(super) loss_factor: f64,
     /// Under stuck springs, under sliding ones, and without.
-    pencils: [Pencil; 3],
+    tuned_wheels: [TunedWheel; 3],
 }
 
 /// The tuned wheel with one set of contact springs.
 #[derive(Debug)]
-pub(super) struct Pencil {
+pub(super) struct TunedWheel {
     pub(super) diameters: Vec<TunedDiameter>,
     /// What takes part in all strain coordinates, or in exactly the cantilever modes.
     strain: Participation,
@@ -182,7 +182,7 @@ impl ReceptanceEngine {
         let strain = cantilever_modes.as_ref().unwrap_or(&engine_model.strain);
         let diameters = under_limits(model, options.damping)?;
         let band = band(&diameters, model.sectors, options);
-        let pencils = diameters.map(|diameters| Pencil {
+        let tuned_wheels = diameters.map(|diameters| TunedWheel {
             strain: strain.clone(),
             in_cantilever_modes: cantilever_modes.is_some(),
             contact_forces: contact_forces(&diameters, band, &options.forces),
@@ -198,14 +198,14 @@ impl ReceptanceEngine {
         let mut engine = Self {
             transform: SectorTransform::new(model.sectors),
             loss_factor,
-            pencils,
+            tuned_wheels,
         };
-        for pencil in &mut engine.pencils {
+        for tuned in &mut engine.tuned_wheels {
             let near = (band.0 * (1.0 - BAND_MARGIN), band.1 * (1.0 + BAND_MARGIN));
-            let shapes = pencil.shapes(1)?;
-            let (diameters, sectors) = (&pencil.diameters, pencil.sectors);
+            let shapes = tuned.shapes(1)?;
+            let (diameters, sectors) = (&tuned.diameters, tuned.sectors);
             let modes = BandModes::new(diameters, &shapes, sectors, loss_factor, near);
-            pencil.modes = Some(modes);
+            tuned.modes = Some(modes);
         }
         Some(engine)
     }
@@ -219,13 +219,15 @@ impl ReceptanceEngine {
     /// Whether deviations act on exactly the cantilever modes, so that no shape is left out.
     #[must_use]
     pub fn acts_on_cantilever_modes(&self) -> bool {
-        self.pencils.iter().all(|pencil| pencil.in_cantilever_modes)
+        self.tuned_wheels
+            .iter()
+            .all(|tuned| tuned.in_cantilever_modes)
     }
 
     /// Largest relative error of the interpolated receptances so far.
     #[must_use]
     pub fn table_error(&self) -> f64 {
-        let tables = self.pencils.iter().flat_map(|pencil| &pencil.tables);
+        let tables = self.tuned_wheels.iter().flat_map(|tuned| &tuned.tables);
         let tables = tables.filter_map(|table| table.get()?.as_ref());
         tables
             .map(|table| table.receptances.error())
@@ -235,7 +237,7 @@ impl ReceptanceEngine {
     /// Strain coordinates of the blades in a harmonic under a limit.
     #[must_use]
     pub fn shape_count(&self, limit: Limit, harmonic: u32) -> usize {
-        self.pencil(limit)
+        self.tuned_wheel(limit)
             .tables(harmonic)
             .map_or(0, |tables| tables.shapes)
     }
@@ -243,26 +245,24 @@ impl ReceptanceEngine {
     /// Springs of the contact rows of a sector under a limit, N/m; empty where there are none.
     #[must_use]
     pub fn springs(&self, limit: Limit) -> &[f64] {
-        let diameters = self.pencil(limit).diameters.first();
+        let diameters = self.tuned_wheel(limit).diameters.first();
         diameters.map_or(&[], TunedDiameter::springs)
     }
 
-    pub(super) fn pencil(&self, limit: Limit) -> &Pencil {
+    pub(super) fn tuned_wheel(&self, limit: Limit) -> &TunedWheel {
         match limit {
-            Limit::Stuck => &self.pencils[0],
-            Limit::Slide => &self.pencils[1],
-            Limit::Free => &self.pencils[2],
+            Limit::Stuck => &self.tuned_wheels[0],
+            Limit::Slide => &self.tuned_wheels[1],
+            Limit::Free => &self.tuned_wheels[2],
         }
     }
 
     /// Resonances of the tuned wheel under a limit and an excitation, ascending.
     #[must_use]
     pub fn tuned_peaks(&self, limit: Limit, force: &WaveForce) -> Vec<Resonance> {
-        let pencil = self.pencil(limit);
-        let modes = pencil.modes.as_ref();
-        modes.map_or_else(Vec::new, |modes| {
-            modes.tuned_peaks(&pencil.diameters, force)
-        })
+        let tuned = self.tuned_wheel(limit);
+        let modes = tuned.modes.as_ref();
+        modes.map_or_else(Vec::new, |modes| modes.tuned_peaks(&tuned.diameters, force))
     }
 
     /// Resonances of a mistuned wheel under a limit and an excitation, ascending; none if they are not found.
@@ -273,8 +273,8 @@ impl ReceptanceEngine {
         wheel: &EngineWheel,
         force: &WaveForce,
     ) -> Option<Vec<Resonance>> {
-        let pencil = self.pencil(limit);
-        let modes = pencil.modes.as_ref()?;
+        let tuned = self.tuned_wheel(limit);
+        let modes = tuned.modes.as_ref()?;
         let place = match limit {
             Limit::Stuck => 0,
             Limit::Slide => 1,
@@ -284,7 +284,7 @@ impl ReceptanceEngine {
             let shapes = self.shape_count(limit, 1);
             modes.mistuned(&wheel.deviations(shapes))
         });
-        Some(modes.peaks(&pencil.diameters, mistuned.as_ref()?, force))
+        Some(modes.peaks(&tuned.diameters, mistuned.as_ref()?, force))
     }
 }
 
@@ -325,7 +325,7 @@ impl EngineWheel {
     }
 }
 
-impl Pencil {
+impl TunedWheel {
     /// What takes part in all strain coordinates.
     pub(super) fn strain(&self) -> &Participation {
         &self.strain

@@ -41,23 +41,23 @@ impl ReceptanceEngine {
     /// none where these are not found.
     #[must_use]
     pub fn free_wheel(&self, wheel: &EngineWheel, omega: f64) -> Option<FreeWheel> {
-        let pencil = self.pencil(Limit::Stuck);
+        let tuned = self.tuned_wheel(Limit::Stuck);
         let frequencies = SHAPE_FREQUENCIES.map(|share| share * omega);
         let participation = if self.acts_on_cantilever_modes() {
-            pencil.strain().clone()
+            tuned.strain().clone()
         } else {
             let wanted = ShapesWanted {
                 frequencies: &frequencies,
-                contact_forces: pencil.contact_forces(),
-                excitations: pencil.forces(),
-                deviation: pencil.deviation(),
+                contact_forces: tuned.contact_forces(),
+                excitations: tuned.forces(),
+                deviation: tuned.deviation(),
                 count: SHAPES,
             };
-            let shapes = blade_shapes(&pencil.diameters, pencil.strain(), &wanted)?;
-            in_shapes(pencil.strain(), &shapes)
+            let shapes = blade_shapes(&tuned.diameters, tuned.strain(), &wanted)?;
+            in_shapes(tuned.strain(), &shapes)
         };
         let coordinates = participation.first()?.rows();
-        let waves = pencil.diameters.iter().zip(participation);
+        let waves = tuned.diameters.iter().zip(participation);
         Some(FreeWheel {
             sectors: self.sectors(),
             waves: waves

@@ -1,12 +1,12 @@
 //! Mistuned wheels on the receptances of the tuned one: no basis and no eigenproblem of a pattern in its solution.
 //!
-//! The tuned wheel with stuck contact is one small matrix a wave and frequency (`tables.rs`). Blade deviations are eliminated
+//! The tuned wheel with stuck contact is one small matrix a wave and frequency (`receptance_tables.rs`). Blade deviations are eliminated
 //! exactly in few strain coordinates (`elimination.rs`, `blade_shapes.rs`), and the motions at the contact are the only
 //! unknowns of the nonlinear equation (`contact_equation.rs`), which an iteration solves (`contact_iteration.rs`,
-//! `attempts.rs`, `preconditioner.rs`, `acceleration.rs`).
+//! `attempts_on_receptances.rs`, `preconditioner.rs`, `acceleration.rs`).
 
 mod acceleration;
-mod attempts;
+mod attempts_on_receptances;
 mod blade_shapes;
 mod contact_equation;
 mod contact_forces;
@@ -19,9 +19,9 @@ mod free_waves;
 mod motions;
 mod pair_preconditioner;
 mod preconditioner;
+mod receptance_tables;
 mod resonances;
-mod tables;
-mod tuned_wheel;
+mod tuned_diameter;
 mod wave_force;
 mod wave_matrix;
 mod wheel_harmonic;

@@ -8,7 +8,7 @@ use crate::linalg::{Complex64, Matrix, hermitian_eigen};
 use crate::model::cyclic::phase;
 
 use super::blade_shapes::Participation;
-use super::tuned_wheel::TunedDiameter;
+use super::tuned_diameter::TunedDiameter;
 use super::wave_force::WaveForce;
 
 /// One resonance under one excitation, by its own mode alone.

@@ -172,12 +172,12 @@ impl<'a> WheelSolver<'a> {
 
     /// Receptances, deviations and linear response at a frequency; false where one is singular.
     fn prepare(&mut self, frequency_hz: f64) -> bool {
-        let pencil = self.engine.pencil(self.limit);
+        let tuned = self.engine.tuned_wheel(self.limit);
         let transform = &self.engine.transform;
         let sectors = self.engine.sectors();
-        let contact_rows = pencil.diameters[0].spring_count();
+        let contact_rows = tuned.diameters[0].spring_count();
         for (place, &harmonic) in self.set.iter().enumerate() {
-            let Some(tables) = pencil.tables(harmonic) else {
+            let Some(tables) = tuned.tables(harmonic) else {
                 return false;
             };
             if self.harmonics.len() == place {
@@ -186,10 +186,9 @@ impl<'a> WheelSolver<'a> {
             }
             let wheel_harmonic = &mut self.harmonics[place];
             let s = angular(harmonic, frequency_hz);
-            let filled =
-                tables
-                    .receptances
-                    .at(&pencil.diameters, s, &mut wheel_harmonic.receptance);
+            let filled = tables
+                .receptances
+                .at(&tuned.diameters, s, &mut wheel_harmonic.receptance);
             let deviations = self.wheel.deviations(tables.shapes).into_iter();
             let loss = self.engine.loss_factor;
             let deviations = deviations.map(|delta| damped(delta, loss, harmonic));
@@ -197,7 +196,7 @@ impl<'a> WheelSolver<'a> {
                 return false;
             }
             if harmonic == 1 {
-                let diameter = &pencil.diameters[self.force.diameter.index];
+                let diameter = &tuned.diameters[self.force.diameter.index];
                 let motions = tables.receptances.motions(self.force.diameter.index);
                 let conjugate = self.force.diameter.conjugate;
                 let Some(excited) =
@@ -219,7 +218,7 @@ impl<'a> WheelSolver<'a> {
     pub fn observed(&mut self, place: usize) -> Vec<Complex64> {
         let sectors = self.engine.sectors();
         let wave = self.force.wave(sectors);
-        let rows = self.engine.pencil(self.limit).diameters[0].spring_count();
+        let rows = self.engine.tuned_wheel(self.limit).diameters[0].spring_count();
         let none = Field::zeros(rows, sectors);
         let force = if self.contact.is_some() {
             &self.buffers.forces[place]

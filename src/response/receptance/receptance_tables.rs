@@ -17,7 +17,7 @@ use crate::linalg::{Complex64, Loops, Matrix, vectorized};
 
 use super::blade_shapes::Participation;
 use super::fields::LANES;
-use super::tuned_wheel::{Pole, TunedDiameter};
+use super::tuned_diameter::{Pole, TunedDiameter};
 use super::wave_matrix::WaveMatrix;
 
 /// Panels of an octave.
