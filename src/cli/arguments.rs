@@ -1,11 +1,14 @@
-//! The command line as clap sees it.
+//! The commands: what clap sees of each, and what carries it out.
 
-use clap::{Parser, Subcommand};
+use std::path::Path;
+
+use clap::{CommandFactory, Parser, Subcommand};
 
 use super::campbell::CampbellArguments;
 use super::check::CheckArguments;
 use super::compare::CompareArguments;
 use super::estimate::EstimateArguments;
+use super::exit::{ExitStatus, Failure};
 use super::explain::{CompletionsArguments, ExplainArguments, SchemaArguments};
 use super::import::ImportArguments;
 use super::init::InitArguments;
@@ -24,6 +27,10 @@ use super::stats::StatsArguments;
 use super::status::StatusArguments;
 use super::tradeoff::TradeoffArguments;
 use super::verify::VerifyArguments;
+use super::{
+    campbell, check, compare, estimate, explain, import, init, man, merge, model, optimum, plan,
+    replay, report, response, run, slurm, stats, status, tradeoff, verify,
+};
 use crate::identity;
 
 /// Forced response of randomly mistuned bladed disks with friction dampers.
@@ -132,6 +139,36 @@ pub enum Command {
 const BUNDLE: &str = "the sector bundle is not complete; the same command writes it";
 
 impl Command {
+    /// Carries it out, for the executable `program`.
+    pub(super) fn carried_out(self, program: &Path) -> Result<ExitStatus, Failure> {
+        match self {
+            Self::Init(arguments) => init::command(&arguments),
+            Self::Check(arguments) => check::command(&arguments),
+            Self::Model(arguments) => model::command(&arguments),
+            Self::Campbell(arguments) => campbell::command(&arguments),
+            Self::Import(arguments) => import::command(&arguments),
+            Self::Plan(arguments) => plan::command(&arguments),
+            Self::Run(arguments) => run::command(arguments),
+            Self::Merge(arguments) => merge::command(&arguments),
+            Self::Slurm(arguments) => slurm::command(&arguments, program),
+            Self::Status(arguments) => status::command(&arguments),
+            Self::Response(arguments) => response::command(&arguments),
+            Self::Replay(arguments) => replay::command(&arguments),
+            Self::Verify(arguments) => verify::command(&arguments),
+            Self::Compare(arguments) => compare::command(&arguments),
+            Self::Optimum(arguments) => optimum::command(&arguments),
+            Self::Tradeoff(arguments) => tradeoff::command(&arguments),
+            Self::Estimate(arguments) => estimate::command(&arguments),
+            Self::Stats(arguments) => stats::command(&arguments),
+            Self::Report(arguments) => report::command(&arguments),
+            Self::Plot(arguments) => report::plot(&arguments),
+            Self::Explain(arguments) => explain::explain(&arguments),
+            Self::Schema(arguments) => explain::schema(&arguments),
+            Self::Completions(arguments) => explain::completions(&arguments, Arguments::command()),
+            Self::Man(arguments) => man::command(&arguments, Arguments::command()),
+        }
+    }
+
     /// What it leaves when a signal ends it.
     pub(super) fn kept(&self) -> Kept {
         match self {
