@@ -17,7 +17,7 @@ pub enum TangentialFriction {
 /// The evaluation of all pairs of a wheel at once, a lane of a vector each, that a law has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SideBySide {
-    /// None: one pair after the other, by [`LawParts::respond`].
+    /// None: one pair after the other, as its `respond` has it.
     No,
     /// Of Jenkins elements with the limit `mu N0`.
     ConstantLimit,
