@@ -27,8 +27,9 @@ DAMPERS = ("ring", "underplatform", "shroud", "blade_to_ground")
 SOURCES = ("lumped", "finite_elements")
 ENGINE_ORDERS = (3, 9)
 STANDARD_DEVIATIONS = (0.005, 0.02, 0.08)
-# Patterns of a population. P99 needs 368: wheels of finite elements whose rows take long have fewer.
+# Patterns of a population. P99 needs 368: wheels whose rows take long have fewer.
 PATTERNS = {
+    "lumped-shroud": 100,
     "finite-elements-underplatform": 100,
     "finite-elements-shroud": 100,
     "finite-elements-blade-to-ground": 100,
@@ -206,7 +207,7 @@ def main():
     parser.add_argument("--out", type=Path, default=ROOT / "results/optimal-load")
     parser.add_argument("--only", default="", help="wheels whose names hold one of these words, with commas between")
     parser.add_argument("--engine-orders", default=",".join(map(str, ENGINE_ORDERS)))
-    parser.add_argument("--patterns", type=int, help="patterns of a population [default: 400; 100 on finite elements, but for the ring]")
+    parser.add_argument("--patterns", type=int, help="patterns of a population [default: 400, or 100 where rows take long]")
     parser.add_argument("--threads", default="2")
     arguments = parser.parse_args()
     rows, effects = [], {}
