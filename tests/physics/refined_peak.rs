@@ -13,8 +13,8 @@ use super::work_counts::wheel24;
 
 const SET: [u32; 3] = [1, 3, 5];
 
-/// Peak of a wheel by one search, and after a search with harmonic 1.
-fn both(wheel: &Wheel, deviations: &[f64], load: f64) -> [Peak; 2] {
+/// Peak of a wheel by one search, and after a search with harmonic 1, if that leads to one.
+fn both(wheel: &Wheel, deviations: &[f64], load: f64) -> (Peak, Option<Peak>) {
     let options = SolverOptions {
         harmonics: Harmonics::Set(SET.to_vec()),
         search_harmonics: SearchHarmonics::Set(vec![1]),
@@ -36,8 +36,7 @@ fn both(wheel: &Wheel, deviations: &[f64], load: f64) -> [Peak; 2] {
     let (load, tolerance) = (full(load), options.peak_tolerance);
     let one = peak(&excited, load, &settings, window, tolerance);
     let two = refined(&excited, search, load, &settings, window, tolerance);
-    let two = two.unwrap_or_else(|_| peak(&excited, load, &settings, window, tolerance));
-    [one, two]
+    (one, two.ok())
 }
 
 fn amplitude(peak: &Peak) -> f64 {
@@ -51,7 +50,8 @@ fn a_peak_of_a_large_equation_is_the_same_in_two_stages_for_less_work() {
     let mut random = Random(11);
     for load in [160.0, 320.0, 1280.0] {
         let deviations = wheel.deviations(&mut random, 0.03);
-        let [one, two] = both(&wheel, &deviations, load);
+        let (one, two) = both(&wheel, &deviations, load);
+        let two = two.expect("a peak in two stages");
         let error = relative(amplitude(&two), amplitude(&one));
         println!("{load} N: {error:.1e}; {:?}, {:?}", one.work, two.work);
         assert!(error < 5e-4, "{load} N: {error}");
@@ -71,14 +71,15 @@ fn a_peak_of_a_small_equation_is_the_same_in_two_stages() {
     let mut random = Random(5);
     for load in [15.0, 25.0, 50.0, 75.0, 150.0, 1e6] {
         let deviations = wheel.deviations(&mut random, 0.03);
-        let [one, two] = both(&wheel, &deviations, load);
+        let (one, two) = both(&wheel, &deviations, load);
+        let two = two.expect("a peak in two stages");
         let error = relative(amplitude(&two), amplitude(&one));
         println!("{load} N: {error:.1e}");
         assert!(error < 5e-4, "{load} N: {error}");
     }
 }
 
-/// Contact that opens and a ring that creeps are searched with the whole set.
+/// Where contact opens or a ring creeps, two stages end without a peak, and the whole set is searched with.
 #[test]
 fn where_few_harmonics_mislead_the_search_is_made_with_all() {
     let opening = Wheel::wheel8();
@@ -88,9 +89,9 @@ fn where_few_harmonics_mislead_the_search_is_made_with_all() {
     };
     for (wheel, load) in [(opening, 60.0), (creeping, 400.0)] {
         let deviations = wheel.deviations(&mut Random(3), 0.03);
-        let [one, two] = both(&wheel, &deviations, load);
-        assert_eq!(one.status, two.status, "{load} N");
-        assert_eq!(one.point, two.point, "{load} N");
+        let (one, two) = both(&wheel, &deviations, load);
+        assert!(two.is_none(), "{load} N");
+        assert_eq!(one.status, Status::Ok, "{load} N");
         let separates = one.point.unwrap().shares.separated > 0.0;
         assert_eq!(separates, load < 100.0);
     }
