@@ -35,7 +35,8 @@ pub enum SearchHarmonics {
 pub enum RowsBeyondTolerance {
     /// The row is marked.
     Flag,
-    /// With an automatic harmonic set, the row is solved again with more harmonics.
+    /// With an automatic harmonic set on a basis, the row is solved again with more harmonics. On tuned receptances, where such a
+    /// set has all of them, the row is marked.
     Resolve,
 }
 
