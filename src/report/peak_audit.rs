@@ -31,6 +31,8 @@ pub struct PeakAuditReport {
     pub points: usize,
     /// Frequencies without a solution.
     pub failed_points: usize,
+    /// Frequencies that were solved with fewer harmonics than their load has.
+    pub points_with_fewer_harmonics: usize,
     /// Sweeps whose highest value lies at an end of the band.
     pub open_sweeps: usize,
     /// Share from which on a peak counts as missed.
@@ -74,6 +76,10 @@ impl PeakAuditReport {
             failed_rows: records.len() - sweeps.len(),
             points: sweeps.iter().map(|sweep| sweep.points).sum(),
             failed_points: sweeps.iter().map(|sweep| sweep.failed).sum(),
+            points_with_fewer_harmonics: sweeps
+                .iter()
+                .map(|sweep| sweep.with_fewer_harmonics)
+                .sum(),
             open_sweeps: sweeps.iter().filter(|sweep| !sweep.inside).count(),
             missed_share: MISSED,
             missed_upper_bound: (!sweeps.is_empty())
@@ -96,8 +102,8 @@ impl fmt::Display for PeakAuditReport {
         )?;
         writeln!(
             f,
-            "dense sweeps: {} frequencies, {} without solution; {} sweeps highest at an end of their band",
-            self.points, self.failed_points, self.open_sweeps
+            "dense sweeps: {} frequencies, {} with fewer harmonics than their load has, {} without solution; {} sweeps highest at an end of their band",
+            self.points, self.points_with_fewer_harmonics, self.failed_points, self.open_sweeps
         )?;
         let percent = |share: Option<f64>| {
             share.map_or_else(|| "-".to_owned(), |share| format!("{:.4} %", 100.0 * share))

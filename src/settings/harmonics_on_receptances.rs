@@ -100,16 +100,15 @@ impl<'a> Judges<'a> {
         }
     }
 
-    /// `set` under every engine order and nonlinear condition, or `reserve` where a wheel has no peak with the set; with what it leaves
-    /// out of the peaks of these wheels.
+    /// The first of `sets` under every engine order and nonlinear condition, or the next one where a wheel has no peak with it, and so on
+    /// to the last one; with what it leaves out of the peaks of these wheels.
     ///
     /// # Errors
     /// If the samples per period cannot tell the harmonics apart.
     pub(super) fn harmonics(
         &self,
         conditions: &[ContactCondition],
-        set: &[u32],
-        reserve: Option<&[u32]>,
+        sets: &[Vec<u32>],
     ) -> Result<Vec<JudgedSet<'_>>, TransformError> {
         let nonlinear = |condition: &&ContactCondition| condition.normal_load_n().is_some();
         let conditions: Vec<ContactCondition> =
@@ -126,9 +125,12 @@ impl<'a> Judges<'a> {
             cases.len(),
         );
         let judged = cases.into_par_iter().map(|case| {
-            let mut judged = self.judged(choice_of(case, set), reserve.is_some())?;
-            if let Some(reserve) = reserve.filter(|_| judged.lacks_a_peak()) {
-                judged = self.judged(choice_of(case, reserve), false)?;
+            let last = sets.len() - 1;
+            let mut judged = self.judged(choice_of(case, &sets[0]), last > 0)?;
+            for (place, fewer) in sets.iter().enumerate().skip(1) {
+                if judged.lacks_a_peak() {
+                    judged = self.judged(choice_of(case, fewer), place < last)?;
+                }
             }
             steps.done();
             Ok(judged)
@@ -300,9 +302,9 @@ impl<'a> Judges<'a> {
     fn judged(
         &self,
         choice: HarmonicChoice,
-        has_reserve: bool,
+        fewer_follow: bool,
     ) -> Result<JudgedSet<'_>, TransformError> {
-        let peaks = self.peaks(&choice, has_reserve)?;
+        let peaks = self.peaks(&choice, fewer_follow)?;
         let errors = peaks.iter().map(|(row, points, peak)| {
             let point = peak.point.as_ref().filter(|_| peak.status == Status::Ok)?;
             receptance_errors(row, points, point, PEAK_TOLERANCE)

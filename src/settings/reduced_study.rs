@@ -24,15 +24,13 @@ use crate::model::{ReducedModel, read_cached, reduction_digest, write_cached};
 use crate::population::monte_carlo::{
     HarmonicChoice, LoadCaseSolver, LoadCaseSolvers, RowSettings, RowSolver,
 };
-use crate::response::forced_response::{Harmonics, RowsBeyondTolerance};
+use crate::response::forced_response::{FEWER_HARMONICS, Harmonics, RowsBeyondTolerance};
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::EnlargedSet;
 use crate::response::receptance::{EngineModel, ReceptanceEngine};
 use crate::study::checks::against_receptances;
 use crate::study::{Excitation, PipelineError, Study, excitations, judging_patterns, solver_under};
 
-/// Highest harmonic of the rows that are not found with all of them: light loads, where contacts open.
-const HIGHEST_OF_RESERVE: u32 = 5;
 /// Share of the harmonic tolerance by which the set for rows beyond it is chosen.
 const BEYOND_TOLERANCE: f64 = 0.25;
 
@@ -86,19 +84,14 @@ impl Stored {
             .count();
         let beyond = self.beyond.as_ref();
         let models = [Some(&self.model), beyond.map(|beyond| &beyond.model)];
-        let sets = [
-            Some(&self.harmonics),
-            beyond.map(|beyond| &beyond.harmonics),
-        ];
+        let further = beyond.iter().flat_map(|beyond| &beyond.harmonics);
+        let mut sets = std::iter::once(&self.harmonics).chain(further);
         self.model.contact.weights.len() == sector.contact_pairs.len()
             && models
                 .into_iter()
                 .flatten()
                 .all(|model| model.sectors == sector.sectors)
-            && sets
-                .into_iter()
-                .flatten()
-                .all(|sets| sets.len() == orders * loads)
+            && sets.all(|sets| sets.len() == orders * loads)
     }
 }
 
@@ -107,7 +100,8 @@ impl Stored {
 pub(super) struct StoredBeyond {
     model: ReducedModel,
     basis_error: f64,
-    harmonics: Vec<HarmonicChoice>,
+    /// What is tried one after the other, with a set for every case each.
+    harmonics: Vec<Vec<HarmonicChoice>>,
 }
 
 /// Harmonic sets under one force vector.
@@ -293,7 +287,7 @@ fn reduced(
         Some(StoredBeyond {
             model: reduction.reduce(choice, modes)?,
             basis_error: basis_error(&evidence),
-            harmonics: harmonics.concat(),
+            harmonics: vec![harmonics.concat()],
         })
     } else {
         None
@@ -331,17 +325,17 @@ fn reduced_on_receptances(
     };
     let law = study.contact.as_ref().map(|contact| contact.law);
     let separates = law.is_some_and(ContactLaw::has_variable_load);
-    let (set, reserve) = match &study.solver.harmonics {
+    let sets = match &study.solver.harmonics {
         Harmonics::Auto => {
             let everything = EnlargedSet::everything(separates);
-            let few = everything
-                .iter()
-                .copied()
-                .filter(|&k| k <= HIGHEST_OF_RESERVE);
-            let reserve: Vec<u32> = few.collect();
-            (everything, Some(reserve))
+            let up_to = |highest: u32| -> Vec<u32> {
+                let harmonics = everything.iter().copied();
+                harmonics.filter(|&k| k <= highest).collect()
+            };
+            let fewer: Vec<Vec<u32>> = FEWER_HARMONICS.map(up_to).into();
+            [vec![everything], fewer].concat()
         }
-        Harmonics::Set(set) => (set.clone(), None),
+        Harmonics::Set(set) => vec![set.clone()],
     };
     let Refined {
         reduction,
@@ -351,10 +345,10 @@ fn reduced_on_receptances(
         harmonics,
         of_limits,
     } = refined((study, sector), &excitations, wheels, |judges| {
-        judges.harmonics(&study.contacts, &set, reserve.as_deref())
+        judges.harmonics(&study.contacts, &sets)
     })?;
     let harmonics = harmonics.concat();
-    let of_reserve = |set: &Vec<u32>| {
+    let of_fewer = |set: &Vec<u32>| -> Sets {
         let choices = harmonics.iter();
         let case = |choice: &HarmonicChoice| HarmonicChoice {
             reduced_model: choice.reduced_model,
@@ -362,6 +356,7 @@ fn reduced_on_receptances(
         };
         choices.map(case).collect()
     };
+    let has_fewer = study.has_friction() && sets.len() > 1;
     let modes = study.mistuning.cantilever_mode_count;
     let model = if reduction.is_whole_space() {
         engine.own.model.clone()
@@ -373,14 +368,11 @@ fn reduced_on_receptances(
         reduction.reduce(choice, modes)?
     };
     Ok(Stored {
-        beyond: reserve
-            .as_ref()
-            .filter(|_| study.has_friction())
-            .map(|set| StoredBeyond {
-                model: model.clone(),
-                basis_error: basis_error(&evidence),
-                harmonics: of_reserve(set),
-            }),
+        beyond: has_fewer.then(|| StoredBeyond {
+            model: model.clone(),
+            basis_error: basis_error(&evidence),
+            harmonics: sets[1..].iter().map(of_fewer).collect(),
+        }),
         model,
         evidence,
         fixed_interface,
@@ -445,15 +437,19 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
             }
             None => Ok(solver),
         };
-        let solver = LoadCaseSolver::from(on_engine(solver)?);
+        let mut solver = LoadCaseSolver::from(on_engine(solver)?);
         let Some(beyond) = &stored.beyond else {
             return Ok(solver);
         };
-        let finer = RowSolver::new(Arc::new(case.of(&beyond.model)), settings)?.with_choices(
-            beyond.harmonics[sets].to_vec(),
-            beyond.basis_error + truncation,
-        )?;
-        Ok(solver.with_fallback(on_engine(finer)?, inexact))
+        let model = Arc::new(case.of(&beyond.model));
+        for harmonics in &beyond.harmonics {
+            let other = RowSolver::new(Arc::clone(&model), settings.clone())?.with_choices(
+                harmonics[sets.clone()].to_vec(),
+                beyond.basis_error + truncation,
+            )?;
+            solver = solver.with_fallback(on_engine(other)?, inexact);
+        }
+        Ok(solver)
     })
 }
 

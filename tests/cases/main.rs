@@ -9,6 +9,7 @@ mod full_model;
 mod lumped24;
 mod one_dof;
 mod reduction_error;
+mod rows_found;
 mod stated_errors;
 mod support;
 mod surrogate_times;

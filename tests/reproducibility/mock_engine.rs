@@ -129,6 +129,15 @@ impl Engine for MockEngine {
         Vec::new()
     }
 
+    fn curve_with_fewer_harmonics(
+        &self,
+        _scenario: &Scenario,
+        _pattern: Option<&Pattern>,
+        _lost_hz: &[f64],
+    ) -> Vec<CurvePoint> {
+        Vec::new()
+    }
+
     fn traces(
         &self,
         _scenario: &Scenario,

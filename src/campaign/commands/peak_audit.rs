@@ -6,7 +6,9 @@ use super::VerifyRequest;
 use crate::campaign::store::{ResultsFolder, StoredModel, StoredStudy};
 use crate::population::monte_carlo::{ResponseRow, Scenario};
 use crate::population::statistics::draw;
-use crate::population::table::{PeakAuditRecord, TableHeader, write_peak_audit, write_side_table};
+use crate::population::table::{
+    CurvePoint, PeakAuditRecord, TableHeader, write_peak_audit, write_side_table,
+};
 use crate::report::PeakAuditReport;
 use crate::response::forced_response::{DensePeak, FrequencyBand, dense_peak};
 use crate::response::harmonic_balance::Status;
@@ -112,16 +114,38 @@ fn sweep(
     };
     let half_bandwidth_hz = plan.envelope.linear_half_bandwidth_hz;
     let band_hz = ((start - margin).max(0.5 * start), stop + margin);
-    Some(dense_peak(band_hz, half_bandwidth_hz, |frequencies| {
-        let points = engine.curve(scenario, Some(pattern), frequencies);
-        points
-            .chunks(points.len() / frequencies.len())
-            .map(|blades| {
-                let amplitudes = blades.iter().map(|point| point.amplitude_m);
-                amplitudes.fold(None, |largest: Option<f64>, amplitude| {
-                    amplitude.map(|a| largest.map_or(a, |largest| largest.max(a)))
-                })
-            })
-            .collect()
-    }))
+    let mut with_fewer_harmonics = 0;
+    let peak = dense_peak(band_hz, half_bandwidth_hz, |frequencies_hz| {
+        let points = engine.curve(scenario, Some(pattern), frequencies_hz);
+        let mut found = largest_of_blades(&points, frequencies_hz.len());
+        let lost = frequencies_hz.iter().zip(&found);
+        let lost_hz: Vec<f64> = lost
+            .filter(|(_, amplitude)| amplitude.is_none())
+            .map(|(hz, _)| *hz)
+            .collect();
+        let points = engine.curve_with_fewer_harmonics(scenario, Some(pattern), &lost_hz);
+        let with_fewer = largest_of_blades(&points, lost_hz.len());
+        with_fewer_harmonics += with_fewer.iter().flatten().count();
+        let lost = found.iter_mut().filter(|amplitude| amplitude.is_none());
+        for (amplitude, with_fewer) in lost.zip(with_fewer) {
+            *amplitude = with_fewer;
+        }
+        found
+    });
+    Some(DensePeak {
+        with_fewer_harmonics,
+        ..peak
+    })
+}
+
+/// The largest amplitude over the blades at each of so many frequencies; none where the solution failed.
+fn largest_of_blades(points: &[CurvePoint], frequencies: usize) -> Vec<Option<f64>> {
+    let blades = points.len() / frequencies.max(1);
+    let largest = |blades: &[CurvePoint]| {
+        let amplitudes = blades.iter().map(|point| point.amplitude_m);
+        amplitudes.fold(None, |largest: Option<f64>, amplitude| {
+            amplitude.map(|a| largest.map_or(a, |largest| largest.max(a)))
+        })
+    };
+    points.chunks(blades.max(1)).map(largest).collect()
 }

@@ -1,10 +1,10 @@
-//! The solvers of a study: one for the force vector of every load case, each with a finer one for the rows that it is not good enough
-//! for.
+//! The solvers of a study: one for the force vector of every load case, each with others for the rows that it is not good enough for.
 
 use std::sync::OnceLock;
 
 use super::{
-    LoadCaseName, ResponseRow, RowSolver, Scenario, TunedReference, WheelState, harmonics_name,
+    CurveResult, LoadCaseName, ResponseRow, RowSolver, Scenario, TunedReference, WheelState,
+    harmonics_name,
 };
 use crate::response::forced_response::TopBeside;
 use crate::response::harmonic_balance::Status;
@@ -14,7 +14,8 @@ use crate::response::mistuning::Pattern;
 #[derive(Debug)]
 pub struct LoadCaseSolver {
     rows: RowSolver,
-    fallback: Option<Fallback>,
+    /// What is tried one after the other.
+    fallbacks: Vec<Fallback>,
 }
 
 /// What solves the rows that another solver is not good enough for.
@@ -39,27 +40,24 @@ impl From<RowSolver> for LoadCaseSolver {
     fn from(rows: RowSolver) -> Self {
         Self {
             rows,
-            fallback: None,
+            fallbacks: Vec::new(),
         }
     }
 }
 
 impl LoadCaseSolver {
-    /// This solver with `finer` for the rows that it is not good enough for, each with the tuned reference of `finer`. On a
-    /// basis these are the rows whose contacts separate, and with `inexact_rows` those whose sampling or harmonic error exceeds its
-    /// tolerance. On tuned receptances, where `finer` has fewer harmonics, they are the rows without a peak. Only scenarios for which
-    /// `finer` has a chosen set are solved again.
+    /// This solver with `other` for the rows that it and the others before are not good enough for, each with the tuned reference of
+    /// `other`. On a basis, where `other` is finer, these are the rows whose contacts separate, and with `inexact_rows` those whose
+    /// sampling or harmonic error exceeds its tolerance. On tuned receptances, where `other` has fewer harmonics, they are the rows
+    /// without a peak. Only scenarios for which `other` has a chosen set are solved again.
     #[must_use]
-    pub fn with_fallback(self, finer: RowSolver, inexact_rows: bool) -> Self {
-        let fallback = Fallback {
-            tuned: finer.choices().map(|_| OnceLock::new()).collect(),
-            rows: finer,
+    pub fn with_fallback(mut self, other: RowSolver, inexact_rows: bool) -> Self {
+        self.fallbacks.push(Fallback {
+            tuned: other.choices().map(|_| OnceLock::new()).collect(),
+            rows: other,
             inexact_rows,
-        };
-        Self {
-            fallback: Some(fallback),
-            ..self
-        }
+        });
+        self
     }
 
     /// The solver that rows are solved by first.
@@ -68,33 +66,88 @@ impl LoadCaseSolver {
         &self.rows
     }
 
-    /// The solver of the rows that the first one is not good enough for.
-    #[must_use]
-    pub fn fallback(&self) -> Option<&RowSolver> {
-        self.fallback.as_ref().map(|fallback| &fallback.rows)
+    /// The solvers of the rows that those before are not good enough for, in their order.
+    pub fn fallbacks(&self) -> impl Iterator<Item = &RowSolver> {
+        self.fallbacks.iter().map(|fallback| &fallback.rows)
     }
 
     /// The solver that a row came from.
     #[must_use]
     pub fn solver_of(&self, scenario: &Scenario, row: &ResponseRow) -> &RowSolver {
-        let harmonics = harmonics_name(self.rows.points(scenario).harmonics());
-        let is_by_rows = row.harmonics == harmonics && row.basis == self.rows.basis_name();
-        self.fallback()
-            .filter(|_| !is_by_rows)
-            .unwrap_or(&self.rows)
+        let gave_it = |solver: &&RowSolver| {
+            let harmonics = harmonics_name(solver.points(scenario).harmonics());
+            row.harmonics == harmonics && row.basis == solver.basis_name()
+        };
+        let mut solvers = std::iter::once(&self.rows).chain(self.fallbacks());
+        solvers.find(gave_it).unwrap_or(&self.rows)
     }
 
-    /// The row by the fallback, if it has to be and can be.
+    /// Amplitude of every blade at each frequency; no pattern means the tuned wheel.
+    #[must_use]
+    pub fn curve(
+        &self,
+        scenario: &Scenario,
+        pattern: Option<&Pattern>,
+        frequencies_hz: &[f64],
+    ) -> Vec<CurveResult> {
+        curve_of(&self.rows, scenario, pattern, frequencies_hz)
+    }
+
+    /// [`Self::curve`] at frequencies that it has no solution at, by the fallbacks with fewer harmonics, in their order.
+    #[must_use]
+    pub fn curve_with_fewer_harmonics(
+        &self,
+        scenario: &Scenario,
+        pattern: Option<&Pattern>,
+        lost_hz: &[f64],
+    ) -> Vec<CurveResult> {
+        let own = self.rows.points(scenario).harmonics().len();
+        let has_fewer = |solver: &&RowSolver| solver.points(scenario).harmonics().len() < own;
+        let lost = lost_hz.iter().map(|&hz| (hz, Err(Status::IterationLimit)));
+        let mut points: Vec<CurveResult> = lost.collect();
+        for solver in self.fallbacks().filter(has_fewer) {
+            let lost = points.iter_mut().filter(|(_, found)| found.is_err());
+            let lost: Vec<&mut CurveResult> = lost.collect();
+            if lost.is_empty() {
+                break;
+            }
+            let frequencies_hz: Vec<f64> = lost.iter().map(|(hz, _)| *hz).collect();
+            let found = curve_of(solver, scenario, pattern, &frequencies_hz);
+            for (point, found) in lost.into_iter().zip(found) {
+                *point = found;
+            }
+        }
+        points
+    }
+
+    /// The row, or that of the first fallback that has to solve it again and can.
     fn solved_again(
         &self,
         pattern: &Pattern,
         scenario: &Scenario,
+        row: ResponseRow,
+    ) -> ResponseRow {
+        self.fallbacks.iter().fold(row, |row, fallback| {
+            let again = self.solved_by(fallback, pattern, scenario, &row);
+            again.unwrap_or(row)
+        })
+    }
+
+    /// The row by a fallback, if it has to be and can be.
+    fn solved_by(
+        &self,
+        fallback: &Fallback,
+        pattern: &Pattern,
+        scenario: &Scenario,
         row: &ResponseRow,
     ) -> Option<ResponseRow> {
-        let fallback = self.fallback.as_ref()?;
+        let own = self.rows.points(scenario).harmonics();
         let failed = row.status != Status::Ok;
+        // Of a fallback whose tuned wheel has no peak with its harmonics.
+        let stands_alone =
+            row.amplification_factor.is_none() && row.harmonics != harmonics_name(own);
         let wanted = if self.rows.on_receptances.is_some() {
-            failed
+            failed || stands_alone
         } else {
             let separates = row.separated_fraction.is_some_and(|share| share > 0.0);
             separates || fallback.inexact_rows && row.error_within_tolerance == Some(false)
@@ -107,7 +160,10 @@ impl LoadCaseSolver {
             choice.engine_order == scenario.engine_order && choice.contact == scenario.contact
         })?;
         let same_set = harmonics_name(&choice.harmonics) == row.harmonics;
-        if same_set && fallback.rows.basis_name() == self.rows.basis_name() {
+        let has_fewer = choice.harmonics.len() < own.len();
+        if same_set && fallback.rows.basis_name() == self.rows.basis_name()
+            || self.rows.on_receptances.is_some() && !has_fewer
+        {
             return None;
         }
         let tuned = fallback.tuned[place].get_or_init(|| fallback.rows.tuned(scenario));
@@ -125,6 +181,21 @@ impl LoadCaseSolver {
             ..again
         })
     }
+}
+
+/// The curve of a solver; a pattern that cannot be applied has no solution at any frequency.
+fn curve_of(
+    solver: &RowSolver,
+    scenario: &Scenario,
+    pattern: Option<&Pattern>,
+    frequencies_hz: &[f64],
+) -> Vec<CurveResult> {
+    let (order, contact) = (scenario.engine_order, scenario.contact);
+    let solved = solver.curve(order, contact, pattern, frequencies_hz);
+    solved.unwrap_or_else(|status| {
+        let failed = frequencies_hz.iter().map(|&hz| (hz, Err(status)));
+        failed.collect()
+    })
 }
 
 impl LoadCaseSolvers {
@@ -172,8 +243,7 @@ impl LoadCaseSolvers {
         let row = |&(scenario, tuned): &(&Scenario, &TunedReference)| {
             let solver = self.under(scenario);
             let row = solver.rows.row(&wheel, pattern, scenario, tuned);
-            let again = solver.solved_again(pattern, scenario, &row);
-            again.unwrap_or(row)
+            solver.solved_again(pattern, scenario, row)
         };
         scenarios.iter().map(row).collect()
     }
@@ -205,9 +275,7 @@ impl LoadCaseSolvers {
         (frequency_hz, harmonics): (f64, &str),
     ) -> Option<TopBeside> {
         let coarse = coarse.under(scenario);
-        let mut solvers = [Some(&coarse.rows), coarse.fallback()]
-            .into_iter()
-            .flatten();
+        let mut solvers = std::iter::once(&coarse.rows).chain(coarse.fallbacks());
         let is_of_the_row =
             |solver: &&RowSolver| harmonics_name(solver.points(scenario).harmonics()) == harmonics;
         let coarse = solvers.find(is_of_the_row)?;

@@ -90,6 +90,12 @@ const COLUMNS: &[Column<PeakAuditRecord>] = &[
         Cells::int64(|r| Some(r.swept?.failed as u64)),
     ),
     Column::new(
+        "swept_with_fewer_harmonics",
+        "1",
+        "Frequencies of the sweep solved with fewer harmonics than the load has",
+        Cells::int64(|r| Some(r.swept?.with_fewer_harmonics as u64)),
+    ),
+    Column::new(
         "swept_inside",
         "",
         "The highest value of the sweep lies inside of its band",

@@ -23,6 +23,8 @@ pub struct DensePeak {
     pub points: usize,
     /// Number of frequencies that could not be solved; each reads as nothing.
     pub failed: usize,
+    /// Number of frequencies that were solved with fewer harmonics than the rest; counted by who solves them.
+    pub with_fewer_harmonics: usize,
     /// Whether the largest value lies inside of the band.
     pub inside: bool,
 }
@@ -51,6 +53,7 @@ pub fn dense_peak(
         frequency_hz: frequencies[best],
         points: coarse.len(),
         failed: missing(&coarse),
+        with_fewer_harmonics: 0,
         inside: best > 0 && best < steps,
     };
     let contender = CONTENDER * peak.amplitude_m;

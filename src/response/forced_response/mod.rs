@@ -35,8 +35,8 @@ pub use error_settings::ErrorSettings;
 pub use excited::{Excited, LimitsWanted, LinearStructure, Wheel, wheel_force};
 pub use observed_amplitude::{ObservedAmplitude, ObservedBlock};
 pub use options::{
-    AmplitudeMeasure, ContactCondition, FrequencyBand, Harmonics, RowsBeyondTolerance,
-    SearchHarmonics, SolverOptions, samples_per_period,
+    AmplitudeMeasure, ContactCondition, FEWER_HARMONICS, FrequencyBand, Harmonics,
+    RowsBeyondTolerance, SearchHarmonics, SolverOptions, samples_per_period,
 };
 pub use peak::{
     Peak, SearchPlan, Window, mistuned_window, peak, search_plan, slopes_lead, tuned_span,

@@ -7,11 +7,15 @@ const SAMPLES_OF_HIGHEST: usize = 12;
 /// A number of samples is a multiple of this one: quarters of a period are whole vectors of the machine.
 const SAMPLES_STEP: usize = 16;
 
+/// Highest harmonics of the sets that are tried one after the other, on tuned receptances, where a peak is not found with all of an
+/// automatic set.
+pub const FEWER_HARMONICS: [u32; 3] = [9, 7, 5];
+
 /// Temporal harmonics of the solution.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Harmonics {
-    /// On tuned receptances 0 to 15, odd ones under a constant normal load, or up to 5 where a peak is not found with all. On a
-    /// basis a set per engine order and normal load, chosen by the tuned full contact model.
+    /// On tuned receptances 0 to 15, odd ones under a constant normal load, or up to 9, 7 or 5 where a peak is not found with more
+    /// ([`FEWER_HARMONICS`]). On a basis a set per engine order and normal load, chosen by the tuned full contact model.
     Auto,
     /// This set, ascending; contains 1.
     Set(Vec<u32>),

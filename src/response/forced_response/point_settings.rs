@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::error_settings::ErrorSettings;
 use super::observed_amplitude::ObservedAmplitude;
-use super::options::{Harmonics, SearchHarmonics, SolverOptions, samples_per_period};
+use super::options::{
+    FEWER_HARMONICS, Harmonics, SearchHarmonics, SolverOptions, samples_per_period,
+};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{
@@ -39,6 +41,8 @@ pub struct PointSettings {
     guide: Option<Box<Self>>,
     /// Settings with the harmonics of the search for the top where contacts open, where there are such.
     opening: Option<Box<Self>>,
+    /// Whether a row that has no peak with these harmonics is solved with fewer: an automatic set on tuned receptances.
+    fewer_follow: bool,
 }
 
 impl PointSettings {
@@ -64,14 +68,18 @@ impl PointSettings {
             }
             _ => None,
         };
-        let guided = options.harmonics == Harmonics::Auto && contact.is_some();
-        let guided = guided && search.is_some() && is_everything(harmonics);
+        let fewer_follow = options.harmonics == Harmonics::Auto
+            && search.is_some()
+            && FEWER_HARMONICS
+                .iter()
+                .any(|&highest| has_beyond(harmonics, highest));
+        let guided = fewer_follow && is_everything(harmonics);
         let guide = guided.then(|| {
             let settings = Self::new(options, &GUIDE, contact, geometry.clone())?;
             let (share, whole) = SAMPLES_OF_GUIDE;
             settings.at_samples(share * options.samples_per_period / whole)
         });
-        let opens = guided && OPENING.iter().all(|k| harmonics.contains(k));
+        let opens = fewer_follow && OPENING.iter().all(|k| harmonics.contains(k));
         let opening = opens.then(|| Self::new(options, &OPENING, contact, geometry.clone()));
         Ok(Self {
             search,
@@ -87,6 +95,7 @@ impl PointSettings {
             ring: Ring::Locked,
             geometry,
             factors: ContactFactors::default(),
+            fewer_follow,
         })
     }
 
@@ -224,6 +233,12 @@ impl PointSettings {
         self.guide.as_deref()
     }
 
+    /// Whether a row that has no peak with these harmonics is solved with fewer of them.
+    #[must_use]
+    pub fn fewer_follow(&self) -> bool {
+        self.fewer_follow
+    }
+
     /// Settings of the search where contacts open, if there is one: an automatic set on tuned receptances that has the mean motion.
     #[must_use]
     pub fn opening(&self) -> Option<&Self> {
@@ -248,6 +263,11 @@ fn sought(search: &SearchHarmonics, harmonics: &[u32]) -> Option<Vec<u32>> {
         }
     };
     (sought.len() < harmonics.len()).then_some(sought)
+}
+
+/// Whether a set has harmonics higher than `highest`.
+fn has_beyond(harmonics: &[u32], highest: u32) -> bool {
+    harmonics.iter().any(|&k| k > highest)
 }
 
 /// Whether a set has everything that a law without separation excites, up to the highest that is looked at.

@@ -212,10 +212,9 @@ impl<'a> ReceptancePoints<'a> {
         self.settings.bounds.residual_tolerance.max(self.precision)
     }
 
-    /// Points that a search may lose before it is over. Where fewer harmonics can take the place of an automatic set of all, the first
-    /// lost point ends it.
+    /// Points that a search may lose before it is over. Where fewer harmonics follow, the first lost point ends it.
     fn most_failures(&self) -> usize {
-        if self.settings.guide().is_some() {
+        if self.settings.fewer_follow() {
             0
         } else {
             MOST_FAILURES

@@ -102,6 +102,16 @@ impl Engine for AccurateEngine {
         self.engine.curve(scenario, pattern, frequencies_hz)
     }
 
+    fn curve_with_fewer_harmonics(
+        &self,
+        scenario: &Scenario,
+        pattern: Option<&Pattern>,
+        lost_hz: &[f64],
+    ) -> Vec<CurvePoint> {
+        self.engine
+            .curve_with_fewer_harmonics(scenario, pattern, lost_hz)
+    }
+
     fn traces(
         &self,
         scenario: &Scenario,

@@ -9,8 +9,8 @@ use super::{Engine, EngineSource, SurrogateOf};
 use crate::model::reduction::Basis;
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{
-    LoadCaseName, LoadCaseSolver, LoadCaseSolvers, ResponseRow, RowSolver, Scenario, Surrogate,
-    TunedReference, compare_in_time,
+    CurveResult, LoadCaseName, LoadCaseSolver, LoadCaseSolvers, ResponseRow, RowSolver, Scenario,
+    Surrogate, TunedReference, compare_in_time,
 };
 use crate::population::table::CurvePoint;
 use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
@@ -103,6 +103,20 @@ impl ReducedEngine {
     /// The solver of the first load case, whose model is that of all.
     fn rows(&self) -> &RowSolver {
         self.solver.first().rows()
+    }
+
+    /// The points of a curve, blade after blade.
+    fn points_of(&self, curve: Vec<CurveResult>) -> Vec<CurvePoint> {
+        let sectors = self.rows().basis().model().sectors as u32;
+        let points = curve.into_iter().flat_map(|(frequency_hz, amplitudes)| {
+            (0..sectors).map(move |blade| CurvePoint {
+                frequency_hz,
+                blade,
+                amplitude_m: amplitudes.as_ref().ok().map(|all| all[blade as usize]),
+                status: amplitudes.as_ref().err().copied().unwrap_or(Status::Ok),
+            })
+        });
+        points.collect()
     }
 }
 
@@ -198,9 +212,9 @@ impl Engine for ReducedEngine {
         json!({
             "basis": self.rows().rows_on(),
             "harmonics": sets(&|solver| choices(solver.rows())),
-            "beyond": self.solver.first().fallback().map(|beyond| json!({
+            "beyond": self.solver.first().fallbacks().next().map(|beyond| json!({
                 "basis": beyond.basis().model().basis_name(),
-                "harmonics": sets(&|solver| solver.fallback().map(choices).unwrap_or_default()),
+                "harmonics": sets(&|solver| solver.fallbacks().flat_map(choices).collect()),
             })),
         })
     }
@@ -217,11 +231,11 @@ impl Engine for ReducedEngine {
                 .map(|choice| format!("{choice:?}"))
                 .collect()
         };
-        let fallback = of_case.fallback().map(of);
+        let fallbacks: Vec<_> = of_case.fallbacks().map(of).collect();
         let is_limit = scenario.contact.normal_load_n().is_none();
         let of_limit = is_limit.then(|| of_case.rows().model_error(scenario));
         format!(
-            "{} {:?} {fallback:?} {of_limit:?}",
+            "{} {:?} {fallbacks:?} {of_limit:?}",
             self.models,
             of(of_case.rows())
         )
@@ -269,28 +283,18 @@ impl Engine for ReducedEngine {
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
     ) -> Vec<CurvePoint> {
-        let sectors = self.rows().basis().model().sectors as u32;
-        let solved = self.solver.under(scenario).rows().curve(
-            scenario.engine_order,
-            scenario.contact,
-            pattern,
-            frequencies_hz,
-        );
-        let results = solved.unwrap_or_else(|status| {
-            let failed = frequencies_hz.iter().map(|&f| (f, Err(status)));
-            failed.collect()
-        });
-        results
-            .into_iter()
-            .flat_map(|(frequency_hz, amplitudes)| {
-                (0..sectors).map(move |blade| CurvePoint {
-                    frequency_hz,
-                    blade,
-                    amplitude_m: amplitudes.as_ref().ok().map(|all| all[blade as usize]),
-                    status: amplitudes.as_ref().err().copied().unwrap_or(Status::Ok),
-                })
-            })
-            .collect()
+        let solver = self.solver.under(scenario);
+        self.points_of(solver.curve(scenario, pattern, frequencies_hz))
+    }
+
+    fn curve_with_fewer_harmonics(
+        &self,
+        scenario: &Scenario,
+        pattern: Option<&Pattern>,
+        lost_hz: &[f64],
+    ) -> Vec<CurvePoint> {
+        let solver = self.solver.under(scenario);
+        self.points_of(solver.curve_with_fewer_harmonics(scenario, pattern, lost_hz))
     }
 
     fn traces(

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{ContactInterface, ContactShares, InterfaceForces, InterfaceWorkspace, PairContact};
-use crate::linalg::Complex64;
+use crate::linalg::{Complex64, dot};
 use crate::response::harmonic_balance::HarmonicTransform;
 
 /// The correction `G(u) = F(u) - k_c u` of the contact forces to those of the tuned wheel's stuck springs.
@@ -161,22 +161,29 @@ impl WheelContact {
         let (pairs, per_sector) = (interface.per_sector(), geometry.row_count());
         let coefficients = self.contact.transform.n_coefficients();
         let rows = self.contact.rows;
+        // A pair's changes side by side: they are read once for every coefficient.
+        let mut of_pair = vec![0.0; coefficients];
         for (pair, jacobian) in self.workspace.jacobians.iter().enumerate() {
             if !self.workspace.active[pair] {
                 continue;
             }
             let base = pair / pairs * per_sector;
             let places = geometry.rows[pair % pairs];
-            for (along, to) in places.iter().enumerate() {
-                for (by, from) in places.iter().enumerate() {
-                    let (Some(to), Some(from), Some(block)) = (to, from, jacobian.block(along, by))
-                    else {
+            for (by, from) in places.iter().enumerate() {
+                let Some(from) = from else { continue };
+                let changes = change[base + from..].iter().step_by(rows);
+                for (own, change) in of_pair.iter_mut().zip(changes) {
+                    *own = *change;
+                }
+                for (along, to) in places.iter().enumerate() {
+                    let (Some(to), Some(block)) = (to, jacobian.block(along, by)) else {
                         continue;
                     };
-                    for (c, slopes) in block.chunks_exact(coefficients).enumerate() {
-                        let moved = slopes.iter().enumerate();
-                        let moved = moved.map(|(d, slope)| slope * change[d * rows + base + from]);
-                        correction[c * rows + base + to] += moved.sum::<f64>();
+                    let corrections = correction[base + to..].iter_mut().step_by(rows);
+                    for (correction, slopes) in
+                        corrections.zip(block.chunks_exact(coefficients.max(1)))
+                    {
+                        *correction += dot(slopes, &of_pair);
                     }
                 }
             }

@@ -1,0 +1,91 @@
+//! Rows of populations at the settings that the program chooses: how many have a peak.
+
+use std::collections::BTreeMap;
+
+use blisk::response::harmonic_balance::Status;
+use blisk::study::Study;
+use rayon::prelude::*;
+
+use super::support::{Case, package};
+
+/// The study with its solver settings left to the program.
+fn at_default_settings(file: &str, standard_deviation: Option<f64>, loads_n: &[f64]) -> Study {
+    let path = package(file);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (physics, _) = text.split_once("\n[solver]").unwrap_or((&text, ""));
+    let lines = physics.lines().map(|line| {
+        if line.starts_with("normal_load_n") && !loads_n.is_empty() {
+            format!("normal_load_n = {loads_n:?}")
+        } else if let (true, Some(deviation)) = (line.starts_with("file ="), standard_deviation) {
+            format!("distribution = {{ kind = \"normal\", standard_deviation = {deviation} }}")
+        } else {
+            line.to_owned()
+        }
+    });
+    Study::parse(&path, &lines.collect::<Vec<_>>().join("\n")).unwrap()
+}
+
+/// Rows with friction of the first `patterns` patterns without a peak, and all of them; states are printed by load and harmonics.
+fn without_a_peak(study: Study, patterns: u32) -> [usize; 2] {
+    let loads = study.contacts.clone().into_iter();
+    let loads: Vec<_> = loads
+        .filter(|load| load.normal_load_n().is_some())
+        .collect();
+    let standard_deviation = study.standard_deviations[0];
+    let case = Case::new(study);
+    let tuned: Vec<_> = loads.iter().map(|&load| case.tuned(load)).collect();
+    let rows = (0..patterns).into_par_iter().flat_map_iter(|id| {
+        let pattern = case.pattern(id, standard_deviation);
+        let rows = loads.iter().zip(&tuned).map(|(&load, tuned)| {
+            let row = case.row(&pattern, load, tuned);
+            (format!("{load:?}, {}", row.harmonics), row.status)
+        });
+        rows.collect::<Vec<_>>()
+    });
+    let rows: Vec<(String, Status)> = rows.collect();
+    let mut counts = BTreeMap::new();
+    for (of, status) in &rows {
+        *counts.entry((of, status.name())).or_insert(0) += 1;
+    }
+    for ((of, status), count) in counts {
+        println!("{of}: {count} {status}");
+    }
+    let lost = rows.iter().filter(|(_, status)| *status != Status::Ok);
+    [lost.count(), rows.len()]
+}
+
+/// `.ci/long rows_found`
+#[test]
+#[ignore = "minutes: ten thousand rows"]
+fn ten_thousand_rows_of_the_lumped_wheel_are_found() {
+    let file = "studies/validation/lumped24-population.toml";
+    let study = at_default_settings(file, None, &[25.0, 50.0, 75.0, 150.0, 300.0]);
+    let [lost, rows] = without_a_peak(study, 2000);
+    assert_eq!(rows, 10_000);
+    assert!(1000 * lost <= rows, "{lost}");
+}
+
+#[test]
+#[ignore = "minutes: two thousand rows"]
+fn two_thousand_rows_of_the_quickstart_are_found() {
+    let [lost, rows] = without_a_peak(
+        at_default_settings("studies/quickstart.toml", None, &[]),
+        334,
+    );
+    assert_eq!(rows, 2004);
+    assert!(1000 * lost <= rows, "{lost}");
+}
+
+#[test]
+#[ignore = "minutes: 500 rows whose pairs open"]
+fn rows_of_the_reference_wheels_are_found_where_pairs_open() {
+    let [mut lost, mut rows] = [0; 2];
+    for (name, loads_n) in [("wheel24", [80.0, 40.0]), ("wheel8", [200.0, 100.0])] {
+        let file = format!("studies/validation/{name}.toml");
+        let study = at_default_settings(&file, Some(0.03), &loads_n);
+        let of_wheel = without_a_peak(study, 125);
+        (lost, rows) = (lost + of_wheel[0], rows + of_wheel[1]);
+    }
+    assert_eq!(rows, 500);
+    assert!(50 * lost <= rows, "{lost}");
+}
