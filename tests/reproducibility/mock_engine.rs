@@ -129,11 +129,11 @@ impl Engine for MockEngine {
         Vec::new()
     }
 
-    fn curve_with_fewer_harmonics(
+    fn curve_with_fewest_harmonics(
         &self,
         _scenario: &Scenario,
         _pattern: Option<&Pattern>,
-        _lost_hz: &[f64],
+        _frequencies_hz: &[f64],
     ) -> Vec<CurvePoint> {
         Vec::new()
     }

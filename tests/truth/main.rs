@@ -190,7 +190,8 @@ fn all_rows_with_other_dampers_are_as_true_as_they_state() {
     }
 }
 
-/// How many rows of a wheel are wanted, and how many of these have all harmonics: each is within what it states, the latter within 0.5 %.
+/// How many rows of a wheel are wanted, and how many of these have all harmonics: each is within what it states and within 2 %, the latter
+/// within 0.5 %.
 fn with_all_harmonics(wheel: &str, wanted: impl Fn(&Row) -> bool) -> [usize; 2] {
     let everything: Vec<String> = (0..=15).map(|k: u32| k.to_string()).collect();
     let everything = everything.join("-");
@@ -205,7 +206,7 @@ fn with_all_harmonics(wheel: &str, wanted: impl Fn(&Row) -> bool) -> [usize; 2] 
             row.harmonics
         );
         let has_all = row.harmonics == everything;
-        let most = if has_all { 0.005 } else { f64::INFINITY };
+        let most = if has_all { 0.005 } else { 0.02 };
         assert!(
             error.abs() <= stated.min(most),
             "{name}: {error:.2e}, {stated:.2e}"

@@ -19,6 +19,8 @@ use crate::study::PipelineError;
 /// Share of the width of the searched band that the sweep goes beyond either end: a peak outside of
 /// the band is what the search cannot see.
 const BEYOND: f64 = 0.25;
+/// Steps in a half-bandwidth by which a top with fewer harmonics is looked at.
+const BESIDE: i32 = 8;
 
 /// Sweeps a sample of the rows of a finished study and writes `peak_audit.parquet` into its folder.
 ///
@@ -86,7 +88,11 @@ fn audit_row(
         .ok_or_else(no_row)?;
     let swept = if delivered.status == Status::Ok {
         let band = stored.study.solver.frequency_band;
-        sweep(engine, &scenario, &pattern, tuned.frequency_hz, band)
+        let peak = delivered.peak_frequency_hz.zip(delivered.peak_amplitude_m);
+        peak.and_then(|peak| {
+            let of = (&scenario, &pattern);
+            sweep(engine, of, peak, tuned.frequency_hz, band)
+        })
     } else {
         None
     };
@@ -99,10 +105,13 @@ fn audit_row(
 
 /// The highest value in and around the band that the peak was sought in; none where the linear
 /// limits give no band.
+///
+/// Frequencies without a solution with the harmonics of the load are solved with the fewest. What the others change of an amplitude is
+/// taken from the delivered peak `(peak_hz, peak_m)`: the top that the fewest have beside it counts as high as that peak.
 fn sweep(
     engine: &dyn Engine,
-    scenario: &Scenario,
-    pattern: &Pattern,
+    (scenario, pattern): (&Scenario, &Pattern),
+    (peak_hz, peak_m): (f64, f64),
     tuned_hz: Option<f64>,
     band: FrequencyBand,
 ) -> Option<DensePeak> {
@@ -114,21 +123,29 @@ fn sweep(
     };
     let half_bandwidth_hz = plan.envelope.linear_half_bandwidth_hz;
     let band_hz = ((start - margin).max(0.5 * start), stop + margin);
+    let with_fewest = |frequencies_hz: &[f64]| {
+        let points = engine.curve_with_fewest_harmonics(scenario, Some(pattern), frequencies_hz);
+        largest_of_blades(&points, frequencies_hz.len())
+    };
     let mut with_fewer_harmonics = 0;
+    let mut share = None;
     let peak = dense_peak(band_hz, half_bandwidth_hz, |frequencies_hz| {
         let points = engine.curve(scenario, Some(pattern), frequencies_hz);
         let mut found = largest_of_blades(&points, frequencies_hz.len());
         let lost = frequencies_hz.iter().zip(&found);
-        let lost_hz: Vec<f64> = lost
-            .filter(|(_, amplitude)| amplitude.is_none())
-            .map(|(hz, _)| *hz)
-            .collect();
-        let points = engine.curve_with_fewer_harmonics(scenario, Some(pattern), &lost_hz);
-        let with_fewer = largest_of_blades(&points, lost_hz.len());
-        with_fewer_harmonics += with_fewer.iter().flatten().count();
-        let lost = found.iter_mut().filter(|amplitude| amplitude.is_none());
-        for (amplitude, with_fewer) in lost.zip(with_fewer) {
-            *amplitude = with_fewer;
+        let lost = lost.filter(|(_, amplitude)| amplitude.is_none());
+        let lost_hz: Vec<f64> = lost.map(|(hz, _)| *hz).collect();
+        if !lost_hz.is_empty() {
+            let share = *share.get_or_insert_with(|| {
+                let top_m = top_beside(peak_hz, half_bandwidth_hz, with_fewest);
+                peak_m / top_m.unwrap_or(peak_m)
+            });
+            let fewest = with_fewest(&lost_hz);
+            with_fewer_harmonics += fewest.iter().flatten().count();
+            let lost = found.iter_mut().filter(|amplitude| amplitude.is_none());
+            for (amplitude, fewest) in lost.zip(fewest) {
+                *amplitude = fewest.map(|height_m| share * height_m);
+            }
         }
         found
     });
@@ -136,6 +153,19 @@ fn sweep(
         with_fewer_harmonics,
         ..peak
     })
+}
+
+/// The largest amplitude, m, within a half-bandwidth of a peak; none where nothing is found there.
+fn top_beside(
+    peak_hz: f64,
+    half_bandwidth_hz: f64,
+    heights_m: impl Fn(&[f64]) -> Vec<Option<f64>>,
+) -> Option<f64> {
+    let beside = (-BESIDE..=BESIDE).map(f64::from);
+    let step_hz = half_bandwidth_hz / f64::from(BESIDE);
+    let beside_hz: Vec<f64> = beside.map(|step| peak_hz + step * step_hz).collect();
+    let heights_m = heights_m(&beside_hz).into_iter().flatten();
+    heights_m.reduce(f64::max)
 }
 
 /// The largest amplitude over the blades at each of so many frequencies; none where the solution failed.

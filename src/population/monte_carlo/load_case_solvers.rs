@@ -93,31 +93,23 @@ impl LoadCaseSolver {
         curve_of(&self.rows, scenario, pattern, frequencies_hz)
     }
 
-    /// [`Self::curve`] at frequencies that it has no solution at, by the fallbacks with fewer harmonics, in their order.
+    /// [`Self::curve`] by the last fallback; without a solution where it does not have fewer harmonics.
     #[must_use]
-    pub fn curve_with_fewer_harmonics(
+    pub fn curve_with_fewest_harmonics(
         &self,
         scenario: &Scenario,
         pattern: Option<&Pattern>,
-        lost_hz: &[f64],
+        frequencies_hz: &[f64],
     ) -> Vec<CurveResult> {
         let own = self.rows.points(scenario).harmonics().len();
-        let has_fewer = |solver: &&RowSolver| solver.points(scenario).harmonics().len() < own;
-        let lost = lost_hz.iter().map(|&hz| (hz, Err(Status::IterationLimit)));
-        let mut points: Vec<CurveResult> = lost.collect();
-        for solver in self.fallbacks().filter(has_fewer) {
-            let lost = points.iter_mut().filter(|(_, found)| found.is_err());
-            let lost: Vec<&mut CurveResult> = lost.collect();
-            if lost.is_empty() {
-                break;
-            }
-            let frequencies_hz: Vec<f64> = lost.iter().map(|(hz, _)| *hz).collect();
-            let found = curve_of(solver, scenario, pattern, &frequencies_hz);
-            for (point, found) in lost.into_iter().zip(found) {
-                *point = found;
+        let last = self.fallbacks().last();
+        match last.filter(|solver| solver.points(scenario).harmonics().len() < own) {
+            Some(solver) => curve_of(solver, scenario, pattern, frequencies_hz),
+            None => {
+                let lost = frequencies_hz.iter();
+                lost.map(|&hz| (hz, Err(Status::IterationLimit))).collect()
             }
         }
-        points
     }
 
     /// The row, or that of the first fallback that has to solve it again and can.

@@ -102,14 +102,14 @@ impl Engine for AccurateEngine {
         self.engine.curve(scenario, pattern, frequencies_hz)
     }
 
-    fn curve_with_fewer_harmonics(
+    fn curve_with_fewest_harmonics(
         &self,
         scenario: &Scenario,
         pattern: Option<&Pattern>,
-        lost_hz: &[f64],
+        frequencies_hz: &[f64],
     ) -> Vec<CurvePoint> {
         self.engine
-            .curve_with_fewer_harmonics(scenario, pattern, lost_hz)
+            .curve_with_fewest_harmonics(scenario, pattern, frequencies_hz)
     }
 
     fn traces(

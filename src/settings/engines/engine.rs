@@ -80,13 +80,13 @@ pub trait Engine: Send + Sync {
         frequencies_hz: &[f64],
     ) -> Vec<CurvePoint>;
 
-    /// [`Self::curve`] at frequencies that it has no solution at, with the fewer harmonics that rows without a peak are solved with; still
-    /// without a solution where there are no such harmonics.
-    fn curve_with_fewer_harmonics(
+    /// [`Self::curve`] with the fewest harmonics that rows without a peak are solved with; without a solution where there are none fewer
+    /// than those of the load.
+    fn curve_with_fewest_harmonics(
         &self,
         scenario: &Scenario,
         pattern: Option<&Pattern>,
-        lost_hz: &[f64],
+        frequencies_hz: &[f64],
     ) -> Vec<CurvePoint>;
 
     /// The curve followed by continuation between the first and the last frequency, upwards and

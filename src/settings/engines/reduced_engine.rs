@@ -287,14 +287,14 @@ impl Engine for ReducedEngine {
         self.points_of(solver.curve(scenario, pattern, frequencies_hz))
     }
 
-    fn curve_with_fewer_harmonics(
+    fn curve_with_fewest_harmonics(
         &self,
         scenario: &Scenario,
         pattern: Option<&Pattern>,
-        lost_hz: &[f64],
+        frequencies_hz: &[f64],
     ) -> Vec<CurvePoint> {
         let solver = self.solver.under(scenario);
-        self.points_of(solver.curve_with_fewer_harmonics(scenario, pattern, lost_hz))
+        self.points_of(solver.curve_with_fewest_harmonics(scenario, pattern, frequencies_hz))
     }
 
     fn traces(
