@@ -102,14 +102,12 @@ impl LoadCaseSolver {
         frequencies_hz: &[f64],
     ) -> Vec<CurveResult> {
         let own = self.rows.points(scenario).harmonics().len();
-        let last = self.fallbacks().last();
-        match last.filter(|solver| solver.points(scenario).harmonics().len() < own) {
-            Some(solver) => curve_of(solver, scenario, pattern, frequencies_hz),
-            None => {
-                let lost = frequencies_hz.iter();
-                lost.map(|&hz| (hz, Err(Status::IterationLimit))).collect()
-            }
+        let has_fewer = |solver: &&RowSolver| solver.points(scenario).harmonics().len() < own;
+        if let Some(solver) = self.fallbacks().last().filter(has_fewer) {
+            return curve_of(solver, scenario, pattern, frequencies_hz);
         }
+        let lost = frequencies_hz.iter();
+        lost.map(|&hz| (hz, Err(Status::IterationLimit))).collect()
     }
 
     /// The row, or that of the first fallback that has to solve it again and can.
