@@ -108,6 +108,7 @@ fn audit_row(
 ///
 /// Frequencies without a solution with the harmonics of the load are solved with the fewest. What the others change of an amplitude is
 /// taken from the delivered peak `(peak_hz, peak_m)`: the top that the fewest have beside it counts as high as that peak.
+/// Without such a top the frequencies stay without a solution.
 fn sweep(
     engine: &dyn Engine,
     (scenario, pattern): (&Scenario, &Pattern),
@@ -128,7 +129,7 @@ fn sweep(
         largest_of_blades(&points, frequencies_hz.len())
     };
     let mut with_fewer_harmonics = 0;
-    let mut share = None;
+    let mut top_m = None;
     let peak = dense_peak(band_hz, half_bandwidth_hz, |frequencies_hz| {
         let points = engine.curve(scenario, Some(pattern), frequencies_hz);
         let mut found = largest_of_blades(&points, frequencies_hz.len());
@@ -136,15 +137,14 @@ fn sweep(
         let lost = lost.filter(|(_, amplitude)| amplitude.is_none());
         let lost_hz: Vec<f64> = lost.map(|(hz, _)| *hz).collect();
         if !lost_hz.is_empty() {
-            let share = *share.get_or_insert_with(|| {
-                let top_m = top_beside(peak_hz, half_bandwidth_hz, with_fewest);
-                peak_m / top_m.unwrap_or(peak_m)
-            });
-            let fewest = with_fewest(&lost_hz);
-            with_fewer_harmonics += fewest.iter().flatten().count();
+            let top_m =
+                *top_m.get_or_insert_with(|| top_beside(peak_hz, half_bandwidth_hz, with_fewest));
             let lost = found.iter_mut().filter(|amplitude| amplitude.is_none());
-            for (amplitude, fewest) in lost.zip(fewest) {
-                *amplitude = fewest.map(|height_m| share * height_m);
+            for (amplitude, fewest_m) in lost.zip(with_fewest(&lost_hz)) {
+                *amplitude = fewest_m
+                    .zip(top_m)
+                    .map(|(height, top)| height / top * peak_m);
+                with_fewer_harmonics += usize::from(amplitude.is_some());
             }
         }
         found

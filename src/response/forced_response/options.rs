@@ -24,7 +24,7 @@ pub enum Harmonics {
 /// Harmonics with which the tops of a row are sought, before the whole set is solved there.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SearchHarmonics {
-    /// Harmonic 1 on tuned receptances, and 0 to 3 where contacts open and an automatic set of all harmonics has these. On a
+    /// Harmonic 1 on tuned receptances, and 0 to 3 where contacts open and an automatic set goes beyond 5 and has these. On a
     /// basis harmonic 1 where the equation of the whole set is large, and far below the peak where contact rows are few; else all.
     Auto,
     /// The whole set, without a search before.

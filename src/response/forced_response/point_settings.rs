@@ -70,9 +70,7 @@ impl PointSettings {
         };
         let fewer_follow = options.harmonics == Harmonics::Auto
             && search.is_some()
-            && FEWER_HARMONICS
-                .iter()
-                .any(|&highest| has_beyond(harmonics, highest));
+            && harmonics.last() > FEWER_HARMONICS.last();
         let guided = fewer_follow && is_everything(harmonics);
         let guide = guided.then(|| {
             let settings = Self::new(options, &GUIDE, contact, geometry.clone())?;
@@ -263,11 +261,6 @@ fn sought(search: &SearchHarmonics, harmonics: &[u32]) -> Option<Vec<u32>> {
         }
     };
     (sought.len() < harmonics.len()).then_some(sought)
-}
-
-/// Whether a set has harmonics higher than `highest`.
-fn has_beyond(harmonics: &[u32], highest: u32) -> bool {
-    harmonics.iter().any(|&k| k > highest)
 }
 
 /// Whether a set has everything that a law without separation excites, up to the highest that is looked at.

@@ -26,8 +26,8 @@ pub struct ReceptancePeak {
 }
 
 /// Finds the peak of one row: with few harmonics over the band and with all of them at its tops, where `search` has few, or with
-/// all of them alone. Where contacts open, the few of an automatic set are those that follow that. With an automatic set of all
-/// harmonics a search with these ends at the first point that is not found: fewer of them have to do there.
+/// all of them alone. Where contacts open, the few of an automatic set are those that follow that. Where fewer
+/// harmonics follow, a search ends at the first point that is not found.
 #[must_use]
 pub fn receptance_peak(
     row: &EngineRow<'_>,
