@@ -5,6 +5,7 @@ use blisk::population::monte_carlo::{ResponseRow, Scenario};
 use blisk::response::mistuning::{Pattern, PatternSource};
 use blisk::settings::{EngineSource, ReducedEngineSource};
 use blisk::study::{Study, load_sector_model, pattern_source};
+use rayon::prelude::*;
 
 use super::cases::folder;
 use super::rows::{Row, stored};
@@ -53,7 +54,7 @@ pub fn solved_within(
         let mut rows = engine.rows(&pattern, &[(&scenarios[place], &tuned[place])]);
         (truth, rows.pop().expect("a row"))
     };
-    truth.into_iter().map(row).collect()
+    truth.into_par_iter().map(row).collect()
 }
 
 /// The study of a wheel with the conditions of these rows alone, on tuned receptances, in all else as the program

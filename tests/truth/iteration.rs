@@ -8,7 +8,9 @@
 //! method; its linear equations by GMRES (Saad and Schultz 1986) with the contact of each harmonic alone as
 //! preconditioner. Where that fails, the normal load comes down in steps from one that nothing slips under.
 
+use std::cell::OnceCell;
 use std::f64::consts::TAU;
+use std::rc::Rc;
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, c64};
@@ -67,6 +69,10 @@ impl Point {
     }
 }
 
+/// Receptance of a wheel at rest, for harmonic 0 of a case at any frequency.
+#[derive(Default)]
+pub struct AtRest(OnceCell<Rc<Receptance>>);
+
 /// Solves a frequency from `start`, or from sticking; none where no solution was reached.
 pub fn solve(
     sector: &Sector,
@@ -74,6 +80,23 @@ pub fn solve(
     period: &Period,
     frequency_hz: f64,
     start: Option<&Mat<f64>>,
+) -> Option<Point> {
+    solve_with(
+        sector,
+        case,
+        period,
+        (frequency_hz, start),
+        &AtRest::default(),
+    )
+}
+
+/// Solves a frequency of a case that `at_rest` is of.
+pub fn solve_with(
+    sector: &Sector,
+    case: &Case,
+    period: &Period,
+    (frequency_hz, start): (f64, Option<&Mat<f64>>),
+    at_rest: &AtRest,
 ) -> Option<Point> {
     let (springs, law) = match case.contact {
         Contact::Friction(law) => (
@@ -91,12 +114,16 @@ pub fn solve(
     } else {
         &[1]
     };
-    let receptances: Vec<Receptance> = harmonics
+    let receptance = |k: u32| {
+        let omega = TAU * frequency_hz * f64::from(k);
+        let wheel = FactoredWheel::new(sector, omega, case.loss_factor, &case.deviations, springs);
+        Rc::new(wheel.receptance(case.engine_order))
+    };
+    let receptances: Vec<Rc<Receptance>> = harmonics
         .iter()
-        .map(|&k| {
-            let omega = TAU * frequency_hz * f64::from(k);
-            FactoredWheel::new(sector, omega, case.loss_factor, &case.deviations, springs)
-                .receptance(case.engine_order)
+        .map(|&k| match k {
+            0 => Rc::clone(at_rest.0.get_or_init(|| receptance(0))),
+            _ => receptance(k),
         })
         .collect();
     let fundamental = harmonics.iter().position(|&k| k == 1).expect("harmonic 1");
@@ -155,7 +182,7 @@ pub fn solve(
 /// The equation at one frequency.
 struct Equation<'a> {
     period: &'a Period,
-    receptances: &'a [Receptance],
+    receptances: &'a [Rc<Receptance>],
     /// Place of harmonic 1.
     fundamental: usize,
     springs: [f64; DIRECTIONS],
@@ -241,7 +268,7 @@ impl Equation<'_> {
     }
 
     fn preconditioner(&self, laws: &[Law], state: &State) -> Preconditioner {
-        let of = |(place, receptance): (usize, &Receptance)| {
+        let of = |(place, receptance): (usize, &Rc<Receptance>)| {
             let k = self.period.harmonics[place];
             let mut matrix = Mat::<c64>::identity(self.rows(), self.rows());
             for (pair, law) in laws.iter().enumerate() {

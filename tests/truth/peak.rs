@@ -4,7 +4,7 @@
 use faer::Mat;
 
 use super::contact::Period;
-use super::iteration::{Case, Point, solve};
+use super::iteration::{AtRest, Case, Point, solve_with};
 use super::sector::Sector;
 
 /// Distance of the three frequencies, relative: a quarter of the half-bandwidth of the structure alone.
@@ -31,16 +31,10 @@ pub fn peak(
     peak_spaced(sector, case, period, (hint_hz, start), 1.0)
 }
 
-/// The peak by frequencies beside each other and then once more by closer ones, for a top with a kink, where contacts begin to
-/// open: a parabola through three points that stand apart has its vertex beside it.
+/// The peak by frequencies close beside each other, for a top with a kink, where contacts begin to open: a parabola through three points
+/// that stand apart has its vertex beside it.
 pub fn close_peak(sector: &Sector, case: &Case, period: &Period, hint_hz: f64) -> Option<Peak> {
-    let first = peak(sector, case, period, hint_hz, None)?;
-    let top = (first.top.frequency_hz, Some(&first.top.motion));
-    let second = peak_spaced(sector, case, period, top, CLOSER)?;
-    Some(Peak {
-        points: first.points + second.points,
-        top: second.top,
-    })
+    peak_spaced(sector, case, period, (hint_hz, None), CLOSER)
 }
 
 fn peak_spaced(
@@ -52,13 +46,14 @@ fn peak_spaced(
 ) -> Option<Peak> {
     let spacing_hz = share * SPACING_OF_LOSS_FACTOR * case.loss_factor * hint_hz;
     let mut points: Vec<Point> = Vec::new();
+    let at_rest = AtRest::default();
     let add = |points: &mut Vec<Point>, frequency_hz: f64| -> Option<f64> {
         let distance = |own: &&Point| (own.frequency_hz - frequency_hz).abs();
         let nearest = points
             .iter()
             .min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let start = nearest.map(|own| &own.motion).or(start);
-        let point = solve(sector, case, period, frequency_hz, start)?;
+        let point = solve_with(sector, case, period, (frequency_hz, start), &at_rest)?;
         let amplitude_m = point.amplitude_m();
         let at = points.partition_point(|own| own.frequency_hz < frequency_hz);
         points.insert(at, point);
