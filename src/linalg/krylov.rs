@@ -5,17 +5,31 @@ use super::{Columns, Orthogonalised, Subtracted, dot, vectorized};
 /// Share of a vector below which what is left of it beside the basis is made orthogonal once more: so much of its digits is lost.
 const LITTLE: f64 = 0.1;
 
-/// `x` with `A x` near `right`, until the residual is `enough` of `right` or `most` products are spent, and the number of products
-/// with A that it took.
+/// What [`gmres`] found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Minimised {
+    /// The solution.
+    pub x: Vec<f64>,
+    /// Products with the matrix.
+    pub products: usize,
+    /// Norm of the residual over that of the right-hand side.
+    pub residual: f64,
+}
+
+/// `x` with `A x` near `right`, until the residual is `enough` of `right` or `most` products are spent.
 pub fn gmres(
     right: &[f64],
     enough: f64,
     most: usize,
     mut product: impl FnMut(&[f64]) -> Vec<f64>,
-) -> (Vec<f64>, usize) {
+) -> Minimised {
     let size = dot(right, right).sqrt();
     if size == 0.0 || !size.is_finite() {
-        return (vec![0.0; right.len()], 0);
+        return Minimised {
+            x: vec![0.0; right.len()],
+            products: 0,
+            residual: 0.0,
+        };
     }
     let length = right.len();
     // Orthonormal columns, one after the other.
@@ -76,7 +90,11 @@ pub fn gmres(
         shares: &shares,
         from: &mut x,
     });
-    (x, count)
+    Minimised {
+        x,
+        products: count,
+        residual: left[count].abs() / size,
+    }
 }
 
 #[cfg(test)]
@@ -90,11 +108,16 @@ mod tests {
             let row = |row: &[f64; 3]| row.iter().zip(x).map(|(a, x)| a * x).sum();
             a.iter().map(row).collect()
         };
-        let (x, products) = gmres(&[1.0, 2.0, 3.0], 1e-3, 120, product);
-        let back = product(&x);
-        assert!(products <= 3);
-        for (b, component) in [1.0, 2.0, 3.0].iter().zip(&back) {
-            assert!((b - component).abs() < 4e-3, "{back:?}");
+        let right: [f64; 3] = [1.0, 2.0, 3.0];
+        let (size, most) = (14_f64.sqrt(), 1e-3);
+        for products in [1, 2, 3] {
+            let found = gmres(&right, most, products, product);
+            let back = product(&found.x);
+            let squares = right.iter().zip(&back).map(|(b, own)| (b - own).powi(2));
+            let left = squares.sum::<f64>().sqrt() / size;
+            assert!((left - found.residual).abs() < 1e-12, "{found:?}: {left}");
+            assert_eq!(found.products, products);
         }
+        assert!(gmres(&right, most, 120, product).residual < most);
     }
 }

@@ -19,7 +19,7 @@ pub use dense::{
     householder_qr, orthonormal_basis,
 };
 pub use exponential::exponential;
-pub use krylov::gmres;
+pub use krylov::{Minimised, gmres};
 pub use lu::LuWorkspace;
 pub use matrix::{
     Matrix, Scalar, add_times, add_times_vector, add_transpose_times, add_transpose_times_vector,

@@ -113,6 +113,8 @@ pub(super) struct ReceptancePoints<'a> {
     failures: Vec<(f64, Status)>,
     precision: f64,
     is_nonlinear: bool,
+    /// Whether the frequency before was lost, so that this one is tried once.
+    beside_lost: bool,
     work: Work,
 }
 
@@ -126,6 +128,7 @@ impl<'a> ReceptancePoints<'a> {
             failures: Vec::new(),
             precision: 0.0,
             is_nonlinear: row.condition.normal_load_n().is_some(),
+            beside_lost: false,
             work: Work::default(),
         }
     }
@@ -133,12 +136,10 @@ impl<'a> ReceptancePoints<'a> {
     fn solve(&mut self, frequency_hz: f64, tolerance: f64) -> Result<Point, Status> {
         let known = between_neighbours(&self.points, &self.solver, frequency_hz);
         let mut starts: Vec<Vec<f64>> = known.into_iter().collect();
-        if let Some(guide) = self
-            .settings
-            .guide()
-            .filter(|_| starts.is_empty() && self.is_nonlinear)
-        {
-            // From the linear response all harmonics at once are hard to find.
+        let opening = self.settings.opening().filter(|_| self.beside_lost);
+        let guide = self.settings.guide().or(opening);
+        if let Some(guide) = guide.filter(|_| starts.is_empty() && self.is_nonlinear) {
+            // From the linear response many harmonics at once are hard to find.
             let mut few = Self::new(&self.row, guide);
             let led = few.solve_from(frequency_hz, &[], tolerance);
             self.work = self.work.plus(few.work);
@@ -197,6 +198,13 @@ impl<'a> ReceptancePoints<'a> {
             .zip(of_few)
             .map(|(amplitude, few)| amplitude / few)
             .collect()
+    }
+
+    /// Whether the next frequency is tried once, or by every attempt.
+    fn try_once_if(&mut self, beside_lost: bool) {
+        self.beside_lost = beside_lost;
+        let most_attempts = if beside_lost { 1 } else { usize::MAX };
+        self.solver.limit_attempts(most_attempts);
     }
 
     pub(super) fn residual_is_stated(&self) -> bool {
@@ -346,6 +354,9 @@ pub fn receptance_contact_motion(
 }
 
 /// Points of a row at the given frequencies, Hz, in their order.
+///
+/// Next to a frequency without a solution there mostly is none either, and all attempts take as long as a hundred that are found. The
+/// frequencies after such a one are tried once each, until one is found.
 #[must_use]
 pub fn receptance_curve(
     row: &EngineRow<'_>,
@@ -353,6 +364,10 @@ pub fn receptance_curve(
     frequencies_hz: &[f64],
 ) -> Vec<(f64, Result<Point, Status>)> {
     let mut solver = ReceptancePoints::new(row, settings);
-    let solve = |&hz: &f64| (hz, solver.added(hz).cloned());
+    let solve = |&hz: &f64| {
+        let point = solver.added(hz).cloned();
+        solver.try_once_if(point.is_err());
+        (hz, point)
+    };
     frequencies_hz.iter().map(solve).collect()
 }

@@ -9,7 +9,9 @@ use crate::response::harmonic_balance::{ContactShares, Status};
 
 use super::attempts_on_receptances::Attempt::{Accelerated, Newton};
 use super::attempts_on_receptances::Start::{Best, Known, Linear};
-use super::attempts_on_receptances::{BESIDE, DAMPING, NEWTON_STEPS, NewtonPlan, Plan, attempts};
+use super::attempts_on_receptances::{
+    BESIDE, DAMPING, NEAR, NEWTON_STEPS, NewtonPlan, Plan, attempts,
+};
 use super::contact_equation::PreconditionedShapes::FirstOfFundamental;
 use super::contact_equation::{Buffers, ContactEquation};
 use super::fields::{Field, flatten, unflatten};
@@ -92,11 +94,17 @@ pub(super) struct Outcome {
 }
 
 impl ContactEquation<'_> {
-    /// Solves from the best of `starts`, or from the linear response without any, until the residual is within `tolerance`.
-    pub(super) fn solve(&mut self, starts: &[Vec<f64>], tolerance: f64) -> Outcome {
+    /// Solves from the best of `starts`, or from the linear response without any, until the residual is within `tolerance`, by so many
+    /// attempts at most.
+    pub(super) fn solve(
+        &mut self,
+        starts: &[Vec<f64>],
+        tolerance: f64,
+        most_attempts: usize,
+    ) -> Outcome {
         let linear = self.linear_start();
         let known = self.best_of(starts);
-        let attempts = attempts(self.harmonics.len(), known.is_some());
+        let attempts = attempts(self.harmonics.len(), known.is_some()).take(most_attempts);
         let mut best = (f64::INFINITY, linear.clone());
         let mut total = Outcome::none();
         for (rung, (start, attempt)) in attempts.enumerate() {
@@ -195,13 +203,16 @@ impl ContactEquation<'_> {
                 pairs: pairs.then(|| PairPreconditioner::new(self.contact, self.harmonics)),
             };
             let right = self.preconditioned_residual(&mut by);
-            let (step, products) = gmres(&right, plan.step_error, plan.products, |direction| {
+            let solved = gmres(&right, plan.step_error, plan.products, |direction| {
                 let mut turned = self.derivative(direction);
                 self.precondition_flat(&mut by, &mut turned);
                 turned
             });
-            outcome.iterations += products as u64;
-            if outcome.iterations > plan.products_in_all {
+            outcome.iterations += solved.products as u64;
+            let is_poor = solved.residual > plan.most_step_error;
+            if outcome.iterations > plan.products_in_all
+                || is_poor && outcome.residual > NEAR * tolerance
+            {
                 break;
             }
             let before = if pairs {
@@ -209,7 +220,7 @@ impl ContactEquation<'_> {
             } else {
                 outcome.residual
             };
-            if !self.moves_by(&step, plan, &mut by, before) {
+            if !self.moves_by(&solved.x, plan, &mut by, before) {
                 outcome.status = Status::Stagnated;
                 break;
             }

@@ -26,6 +26,7 @@ pub struct WheelSolver<'a> {
     linear: Field,
     /// Forces on the contact besides its own.
     added_forces: Option<ContactForces>,
+    most_attempts: usize,
     buffers: Buffers,
     /// Tuned response to the excitation of the motions [contact, strain, observed].
     excited: Vec<Complex64>,
@@ -80,9 +81,15 @@ impl<'a> WheelSolver<'a> {
             harmonics: Vec::new(),
             linear: Field::default(),
             added_forces: None,
+            most_attempts: usize::MAX,
             buffers: Buffers::default(),
             excited: Vec::new(),
         }
+    }
+
+    /// So many attempts at most from now on at every frequency; all of them at first.
+    pub fn limit_attempts(&mut self, most: usize) {
+        self.most_attempts = most;
     }
 
     /// This solver with derivatives from `contact`, which is its contact with fewer samples; none: from its contact itself.
@@ -150,6 +157,7 @@ impl<'a> WheelSolver<'a> {
         if !self.prepare(frequency_hz) {
             return (Err(Status::SingularJacobian), work);
         }
+        let most_attempts = self.most_attempts;
         let Some(mut equation) = self.equation() else {
             let solution = WheelSolution {
                 motions: Vec::new(),
@@ -158,7 +166,7 @@ impl<'a> WheelSolver<'a> {
             };
             return (Ok(solution), work);
         };
-        let outcome = equation.solve(starts, tolerance);
+        let outcome = equation.solve(starts, tolerance, most_attempts);
         work.iterations = outcome.iterations;
         work.tangents = outcome.tangents;
         work.retries = outcome.retries;

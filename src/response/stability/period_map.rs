@@ -296,7 +296,7 @@ impl PeriodMap {
             wave_motion,
             ..
         } = moving;
-        let (force, products) = gmres(&right, FORCE_TOLERANCE, MOST_PRODUCTS, |force| {
+        let solved = gmres(&right, FORCE_TOLERANCE, MOST_PRODUCTS, |force| {
             self.yields(at, force, (wave_force, wave_motion), &mut motion);
             let mut left = vec![0.0; force.len()];
             for (sector, left) in left.chunks_exact_mut(forces).enumerate() {
@@ -314,7 +314,8 @@ impl PeriodMap {
             }
             left
         });
-        if products >= MOST_PRODUCTS || !force.iter().all(|f| f.is_finite()) {
+        let force = solved.x;
+        if solved.products >= MOST_PRODUCTS || !force.iter().all(|f| f.is_finite()) {
             return None;
         }
         self.yields(at, &force, (wave_force, wave_motion), &mut motion);
