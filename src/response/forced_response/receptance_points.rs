@@ -355,8 +355,8 @@ pub fn receptance_contact_motion(
 
 /// Points of a row at the given frequencies, Hz, in their order.
 ///
-/// Next to a frequency without a solution there mostly is none either, and all attempts take as long as a hundred that are found. The
-/// frequencies after such a one are tried once each, until one is found.
+/// With automatic sets of many harmonics there mostly is no solution next to a frequency without one, and all attempts take as long as a
+/// hundred that are found. The frequencies after such a one are tried once each, until one is found.
 #[must_use]
 pub fn receptance_curve(
     row: &EngineRow<'_>,
@@ -366,7 +366,7 @@ pub fn receptance_curve(
     let mut solver = ReceptancePoints::new(row, settings);
     let solve = |&hz: &f64| {
         let point = solver.added(hz).cloned();
-        solver.try_once_if(point.is_err());
+        solver.try_once_if(point.is_err() && settings.fewer_follow());
         (hz, point)
     };
     frequencies_hz.iter().map(solve).collect()
