@@ -31,6 +31,24 @@ pub(super) fn sequential() {
 pub fn hermitian_eigen<T: Scalar>(
     a: &Matrix<T>,
 ) -> Result<(Vec<f64>, Matrix<T>), NotPositiveDefinite> {
+    let mut vectors = Matrix::<T>::zeros(a.rows(), a.rows());
+    let values = decompose(a, Some(&mut vectors))?;
+    Ok((values, vectors))
+}
+
+/// Eigenvalues, ascending, of a Hermitian matrix, whose lower triangle is read.
+///
+/// # Errors
+/// If the matrix holds values that are not finite.
+pub fn hermitian_eigenvalues<T: Scalar>(a: &Matrix<T>) -> Result<Vec<f64>, NotPositiveDefinite> {
+    decompose(a, None)
+}
+
+/// Eigenvalues, and the eigenvectors where there is room for them.
+fn decompose<T: Scalar>(
+    a: &Matrix<T>,
+    vectors: Option<&mut Matrix<T>>,
+) -> Result<Vec<f64>, NotPositiveDefinite> {
     let n = a.rows();
     // faer's divide and conquer (0.24) returns vectors with residuals up to 1e-5 of the norm on
     // mistuned wheels, whose eigenvalues come in clusters; its QR algorithm is backward stable.
@@ -38,27 +56,26 @@ pub fn hermitian_eigen<T: Scalar>(
         recursion_threshold: usize::MAX,
         ..<SelfAdjointEvdParams as Auto<T>>::auto()
     });
+    let wanted = if vectors.is_some() {
+        ComputeEigenvectors::Yes
+    } else {
+        ComputeEigenvectors::No
+    };
     let mut values = Matrix::<T>::zeros(n, 1);
-    let mut vectors = Matrix::<T>::zeros(n, n);
-    let need = self_adjoint_evd_scratch::<T>(n, ComputeEigenvectors::Yes, Par::Seq, params);
+    let need = self_adjoint_evd_scratch::<T>(n, wanted, Par::Seq, params);
     self_adjoint_evd(
         a.view(),
         values.view_mut().col_mut(0).as_diagonal_mut(),
-        Some(vectors.view_mut()),
+        vectors.map(Matrix::view_mut),
         Par::Seq,
         MemStack::new(&mut MemBuffer::new(need)),
         params,
     )
     .map_err(|_| NotPositiveDefinite)?;
-    let values: Vec<f64> = values
-        .column(0)
-        .iter()
-        .map(|value| value.real_part())
-        .collect();
-    if values.iter().any(|value| !value.is_finite()) {
-        return Err(NotPositiveDefinite);
-    }
-    Ok((values, vectors))
+    let values = values.column(0).iter();
+    let values: Vec<f64> = values.map(|value| value.real_part()).collect();
+    let is_finite = values.iter().all(|value| value.is_finite());
+    is_finite.then_some(values).ok_or(NotPositiveDefinite)
 }
 
 /// Eigenvalues, ascending, and M-orthonormal eigenvectors of `K x = lambda M x`; K Hermitian,
@@ -141,17 +158,13 @@ pub fn orthonormal_basis<T: Scalar>(
             }
         }
     }
-    let decomposition = scaled.view().thin_svd().map_err(|_| NotPositiveDefinite)?;
-    let count = scaled.rows().min(scaled.columns());
-    let singular_values: Vec<f64> = (0..count)
-        .map(|i| decomposition.S().column_vector()[i].real_part())
-        .collect();
+    let (left, singular_values) = left_singular_vectors(&scaled)?;
     let largest = singular_values.first().copied().unwrap_or(0.0);
     let rank = singular_values
         .iter()
         .take_while(|&&s| s > drop_below * largest)
         .count();
-    let mut vectors = Matrix::from_view(decomposition.U()).column_range(0, rank);
+    let mut vectors = left.column_range(0, rank);
     factor
         .L()
         .adjoint()
@@ -160,6 +173,23 @@ pub fn orthonormal_basis<T: Scalar>(
         vectors,
         singular_values,
     })
+}
+
+/// Left singular vectors and singular values, descending. Where all of these are nearly the same, faer (0.24) may not converge on a
+/// matrix and yet converge on its adjoint.
+fn left_singular_vectors<T: Scalar>(
+    a: &Matrix<T>,
+) -> Result<(Matrix<T>, Vec<f64>), NotPositiveDefinite> {
+    let values = |diagonal: faer::diag::DiagRef<'_, T>| {
+        let values = diagonal.column_vector();
+        (0..values.nrows()).map(|i| values[i].real_part()).collect()
+    };
+    if let Ok(found) = a.view().thin_svd() {
+        return Ok((Matrix::from_view(found.U()), values(found.S())));
+    }
+    let adjoint = a.adjoint();
+    let found = adjoint.view().thin_svd().map_err(|_| NotPositiveDefinite)?;
+    Ok((Matrix::from_view(found.V()), values(found.S())))
 }
 
 /// Orthogonal Q and upper trapezoidal R with `a = Q R`, by Householder's reflections: Q is square, whatever the rank.

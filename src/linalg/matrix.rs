@@ -231,17 +231,22 @@ impl<T: Scalar> Matrix<T> {
     /// If the numbers of rows differ, a defect of the caller.
     #[must_use]
     pub fn beside(&self, other: &Self) -> Self {
+        let mut both = self.clone();
+        both.append(other);
+        both
+    }
+
+    /// Appends the columns of another matrix.
+    ///
+    /// # Panics
+    /// If the numbers of rows differ, a defect of the caller.
+    pub fn append(&mut self, other: &Self) {
         assert_eq!(
             self.rows, other.rows,
             "matrices side by side need equal row counts"
         );
-        let mut data = self.data.clone();
-        data.extend_from_slice(&other.data);
-        Self {
-            rows: self.rows,
-            columns: self.columns + other.columns,
-            data,
-        }
+        self.data.extend_from_slice(&other.data);
+        self.columns += other.columns;
     }
 
     /// Sum of absolute squares.

@@ -5,12 +5,14 @@
     reason = "only what is inlined is compiled for vectors"
 )]
 
+use std::cmp::Ordering;
+
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Side, prelude::Solve};
 
 use super::Complex64;
-use super::dense::{NotPositiveDefinite, hermitian_eigen, sequential};
+use super::dense::{NotPositiveDefinite, hermitian_eigen, hermitian_eigenvalues, sequential};
 use super::matrix::Matrix;
 use super::vectors::{Loops, vectorized};
 
@@ -239,58 +241,66 @@ pub fn lowest_modes(
 ) -> Result<(Vec<f64>, Matrix<Complex64>), NotPositiveDefinite> {
     const BLOCK: usize = 4;
     const TOLERANCE: f64 = 1e-12;
+    /// Growth of the basis, over its size, between two looks at the values.
+    const GROWTH: f64 = 1.0 / 16.0;
     let n = m.dimension();
     let count = count.min(n);
     let mut block = Matrix::from_fn(n, BLOCK.min(n), |i, j| {
         Complex64::new(start_value(i * BLOCK + j), 0.0)
     });
-    // Basis Q, M Q and W = (K - shift M)^-1 M Q.
+    // Basis Q and M Q; columns of the projection T = Q^H M (K - shift M)^-1 M Q, down to the block of its diagonal.
     let mut q = Matrix::zeros(n, 0);
     let mut mq = Matrix::zeros(n, 0);
-    let mut w = Matrix::zeros(n, 0);
+    let mut columns: Vec<Vec<Complex64>> = Vec::new();
     let mut previous: Vec<f64> = Vec::new();
+    let mut next_look = (count + 2 * BLOCK).min(n);
     loop {
         let fresh = orthonormalise_against(&q, &mq, &block, m);
         let exhausted = fresh.columns() == 0;
         if !exhausted {
             let m_fresh = m.times(&fresh);
-            let image = factor.solve(&m_fresh);
-            q = q.beside(&fresh);
-            mq = mq.beside(&m_fresh);
-            w = w.beside(&image);
-            block = image;
-            if q.columns() < (count + 2 * BLOCK).min(n) {
+            block = factor.solve(&m_fresh);
+            q.append(&fresh);
+            mq.append(&m_fresh);
+            let above = mq.adjoint_times(&block);
+            columns.extend((0..above.columns()).map(|column| above.column(column).to_vec()));
+            if q.columns() < next_look {
                 continue;
             }
         }
-        // Hermitian projection T = Q^H M (K - shift M)^-1 M Q; its largest values are wanted.
-        let mut projected = mq.adjoint_times(&w);
-        symmetrise(&mut projected);
-        let (theta, vectors) = hermitian_eigen(&projected)?;
-        let wanted: Vec<usize> = (0..theta.len()).rev().take(count).collect();
-        let values: Vec<f64> = wanted.iter().map(|&i| shift + 1.0 / theta[i]).collect();
+        // The largest values of T are wanted.
+        let projected = hermitian_of(&columns);
+        let theta = hermitian_eigenvalues(&projected)?;
+        let values = theta.iter().rev().take(count);
+        let values: Vec<f64> = values.map(|theta| shift + 1.0 / theta).collect();
         let settled = previous.len() == values.len()
             && previous
                 .iter()
                 .zip(&values)
                 .all(|(old, new)| (old - new).abs() <= TOLERANCE * (new - shift).abs());
         if settled || exhausted || q.columns() >= n {
-            let chosen = Matrix::from_fn(theta.len(), wanted.len(), |i, j| vectors[(i, wanted[j])]);
+            let (theta, vectors) = hermitian_eigen(&projected)?;
+            let size = theta.len();
+            let wanted = size - count.min(size)..size;
+            let values = theta[wanted.clone()].iter().rev();
+            let values = values.map(|theta| shift + 1.0 / theta).collect();
+            let chosen = Matrix::from_fn(size, wanted.len(), |i, j| vectors[(i, size - 1 - j)]);
             return Ok((values, q.times(&chosen)));
         }
         previous = values;
+        let growth = (GROWTH * q.columns() as f64) as usize;
+        next_look = (q.columns() + growth.max(BLOCK)).min(n);
     }
 }
 
-/// Removes from a projected Hermitian matrix the rounding error of its antihermitian part.
-fn symmetrise(a: &mut Matrix<Complex64>) {
-    for i in 0..a.rows() {
-        for j in 0..=i {
-            let mean = (a[(i, j)] + a[(j, i)].conj()) * 0.5;
-            a[(i, j)] = mean;
-            a[(j, i)] = mean.conj();
-        }
-    }
+/// The Hermitian matrix with these columns, of which each is known down to its diagonal at least.
+fn hermitian_of(columns: &[Vec<Complex64>]) -> Matrix<Complex64> {
+    let size = columns.len();
+    Matrix::from_fn(size, size, |i, j| match i.cmp(&j) {
+        Ordering::Less => columns[j][i],
+        Ordering::Equal => Complex64::new(columns[j][j].re, 0.0),
+        Ordering::Greater => columns[i][j].conj(),
+    })
 }
 
 /// Fixed, irregular numbers in (-1, 1): golden-ratio multiples modulo 1.
@@ -298,51 +308,68 @@ fn start_value(i: usize) -> f64 {
     2.0 * ((i as f64 + 1.0) * 0.618_033_988_749_894_9).fract() - 1.0
 }
 
-/// The part of `block` that is M-orthogonal to Q, M-orthonormalised column by column (twice, as
-/// rounding asks for); columns that vanish are left out.
+/// The part of `block` that is M-orthogonal to Q, M-orthonormalised; columns that vanish are left out. What rounding leaves of Q is
+/// taken off a second time, and again while that still takes off much.
 fn orthonormalise_against(
     q: &Matrix<Complex64>,
     mq: &Matrix<Complex64>,
     block: &Matrix<Complex64>,
     m: &HermitianSparse,
 ) -> Matrix<Complex64> {
-    let mut block = block.clone();
-    for _ in 0..2 {
-        let parts = mq.adjoint_times(&block);
-        subtract(&mut block, q, &parts);
+    const TURNS: usize = 4;
+    const MUCH: f64 = 0.5;
+    let (mut block, _) = orthonormalise_once(q, mq, block, m);
+    for _ in 1..TURNS {
+        let (next, least) = orthonormalise_once(q, mq, &block, m);
+        block = next;
+        if least > 1.0 - MUCH {
+            break;
+        }
     }
+    block
+}
+
+/// One turn of [`orthonormalise_against`], and the smallest norm of a column before it is scaled to 1.
+fn orthonormalise_once(
+    q: &Matrix<Complex64>,
+    mq: &Matrix<Complex64>,
+    block: &Matrix<Complex64>,
+    m: &HermitianSparse,
+) -> (Matrix<Complex64>, f64) {
+    let mut block = block.clone();
+    let outside = mq.adjoint_times(&block);
+    subtract(&mut block, q, &outside);
     // A candidate and its product with M are changed alike, so that M is multiplied once for the whole block, and again only for
     // a candidate of which little is left.
     let m_block = m.times(&block);
     let mut kept = Matrix::zeros(block.rows(), 0);
     let mut m_kept = Matrix::zeros(block.rows(), 0);
+    let mut least = f64::INFINITY;
     for column in 0..block.columns() {
         let mut candidate = block.column_range(column, column + 1);
         let mut m_candidate = m_block.column_range(column, column + 1);
         let before = norm(&candidate, &m_candidate);
         for _ in 0..2 {
             let inside = m_kept.adjoint_times(&candidate);
-            let outside = mq.adjoint_times(&candidate);
             subtract(&mut candidate, &kept, &inside);
-            subtract(&mut candidate, q, &outside);
             subtract(&mut m_candidate, &m_kept, &inside);
-            subtract(&mut m_candidate, mq, &outside);
         }
         if norm(&candidate, &m_candidate) < LITTLE * before {
             m_candidate = m.times(&candidate);
         }
         let norm = norm(&candidate, &m_candidate);
         if norm > 1e-10 * before && norm > 0.0 {
+            least = least.min(norm);
             for vector in [&mut candidate, &mut m_candidate] {
                 for entry in vector.as_mut_slice() {
                     *entry /= norm;
                 }
             }
-            m_kept = m_kept.beside(&m_candidate);
-            kept = kept.beside(&candidate);
+            m_kept.append(&m_candidate);
+            kept.append(&candidate);
         }
     }
-    kept
+    (kept, least)
 }
 
 /// Share of a vector's norm below which its product with M is made anew.
@@ -400,6 +427,28 @@ mod tests {
         for j in 0..12 {
             for i in 0..n {
                 assert!((residual[(i, j)] - mx[(i, j)] * values[j]).norm() < 1e-6);
+            }
+        }
+    }
+
+    /// So many that the basis grows by more than a block between two looks.
+    #[test]
+    fn half_of_all_modes_are_those_of_the_dense_pencil_and_orthonormal() {
+        let (n, count) = (240, 120);
+        let (k, m) = ring(n);
+        let all: Vec<usize> = (0..n).collect();
+        let dense = hermitian_pencil(&k.block(&all, &all), &m.block(&all, &all)).expect("definite");
+        let factor = k.factor().expect("definite");
+        let (values, vectors) = lowest_modes(&factor, &m, 0.0, count).expect("finite");
+        assert_eq!(values.len(), count);
+        for (value, exact) in values.iter().zip(&dense.0) {
+            assert!((value - exact).abs() < 1e-11 * exact, "{value} {exact}");
+        }
+        let gram = vectors.adjoint_times(&m.times(&vectors));
+        for i in 0..count {
+            for j in 0..count {
+                let wanted = f64::from(u8::from(i == j));
+                assert!((gram[(i, j)] - wanted).norm() < 1e-11, "{i} {j}");
             }
         }
     }
