@@ -358,15 +358,15 @@ fn reduced_on_receptances(
     };
     let has_fewer = study.has_friction() && sets.len() > 1;
     let modes = study.mistuning.cantilever_mode_count;
-    let model = if reduction.is_whole_space() {
-        engine.own.model.clone()
+    let choice = if reduction.is_whole_space() {
+        BasisChoice::CraigBampton
     } else {
-        let choice = BasisChoice::StickSlide {
+        BasisChoice::StickSlide {
             stick: COMPANION_MODES,
             slide: COMPANION_MODES,
-        };
-        reduction.reduce(choice, modes)?
+        }
     };
+    let model = reduction.reduce(choice, modes)?;
     Ok(Stored {
         beyond: has_fewer.then(|| StoredBeyond {
             model: model.clone(),

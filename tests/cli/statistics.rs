@@ -611,3 +611,22 @@ fn an_estimate_solves_few_rows_is_the_same_for_any_threads_and_continues() {
         text.stdout
     );
 }
+
+/// With automatic harmonics a lumped wheel is solved on tuned receptances; surrogates are of its masses themselves.
+#[test]
+fn an_estimate_with_automatic_harmonics_has_surrogates() {
+    let automatic = two_loads().replace("harmonics = [1, 3]", "harmonics = \"auto\"");
+    let place = Place::with(&automatic.replace("patterns = 100", "patterns = 400"));
+    let arguments = "estimate study.toml --target 90 --solves 60 --json";
+    let arguments: Vec<&str> = arguments.split(' ').collect();
+    let ended = place.run(&arguments);
+    assert_eq!(ended.code, 0, "{}", ended.stderr);
+    assert!(!ended.stderr.contains("panicked"), "{}", ended.stderr);
+    let report: serde_json::Value = serde_json::from_str(&ended.stdout).expect("JSON");
+    let scenarios = report["scenarios"].as_array().expect("a list");
+    assert!(!scenarios.is_empty());
+    for scenario in scenarios {
+        let gain = scenario["surrogates"]["gain"].as_f64();
+        assert!(gain.is_some_and(|gain| gain > 0.0), "{scenario}");
+    }
+}

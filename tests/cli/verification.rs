@@ -492,6 +492,25 @@ fn a_row_integrated_in_time_has_the_amplitude_of_harmonic_balance() {
     );
 }
 
+/// With automatic harmonics a lumped wheel is solved on tuned receptances; time integration takes its masses themselves.
+#[test]
+fn a_row_with_automatic_harmonics_is_integrated_in_time_too() {
+    let place = Place::with(&GOOD.replace("harmonics = [1, 3]", "harmonics = \"auto\""));
+    let run = place.run(&["run", "study.toml"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let row = ["--scenario", "1", "--pattern", "3", "--json"];
+    let ended = place.run(&[&["verify", RESULTS, "--time-domain"], &row[..]].concat());
+    assert_eq!(ended.code, 0, "{}{}", ended.stdout, ended.stderr);
+    let found = json(&ended);
+    assert_eq!(
+        (&found["periodic"], &found["verified"]),
+        (&true.into(), &true.into())
+    );
+    // With all harmonics hardly anything is left out.
+    let difference = found["amplitude_difference"].as_f64().expect("a number");
+    assert!(difference.abs() < 2e-3, "{found}");
+}
+
 #[test]
 fn a_row_that_the_dynamics_do_not_confirm_exits_with_11() {
     // Two harmonics leave 1.9 % out here, which the row states; without that it is too much.
