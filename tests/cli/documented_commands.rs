@@ -30,7 +30,7 @@ const IMPORTS: [(&str, &str); 3] = [
 const STARTING: [&str; 4] = ["init", "run", "import", "estimate"];
 
 /// Commands of the documents that are not run, by their beginning, and why.
-const NOT_RUN: [(&str, &str); 39] = [
+const NOT_RUN: [(&str, &str); 40] = [
     ("cargo install --path .", "installs outside of the clone"),
     ("cargo test", "is the run that this test is in, or an hour"),
     (
@@ -86,6 +86,10 @@ const NOT_RUN: [(&str, &str); 39] = [
     (
         "python3 benches/accuracy/run.py",
         "measures for minutes, and needs pyarrow",
+    ),
+    (
+        "python3 benches/golden/run.py",
+        "compares two release builds for minutes",
     ),
     (
         "python3 docs/site.py",
