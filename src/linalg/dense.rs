@@ -175,21 +175,39 @@ pub fn orthonormal_basis<T: Scalar>(
     })
 }
 
-/// Left singular vectors and singular values, descending. Where all of these are nearly the same, faer (0.24) may not converge on a
-/// matrix and yet converge on its adjoint.
+/// Left singular vectors and singular values, descending.
+///
+/// The decomposition of faer (0.24) may end without a result where many singular values are the same. Those of `A` are then the
+/// roots of the eigenvalues of `A A^H`, as long as none is so small that its square says little.
 fn left_singular_vectors<T: Scalar>(
     a: &Matrix<T>,
 ) -> Result<(Matrix<T>, Vec<f64>), NotPositiveDefinite> {
-    let values = |diagonal: faer::diag::DiagRef<'_, T>| {
-        let values = diagonal.column_vector();
-        (0..values.nrows()).map(|i| values[i].real_part()).collect()
-    };
+    let count = a.rows().min(a.columns());
     if let Ok(found) = a.view().thin_svd() {
-        return Ok((Matrix::from_view(found.U()), values(found.S())));
+        let values = found.S().column_vector();
+        let values = (0..count).map(|i| values[i].real_part()).collect();
+        return Ok((Matrix::from_view(found.U()), values));
     }
-    let adjoint = a.adjoint();
-    let found = adjoint.view().thin_svd().map_err(|_| NotPositiveDefinite)?;
-    Ok((Matrix::from_view(found.V()), values(found.S())))
+    roots_of_squares(a, count)
+}
+
+/// The first `count` left singular vectors and values by `A A^H`.
+fn roots_of_squares<T: Scalar>(
+    a: &Matrix<T>,
+    count: usize,
+) -> Result<(Matrix<T>, Vec<f64>), NotPositiveDefinite> {
+    const LEAST_SQUARE: f64 = 1e-8;
+    let (squares, vectors) = hermitian_eigen(&a.times_adjoint(a))?;
+    let last = squares.len().saturating_sub(1);
+    let values: Vec<f64> = (0..count).map(|i| squares[last - i].sqrt()).collect();
+    let [Some(first), Some(least)] = [values.first(), values.last()] else {
+        return Err(NotPositiveDefinite);
+    };
+    let is_clear = least * least > LEAST_SQUARE * first * first;
+    let vectors = Matrix::from_fn(a.rows(), count, |i, j| vectors[(i, last - j)]);
+    is_clear
+        .then_some((vectors, values))
+        .ok_or(NotPositiveDefinite)
 }
 
 /// Orthogonal Q and upper trapezoidal R with `a = Q R`, by Householder's reflections: Q is square, whatever the rank.
@@ -235,6 +253,30 @@ mod tests {
             m[(i, i)] += n as f64;
         }
         (k, m)
+    }
+
+    /// Forty directions, one of them twice: singular values of 1, and one of the root of 2.
+    #[test]
+    fn singular_values_are_the_roots_of_the_squares_where_these_are_clear() {
+        let n = 40;
+        let turn = |i: usize, j: usize| std::f64::consts::TAU * (i * j) as f64 / n as f64;
+        let unitary = Matrix::from_fn(n, n + 1, |i, j| {
+            Complex64::from_polar((n as f64).sqrt().recip(), turn(i, j % n))
+        });
+        let (vectors, values) = super::roots_of_squares(&unitary, n).expect("clear");
+        assert!((values[0] - 2.0_f64.sqrt()).abs() < 1e-12);
+        assert!(values[1..].iter().all(|value| (value - 1.0).abs() < 1e-12));
+        let (of_faer, _) = super::left_singular_vectors(&unitary).expect("converges");
+        let same = vectors
+            .column_range(0, 1)
+            .adjoint_times(&of_faer.column_range(0, 1));
+        assert!((same[(0, 0)].norm() - 1.0).abs() < 1e-12);
+        // Two columns that are nearly one: the square of the smaller value is rounding.
+        let twins = Matrix::from_fn(3, 2, |i, j| {
+            let part = if i == 2 { 1e-9 * j as f64 } else { 1.0 };
+            Complex64::new(part, 0.0)
+        });
+        assert!(super::roots_of_squares(&twins, 2).is_err());
     }
 
     #[test]
