@@ -263,10 +263,10 @@ mod tests {
         let unitary = Matrix::from_fn(n, n + 1, |i, j| {
             Complex64::from_polar((n as f64).sqrt().recip(), turn(i, j % n))
         });
-        let (vectors, values) = super::roots_of_squares(&unitary, n).expect("clear");
+        let (vectors, values) = roots_of_squares(&unitary, n).expect("clear");
         assert!((values[0] - 2.0_f64.sqrt()).abs() < 1e-12);
         assert!(values[1..].iter().all(|value| (value - 1.0).abs() < 1e-12));
-        let (of_faer, _) = super::left_singular_vectors(&unitary).expect("converges");
+        let (of_faer, _) = left_singular_vectors(&unitary).expect("converges");
         let same = vectors
             .column_range(0, 1)
             .adjoint_times(&of_faer.column_range(0, 1));
@@ -276,7 +276,7 @@ mod tests {
             let part = if i == 2 { 1e-9 * j as f64 } else { 1.0 };
             Complex64::new(part, 0.0)
         });
-        assert!(super::roots_of_squares(&twins, 2).is_err());
+        assert!(roots_of_squares(&twins, 2).is_err());
     }
 
     #[test]
