@@ -103,6 +103,12 @@ COMMANDS = [
         "verify results/small --repair",
     ),
     Case(
+        "verify-automatic-harmonics",
+        small(),
+        "run study.toml",
+        "verify results/small --time-domain --scenario 1 --pattern 3 --json",
+    ),
+    Case(
         "verify-that-fails",
         small(),
         "run study.toml",
@@ -182,7 +188,7 @@ COMMANDS = [
     ),
     Case(
         "estimate",
-        report("patterns = 300", "normal_load_n = [80]", "standard_deviation = [0.03]", "[solver]\nharmonics = [1, 3]"),
+        report("patterns = 300", "normal_load_n = [80]", "standard_deviation = [0.03]"),
         "estimate study.toml --solves 80 --target 95",
         "estimate study.toml --solves 80 --target mean --out mean --json",
     ),
