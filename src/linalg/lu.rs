@@ -8,7 +8,7 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
-use faer::{MatMut, MatRef, Par};
+use faer::{Conj, MatMut, MatRef, Par};
 
 use super::matrix::{Matrix, Scalar};
 use super::vectors::{Loops, vectorized};
@@ -94,6 +94,23 @@ impl<T: Scalar> LuWorkspace<T> {
             factors,
             factors,
             PermRef::new_checked(&self.permutation, &self.inverse, n),
+            right.view_mut(),
+            Par::Seq,
+            MemStack::new(&mut MemBuffer::new(need)),
+        );
+    }
+
+    /// [`Self::solve_columns`] with the adjoint of the matrix.
+    pub fn solve_adjoint_columns(&self, right: &mut Matrix<T>) {
+        let n = self.dimension;
+        let need =
+            solve::solve_transpose_in_place_scratch::<usize, T>(n, right.columns(), Par::Seq);
+        let factors = MatRef::from_column_major_slice(&self.matrix, n, n);
+        solve::solve_transpose_in_place_with_conj(
+            factors,
+            factors,
+            PermRef::new_checked(&self.permutation, &self.inverse, n),
+            Conj::Yes,
             right.view_mut(),
             Par::Seq,
             MemStack::new(&mut MemBuffer::new(need)),

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::blade_energy::BladeEnergy;
 use super::cyclic::{ContactGeometry, NodalDiameter};
 use crate::linalg::{Complex64, Matrix};
 
@@ -109,9 +110,8 @@ pub struct ReducedModel {
     pub contact: ContactGeometry,
     /// Linear contact springs of a sector's rows, stick and slide.
     pub springs: ContactSprings,
-    /// `W^T K_blade W` over `W = [Re B_0, Im B_0, Re B_1, ...]`, see [`super::reduction::blade_gram`];
-    /// empty in a model made for the tuned wheel alone.
-    pub blade_gram: Matrix<f64>,
+    /// Strain energy of the blade; not known in a model made for the tuned wheel alone.
+    pub blade_energy: BladeEnergy,
     /// Cantilevered-blade modes, where the study projects through them.
     pub cantilever: Option<CantileverModes>,
     /// Factors on the force vector under single engine orders; 1 under the others.
@@ -191,7 +191,7 @@ impl ReducedModel {
                     + complex(2 * nd.eigenvalues.len())
             })
             .sum();
-        diameters + 8 * self.blade_gram.as_slice().len()
+        diameters + self.blade_energy.memory_bytes()
     }
 
     /// The travelling wave of a nodal diameter: contact, observation and force of one sector.

@@ -100,12 +100,14 @@ impl Made {
         shape_factor: usize,
     ) -> Result<Self, PipelineError> {
         let modes = study.mistuning.cantilever_mode_count;
-        let model = reduction.reduce(BasisChoice::CraigBampton, modes)?;
+        let model = reduction.reduce_large(BasisChoice::CraigBampton, modes)?;
         let options = engine_options(study, excitations, &model);
-        let own = EngineModel::new(&model, &options).ok_or_else(no_modes)?;
-        let own = own.with_shape_factor(shape_factor);
-        let receptances = engine_of(&own, &options)?;
-        Ok(Self { own, receptances })
+        let made = ReceptanceEngine::of_model(model, &options, shape_factor);
+        let (own, receptances) = made.ok_or_else(no_modes)?;
+        Ok(Self {
+            own,
+            receptances: Arc::new(receptances),
+        })
     }
 
     /// This engine with `shape_factor` times as many blade shapes as an engine has at least.
@@ -116,8 +118,12 @@ impl Made {
         shape_factor: usize,
     ) -> Result<Self, PipelineError> {
         let own = self.own.clone().with_shape_factor(shape_factor);
-        let receptances = engine_of(&own, &engine_options(study, excitations, &own.model))?;
-        Ok(Self { own, receptances })
+        let options = engine_options(study, excitations, &own.model);
+        let receptances = self.receptances.with_shapes_of(&own, &options);
+        Ok(Self {
+            own,
+            receptances: Arc::new(receptances.ok_or_else(no_modes)?),
+        })
     }
 
     /// The wheels that judge, under each force vector.

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use blisk::linalg::{Complex64, Matrix};
-use blisk::model::ReducedModel;
 use blisk::model::reduction::BasisChoice;
+use blisk::model::{BladeEnergy, ReducedModel};
 use blisk::population::monte_carlo::ResponseRow;
 use blisk::response::forced_response::{ContactCondition, SolverOptions};
 use blisk::response::friction::{ContactLaw, PairParameters};
@@ -219,7 +219,7 @@ fn contact_without_springs_is_no_contact() {
 /// turns each degenerate pair of the wheel.
 pub fn turned(model: &ReducedModel, random: &mut Random) -> ReducedModel {
     let mut turned = model.clone();
-    let size = model.blade_gram.rows();
+    let size = model.blade_energy.size();
     let mut rotation = Matrix::<f64>::zeros(size, size);
     let mut start = 0;
     for (h, nd) in turned.nodal_diameters.iter_mut().enumerate() {
@@ -248,7 +248,8 @@ pub fn turned(model: &ReducedModel, random: &mut Random) -> ReducedModel {
         }
         start += 2 * n;
     }
-    turned.blade_gram = rotation.adjoint_times(&model.blade_gram.times(&rotation));
+    let energy = model.blade_energy.gram();
+    turned.blade_energy = BladeEnergy::Gram(rotation.adjoint_times(&energy.times(&rotation)));
     turned
 }
 

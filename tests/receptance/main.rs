@@ -22,8 +22,7 @@ use blisk::response::harmonic_balance::{
 };
 use blisk::response::mistuning::{ContactFactors, Deviations, PairFactors, Pattern, Projection};
 use blisk::response::receptance::{
-    EngineModel, EngineOptions, EngineWheel, Limit, ReceptanceEngine, WaveForce, WheelSolver,
-    embedded,
+    EngineOptions, EngineWheel, Limit, ReceptanceEngine, WaveForce, WheelSolver, embedded,
 };
 use blisk::verification::reference::{ReferenceSettings, ReferenceSolver};
 
@@ -122,8 +121,8 @@ impl Case {
             deviation: 0.1,
             band_hz: None,
         };
-        let own = EngineModel::new(&self.model, &options).unwrap();
-        (ReceptanceEngine::new(&own, &options).unwrap(), force)
+        let (_, engine) = ReceptanceEngine::of_model(self.model.clone(), &options, 1).unwrap();
+        (engine, force)
     }
 
     fn transform(harmonics: &[u32]) -> Arc<HarmonicTransform> {

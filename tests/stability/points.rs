@@ -12,9 +12,7 @@ use blisk::response::forced_response::{
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::Damping;
 use blisk::response::mistuning::{ContactFactors, Deviations, Pattern, Projection, WheelBasis};
-use blisk::response::receptance::{
-    EngineModel, EngineOptions, EngineWheel, ReceptanceEngine, WaveForce,
-};
+use blisk::response::receptance::{EngineOptions, EngineWheel, ReceptanceEngine, WaveForce};
 use blisk::response::stability::{ContactMotion, Multipliers, StabilityOptions, multipliers};
 use blisk::verification::time_integration::{PointCase, SolvedPoint, TimeStepper};
 
@@ -141,8 +139,7 @@ fn both(point: &Point, periods: usize) -> (Option<Multipliers>, f64) {
         deviation: 0.1,
         band_hz: None,
     };
-    let own = EngineModel::new(&model, &options).unwrap();
-    let engine = ReceptanceEngine::new(&own, &options).unwrap();
+    let (_, engine) = ReceptanceEngine::of_model(model.clone(), &options, 1).unwrap();
     let wheel = EngineWheel::new(pattern.as_ref(), model.sectors);
     let free = engine.free_wheel(&wheel, solved.omega).unwrap();
     let row = EngineRow {

@@ -1,6 +1,7 @@
 //! The blade's stiffness in reduced coordinates: exact projection and cantilever participation.
 
 use crate::linalg::{Complex64, Matrix, hermitian_pencil, lowest_modes};
+use crate::model::blade_energy::BladeEnergy;
 use crate::model::cyclic::CyclicSector;
 use crate::model::reduced_model::CantileverModes;
 use crate::model::sector::ModelError;
@@ -8,28 +9,23 @@ use crate::model::sector::ModelError;
 /// At most so many free blade dofs, the cantilever modes are found by a dense solution.
 const DENSE_BLADE: usize = 60;
 
-/// Gram matrix `W^T K_blade W` of the blade rows `W = [Re B_0, Im B_0, Re B_1, Im B_1, ...]`,
-/// real symmetric, `2 sum n_modes` square: every block `B_h^H K_blade B_h'` follows from it.
-#[must_use]
-pub fn blade_gram(sector: &CyclicSector<'_>, bases: &[Matrix<Complex64>]) -> Matrix<f64> {
+/// Strain energy of the blade over the bases of the nodal diameters, in factors: W and `K_blade W`.
+pub(super) fn blade_energy(sector: &CyclicSector<'_>, bases: &[Matrix<Complex64>]) -> BladeEnergy {
     let dofs = sector.blade_dofs();
     let blade = sector.blade_stiffness();
-    let mut rows = Matrix::zeros(dofs.len(), 0);
-    for basis in bases {
-        let part = basis.select_rows(&dofs);
-        rows = rows.beside(&part.real()).beside(&part.imaginary());
-    }
     let local = blade.principal(&dofs);
-    let loaded = local.times(&rows.to_complex()).real();
-    let mut gram = rows.adjoint_times(&loaded);
-    for i in 0..gram.rows() {
-        for j in 0..i {
-            let mean = 0.5 * (gram[(i, j)] + gram[(j, i)]);
-            gram[(i, j)] = mean;
-            gram[(j, i)] = mean;
+    let mut motions = Matrix::zeros(dofs.len(), 0);
+    let mut forces = Matrix::zeros(dofs.len(), 0);
+    for basis in bases {
+        // K_blade is real: real motions have real forces.
+        let part = basis.select_rows(&dofs);
+        let force = local.times(&part);
+        for (all, part) in [(&mut motions, part), (&mut forces, force)] {
+            all.append(&part.real());
+            all.append(&part.imaginary());
         }
     }
-    gram
+    BladeEnergy::Factors { motions, forces }
 }
 
 /// Cantilever modes of the blade and their participation in the bases of the nodal diameters.

@@ -9,7 +9,6 @@ mod options;
 mod reduce;
 
 pub use super::reduced_model::{BasisChoice, CantileverModes, ContactSprings};
-pub use blade::blade_gram;
 pub use craig_bampton::{CraigBampton, WHOLE_SPACE_DOFS};
 pub use error::wanted_reach_hz;
 pub use nodal_diameter_damping::{DampedModes, NodalDiameterDamping};

@@ -8,10 +8,11 @@ use serde::Serialize;
 use rayon::prelude::*;
 
 use super::basis::basis_of;
-use super::blade::{blade_gram, cantilever_modes};
+use super::blade::{blade_energy, cantilever_modes};
 use super::craig_bampton::{CraigBampton, pencil};
 use super::nodal_diameter_damping::NodalDiameterDamping;
 use crate::linalg::{Complex64, Matrix};
+use crate::model::blade_energy::BladeEnergy;
 use crate::model::cyclic::CyclicSector;
 use crate::model::reduced_model::{
     BasisChoice, ContactSprings, NodalDiameterReport, ReducedModel, ReducedNodalDiameter,
@@ -223,12 +224,39 @@ impl<'a> Reduction<'a> {
         choice: BasisChoice,
         cantilever_mode_count: Option<usize>,
     ) -> Result<ReducedModel, ModelError> {
+        let mut model = self.reduce_in_factors(choice, cantilever_mode_count)?;
+        model.blade_energy = BladeEnergy::Gram(model.blade_energy.gram().into_owned());
+        Ok(model)
+    }
+
+    /// [`Self::reduce`] with the blade's strain energy as it takes less memory: in a large basis, which few of its columns are asked
+    /// of.
+    ///
+    /// # Errors
+    /// If a mass or stiffness is not positive definite, or the blade has no cantilever modes.
+    pub fn reduce_large(
+        &self,
+        choice: BasisChoice,
+        cantilever_mode_count: Option<usize>,
+    ) -> Result<ReducedModel, ModelError> {
+        let mut model = self.reduce_in_factors(choice, cantilever_mode_count)?;
+        if model.blade_energy.memory_bytes() > 8 * model.blade_energy.size().pow(2) {
+            model.blade_energy = BladeEnergy::Gram(model.blade_energy.gram().into_owned());
+        }
+        Ok(model)
+    }
+
+    fn reduce_in_factors(
+        &self,
+        choice: BasisChoice,
+        cantilever_mode_count: Option<usize>,
+    ) -> Result<ReducedModel, ModelError> {
         let all: Vec<usize> = (0..self.models.len()).collect();
         let (mut model, bases) = self.nodal_diameters(choice, &all)?;
         model.cantilever = cantilever_mode_count
             .map(|count| cantilever_modes(&self.sector, &bases, count))
             .transpose()?;
-        model.blade_gram = blade_gram(&self.sector, &bases);
+        model.blade_energy = blade_energy(&self.sector, &bases);
         Ok(model)
     }
 
@@ -287,7 +315,7 @@ impl<'a> Reduction<'a> {
             nodal_diameters,
             contact: self.sector.contact().clone(),
             springs: self.springs.clone(),
-            blade_gram: Matrix::zeros(0, 0),
+            blade_energy: BladeEnergy::unknown(),
             cantilever: None,
             force_factors: self.force_factors.clone(),
             report,

@@ -8,9 +8,7 @@ use crate::response::forced_response::{
 };
 use crate::response::friction::{ContactLaw, Ring};
 use crate::response::mistuning::Pattern;
-use crate::response::receptance::{
-    EngineModel, EngineOptions, EngineWheel, ReceptanceEngine, WaveForce,
-};
+use crate::response::receptance::{EngineOptions, EngineWheel, ReceptanceEngine, WaveForce};
 use crate::response::stability::{ContactMotion, StabilityOptions, multipliers};
 
 /// Highest harmonic of the motion that is looked at: when pairs slip and open decides, and few harmonics say that badly.
@@ -128,6 +126,6 @@ fn engine_at(
             .max(DEVIATION),
         band_hz: Some((hz * (1.0 - BAND_MARGIN), hz * (1.0 + BAND_MARGIN))),
     };
-    let engine_model = EngineModel::new(model, &options)?;
-    Some((ReceptanceEngine::new(&engine_model, &options)?, force))
+    let (_, engine) = ReceptanceEngine::of_model(model.clone(), &options, 1)?;
+    Some((engine, force))
 }

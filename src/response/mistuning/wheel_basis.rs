@@ -184,7 +184,7 @@ impl WheelBasis {
     #[must_use]
     pub fn blade_stiffness_change(&self, deviations: &[f64]) -> Matrix<f64> {
         let mut change = Matrix::zeros(self.size(), self.size());
-        let gram = &self.model.blade_gram;
+        let gram = self.model.blade_energy.gram();
         for left in &self.waves {
             let (row, rows) = self.gram_place(left);
             for right in &self.waves {

@@ -17,8 +17,8 @@ const COORDINATES: usize = 192;
 const DROPPED: f64 = 1e-13;
 /// Rounds in which the forces of the shapes found are taken in.
 const ROUNDS: usize = 4;
-/// Shapes whose forces are taken in at least.
-const SHAPES_OF_ROUNDS: usize = 8;
+/// Shapes whose forces are taken in at least: of up to so many, fewer are the first ones of more.
+pub(super) const SHAPES_OF_ROUNDS: usize = 8;
 
 /// What the modes of each nodal diameter, 0..=N/2, do to some coordinates of the blade's strain, `r x n`.
 pub(super) type Participation = Vec<Matrix<Complex64>>;
@@ -32,17 +32,18 @@ pub(super) fn strain_coordinates(
     diameters: &[TunedDiameter],
     bands: &[(f64, f64)],
 ) -> Participation {
-    let gram = &model.blade_gram;
+    let energy = &model.blade_energy;
+    let energies: Vec<f64> = energy.diagonal().iter().map(|of| of.max(0.0)).collect();
     let sizes: Vec<usize> = diameters.iter().map(TunedDiameter::size).collect();
-    let mut weights = vec![0.0_f64; gram.rows()];
+    let mut weights = vec![0.0_f64; energies.len()];
     for &band in bands {
-        let mut answers_of_band = Vec::with_capacity(gram.rows());
+        let mut answers_of_band = Vec::with_capacity(energies.len());
         for diameter in diameters {
             let answers = diameter.free_answers(band);
             answers_of_band.extend_from_slice(&answers);
             answers_of_band.extend_from_slice(&answers);
         }
-        let strain = |(at, answer): (usize, &f64)| answer * gram[(at, at)].max(0.0).sqrt();
+        let strain = |(at, answer): (usize, &f64)| answer * energies[at].sqrt();
         let largest = answers_of_band
             .iter()
             .enumerate()
@@ -52,9 +53,8 @@ pub(super) fn strain_coordinates(
             *weight = weight.max(answer / largest);
         }
     }
-    let mut left: Vec<f64> = (0..gram.rows())
-        .map(|at| weights[at].powi(2) * gram[(at, at)].max(0.0))
-        .collect();
+    let weighted = weights.iter().zip(&energies);
+    let mut left: Vec<f64> = weighted.map(|(weight, of)| weight.powi(2) * of).collect();
     let whole = left.iter().copied().fold(0.0, f64::max);
     // Rows of the factor over the unscaled motions.
     let mut coordinates: Vec<Vec<f64>> = Vec::new();
@@ -67,19 +67,19 @@ pub(super) fn strain_coordinates(
         if largest <= DROPPED * whole {
             break;
         }
-        let mut row: Vec<f64> = gram.column(pivot).to_vec();
+        let mut row = energy.column(pivot);
         for coordinate in &coordinates {
             let share = coordinate[pivot];
             row.iter_mut()
                 .zip(coordinate)
                 .for_each(|(a, b)| *a -= share * b);
         }
-        let energy = row[pivot];
+        let energy_left = row[pivot];
         left[pivot] = 0.0;
-        if energy <= 0.0 {
+        if energy_left <= 0.0 {
             continue;
         }
-        let scale = 1.0 / energy.sqrt();
+        let scale = 1.0 / energy_left.sqrt();
         for a in &mut row {
             *a *= scale;
         }
@@ -144,17 +144,13 @@ pub(super) fn blade_shapes(
     let count = strain.first()?.rows();
     let contact_rows = diameters.first()?.spring_count();
     let mut motions_of_forces = Snapshots::new(count);
-    // Strain by unit strain forces, with the number of waves that it stands for.
-    let mut strain_receptances: Vec<(f64, Matrix<Complex64>)> = Vec::new();
+    // Of every nodal diameter and frequency, with the strain and the number of waves that it stands for.
+    let mut factored = Vec::new();
     for (h, (diameter, participation)) in diameters.iter().zip(strain).enumerate() {
         let waves = diameter.waves as f64;
         let motions = diameter.motions(participation);
         for &s in wanted.frequencies {
-            let receptance = if s > 0.0 {
-                diameter.receptance(s, &motions)?
-            } else {
-                diameter.static_receptance(&motions)?
-            };
+            let (stiffness, receptance) = diameter.receptance(s, &motions, contact_rows)?;
             for (row, force) in wanted.contact_forces.iter().enumerate() {
                 let motion = &receptance.column(row)[contact_rows..contact_rows + count];
                 motions_of_forces.add(waves * force.powi(2), motion);
@@ -165,10 +161,7 @@ pub(super) fn blade_shapes(
                     diameter.response(s, participation, &force.modal, force.diameter.conjugate)?;
                 motions_of_forces.add(1.0, &motion);
             }
-            let block = Matrix::from_fn(count, count, |i, j| {
-                receptance[(contact_rows + i, contact_rows + j)]
-            });
-            strain_receptances.push((waves, block));
+            factored.push((stiffness, participation, waves));
         }
     }
     let kept = |count: usize, (energies, vectors): (Vec<f64>, Matrix<f64>)| {
@@ -187,8 +180,9 @@ pub(super) fn blade_shapes(
         let (energies, shapes) = kept(SHAPES_OF_ROUNDS.max(wanted.count), decomposed);
         let mut motions_of_shapes = Snapshots::new(count);
         let complex = shapes.to_complex();
-        for (waves, receptance) in &strain_receptances {
-            let motions = receptance.times(&complex);
+        for (stiffness, participation, waves) in &factored {
+            let strain_forces = participation.adjoint_times(&complex);
+            let motions = participation.times(&stiffness.solve(strain_forces));
             for (shape, energy) in energies.iter().enumerate() {
                 let force = wanted.deviation.powi(2) * energy.max(0.0) / frequencies;
                 motions_of_shapes.add(waves * force, motions.column(shape));

@@ -1,25 +1,24 @@
 //! What the rows of a study share: the tuned wheel under each linear contact condition, its receptances and blade shapes.
 
 use std::f64::consts::TAU;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
 
 use crate::identity::bytes_of;
 use crate::linalg::{Complex64, Matrix};
-use crate::model::ReducedModel;
-use crate::model::cyclic::NodalDiameter;
+use crate::model::{BladeEnergy, ReducedModel};
 use crate::response::harmonic_balance::Damping;
 use crate::response::mistuning::{Deviations, Pattern, Projection};
 
 use super::blade_shapes::{
-    Participation, ShapesWanted, blade_shapes, in_cantilever_modes, in_shapes, strain_coordinates,
+    Participation, SHAPES_OF_ROUNDS, ShapesWanted, blade_shapes, in_cantilever_modes, in_shapes,
+    strain_coordinates,
 };
 use super::fields::SectorTransform;
+use super::linear_limits::LinearLimits;
 use super::receptance_tables::Receptances;
-use super::resonances::{
-    BandModes, MistunedModes, Resonance, reach_of_mistuning, resonances_that_count,
-};
+use super::resonances::{BandModes, MistunedModes, Resonance, reach_of_mistuning};
 use super::tuned_diameter::TunedDiameter;
 use super::wave_force::WaveForce;
 
@@ -42,28 +41,29 @@ pub struct EngineModel {
 }
 
 impl EngineModel {
-    /// From a Craig-Bampton model, for the harmonics of the resonances that the excitations meet; none if its modes are not
-    /// found.
-    #[must_use]
-    pub fn new(model: &ReducedModel, options: &EngineOptions) -> Option<Self> {
-        let diameters = under_limits(model, options.damping)?;
-        let band = band(&diameters, model.sectors, options);
+    /// From a Craig-Bampton model and its limits, for the harmonics of the resonances that the excitations meet.
+    fn new(
+        model: ReducedModel,
+        limits: &LinearLimits,
+        options: &EngineOptions,
+        shape_factor: usize,
+    ) -> Self {
+        let band = band(limits, options);
         let of_harmonic = |k: u32| (f64::from(k) * band.0, f64::from(k) * band.1);
         let bands: Vec<(f64, f64)> = (1..=HIGHEST_OF_SHAPES).map(of_harmonic).collect();
-        let strain = if model.blade_gram.rows() == 0 {
+        let strain = if model.blade_energy.size() == 0 {
             Vec::new()
         } else {
-            strain_coordinates(model, &diameters[0], &bands)
+            strain_coordinates(&model, limits.stuck(), &bands)
         };
-        let model = ReducedModel {
-            blade_gram: Matrix::zeros(0, 0),
-            ..model.clone()
-        };
-        Some(Self {
-            model,
+        Self {
+            model: ReducedModel {
+                blade_energy: BladeEnergy::unknown(),
+                ..model
+            },
             strain,
-            shape_factor: 1,
-        })
+            shape_factor,
+        }
     }
 
     /// This model for an engine with `shape_factor` times as many blade shapes as an engine has at least.
@@ -119,6 +119,7 @@ impl EngineOptions {
 pub struct ReceptanceEngine {
     pub(super) transform: SectorTransform,
     pub(super) loss_factor: f64,
+    limits: LinearLimits,
     /// Under stuck springs, under sliding ones, and without.
     tuned_wheels: [TunedWheel; 3],
 }
@@ -126,7 +127,7 @@ pub struct ReceptanceEngine {
 /// The tuned wheel with one set of contact springs.
 #[derive(Debug)]
 pub(super) struct TunedWheel {
-    pub(super) diameters: Vec<TunedDiameter>,
+    pub(super) diameters: Arc<Vec<TunedDiameter>>,
     /// What takes part in all strain coordinates, or in exactly the cantilever modes.
     strain: Participation,
     in_cantilever_modes: bool,
@@ -139,8 +140,18 @@ pub(super) struct TunedWheel {
     shape_factor: usize,
     sectors: usize,
     modes: Option<BandModes>,
+    /// The strongest [`SHAPES_OF_ROUNDS`] shapes by harmonic, shared by engines that differ by their number of shapes alone.
+    strongest_shapes: Arc<StrongestShapes>,
     /// By harmonic.
     tables: Vec<OnceLock<Option<HarmonicTables>>>,
+}
+
+/// Shapes over the strain coordinates by harmonic, made when first asked for.
+type StrongestShapes = Vec<OnceLock<Option<Matrix<f64>>>>;
+
+/// No shapes made yet, under each limit.
+fn no_shapes() -> [Arc<StrongestShapes>; 3] {
+    std::array::from_fn(|_| Arc::new((0..=HIGHEST_HARMONIC).map(|_| OnceLock::new()).collect()))
 }
 
 /// Blade shapes and receptances of one harmonic.
@@ -167,9 +178,45 @@ pub const HIGHEST_HARMONIC: u32 = 63;
 const HIGHEST_OF_SHAPES: u32 = 15;
 
 impl ReceptanceEngine {
-    /// An engine on `model`; none where modes are not found.
+    /// An engine on `engine_model`; none where modes are not found.
     #[must_use]
     pub fn new(engine_model: &EngineModel, options: &EngineOptions) -> Option<Self> {
+        let limits = LinearLimits::new(&engine_model.model, options.damping)?;
+        Self::on(engine_model, limits, options, no_shapes())
+    }
+
+    /// From a Craig-Bampton model: an engine with `shape_factor` times as many blade shapes as an engine has at least, and what it is made
+    /// of; none where modes are not found.
+    #[must_use]
+    pub fn of_model(
+        model: ReducedModel,
+        options: &EngineOptions,
+        shape_factor: usize,
+    ) -> Option<(EngineModel, Self)> {
+        let limits = LinearLimits::new(&model, options.damping)?;
+        let engine_model = EngineModel::new(model, &limits, options, shape_factor);
+        let engine = Self::on(&engine_model, limits, options, no_shapes())?;
+        Some((engine_model, engine))
+    }
+
+    /// An engine on `engine_model`, which differs from that of this one by its number of blade shapes alone.
+    #[must_use]
+    pub fn with_shapes_of(
+        &self,
+        engine_model: &EngineModel,
+        options: &EngineOptions,
+    ) -> Option<Self> {
+        let shapes =
+            { self.tuned_wheels.each_ref() }.map(|tuned| Arc::clone(&tuned.strongest_shapes));
+        Self::on(engine_model, self.limits.clone(), options, shapes)
+    }
+
+    fn on(
+        engine_model: &EngineModel,
+        limits: LinearLimits,
+        options: &EngineOptions,
+        strongest_shapes: [Arc<StrongestShapes>; 3],
+    ) -> Option<Self> {
         let model = &engine_model.model;
         let loss_factor = match options.damping {
             Damping::StructuralLossFactor(eta) => eta,
@@ -180,12 +227,11 @@ impl ReceptanceEngine {
             Projection::CantileverModes => Some(in_cantilever_modes(model)?),
         };
         let strain = cantilever_modes.as_ref().unwrap_or(&engine_model.strain);
-        let diameters = under_limits(model, options.damping)?;
-        let band = band(&diameters, model.sectors, options);
-        let tuned_wheels = diameters.map(|diameters| TunedWheel {
+        let band = band(&limits, options);
+        let tuned_wheels = std::array::from_fn(|place| TunedWheel {
             strain: strain.clone(),
             in_cantilever_modes: cantilever_modes.is_some(),
-            contact_forces: contact_forces(&diameters, band, &options.forces),
+            contact_forces: contact_forces(&limits.diameters()[place], band, &options.forces),
             band,
             forces: options.forces.clone(),
             deviation: options.deviation,
@@ -193,11 +239,13 @@ impl ReceptanceEngine {
             sectors: model.sectors,
             modes: None,
             tables: (0..=HIGHEST_HARMONIC).map(|_| OnceLock::new()).collect(),
-            diameters,
+            strongest_shapes: Arc::clone(&strongest_shapes[place]),
+            diameters: Arc::clone(&limits.diameters()[place]),
         });
         let mut engine = Self {
             transform: SectorTransform::new(model.sectors),
             loss_factor,
+            limits,
             tuned_wheels,
         };
         for tuned in &mut engine.tuned_wheels {
@@ -374,91 +422,39 @@ impl TunedWheel {
         } else {
             (0..count).map(at).collect()
         };
-        let wanted = ShapesWanted {
-            frequencies: &frequencies,
-            contact_forces: &self.contact_forces,
-            excitations: if harmonic == 1 { &self.forces } else { &[] },
-            deviation: self.deviation,
-            count: SHAPES[place] * self.shape_factor,
+        let strongest = |count: usize| {
+            let wanted = ShapesWanted {
+                frequencies: &frequencies,
+                contact_forces: &self.contact_forces,
+                excitations: if harmonic == 1 { &self.forces } else { &[] },
+                deviation: self.deviation,
+                count,
+            };
+            blade_shapes(&self.diameters, &self.strain, &wanted)
         };
-        let shapes = blade_shapes(&self.diameters, &self.strain, &wanted)?;
+        let count = SHAPES[place] * self.shape_factor;
+        let shapes = if count <= SHAPES_OF_ROUNDS {
+            let known = self.strongest_shapes.get(harmonic as usize)?;
+            let all = known.get_or_init(|| strongest(SHAPES_OF_ROUNDS)).as_ref()?;
+            all.column_range(0, count.min(all.columns()))
+        } else {
+            strongest(count)?
+        };
         Some(in_shapes(&self.strain, &shapes))
     }
 }
 
-/// The nodal diameters of a wheel, 0..=N/2, with springs at the contact; none if their modes are not found.
-fn tuned_diameters(
-    model: &ReducedModel,
-    springs: &[f64],
-    damping: Damping,
-) -> Option<Vec<TunedDiameter>> {
-    let acts = springs.iter().any(|&spring| spring != 0.0);
-    let springs = if acts { springs } else { &[] };
-    (0..=model.sectors / 2)
-        .map(|index| {
-            let wave = model.wave(NodalDiameter {
-                index,
-                conjugate: false,
-            });
-            let waves = if model.is_standing(index) { 1 } else { 2 };
-            TunedDiameter::new(&wave, springs, damping, waves)
-        })
-        .collect()
-}
-
-/// The tuned wheel under stuck springs, under sliding ones, and without.
-fn under_limits(model: &ReducedModel, damping: Damping) -> Option<[Vec<TunedDiameter>; 3]> {
-    Some([
-        tuned_diameters(model, &model.springs.stick, damping)?,
-        tuned_diameters(model, &model.springs.slide, damping)?,
-        tuned_diameters(model, &[], damping)?,
-    ])
-}
-
 /// Angular frequencies, rad/s, of harmonic 1 in which peaks of mistuned wheels lie.
-fn band(
-    diameters: &[Vec<TunedDiameter>; 3],
-    sectors: usize,
-    options: &EngineOptions,
-) -> (f64, f64) {
+fn band(limits: &LinearLimits, options: &EngineOptions) -> (f64, f64) {
     if let Some((start_hz, stop_hz)) = options.band_hz {
         return (TAU * start_hz, TAU * stop_hz);
     }
-    let span = tuned_span(diameters, sectors, &options.forces);
-    span.map_or((0.0, 0.0), |(low, high)| {
-        let reach = reach_of_mistuning(options.deviation);
-        (low * (1.0 - reach), high * (1.0 + reach))
-    })
-}
-
-/// Lowest and highest angular frequency of the resonances that count, over all excitations and linear conditions.
-fn tuned_span(
-    diameters: &[Vec<TunedDiameter>; 3],
-    sectors: usize,
-    forces: &[WaveForce],
-) -> Option<(f64, f64)> {
-    let mut span: Option<(f64, f64)> = None;
-    for diameters in diameters {
-        let none: Participation = diameters
-            .iter()
-            .map(|diameter| Matrix::zeros(0, diameter.size()))
-            .collect();
-        let all = BandModes::new(
-            diameters,
-            &none,
-            sectors,
-            0.0,
-            (f64::MIN_POSITIVE, f64::MAX),
-        );
-        for force in forces {
-            for resonance in resonances_that_count(&all.tuned_peaks(diameters, force)) {
-                let omega = TAU * resonance.frequency_hz;
-                let (low, high) = span.unwrap_or((omega, omega));
-                span = Some((low.min(omega), high.max(omega)));
-            }
-        }
-    }
-    span
+    limits
+        .span(&options.forces)
+        .map_or((0.0, 0.0), |(low, high)| {
+            let reach = reach_of_mistuning(options.deviation);
+            (low * (1.0 - reach), high * (1.0 + reach))
+        })
 }
 
 /// Largest motion of every contact row under the excitations over the band, times its spring.

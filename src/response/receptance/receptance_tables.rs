@@ -103,11 +103,7 @@ impl Receptances {
     pub(super) fn summed(&self, diameters: &[TunedDiameter], s: f64) -> Option<WaveMatrix> {
         let mut all = WaveMatrix::zeros(self.inputs + 3, self.inputs, self.sectors);
         for (index, (diameter, motions)) in diameters.iter().zip(&self.motions).enumerate() {
-            let receptance = if s > 0.0 {
-                diameter.receptance(s, motions)?
-            } else {
-                diameter.static_receptance(motions)?
-            };
+            let (_, receptance) = diameter.receptance(s, motions, self.inputs + 3)?;
             for column in 0..self.inputs {
                 for row in 0..self.inputs + 3 {
                     all.set(index, row, column, receptance[(row, column)]);

@@ -7,15 +7,13 @@
 //! ```
 //!
 //! with the contact rows C and the springs `k_c` of the contact, which are not damped. Harmonic 0 is static and has no
-//! damping. D is diagonal under every damping model, so that systems with Z are as small as the contact:
-//!
-//! ```text
-//! Z^-1 b = D^-1 (b - C^H t),    (I + k_c C D^-1 C^H) t = k_c C D^-1 b
-//! ```
+//! damping. D is diagonal under every damping model, so that systems with Z are as small as the contact (`factored_stiffness.rs`).
 
-use crate::linalg::{Complex64, LuWorkspace, Matrix, hermitian_eigen};
+use crate::linalg::{Complex64, Matrix, hermitian_eigen};
 use crate::model::ReducedNodalDiameter;
 use crate::response::harmonic_balance::Damping;
+
+use super::factored_stiffness::FactoredStiffness;
 
 /// Steps of the iteration for a pole at most.
 const POLE_STEPS: usize = 12;
@@ -187,119 +185,33 @@ impl TunedDiameter {
         shape.zip(of_mode).map(|(v, d)| v.norm_sqr() * d).sum()
     }
 
-    /// `E Z(s)^-1 E^H` with the motions E, a row each, of which the first are the contact rows where there are springs; none if
-    /// Z is singular.
+    /// `E Z(s)^-1 F^H` with the motions E, a row each, of which the first are the contact rows where there are springs, and the
+    /// first `inputs` of them, F; beside the factors of Z. None if Z is singular.
     pub(super) fn receptance(
         &self,
         s: f64,
         motions: &Matrix<Complex64>,
-    ) -> Option<Matrix<Complex64>> {
-        let mut weighted = motions.clone();
-        let free = self.free(Complex64::from(s));
-        let rows = motions.rows().max(1);
-        for (column, d) in weighted.as_mut_slice().chunks_exact_mut(rows).zip(free) {
-            let inverse = d.inv();
-            for entry in column {
-                *entry *= inverse;
-            }
+        inputs: usize,
+    ) -> Option<(FactoredStiffness<'_>, Matrix<Complex64>)> {
+        if s > 0.0 {
+            let free = self.free(Complex64::from(s));
+            return FactoredStiffness::with_receptance(self.sprung(), &free, motions, inputs);
         }
-        let mut receptance = weighted.times_adjoint(motions);
-        let count = self.springs.len();
-        if count == 0 {
-            return Some(receptance);
-        }
-        // (I + R k) d = R b: the relative motion with the springs, which pull by -k d.
-        let mut factors = LuWorkspace::<Complex64>::new(count);
-        for j in 0..count {
-            for i in 0..count {
-                let one = if i == j { 1.0 } else { 0.0 };
-                factors.matrix_mut()[j * count + i] = receptance[(i, j)] * self.springs[j] + one;
-            }
-        }
-        if !factors.factor() {
-            return None;
-        }
-        let mut motion = Matrix::from_fn(count, rows, |i, j| receptance[(i, j)]);
-        factors.solve_columns(&mut motion);
-        let pull = Matrix::from_fn(count, rows, |i, j| motion[(i, j)] * -self.springs[i]);
-        let pulled = receptance.column_range(0, count).times(&pull);
-        for (place, entry) in receptance.as_mut_slice().iter_mut().enumerate() {
-            let (row, column) = (place % rows, place / rows);
-            // Where springs are stiff, the difference of two large motions is not what they leave.
-            *entry = if row < count {
-                motion[(row, column)]
-            } else {
-                *entry + pulled[(row, column)]
-            };
-        }
-        Some(receptance)
+        // Harmonic 0, in which a body may be free.
+        let factored = FactoredStiffness::of_whole(self.sprung(), &self.eigenvalues)?;
+        let leading: Vec<usize> = (0..inputs).collect();
+        let columns = factored.solve(motions.select_rows(&leading).adjoint());
+        Some((factored, motions.times(&columns)))
     }
 
-    /// [`Self::receptance`] of harmonic 0.
-    pub(super) fn static_receptance(
-        &self,
-        motions: &Matrix<Complex64>,
-    ) -> Option<Matrix<Complex64>> {
-        let n = self.size();
-        let mut factors = LuWorkspace::<Complex64>::new(n);
-        let sprung = Matrix::from_fn(self.springs.len(), n, |i, j| {
-            self.contact[(i, j)] * self.springs[i]
-        });
-        let stiffness = self.contact.adjoint_times(&sprung);
-        factors.matrix_mut().copy_from_slice(stiffness.as_slice());
-        for (mode, lambda) in self.eigenvalues.iter().enumerate() {
-            factors.matrix_mut()[mode * n + mode] += lambda;
-        }
-        if !factors.factor() {
-            return None;
-        }
-        let mut columns = motions.adjoint();
-        factors.solve_columns(&mut columns);
-        Some(motions.times(&columns))
+    /// `Z(s)`, factorised; none where it is singular.
+    fn factored(&self, s: Complex64) -> Option<FactoredStiffness<'_>> {
+        FactoredStiffness::of_diagonal(self.sprung(), &self.free(s))
     }
 
-    /// `Z(s)^-1 b`, of the adjoint where `adjoint`.
-    fn solve(&self, s: Complex64, adjoint: bool, right: &[Complex64]) -> Option<Vec<Complex64>> {
-        let free: Vec<Complex64> = self
-            .free(s)
-            .into_iter()
-            .map(|d| if adjoint { d.conj() } else { d }.inv())
-            .collect();
-        let weighted: Vec<Complex64> = right.iter().zip(&free).map(|(b, d)| b * d).collect();
-        let count = self.springs.len();
-        if count == 0 {
-            return Some(weighted);
-        }
-        let mut weighted_contact = self.contact.clone();
-        for (column, d) in weighted_contact
-            .as_mut_slice()
-            .chunks_exact_mut(count)
-            .zip(&free)
-        {
-            for entry in column {
-                *entry *= d;
-            }
-        }
-        let contact_contact = weighted_contact.times(&self.contact.adjoint());
-        let mut factors = LuWorkspace::<Complex64>::new(count);
-        for j in 0..count {
-            for i in 0..count {
-                let one = if i == j { 1.0 } else { 0.0 };
-                factors.matrix_mut()[j * count + i] =
-                    contact_contact[(i, j)] * self.springs[i] + one;
-            }
-        }
-        if !factors.factor() {
-            return None;
-        }
-        let mut force = self.contact.times_vector(&weighted);
-        for (force, spring) in force.iter_mut().zip(&self.springs) {
-            *force *= spring;
-        }
-        factors.solve(&mut force);
-        let spread = self.contact.adjoint_times_vector(&force);
-        let parts = weighted.iter().zip(spread.iter().zip(&free));
-        Some(parts.map(|(b, (t, d))| b - t * d).collect())
+    /// Contact rows and their springs.
+    fn sprung(&self) -> (&Matrix<Complex64>, &[f64]) {
+        (&self.contact, &self.springs)
     }
 
     /// The damped mode near an undamped one, by Rayleigh quotients of both sides (Schwetlick & Schreiber 2012, Linear
@@ -313,17 +225,22 @@ impl TunedDiameter {
         for _ in 0..POLE_STEPS {
             let slope = self.free_slope(s);
             let moved: Vec<Complex64> = right.iter().zip(&slope).map(|(x, d)| x * d).collect();
-            let left_moved = left.iter().zip(&slope).map(|(y, d)| y * d.conj());
-            let new_right = self.solve(s, false, &moved);
-            let new_left = self.solve(s, true, &left_moved.collect::<Vec<_>>());
-            let finite = |vector: &Vec<Complex64>| vector.iter().all(|x| x.is_finite());
+            let left_moved: Vec<Complex64> =
+                left.iter().zip(&slope).map(|(y, d)| y * d.conj()).collect();
+            let factored = self.factored(s);
+            let new_right = factored.as_ref().map(|z| z.solve(column(&moved)));
+            let new_left = factored
+                .as_ref()
+                .map(|z| z.solve_adjoint(column(&left_moved)));
+            let finite =
+                |vector: &Matrix<Complex64>| vector.as_slice().iter().all(|x| x.is_finite());
             let (Some(new_right), Some(new_left)) =
                 (new_right.filter(finite), new_left.filter(finite))
             else {
                 // At the pole itself nothing can be solved for.
                 return (last <= NEARLY * s.norm()).then(|| self.pole_of(s, right, left));
             };
-            (right, left) = (new_right, new_left);
+            (right, left) = (new_right.column(0).to_vec(), new_left.column(0).to_vec());
             // y^H Z(s) x, of which Z(s) x is known.
             let residual = product(&left, &moved);
             let curved: Vec<Complex64> = right.iter().zip(&slope).map(|(x, d)| x * d).collect();
@@ -363,14 +280,21 @@ impl TunedDiameter {
         force: &[Complex64],
         conjugate: bool,
     ) -> Option<Vec<Complex64>> {
-        let s = Complex64::from(s);
+        let factored = self.factored(Complex64::from(s))?;
         if !conjugate {
-            return Some(motions.times_vector(&self.solve(s, false, force)?));
+            let response = factored.solve(column(force));
+            return Some(motions.times_vector(response.column(0)));
         }
         let force: Vec<Complex64> = force.iter().map(Complex64::conj).collect();
-        let response = motions.times_vector(&self.solve(s, true, &force)?);
+        let response = factored.solve_adjoint(column(&force));
+        let response = motions.times_vector(response.column(0));
         Some(response.iter().map(Complex64::conj).collect())
     }
+}
+
+/// A vector as a matrix of one column.
+fn column(vector: &[Complex64]) -> Matrix<Complex64> {
+    Matrix::from_fn(vector.len(), 1, |i, _| vector[i])
 }
 
 /// `y^H x`.
@@ -381,6 +305,7 @@ fn product(left: &[Complex64], right: &[Complex64]) -> Complex64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::LuWorkspace;
 
     fn diameter(damping: Damping) -> TunedDiameter {
         with_springs(damping, &[0.7, 0.2, 0.0])
@@ -438,7 +363,7 @@ mod tests {
                 }
             });
             for s in [0.5, 1.9, 3.3] {
-                let found = diameter.receptance(s, &motions).expect("regular");
+                let (_, found) = diameter.receptance(s, &motions, 6).expect("regular");
                 let z = stiffness(&diameter, Complex64::from(s));
                 let mut lu = LuWorkspace::<Complex64>::new(7);
                 lu.matrix_mut().copy_from_slice(z.as_slice());

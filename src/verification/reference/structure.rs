@@ -286,7 +286,7 @@ impl<'a> Waves<'a> {
             (2 * before, size, if conjugate { -1.0 } else { 1.0 })
         };
         let ((row, rows, left), (column, columns, right)) = (place(h), place(other));
-        let gram = &self.model.blade_gram;
+        let gram = self.model.blade_energy.gram();
         // (R - i s I)^T K_blade (R' + i s' I')
         Matrix::from_fn(rows, columns, |i, j| {
             let real_real = gram[(row + i, column + j)];
