@@ -5,6 +5,9 @@ A row is a peak with its error columns under one normal load. Every study is `st
 one thing changed; its model is reduced by a first run. The cost of a row is the difference in processor time of two runs
 with few and with more patterns, over the rows between them, so that what a study does once does not count.
 Prints a Markdown table; needs nothing but Python and the release binary (`cargo build --release`, or BLISK).
+
+With `--first-row` it prints instead what the first row takes from nothing against the contact pairs of a sector: processor
+time on one thread, and the most memory.
 """
 
 import argparse
@@ -21,6 +24,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 LOADS = (320, 800)
 FEW = 2
+# Elements along the flange and in the passage beside a blade: 4, 24, 40 and 60 contact pairs a sector.
+MESHES = {4: (1, 1), 24: (3, 3), 40: (4, 4), 60: (5, 5)}
 
 
 def study(sectors, model, harmonics, patterns):
@@ -55,6 +60,23 @@ def run(blisk, text, scratch, model=None, threads=1):
     return used, elapsed, folder / "out" / "model"
 
 
+def first_row(blisk, scratch, pairs):
+    """Processor time, s, and memory, MiB, of a run with one pattern under one load, its model included."""
+    flange, passage = MESHES[pairs]
+    model = {"flange_axial_elements": flange, "passage_elements": passage}
+    text = study(sectors=24, model=model, harmonics=(), patterns=1)
+    text = text.replace(f"normal_load_n = {list(LOADS)}", "normal_load_n = [480]")
+    folder = Path(tempfile.mkdtemp(dir=scratch))
+    (folder / "study.toml").write_text(text)
+    command = [blisk, "run", folder / "study.toml", "--threads", "1", "--out", folder / "out"]
+    with open(folder / "messages", "w") as messages:
+        process = subprocess.Popen(command, stdout=messages, stderr=messages)
+        _, status, used = os.wait4(process.pid, 0)
+    if status != 0:
+        sys.exit((folder / "messages").read_text())
+    return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
+
+
 def measure(blisk, scratch, more, **settings):
     """Processor time of the reduction, s, and of a row, ms."""
     with_model, _, model = run(blisk, study(patterns=FEW, **settings), scratch)
@@ -66,8 +88,16 @@ def measure(blisk, scratch, more, **settings):
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--patterns", type=int, default=10, help="of the longer run")
+    arguments.add_argument("--first-row", type=int, nargs="+", choices=MESHES, metavar="PAIRS", help="4, 24, 40 or 60 each")
     options = arguments.parse_args()
     blisk = os.environ.get("BLISK", ROOT / "target" / "release" / "blisk")
+    if options.first_row:
+        print("| contact pairs | first row, s | memory, MiB |\n| --- | ---: | ---: |")
+        with tempfile.TemporaryDirectory() as scratch:
+            for pairs in options.first_row:
+                used, memory = first_row(blisk, scratch, pairs)
+                print(f"| {pairs} | {used:.1f} | {memory:.0f} |", flush=True)
+        return
     base = {"sectors": 24, "model": {}, "harmonics": ()}
     cases = [("as in quickstart", {})]
     cases += [(f"{n} sectors", {"sectors": n}) for n in (8, 12, 48)]

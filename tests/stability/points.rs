@@ -139,7 +139,7 @@ fn both(point: &Point, periods: usize) -> (Option<Multipliers>, f64) {
         deviation: 0.1,
         band_hz: None,
     };
-    let (_, engine) = ReceptanceEngine::of_model(model.clone(), &options, 1).unwrap();
+    let (_, engine) = ReceptanceEngine::of_model((*model).clone(), &options, 1).unwrap();
     let wheel = EngineWheel::new(pattern.as_ref(), model.sectors);
     let free = engine.free_wheel(&wheel, solved.omega).unwrap();
     let row = EngineRow {
