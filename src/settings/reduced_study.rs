@@ -15,7 +15,7 @@ use super::harmonics_on_basis::{choose_harmonics, with_separation};
 use super::harmonics_on_receptances::{JudgingWheels, choice_of};
 use super::progress::Progress;
 use super::row_settings::{contact_stiffness, row_settings};
-use super::tuned_receptances::{COMPANION_MODES, Refined, engine_of, engine_options, refined};
+use super::tuned_receptances::{COMPANION_MODES, Refined, engine_options, no_modes, refined};
 use crate::identity::bytes_of;
 use crate::model::cyclic::pair_tangents;
 use crate::model::reduction::{Basis, BasisChoice, Reduction, WHOLE_SPACE_DOFS};
@@ -415,10 +415,9 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
     let engine = stored.engine.as_ref().map(|engine_model| {
         let made = stored.receptances.clone().map(Ok);
         let engine = made.unwrap_or_else(|| {
-            engine_of(
-                engine_model,
-                &engine_options(study, &excitations, &engine_model.model),
-            )
+            let options = engine_options(study, &excitations, &engine_model.model);
+            let engine = ReceptanceEngine::new(engine_model, &options);
+            engine.map(Arc::new).ok_or_else(no_modes)
         });
         Ok::<_, PipelineError>((engine_model, engine?))
     });

@@ -66,18 +66,6 @@ pub(super) fn engine_options(
     }
 }
 
-/// The engine on `engine_model`.
-///
-/// # Errors
-/// The modes of a nodal diameter are not found.
-pub(super) fn engine_of(
-    engine_model: &EngineModel,
-    options: &EngineOptions,
-) -> Result<Arc<ReceptanceEngine>, PipelineError> {
-    let engine = ReceptanceEngine::new(engine_model, options);
-    Ok(Arc::new(engine.ok_or_else(no_modes)?))
-}
-
 /// A model whose modes are not found.
 pub(super) fn no_modes() -> ModelError {
     ModelError::StiffnessNotPositiveDefinite {
@@ -103,11 +91,9 @@ impl Made {
         let model = reduction.reduce_large(BasisChoice::CraigBampton, modes)?;
         let options = engine_options(study, excitations, &model);
         let made = ReceptanceEngine::of_model(model, &options, shape_factor);
-        let (own, receptances) = made.ok_or_else(no_modes)?;
-        Ok(Self {
-            own,
-            receptances: Arc::new(receptances),
-        })
+        let (own, engine) = made.ok_or_else(no_modes)?;
+        let receptances = Arc::new(engine);
+        Ok(Self { own, receptances })
     }
 
     /// This engine with `shape_factor` times as many blade shapes as an engine has at least.
@@ -119,11 +105,9 @@ impl Made {
     ) -> Result<Self, PipelineError> {
         let own = self.own.clone().with_shape_factor(shape_factor);
         let options = engine_options(study, excitations, &own.model);
-        let receptances = self.receptances.with_shapes_of(&own, &options);
-        Ok(Self {
-            own,
-            receptances: Arc::new(receptances.ok_or_else(no_modes)?),
-        })
+        let engine = self.receptances.with_shapes_of(&own, &options);
+        let receptances = Arc::new(engine.ok_or_else(no_modes)?);
+        Ok(Self { own, receptances })
     }
 
     /// The wheels that judge, under each force vector.

@@ -29,7 +29,14 @@ const WINGS: &[(&str, &[&str])] = &[
     ("input", &[]),
     (
         "model",
-        &["sector", "cyclic", "reduced_model", "reduction", "cache"],
+        &[
+            "sector",
+            "cyclic",
+            "blade_energy",
+            "reduced_model",
+            "reduction",
+            "cache",
+        ],
     ),
     (
         "response",

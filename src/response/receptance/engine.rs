@@ -182,7 +182,7 @@ impl ReceptanceEngine {
     #[must_use]
     pub fn new(engine_model: &EngineModel, options: &EngineOptions) -> Option<Self> {
         let limits = LinearLimits::new(&engine_model.model, options.damping)?;
-        Self::on(engine_model, limits, options, no_shapes())
+        Self::on(engine_model, limits, options, &no_shapes())
     }
 
     /// From a Craig-Bampton model: an engine with `shape_factor` times as many blade shapes as an engine has at least, and what it is made
@@ -195,7 +195,7 @@ impl ReceptanceEngine {
     ) -> Option<(EngineModel, Self)> {
         let limits = LinearLimits::new(&model, options.damping)?;
         let engine_model = EngineModel::new(model, &limits, options, shape_factor);
-        let engine = Self::on(&engine_model, limits, options, no_shapes())?;
+        let engine = Self::on(&engine_model, limits, options, &no_shapes())?;
         Some((engine_model, engine))
     }
 
@@ -208,14 +208,14 @@ impl ReceptanceEngine {
     ) -> Option<Self> {
         let shapes =
             { self.tuned_wheels.each_ref() }.map(|tuned| Arc::clone(&tuned.strongest_shapes));
-        Self::on(engine_model, self.limits.clone(), options, shapes)
+        Self::on(engine_model, self.limits.clone(), options, &shapes)
     }
 
     fn on(
         engine_model: &EngineModel,
         limits: LinearLimits,
         options: &EngineOptions,
-        strongest_shapes: [Arc<StrongestShapes>; 3],
+        strongest_shapes: &[Arc<StrongestShapes>; 3],
     ) -> Option<Self> {
         let model = &engine_model.model;
         let loss_factor = match options.damping {
