@@ -33,7 +33,7 @@ def study(sectors, model, harmonics, patterns):
     text = (ROOT / "studies" / "quickstart.toml").read_text()
     options = "".join(f"{key} = {value}\n" for key, value in {"sectors": sectors, **model}.items())
     changes = [
-        (r"patterns = \d+", f"patterns = {patterns}"),
+        (r"(?m)^patterns = \d+", f"patterns = {patterns}"),
         (r'source = "parametric"\n', f'source = "parametric"\n[model.parametric]\n{options}'),
         (r"normal_load_n = .*\n", f"normal_load_n = {list(LOADS)}\n"),
     ]
