@@ -229,8 +229,8 @@ impl<'a> Reduction<'a> {
         Ok(model)
     }
 
-    /// [`Self::reduce`] with the blade's strain energy as it takes less memory: in a large basis, which few of its columns are asked
-    /// of.
+    /// [`Self::reduce`] with the blade's strain energy in the form that takes less memory: for a large basis, where few columns of the
+    /// energy are asked for.
     ///
     /// # Errors
     /// If a mass or stiffness is not positive definite, or the blade has no cantilever modes.

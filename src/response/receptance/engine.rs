@@ -119,6 +119,7 @@ impl EngineOptions {
 pub struct ReceptanceEngine {
     pub(super) transform: SectorTransform,
     pub(super) loss_factor: f64,
+    /// What engines with other numbers of blade shapes share with this one.
     limits: LinearLimits,
     /// Under stuck springs, under sliding ones, and without.
     tuned_wheels: [TunedWheel; 3],
@@ -199,7 +200,8 @@ impl ReceptanceEngine {
         Some((engine_model, engine))
     }
 
-    /// An engine on `engine_model`, which differs from that of this one by its number of blade shapes alone.
+    /// An engine on `engine_model`, which differs from that of this one by its number of blade shapes alone, for the `options` of this
+    /// one; none where modes are not found.
     #[must_use]
     pub fn with_shapes_of(
         &self,
