@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::model::reduction::ContactStiffness;
 use crate::population::monte_carlo::RowSettings;
 use crate::response::forced_response::Harmonics;
-use crate::response::friction::{ContactOptions, PairParameters, Ring};
+use crate::response::friction::{ContactOptions, Ring};
 use crate::response::harmonic_balance::HarmonicTransform;
 use crate::study::Study;
 use crate::verification::reference::ReferenceSettings;
@@ -24,7 +24,7 @@ pub(super) fn row_settings(study: &Study) -> RowSettings {
         contact: study
             .contact
             .as_ref()
-            .map(|contact| (contact.law, PairParameters::of_sector(contact, 0.0))),
+            .map(|contact| (contact.law, contact.of_sector(0.0))),
         ring: study
             .contact
             .as_ref()

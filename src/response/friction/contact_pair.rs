@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::{ContactLaw, ContactOptions, CoupledSlider, PeriodicSlider};
+use super::{CoupledSlider, PeriodicSlider, TangentialFriction};
 use crate::model::cyclic::ContactGeometry;
 use crate::response::mistuning::{ContactFactors, PairFactors};
 
@@ -21,18 +21,6 @@ pub struct PairParameters {
 }
 
 impl PairParameters {
-    /// The parameters of a whole sector under the normal load `normal_load_n`, to be shared out
-    /// over its pairs.
-    #[must_use]
-    pub fn of_sector(options: &ContactOptions, normal_load_n: f64) -> Self {
-        Self {
-            normal_load_n,
-            normal_stiffness_n_per_m: options.normal_stiffness_n_per_m.unwrap_or(0.0),
-            tangential_stiffness_n_per_m: options.tangential_stiffness_n_per_m,
-            friction_coefficient: options.friction_coefficient,
-        }
-    }
-
     /// The parameters of a pair that has `weight` of the sector's contact; mu is no share.
     #[must_use]
     pub fn share(self, weight: f64) -> Self {
@@ -128,8 +116,8 @@ pub struct ContactHistory {
     pub(super) coupled: CoupledSlider,
     /// Growth of the tangential displacement per period, m.
     pub(super) drift_m: [f64; 2],
-    /// Law of the response last computed.
-    pub(super) law: ContactLaw,
+    /// Friction of the law of the response last computed.
+    pub(super) friction: TangentialFriction,
     pub(super) state: PairState,
 }
 
@@ -146,7 +134,7 @@ impl ContactHistory {
             ],
             coupled: CoupledSlider::new(n_samples),
             drift_m: [0.0; 2],
-            law: ContactLaw::Simplified3d,
+            friction: TangentialFriction::Jenkins { tangents: 2 },
             state: PairState::default(),
         }
     }

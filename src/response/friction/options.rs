@@ -2,18 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Contact law of a node pair. What each is stands in its file, and the list of all in `laws.rs`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ContactLaw {
-    /// Friction along the first tangent only, limit `mu N0`; normal spring bilateral where given.
-    MacroSlip1d,
-    /// Friction along both tangents, each by itself, limit `mu N0`; normal spring bilateral where given.
-    MacroSlip2d,
-    /// Variable normal load `max(0, N0 + kn g)` and two independent tangential Jenkins elements.
-    Simplified3d,
-    /// Variable normal load `max(0, N0 + kn g)` and both tangents coupled by the friction circle.
-    Coulomb3d,
-}
+use super::{ContactLaw, PairParameters};
 
 /// What a free ring does under mean friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -45,6 +34,20 @@ pub struct ContactOptions {
     /// Law of the study in whose place `law` is taken to keep an accepted error; never in a file.
     #[serde(skip)]
     pub in_place_of: Option<ContactLaw>,
+}
+
+impl ContactOptions {
+    /// The parameters of a whole sector under the normal load `normal_load_n`, to be shared out
+    /// over its pairs.
+    #[must_use]
+    pub fn of_sector(&self, normal_load_n: f64) -> PairParameters {
+        PairParameters {
+            normal_load_n,
+            normal_stiffness_n_per_m: self.normal_stiffness_n_per_m.unwrap_or(0.0),
+            tangential_stiffness_n_per_m: self.tangential_stiffness_n_per_m,
+            friction_coefficient: self.friction_coefficient,
+        }
+    }
 }
 
 fn default_law() -> ContactLaw {

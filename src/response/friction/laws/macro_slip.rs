@@ -4,9 +4,12 @@
 //! The normal spring is bilateral (no correction). Under `macro_slip_1d` nothing acts along t2, so its linear limits
 //! have no spring along t2 either. A pair without normal load counts as separated.
 
-use super::contact_march::jenkins_step;
-use super::law_parts::{LawParts, SideBySide, TangentialFriction};
-use super::{ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState};
+use crate::response::friction::contact_march::jenkins_step;
+use crate::response::friction::law_parts::LawParts;
+use crate::response::friction::{
+    ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState, SideBySide,
+    TangentialFriction,
+};
 
 pub(super) const ALONG_ONE: LawParts = LawParts {
     name: "macro_slip_1d",

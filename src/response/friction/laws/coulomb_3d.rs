@@ -7,14 +7,17 @@
 //! ```
 //!
 //! Contact kinematics of Yang & Menq (1998, J. Sound and Vibration 217(5)). For y see
-//! [`CoupledSlider`](super::CoupledSlider). Motion along one tangent alone gives what
+//! [`CoupledSlider`](crate::response::friction::CoupledSlider). Motion along one tangent alone gives what
 //! `simplified_3d` gives; in general that law allows forces up to `sqrt(2) mu N`, since either
 //! tangent has a limit of its own, and its answer depends on how the tangents are turned.
 
-use super::contact_march::LoadedStep;
-use super::friction_circle::slide_on_circle;
-use super::law_parts::{LawParts, SideBySide, TangentialFriction};
-use super::{ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState};
+use crate::response::friction::contact_march::LoadedStep;
+use crate::response::friction::friction_circle::slide_on_circle;
+use crate::response::friction::law_parts::LawParts;
+use crate::response::friction::{
+    ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState, SideBySide,
+    TangentialFriction,
+};
 
 pub(super) const LAW: LawParts = LawParts {
     name: "coulomb_3d",

@@ -1,25 +1,56 @@
-//! All contact laws, what each is, and what it makes of a pair.
+//! All contact laws: what each is stands in its file, and what it makes of a pair is asked here.
+
+mod coulomb_3d;
+mod macro_slip;
+mod simplified_3d;
 
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::law_parts::{LawParts, SideBySide, TangentialFriction};
+use super::law_parts::LawParts;
 use super::{
-    ContactHistory, ContactLaw, PairDisplacement, PairMemory, PairParameters, PairState,
-    PeriodicSlider, coulomb_3d, macro_slip, simplified_3d,
+    ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState, PeriodicSlider,
+    SideBySide, TangentialFriction,
 };
 
+/// Declares the laws, from simple to full, each with its parts.
+macro_rules! contact_laws {
+    ($( $(#[$meaning:meta])* $law:ident = $parts:path, )*) => {
+        /// Contact law of a node pair.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum ContactLaw {
+            $( $(#[$meaning])* $law, )*
+        }
+
+        impl ContactLaw {
+            const COUNT: usize = [$( stringify!($law) ),*].len();
+            /// Every law, from simple to full.
+            pub const ALL: [Self; Self::COUNT] = [$( Self::$law ),*];
+
+            const fn parts(self) -> &'static LawParts {
+                match self {
+                    $( Self::$law => &$parts, )*
+                }
+            }
+        }
+    };
+}
+
+contact_laws! {
+    /// Friction along the first tangent only, limit `mu N0`; normal spring bilateral where given.
+    MacroSlip1d = macro_slip::ALONG_ONE,
+    /// Friction along both tangents, each by itself, limit `mu N0`; normal spring bilateral where given.
+    MacroSlip2d = macro_slip::ALONG_BOTH,
+    /// Variable normal load `max(0, N0 + kn g)` and two independent tangential Jenkins elements.
+    Simplified3d = simplified_3d::LAW,
+    /// Variable normal load `max(0, N0 + kn g)` and both tangents coupled by the friction circle.
+    Coulomb3d = coulomb_3d::LAW,
+}
+
 impl ContactLaw {
-    /// Every law, from simple to full.
-    pub const ALL: [Self; 4] = [
-        Self::MacroSlip1d,
-        Self::MacroSlip2d,
-        Self::Simplified3d,
-        Self::Coulomb3d,
-    ];
-    /// Their names in a study, in this order.
-    pub const NAMES: [&str; Self::ALL.len()] = {
-        let mut names = [""; Self::ALL.len()];
+    /// The names of all laws in a study, in their order.
+    pub const NAMES: [&str; Self::COUNT] = {
+        let mut names = [""; Self::COUNT];
         let mut at = 0;
         while at < names.len() {
             names[at] = Self::ALL[at].parts().name;
@@ -27,15 +58,6 @@ impl ContactLaw {
         }
         names
     };
-
-    const fn parts(self) -> &'static LawParts {
-        match self {
-            Self::MacroSlip1d => &macro_slip::ALONG_ONE,
-            Self::MacroSlip2d => &macro_slip::ALONG_BOTH,
-            Self::Simplified3d => &simplified_3d::LAW,
-            Self::Coulomb3d => &coulomb_3d::LAW,
-        }
-    }
 
     /// Whether the normal load follows the normal displacement.
     #[must_use]
@@ -155,7 +177,7 @@ impl ContactHistory {
             self.normal_load.len(),
             "samples of the closing"
         );
-        self.law = law;
+        self.friction = law.friction();
         self.state = (law.parts().respond)(self, parameters, displacement);
         self.state
     }
@@ -163,7 +185,7 @@ impl ContactHistory {
     /// Tangential corrections along t1 and t2, N (`n_samples` each): the offsets of the sliders.
     #[must_use]
     pub fn tangential_correction_n(&self) -> [&[f64]; 2] {
-        match self.law.friction() {
+        match self.friction {
             TangentialFriction::Jenkins { .. } => {
                 self.sliders.each_ref().map(PeriodicSlider::offset_n)
             }

@@ -5,11 +5,14 @@
 //! T_j = kt x_j + y_j,    |T_j| <= mu N_j                 tangential correction y_j, per direction
 //! ```
 //!
-//! For y see [`PeriodicSlider`](super::PeriodicSlider).
+//! For y see [`PeriodicSlider`](crate::response::friction::PeriodicSlider).
 
-use super::contact_march::{LoadedStep, jenkins_step};
-use super::law_parts::{LawParts, SideBySide, TangentialFriction};
-use super::{ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState};
+use crate::response::friction::contact_march::{LoadedStep, jenkins_step};
+use crate::response::friction::law_parts::LawParts;
+use crate::response::friction::{
+    ContactHistory, PairDisplacement, PairMemory, PairParameters, PairState, SideBySide,
+    TangentialFriction,
+};
 
 pub(super) const LAW: LawParts = LawParts {
     name: "simplified_3d",
