@@ -31,8 +31,8 @@ pub(super) struct Acceleration {
     columns: usize,
     /// The last change over its length.
     latest: Vec<f64>,
-    /// Factor L of the damped scalar products of the changes, `L L^T`, row after row of growing length.
-    triangle: Vec<f64>,
+    /// Scalar products of the changes, a row of growing length each.
+    products: Vec<Vec<f64>>,
     /// What is added to the squares of the changes, each of length 1.
     damping: f64,
     /// Scalar products of the changes with the step.
@@ -58,7 +58,7 @@ impl Acceleration {
 
     fn forget(&mut self) {
         self.columns = 0;
-        self.triangle.clear();
+        self.products.clear();
         self.along.clear();
     }
 
@@ -132,61 +132,58 @@ impl Acceleration {
             into: &mut square,
         });
         self.along.extend(square);
+        row.push(1.0);
+        self.products.push(row);
         self.columns += 1;
-        self.extend_triangle(row);
     }
 
-    /// Adds the row of the latest change to the triangle, from its scalar products with the earlier ones. Where these say it all, they are
-    /// forgotten: the latest change is the one that must not be dropped.
-    fn extend_triangle(&mut self, mut row: Vec<f64>) {
-        let column = row.len();
-        self.forwards(&mut row);
-        let beside: f64 = row.iter().map(|entry| entry * entry).sum();
-        let rest = 1.0 + self.damping - beside;
-        if rest > DEPENDENT {
-            self.triangle.extend(row);
-            self.triangle.push(rest.sqrt());
-            return;
-        }
-        let n = self.unknowns;
-        self.moves.copy_within(n * column..n * (column + 1), 0);
-        self.changes.copy_within(n * column..n * (column + 1), 0);
-        let along = self.along[column];
-        self.forget();
-        self.along.push(along);
-        self.triangle.push((1.0 + self.damping).sqrt());
-        self.columns = 1;
-    }
-
-    /// Row of the triangle.
-    fn triangle_row(&self, at: usize) -> &[f64] {
-        &self.triangle[at * (at + 1) / 2..][..=at]
-    }
-
-    /// `L^-1 right`, in place.
-    fn forwards(&self, right: &mut [f64]) {
-        for at in 0..right.len() {
-            let (known, rest) = right.split_at_mut(at);
-            let row = self.triangle_row(at);
-            let sum: f64 = row.iter().zip(&*known).map(|(l, x)| l * x).sum();
-            rest[0] = (rest[0] - sum) / row[at];
-        }
-    }
-
-    /// Shares by which the changes come nearest to the step: `L L^T shares = along`.
+    /// Solves the normal equations of the shares by Cholesky's method; what depends on earlier changes has none.
     fn find_shares(&mut self) {
-        let mut shares = std::mem::take(&mut self.shares);
-        shares.clone_from(&self.along);
-        self.forwards(&mut shares);
-        for at in (0..shares.len()).rev() {
-            let (rest, known) = shares.split_at_mut(at);
-            let row = self.triangle_row(at);
-            known[0] /= row[at];
-            for (x, l) in rest.iter_mut().zip(row) {
-                *x -= l * known[0];
+        let count = self.columns;
+        self.shares.clear();
+        self.shares.resize(count, 0.0);
+        self.shares.copy_from_slice(&self.along);
+        // The latest change first: it is the one that must not be dropped.
+        let at = |i: usize, j: usize| {
+            let (i, j) = (count - 1 - i, count - 1 - j);
+            self.products[i.max(j)][i.min(j)]
+        };
+        let mut factor = vec![0.0; count * count];
+        let mut left = vec![0.0; count];
+        for j in 0..count {
+            for i in 0..=j {
+                let known: f64 = (0..i)
+                    .map(|k| factor[i * count + k] * factor[j * count + k])
+                    .sum();
+                let rest = at(i, j) + if i == j { self.damping } else { 0.0 } - known;
+                factor[j * count + i] = if i < j {
+                    let pivot = factor[i * count + i];
+                    if pivot > 0.0 { rest / pivot } else { 0.0 }
+                } else if rest > DEPENDENT {
+                    rest.sqrt()
+                } else {
+                    0.0
+                };
             }
+            let known: f64 = (0..j).map(|k| factor[j * count + k] * left[k]).sum();
+            let pivot = factor[j * count + j];
+            let rest = self.shares[count - 1 - j] - known;
+            left[j] = if pivot > 0.0 { rest / pivot } else { 0.0 };
         }
-        self.shares = shares;
+        for j in (0..count).rev() {
+            let pivot = factor[j * count + j];
+            let known: f64 = (j + 1..count)
+                .map(|k| factor[k * count + j] * left[k])
+                .sum();
+            left[j] = if pivot > 0.0 {
+                (left[j] - known) / pivot
+            } else {
+                0.0
+            };
+        }
+        for (share, share_left) in self.shares.iter_mut().rev().zip(&left) {
+            *share = *share_left;
+        }
     }
 }
 
