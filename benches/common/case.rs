@@ -92,7 +92,7 @@ impl Case {
             Harmonics::Auto => vec![1, 3],
             Harmonics::Set(set) => set.clone(),
         };
-        let contact = (contact.law, contact.of_sector(0.0));
+        let contact = (contact.law, contact.sector_parameters(0.0));
         let settings = RowSettings {
             harmonics: harmonics.clone(),
             contact: Some(contact),

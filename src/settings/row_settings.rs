@@ -24,7 +24,7 @@ pub(super) fn row_settings(study: &Study) -> RowSettings {
         contact: study
             .contact
             .as_ref()
-            .map(|contact| (contact.law, contact.of_sector(0.0))),
+            .map(|contact| (contact.law, contact.sector_parameters(0.0))),
         ring: study
             .contact
             .as_ref()

@@ -40,7 +40,7 @@ impl ContactOptions {
     /// The parameters of a whole sector under the normal load `normal_load_n`, to be shared out
     /// over its pairs.
     #[must_use]
-    pub fn of_sector(&self, normal_load_n: f64) -> PairParameters {
+    pub fn sector_parameters(&self, normal_load_n: f64) -> PairParameters {
         PairParameters {
             normal_load_n,
             normal_stiffness_n_per_m: self.normal_stiffness_n_per_m.unwrap_or(0.0),
