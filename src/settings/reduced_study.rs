@@ -18,7 +18,7 @@ use super::row_settings::{contact_stiffness, row_settings};
 use super::tuned_receptances::{COMPANION_MODES, Refined, engine_options, no_modes, refined};
 use crate::identity::bytes_of;
 use crate::model::cyclic::pair_tangents;
-use crate::model::reduction::{Basis, BasisChoice, Reduction, WHOLE_SPACE_DOFS};
+use crate::model::reduction::{Basis, BasisChoice, Reduction};
 use crate::model::sector::SectorModel;
 use crate::model::{ReducedModel, read_cached, reduction_digest, write_cached};
 use crate::population::monte_carlo::{
@@ -206,10 +206,8 @@ pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> Result<String
 }
 
 /// Whether rows are solved on the receptances of the tuned wheel: where the study names them, and by default wherever they are ready for
-/// what it asks. Small sectors under stated harmonics are solved in their whole space, which is exact. Those under automatic harmonics
-/// are not, unless `[accuracy]` judges them on mistuned wheels: a set that suffices for the tuned wheel can be far from enough for others.
+/// what it asks.
 pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
-    let every_harmonic = study.solver.harmonics == Harmonics::Auto && study.accuracy.is_none();
     // A law of constant normal load acts along the tangents alone.
     let rubs = |tangents: [bool; 2]| tangents.contains(&true);
     let can_rub = || pair_tangents(sector).into_iter().any(rubs);
@@ -217,7 +215,6 @@ pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
         let contact = study.contact.as_ref();
         !sector.contact_pairs.is_empty()
             && contact.is_none_or(|contact| contact.law.has_variable_load() || can_rub())
-            && (sector.dofs.len() > WHOLE_SPACE_DOFS || every_harmonic)
             && contact.is_none_or(|contact| contact.in_place_of.is_none())
             && against_receptances(contact.map(|contact| contact.ring), &study.solver).is_empty()
     };

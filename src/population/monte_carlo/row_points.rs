@@ -6,10 +6,15 @@ use serde::Serialize;
 
 use super::{ErrorTolerance, HarmonicChoice, sampling_tolerance};
 use crate::model::ReducedModel;
-use crate::response::forced_response::{ContactCondition, PointSettings, SolverOptions};
+use crate::response::forced_response::{
+    ContactCondition, Harmonics, PointSettings, SearchHarmonics, SolverOptions,
+};
 use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{Damping, TransformError};
 use crate::response::mistuning::{Pattern, Projection};
+
+/// Unknowns of the contact up to which a search with fewer harmonics costs as much as one with all of them.
+const UNKNOWNS_WITHOUT_SEARCH: usize = 300;
 
 /// What a study says about the physics of a row.
 #[derive(Debug, Clone, Serialize)]
@@ -103,11 +108,25 @@ impl RowPoints {
         Ok(())
     }
 
-    /// From now on with so many samples per period in searches with fewer harmonics.
-    pub(super) fn search_with_samples(&mut self, samples: usize) -> Result<(), TransformError> {
+    /// From now on for rows on tuned receptances: a search with fewer harmonics has so many samples per period, and there is none where
+    /// the harmonics stated give the contact of all `sectors` few unknowns, unless the study asks for it.
+    pub(super) fn search_on_receptances(
+        &mut self,
+        samples: usize,
+        (sectors, rows): (usize, usize),
+    ) -> Result<(), TransformError> {
+        let solver = &self.settings.solver;
+        let is_stated =
+            solver.harmonics != Harmonics::Auto && solver.search_harmonics == SearchHarmonics::Auto;
+        let unknowns = |points: &PointSettings| 2 * points.harmonics().len() * sectors * rows;
         let chosen = self.chosen.iter_mut().map(|(_, points)| points);
         for points in std::iter::once(&mut self.full).chain(chosen) {
-            *points = points.clone().with_search_samples(samples)?;
+            let own = points.clone();
+            *points = if is_stated && unknowns(points) <= UNKNOWNS_WITHOUT_SEARCH {
+                own.without_search()
+            } else {
+                own.with_search_samples(samples)?
+            };
         }
         Ok(())
     }

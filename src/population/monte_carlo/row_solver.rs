@@ -76,7 +76,8 @@ impl RowSolver {
         engine_orders: &[u32],
     ) -> Result<Self, TransformError> {
         let points = &mut self.on_basis.points;
-        points.search_with_samples(SEARCH_SAMPLES)?;
+        let rows = model.contact.row_count();
+        points.search_on_receptances(SEARCH_SAMPLES, (model.sectors, rows))?;
         let amplitude_n = points.settings.amplitude_n;
         let rows = ReceptanceRows::new(engine, model, engine_orders, amplitude_n);
         self.on_receptances = Some(rows);

@@ -167,6 +167,15 @@ impl PointSettings {
         })
     }
 
+    /// These settings with all harmonics in the search.
+    #[must_use]
+    pub fn without_search(self) -> Self {
+        Self {
+            search: None,
+            ..self
+        }
+    }
+
     /// These settings at the samples of others.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! What is tried where a point on tuned receptances does not converge: the attempts of the contact iteration, in their order.
 
-use super::contact_equation::PreconditionedShapes::{self, FirstOfFundamental, Resonant};
+use super::contact_equation::Preconditioned::{self, FirstOfFundamental, Resonant, Whole};
 
 use Attempt::{Accelerated, Newton};
 use Start::{Best, Known, Linear};
@@ -10,6 +10,8 @@ pub(super) const DAMPING: f64 = 0.5;
 
 /// Newton steps of an attempt at most.
 pub(super) const NEWTON_STEPS: usize = 40;
+/// Most unknowns of a contact that are few: the whole derivative is factorised in the time of some steps.
+const FEW_UNKNOWNS: usize = 150;
 /// Most harmonics that are few: with more a step takes so long that attempts are ended early, and that no pair is preconditioned by itself.
 const FEW_HARMONICS: usize = 6;
 
@@ -18,18 +20,18 @@ const FEW_HARMONICS: usize = 6;
 pub(super) struct Plan {
     pub(super) renewals: &'static [usize],
     pub(super) iterations: usize,
-    pub(super) shapes: PreconditionedShapes,
+    pub(super) takes_in: Preconditioned,
     /// Earlier steps that are combined.
     pub(super) depth: usize,
     /// Whether an attempt that stalls is over before that: Newton's method goes on from there.
     pub(super) gives_up: bool,
 }
 
-const fn plan(renewals: &'static [usize], iterations: usize, shapes: PreconditionedShapes) -> Plan {
+const fn plan(renewals: &'static [usize], iterations: usize, takes_in: Preconditioned) -> Plan {
     Plan {
         renewals,
         iterations,
-        shapes,
+        takes_in,
         depth: 80,
         gives_up: false,
     }
@@ -155,22 +157,33 @@ const WITH_MANY_HARMONICS: [(Start, Attempt); 8] = [
     (Known, Accelerated(combining_all(RENEWED_RESONANT))),
     (Linear, Accelerated(combining_all(RENEWED_RESONANT))),
 ];
+/// With few unknowns, before those above: steps of Newton's method, whose derivative is kept for some.
+const WITH_FEW_UNKNOWNS: [(Start, Attempt); 2] = [
+    (Known, Accelerated(BY_WHOLE)),
+    (Linear, Accelerated(BY_WHOLE)),
+];
+const BY_WHOLE: Plan = plan(&[0, 7, 14, 21, 28], 40, Whole);
 const RENEWED: Plan = plan(&[0, 10, 25], 160, FirstOfFundamental);
 const RENEWED_RESONANT: Plan = plan(&[0, 10, 25], 160, Resonant);
 
-/// The attempts with so many harmonics, in their order; without a known start the linear response begins.
+/// The attempts with so many unknowns and harmonics, in their order; without a known start the linear response begins.
 pub(super) fn attempts(
+    unknowns: usize,
     harmonics: usize,
     has_known: bool,
 ) -> impl Iterator<Item = &'static (Start, Attempt)> {
+    let first: &[_] = if unknowns <= FEW_UNKNOWNS {
+        &WITH_FEW_UNKNOWNS
+    } else {
+        &[]
+    };
     let attempts: &[_] = if harmonics <= FEW_HARMONICS {
         &WITH_FEW_HARMONICS
     } else {
         &WITH_MANY_HARMONICS
     };
-    let known = attempts
-        .iter()
-        .filter(move |(start, _)| has_known || *start != Known);
+    let known =
+        { first.iter().chain(attempts) }.filter(move |(start, _)| has_known || *start != Known);
     known.skip_while(move |(start, _)| !has_known && *start == Best)
 }
 
@@ -179,12 +192,15 @@ pub(super) const BESIDE: Plan = combining_all(plan(&[0], 120, FirstOfFundamental
 
 #[cfg(test)]
 mod tests {
-    use super::{Best, FEW_HARMONICS, Known, Linear, attempts};
+    use super::{Best, FEW_HARMONICS, FEW_UNKNOWNS, Known, Linear, attempts};
 
     #[test]
     fn without_a_known_start_the_linear_response_begins() {
-        for harmonics in [1, FEW_HARMONICS, FEW_HARMONICS + 1, 16] {
-            let starts = |has_known: bool| attempts(harmonics, has_known).map(|(start, _)| *start);
+        let counts = [1, FEW_HARMONICS, FEW_HARMONICS + 1, 16];
+        let counts = counts.map(|harmonics| [(FEW_UNKNOWNS, harmonics), (1000, harmonics)]);
+        for (unknowns, harmonics) in counts.into_iter().flatten() {
+            let starts =
+                |has_known: bool| attempts(unknowns, harmonics, has_known).map(|(start, _)| *start);
             assert!(starts(false).next() == Some(Linear));
             assert!(starts(false).all(|start| start != Known));
             assert!(starts(true).next() == Some(Known));

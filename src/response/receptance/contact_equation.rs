@@ -18,14 +18,25 @@ use super::fields::{Field, SectorTransform, flatten, norm_squared, padded, unfla
 use super::pair_preconditioner::PairPreconditioner;
 use super::preconditioner::Preconditioner;
 use super::wheel_harmonic::WheelHarmonic;
+use super::whole_preconditioner::WholePreconditioner;
 
-/// Blade shapes that a preconditioner takes in.
-#[derive(Clone, Copy)]
-pub(super) enum PreconditionedShapes {
-    /// The shapes of every harmonic that are not nearly static.
+/// What a preconditioner takes in.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Preconditioned {
+    /// The mean tangent, and the blade shapes of every harmonic that are not nearly static.
     Resonant,
-    /// The first shape, of harmonic 1.
+    /// The mean tangent, and the first blade shape, of harmonic 1.
     FirstOfFundamental,
+    /// The whole derivative.
+    Whole,
+}
+
+/// The preconditioner of a step.
+pub(super) enum StepPreconditioner {
+    /// Every harmonic by itself.
+    Harmonics(Vec<Preconditioner>),
+    /// All harmonics together.
+    Whole(Box<WholePreconditioner>),
 }
 
 /// The equation of one wheel at one frequency.
@@ -154,17 +165,29 @@ impl ContactEquation<'_> {
         ((residual / motion).sqrt(), shares)
     }
 
+    /// Takes the tangent of the contact at the motions last evaluated into a preconditioner; by the mean, where the whole derivative is
+    /// singular.
+    pub(super) fn preconditioner(&mut self, takes_in: Preconditioned) -> StepPreconditioner {
+        let whole = takes_in == Preconditioned::Whole;
+        let whole =
+            whole.then(|| WholePreconditioner::new(self.transform, self.contact, self.harmonics));
+        match whole.flatten() {
+            Some(whole) => StepPreconditioner::Whole(Box::new(whole)),
+            None => StepPreconditioner::Harmonics(self.preconditioners(takes_in)),
+        }
+    }
+
     /// Takes the mean tangent of the contact at the motions last evaluated into the preconditioner of every harmonic.
-    pub(super) fn preconditioners(&self, shapes: PreconditionedShapes) -> Vec<Preconditioner> {
+    pub(super) fn preconditioners(&self, takes_in: Preconditioned) -> Vec<Preconditioner> {
         let pairs = self.contact.pair_rows();
         let harmonics = self.harmonics.iter().enumerate();
         let contact: &WheelContact = self.coarse_contact.as_deref().unwrap_or(self.contact);
         harmonics
             .map(|(place, harmonic)| {
                 let tangent = contact.mean_tangent(place);
-                let shapes = match shapes {
-                    PreconditionedShapes::Resonant => harmonic.resonant_shapes(),
-                    PreconditionedShapes::FirstOfFundamental => {
+                let shapes = match takes_in {
+                    Preconditioned::Resonant => harmonic.resonant_shapes(),
+                    Preconditioned::FirstOfFundamental | Preconditioned::Whole => {
                         harmonic.first_shapes(usize::from(place == self.fundamental))
                     }
                 };
@@ -173,7 +196,24 @@ impl ContactEquation<'_> {
             .collect()
     }
 
-    /// The residual turned into a step by the preconditioners, but for its sign.
+    /// The residual turned into a step by a preconditioner, but for its sign.
+    pub(super) fn precondition_by(&mut self, by: &mut StepPreconditioner) {
+        let whole = match by {
+            StepPreconditioner::Harmonics(harmonics) => return self.precondition(harmonics),
+            StepPreconditioner::Whole(whole) => whole,
+        };
+        let places = Places::of(self.contact);
+        let Buffers {
+            residual, sectors, ..
+        } = &mut *self.buffers;
+        places.to_sectors(self.transform, residual, sectors, &mut whole.unknowns);
+        whole.apply();
+        for (place, field) in residual.iter_mut().enumerate() {
+            places.to_waves(self.transform, place, &whole.unknowns, sectors, field);
+        }
+    }
+
+    /// The residual turned into a step by the preconditioners of the harmonics, but for its sign.
     pub(super) fn precondition(&mut self, preconditioners: &mut [Preconditioner]) {
         let residual = self.buffers.residual.iter_mut();
         for (preconditioner, residual) in preconditioners.iter_mut().zip(residual) {

@@ -12,8 +12,8 @@ use super::attempts_on_receptances::Start::{Best, Known, Linear};
 use super::attempts_on_receptances::{
     BESIDE, DAMPING, NEAR, NEWTON_STEPS, NewtonPlan, Plan, attempts,
 };
-use super::contact_equation::PreconditionedShapes::FirstOfFundamental;
-use super::contact_equation::{Buffers, ContactEquation};
+use super::contact_equation::Preconditioned::{FirstOfFundamental, Whole};
+use super::contact_equation::{Buffers, ContactEquation, StepPreconditioner};
 use super::fields::{Field, flatten, unflatten};
 use super::pair_preconditioner::PairPreconditioner;
 use super::preconditioner::Preconditioner;
@@ -104,7 +104,9 @@ impl ContactEquation<'_> {
     ) -> Outcome {
         let linear = self.linear_start();
         let known = self.best_of(starts);
-        let attempts = attempts(self.harmonics.len(), known.is_some()).take(most_attempts);
+        let unknowns = self.contact.motion().len();
+        let attempts = attempts(unknowns, self.harmonics.len(), known.is_some());
+        let attempts = attempts.take(most_attempts);
         let mut best = (f64::INFINITY, linear.clone());
         let mut total = Outcome::none();
         for (rung, (start, attempt)) in attempts.enumerate() {
@@ -152,12 +154,17 @@ impl ContactEquation<'_> {
 
     /// Steps until the judge ends them or as many are taken as planned.
     fn accelerate(&mut self, plan: &Plan, tolerance: f64) -> Outcome {
-        let mut preconditioners: Vec<Preconditioner> = Vec::new();
+        let mut preconditioner = StepPreconditioner::Harmonics(Vec::new());
         let mut outcome = Outcome::none();
+        self.contact.couple(plan.takes_in == Whole);
         let mut judge = Judge::of(tolerance);
         for iteration in 0..plan.iterations {
             let renew = plan.renewals.contains(&iteration);
-            (outcome.residual, outcome.shares) = self.residual_with_tangent(renew);
+            (outcome.residual, outcome.shares) = if plan.takes_in == Whole {
+                self.residual(renew)
+            } else {
+                self.residual_with_tangent(renew)
+            };
             if let Some(status) = judge.lost(outcome.residual) {
                 outcome.status = status;
                 break;
@@ -166,11 +173,11 @@ impl ContactEquation<'_> {
                 break;
             }
             if renew {
-                preconditioners = self.preconditioners(plan.shapes);
+                preconditioner = self.preconditioner(plan.takes_in);
                 outcome.tangents += 1;
                 self.buffers.acceleration.begin(DAMPING * tolerance);
             }
-            self.precondition(&mut preconditioners);
+            self.precondition_by(&mut preconditioner);
             outcome.step = self.step_over_motion();
             if let Some(status) = judge.settled(outcome.residual, outcome.step, &outcome.shares) {
                 outcome.status = status;
@@ -179,6 +186,7 @@ impl ContactEquation<'_> {
             outcome.iterations += 1;
             self.buffers.move_on(plan.depth);
         }
+        self.contact.couple(false);
         outcome
     }
 

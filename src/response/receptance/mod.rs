@@ -3,7 +3,7 @@
 //! The tuned wheel with stuck contact is one small matrix a wave and frequency (`receptance_tables.rs`). Blade deviations are eliminated
 //! exactly in few strain coordinates (`elimination.rs`, `blade_shapes.rs`), and the motions at the contact are the only
 //! unknowns of the nonlinear equation (`contact_equation.rs`), which an iteration solves (`contact_iteration.rs`,
-//! `attempts_on_receptances.rs`, `preconditioner.rs`, `acceleration.rs`).
+//! `attempts_on_receptances.rs`, `preconditioner.rs`, `whole_preconditioner.rs`, `acceleration.rs`).
 
 mod acceleration;
 mod attempts_on_receptances;
@@ -28,6 +28,7 @@ mod wave_force;
 mod wave_matrix;
 mod wheel_harmonic;
 mod wheel_solver;
+mod whole_preconditioner;
 
 pub use contact_forces::ContactForces;
 pub use engine::{

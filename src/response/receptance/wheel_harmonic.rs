@@ -32,6 +32,8 @@ pub(super) struct WheelHarmonic {
     /// Blade forces `D z` without contact forces beyond those of the springs.
     excited: Field,
     strain: Field,
+    /// [`Self::sector_answers`], once they are known; empty before.
+    answers: Vec<Complex64>,
 }
 
 impl WheelHarmonic {
@@ -48,6 +50,7 @@ impl WheelHarmonic {
             is_mistuned: false,
             excited: field(),
             strain: field(),
+            answers: Vec::new(),
         }
     }
 
@@ -59,6 +62,7 @@ impl WheelHarmonic {
         deviations: impl Iterator<Item = Complex64>,
     ) -> bool {
         self.deviations.clear();
+        self.answers.clear();
         self.deviations.extend(deviations);
         self.excited.fill(0.0);
         let deviates = |deviation: &Complex64| deviation.norm_sqr() != 0.0;
@@ -146,6 +150,9 @@ impl WheelHarmonic {
         g: &Field,
         answer: &mut Field,
     ) {
+        if !self.answers.is_empty() {
+            return self.add_known_answer(transform, g, answer);
+        }
         let (contact, shapes) = (self.contact, self.shapes);
         self.receptance
             .add_product(0..contact, 0..contact, 1.0, g, answer);
@@ -159,6 +166,52 @@ impl WheelHarmonic {
         self.blade_forces(transform);
         self.receptance
             .add_product(0..contact, strained, -1.0, &self.strain, answer);
+    }
+
+    /// [`Self::add_answer`] by the answers to unit forces.
+    fn add_known_answer(&self, transform: &SectorTransform, g: &Field, answer: &mut Field) {
+        let (sectors, rows) = (self.sectors, self.contact);
+        let stride = padded(sectors);
+        let places = || (0..sectors * rows).map(|at| at % rows * stride + at / rows);
+        let mut forces = Field::zeros(rows, sectors);
+        transform.to_sectors(g, &mut forces);
+        let mut motions = vec![Complex64::default(); sectors * rows];
+        for (column, by) in self.answers.chunks_exact(sectors * rows).zip(places()) {
+            let force = forces.at(by);
+            for (motion, answer) in motions.iter_mut().zip(column) {
+                *motion += answer * force;
+            }
+        }
+        for (motion, at) in motions.iter().zip(places()) {
+            forces.set(at, *motion);
+        }
+        let mut waves = Field::zeros(rows, sectors);
+        transform.to_waves(&forces, &mut waves);
+        answer.add(1.0, &waves);
+    }
+
+    /// What the contact rows of every sector answer to a unit force at each of them, m/N: a column a force, both sector after sector.
+    pub(super) fn sector_answers(&mut self, transform: &SectorTransform) -> &[Complex64] {
+        let (sectors, rows) = (self.sectors, self.contact);
+        let stride = padded(sectors);
+        if self.answers.is_empty() {
+            let field = || Field::zeros(rows, sectors);
+            let (mut over_sectors, mut force, mut answer) = (field(), field(), field());
+            let mut answers = Vec::with_capacity((sectors * rows).pow(2));
+            let places = |all: usize| (0..all).map(move |at| at % rows * stride + at / rows);
+            for by in places(sectors * rows) {
+                over_sectors.fill(0.0);
+                over_sectors.set(by, Complex64::from(1.0));
+                transform.to_waves(&over_sectors, &mut force);
+                answer.fill(0.0);
+                self.add_answer(transform, &force, &mut answer);
+                transform.to_sectors(&answer, &mut over_sectors);
+                let column = places(sectors * rows).map(|at| over_sectors.at(at));
+                answers.extend(column);
+            }
+            self.answers = answers;
+        }
+        &self.answers
     }
 
     /// Displacement r, theta, z of the observed node of every sector under contact forces `g`; `response` as in
