@@ -8,8 +8,8 @@ use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction, Reductio
 use blisk::model::sector::SectorModel;
 use blisk::population::monte_carlo::{RowSettings, RowSolver};
 use blisk::response::forced_response::{
-    ContactCondition, Excited, FrequencyBand, Harmonics, LimitsWanted, Peak, PointSettings, Search,
-    Wheel, mistuned_window, peak, refined, tuned_span, wheel_force,
+    ContactCondition, Excited, FrequencyBand, Harmonics, LimitsWanted, Peak, PointSettings, Wheel,
+    mistuned_window, peak, tuned_span, wheel_force,
 };
 use blisk::response::friction::{ContactLaw, PairParameters};
 use blisk::response::harmonic_balance::{ContactInterface, HarmonicSystem, HarmonicTransform};
@@ -177,18 +177,7 @@ impl Case {
         let window = mistuned_window(span, pattern.largest_deviation(), FrequencyBand::Auto);
         let (options, settings) = (&self.study.solver, &self.settings);
         let tolerance = options.peak_tolerance;
-        match self.solver.search(settings) {
-            Some(search) => {
-                let coarse = excited.in_harmonics(search.harmonics());
-                let search = Search {
-                    excited: &coarse,
-                    settings: search,
-                };
-                let found = refined(excited, search, condition, settings, window, tolerance);
-                found.expect("a peak in two stages")
-            }
-            _ => peak(excited, condition, settings, window, tolerance),
-        }
+        peak(excited, condition, settings, window, tolerance)
     }
 
     /// The harmonic balance equation of `excited` under a normal load per sector.

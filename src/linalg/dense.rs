@@ -210,18 +210,6 @@ fn roots_of_squares<T: Scalar>(
         .ok_or(NotPositiveDefinite)
 }
 
-/// Orthogonal Q and upper trapezoidal R with `a = Q R`, by Householder's reflections: Q is square, whatever the rank.
-#[must_use]
-pub fn householder_qr(a: &Matrix<f64>) -> (Matrix<f64>, Matrix<f64>) {
-    sequential();
-    let factors = a.view().qr();
-    let upper = factors.R();
-    let upper = Matrix::from_fn(a.rows(), a.columns(), |i, j| {
-        if i <= j { upper[(i, j)] } else { 0.0 }
-    });
-    (Matrix::from_view(factors.compute_Q().as_ref()), upper)
-}
-
 /// Eigenvalues of a real square matrix, the largest modulus first; none for one with values that are
 /// not finite.
 #[must_use]

@@ -1,17 +1,11 @@
 //! Dense LU factorisation in caller-owned storage, for loops that must not allocate.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined is compiled for vectors"
-)]
-
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
 use faer::{Conj, MatMut, MatRef, Par};
 
 use super::matrix::{Matrix, Scalar};
-use super::vectors::{Loops, vectorized};
 
 /// LU factorisation with partial pivoting of an `n x n` matrix; storage is reused.
 pub struct LuWorkspace<T> {
@@ -119,18 +113,6 @@ impl<T: Scalar> LuWorkspace<T> {
 }
 
 impl LuWorkspace<f64> {
-    /// [`Self::solve`] in other words, column after column: faster for some hundred unknowns at most, which
-    /// are soon read. `room` is for as many numbers.
-    pub fn solve_small(&self, right: &mut [f64], room: &mut Vec<f64>) {
-        room.clear();
-        room.extend(self.permutation.iter().map(|&row| right[row]));
-        right.copy_from_slice(room);
-        vectorized(Substitution {
-            factors: &self.matrix,
-            right,
-        });
-    }
-
     /// Sign of the determinant of the factored matrix, 1 or -1.
     #[must_use]
     pub fn determinant_sign(&self) -> f64 {
@@ -142,38 +124,6 @@ impl LuWorkspace<f64> {
         } else {
             -1.0
         }
-    }
-}
-
-/// `U^-1 L^-1 right`, in place, with both factors in one column-major matrix.
-struct Substitution<'a> {
-    factors: &'a [f64],
-    right: &'a mut [f64],
-}
-
-impl Loops for Substitution<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let n = self.right.len();
-        for (j, column) in self.factors.chunks_exact(n).enumerate() {
-            let (done, below) = self.right.split_at_mut(j + 1);
-            subtract(below, done[j], &column[j + 1..]);
-        }
-        for (j, column) in self.factors.chunks_exact(n).enumerate().rev() {
-            let (above, done) = self.right.split_at_mut(j);
-            done[0] /= column[j];
-            subtract(above, done[0], &column[..j]);
-        }
-    }
-}
-
-/// `sum -= factor column`.
-#[inline(always)]
-fn subtract(sum: &mut [f64], factor: f64, column: &[f64]) {
-    for (sum, entry) in sum.iter_mut().zip(column) {
-        *sum -= factor * entry;
     }
 }
 
@@ -216,25 +166,6 @@ mod tests {
         }
         lu.matrix_mut().fill(1.0);
         assert!(!lu.factor());
-    }
-
-    #[test]
-    fn small_systems_are_solved_the_same() {
-        for n in [1, 2, 17, 96] {
-            let mut lu = LuWorkspace::<f64>::new(n);
-            let entry = |i: usize| (0.3 + 1.7 * i as f64 + 0.01 * (i * i) as f64).sin();
-            let matrix = lu.matrix_mut().iter_mut().enumerate();
-            matrix.for_each(|(i, a)| *a = entry(i));
-            assert!(lu.factor());
-            let mut right: Vec<f64> = (0..n).map(|i| entry(3 * i + 1)).collect();
-            let mut small = right.clone();
-            lu.solve(&mut right);
-            lu.solve_small(&mut small, &mut Vec::new());
-            let largest = right.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-            for (a, b) in right.iter().zip(&small) {
-                assert!((a - b).abs() < 1e-10 * largest, "{n}: {a} {b}");
-            }
-        }
     }
 
     #[test]

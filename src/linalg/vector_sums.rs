@@ -160,34 +160,6 @@ fn take_off(vector: &mut [f64], share: f64, column: &[f64], next: &[f64]) -> f64
     sums.into_iter().sum::<f64>() + rest
 }
 
-/// `sum += factor matrix x`, real and imaginary parts by themselves.
-pub(crate) struct ComplexProduct<'a> {
-    pub(crate) sum: [&'a mut [f64]; 2],
-    pub(crate) factor: f64,
-    pub(crate) matrix: [&'a [f64]; 2],
-    pub(crate) x: [&'a [f64]; 2],
-}
-
-impl Loops for ComplexProduct<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let [sum_re, sum_im] = self.sum;
-        let rows = sum_re.len();
-        let columns = self.matrix[0].chunks_exact(rows);
-        let columns = columns.zip(self.matrix[1].chunks_exact(rows));
-        for ((re, im), (x_re, x_im)) in columns.zip(self.x[0].iter().zip(self.x[1])) {
-            let (x_re, x_im) = (self.factor * x_re, self.factor * x_im);
-            let sums = sum_re.iter_mut().zip(sum_im.iter_mut());
-            for ((sum_re, sum_im), (re, im)) in sums.zip(re.iter().zip(im)) {
-                *sum_re += re * x_re - im * x_im;
-                *sum_im += re * x_im + im * x_re;
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

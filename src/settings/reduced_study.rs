@@ -15,7 +15,7 @@ use super::harmonics_on_basis::{choose_harmonics, with_separation};
 use super::harmonics_on_receptances::{JudgingWheels, choice_of};
 use super::progress::Progress;
 use super::row_settings::{contact_stiffness, row_settings};
-use super::tuned_receptances::{COMPANION_MODES, Refined, engine_options, no_modes, refined};
+use super::tuned_receptances::{COMPANION_MODES, Made, Refined, engine_options, no_modes, refined};
 use crate::identity::bytes_of;
 use crate::model::cyclic::pair_tangents;
 use crate::model::reduction::{Basis, BasisChoice, Reduction};
@@ -419,6 +419,15 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
         Ok::<_, PipelineError>((engine_model, engine?))
     });
     let engine = engine.transpose()?;
+    let on_basis = |model: &ReducedModel| {
+        if engine.is_some() {
+            return None;
+        }
+        Made::on_basis(study, &excitations, model)
+    };
+    let of_basis = on_basis(&stored.model);
+    let beyond = stored.beyond.as_ref();
+    let of_beyond = beyond.and_then(|beyond| on_basis(&beyond.model));
     solver_under(&excitations, |case| {
         // The sets of a case stand together.
         let sets = first..first + loads * case.study.engine_orders.len();
@@ -426,15 +435,16 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
         let settings = row_settings(&case.study);
         let solver = RowSolver::new(Arc::new(case.of(&stored.model)), settings.clone())?
             .with_choices(stored.harmonics[sets.clone()].to_vec(), error)?;
-        let on_engine = |solver: RowSolver| match &engine {
-            Some((engine_model, engine)) => {
+        let on_engine = |solver: RowSolver, of_basis: &Option<Made>| match (&engine, of_basis) {
+            (Some((engine_model, engine)), _) => {
                 let orders = &case.study.engine_orders;
                 solver.with_engine(Arc::clone(engine), &case.of(&engine_model.model), orders)
             }
-            None => Ok(solver),
+            (None, Some(made)) => made.takes_rows_of(solver, case),
+            (None, None) => Ok(solver),
         };
-        let mut solver = LoadCaseSolver::from(on_engine(solver)?);
-        let Some(beyond) = &stored.beyond else {
+        let mut solver = LoadCaseSolver::from(on_engine(solver, &of_basis)?);
+        let Some(beyond) = beyond else {
             return Ok(solver);
         };
         let model = Arc::new(case.of(&beyond.model));
@@ -443,7 +453,7 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
                 harmonics[sets.clone()].to_vec(),
                 beyond.basis_error + truncation,
             )?;
-            solver = solver.with_fallback(on_engine(other)?, inexact);
+            solver = solver.with_fallback(on_engine(other, &of_beyond)?, inexact);
         }
         Ok(solver)
     })

@@ -12,7 +12,7 @@ const MOST_FILES: usize = 30;
 pub const ROOMS: &[(&[&str], &[&str])] = &[
     (
         &["response", "harmonic_balance"],
-        &["pairs", "equation", "condensed", "solver", "follow"],
+        &["pairs", "equation", "solver", "follow"],
     ),
     (&["study"], &["keys", "checks"]),
     (&["settings"], &["ladder", "accuracy", "engines"]),

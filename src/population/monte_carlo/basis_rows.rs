@@ -8,12 +8,11 @@ use super::{CurveResult, Scenario, TunedReference, WheelState, harmonics_name};
 use crate::linalg::Matrix;
 use crate::model::ReducedModel;
 use crate::response::forced_response::{
-    ContactCondition, Excited, FrequencyBand, LimitsWanted, Peak, PointSettings, PointSolver,
-    ResponseTrace, Screening, Search, SearchHarmonics, SearchPlan, Wheel, Window, Work,
-    estimate_errors, mistuned_window, peak, refined, screen, search_plan, slopes_lead, tuned_span,
-    wheel_force,
+    ContactCondition, Excited, FrequencyBand, LimitsWanted, Peak, PointSolver, ResponseTrace,
+    Screening, SearchPlan, Wheel, Window, estimate_errors, mistuned_window, peak, screen,
+    search_plan, tuned_span, wheel_force,
 };
-use crate::response::harmonic_balance::{LARGEST_WHOLE_JACOBIAN, Status, TransformError};
+use crate::response::harmonic_balance::{Status, TransformError};
 use crate::response::mistuning::{
     ContactFactors, Deviations, Pattern, Projection, StructuralModes, WheelBasis,
 };
@@ -215,21 +214,6 @@ impl BasisRows {
         Ok((span.0.min(varied_span.0), span.1.max(varied_span.1)))
     }
 
-    /// Settings of a search with fewer harmonics, where rows with `points` have one.
-    pub(super) fn search<'a>(&self, points: &'a PointSettings) -> Option<&'a PointSettings> {
-        let basis = &self.basis;
-        let pays = match self.settings().solver.search_harmonics {
-            SearchHarmonics::Auto => {
-                let unknowns: usize = 2 * points.harmonics().len() * basis.size();
-                // A search that slopes lead takes fewer points by itself, and finds tops that harmonic 1 hardly shows.
-                unknowns > LARGEST_WHOLE_JACOBIAN
-                    && !slopes_lead(points, basis.size(), basis.contact().rows())
-            }
-            SearchHarmonics::All | SearchHarmonics::Set(_) => true,
-        };
-        points.search().filter(|_| pays)
-    }
-
     /// The highest peak of a mistuned wheel with its errors.
     pub(super) fn mistuned_peak(
         &self,
@@ -244,30 +228,8 @@ impl BasisRows {
         let in_harmonics =
             |harmonics: &[u32]| self.wheel_excited(modes, wheel, scenario.engine_order, harmonics);
         let tolerance = self.settings().solver.peak_tolerance;
-        let in_stages = |excited: &Excited, search: &PointSettings| {
-            let coarse = in_harmonics(search.harmonics());
-            let search = Search {
-                excited: &coarse,
-                settings: search,
-            };
-            refined(excited, search, contact, &points, window, tolerance)
-        };
         let excited = in_harmonics(points.harmonics());
-        let mut wasted = Work::default();
-        let staged = self.search(&points);
-        let staged = staged.map(|search| in_stages(&excited, search));
-        let found = match staged {
-            Some(Ok(found)) => found,
-            Some(Err(work)) => {
-                wasted = work;
-                peak(&excited, contact, &points, window, tolerance)
-            }
-            None => peak(&excited, contact, &points, window, tolerance),
-        };
-        let found = Peak {
-            work: found.work.plus(wasted),
-            ..found
-        };
+        let found = peak(&excited, contact, &points, window, tolerance);
         let enlarged = in_harmonics(points.errors().harmonics());
         let errors = found
             .point

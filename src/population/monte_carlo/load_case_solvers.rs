@@ -136,7 +136,7 @@ impl LoadCaseSolver {
         // Of a fallback whose tuned wheel has no peak with its harmonics.
         let stands_alone =
             row.amplification_factor.is_none() && row.harmonics != harmonics_name(own);
-        let wanted = if self.rows.on_receptances.is_some() {
+        let wanted = if self.rows.has_all_receptances() {
             failed || stands_alone
         } else {
             let separates = row.separated_fraction.is_some_and(|share| share > 0.0);
@@ -152,7 +152,7 @@ impl LoadCaseSolver {
         let same_set = harmonics_name(&choice.harmonics) == row.harmonics;
         let has_fewer = choice.harmonics.len() < own.len();
         if same_set && fallback.rows.basis_name() == self.rows.basis_name()
-            || self.rows.on_receptances.is_some() && !has_fewer
+            || self.rows.has_all_receptances() && !has_fewer
         {
             return None;
         }

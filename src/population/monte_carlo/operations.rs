@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 use super::{ResponseRow, RowSolver, Scenario};
 use crate::response::forced_response::{ContactCondition, samples_per_period};
 use crate::response::friction::ContactLaw;
-use crate::response::harmonic_balance::{LARGEST_WHOLE_JACOBIAN, condensing_pays};
 
 /// Operations per unknown cubed of the eigenvalues and vectors of a symmetric matrix.
 const EIGEN: f64 = 9.0;
@@ -65,8 +64,6 @@ pub struct SystemSize {
     pub coefficients: usize,
     /// Samples per period.
     pub samples: usize,
-    /// Whether tops are sought with fewer harmonics, so that the set is solved by its harmonics.
-    pub in_stages: bool,
     /// Contact law, where friction is solved for.
     pub law: Option<ContactLaw>,
     /// Law of the check: `law`, or the one in whose place it is taken.
@@ -91,7 +88,6 @@ impl SystemSize {
             coefficients: Self::coefficients_of(harmonics),
             law,
             check_law: settings.in_place_of.filter(|_| !linear).or(law),
-            in_stages: solver.search(points).is_some(),
             samples: if linear {
                 1
             } else {
@@ -112,49 +108,10 @@ impl SystemSize {
         self.coordinates * self.coefficients
     }
 
-    /// Whether Newton's method is for the motions at the contact rows, see [`condensing_pays`].
-    fn condenses(&self) -> bool {
-        let pays =
-            |law| condensing_pays(law, self.coefficients, self.coordinates, self.contact_rows);
-        self.law.is_some_and(pays)
-    }
-
-    /// Real coefficients of all contact rows.
-    fn contact_coefficients(&self) -> f64 {
-        (self.contact_rows * self.coefficients) as f64
-    }
-
-    /// What every harmonic takes once a frequency where the motions at the contact rows are solved for: factors of its complex
-    /// symmetric linear part, receptance of the contact rows, and the response of all coordinates in the end.
-    fn linear_parts(&self) -> f64 {
-        let (n, m) = (self.coordinates as f64, self.contact_rows as f64);
-        let factors = 4.0 / 3.0 * n.powi(3) + 4.0 * m.powi(3);
-        self.coefficients.div_ceil(2) as f64 * (factors + 12.0 * n * n)
-    }
-
-    /// Assembly and LU factors of the Jacobian: `2 c n^2 + 2/3 n^3`; of the contact rows alone where their motions are solved for;
-    /// or of its lower block triangle, one block a harmonic. In two stages those of its harmonics by themselves, all of
-    /// them, though the first stage has fewer.
+    /// Assembly and LU factors of the Jacobian: `2 c n^2 + 2/3 n^3` for c contact rows.
     #[must_use]
     pub fn per_factorisation(&self) -> f64 {
-        if self.condenses() {
-            let size = self.contact_coefficients();
-            return 4.0 * size.powi(2) + 2.0 / 3.0 * size.powi(3);
-        }
-        if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
-            return self.whole_jacobian(self.unknowns());
-        }
-        if self.in_stages {
-            return self.by_harmonic(self.beyond());
-        }
-        let factors = |size: f64| 2.0 / 3.0 * size.powi(3);
-        let blocks: f64 = self.blocks().map(factors).sum();
-        2.0 * self.contact_rows as f64 * self.lower_triangle() + blocks
-    }
-
-    /// Harmonics besides 1.
-    fn beyond(&self) -> f64 {
-        self.coefficients as f64 / 2.0 - 1.0
+        self.whole_jacobian(self.unknowns())
     }
 
     fn whole_jacobian(&self, unknowns: usize) -> f64 {
@@ -170,42 +127,12 @@ impl SystemSize {
         self.whole_jacobian(2 * self.coordinates) + beyond * block
     }
 
-    /// Unknowns of each harmonic.
-    fn blocks(&self) -> impl Iterator<Item = f64> {
-        let coordinates = self.coordinates;
-        let mean = self.coefficients % 2;
-        let harmonics = (0..self.coefficients / 2).map(move |_| 2 * coordinates);
-        let all = (0..mean).map(move |_| coordinates).chain(harmonics);
-        all.map(|size| size as f64)
-    }
-
-    /// Entries on and below the diagonal blocks.
-    fn lower_triangle(&self) -> f64 {
-        let n = self.unknowns() as f64;
-        let diagonal: f64 = self.blocks().map(|size| size * size).sum();
-        0.5 * (n * n + diagonal)
-    }
-
     /// Triangular solves, contact displacement and force in modal coordinates, and the alternating
     /// frequency/time method.
     #[must_use]
     pub fn per_iteration(&self) -> f64 {
-        if self.condenses() {
-            let rows = self.contact_rows as f64;
-            let (size, samples) = (self.contact_coefficients(), self.samples as f64);
-            // A step with the factors, and twice the receptance of every harmonic.
-            let products = 2.0 * size.powi(2) + 8.0 * self.coefficients as f64 * rows.powi(2);
-            return products + self.contact(self.coefficients as f64, samples);
-        }
         let n = self.unknowns() as f64;
-        let entries = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
-            n * n
-        } else if self.in_stages {
-            self.blocks().map(|size| size * size).sum()
-        } else {
-            self.lower_triangle()
-        };
-        2.0 * entries + self.evaluation(self.coefficients as f64, self.samples as f64)
+        2.0 * n * n + self.evaluation(self.coefficients as f64, self.samples as f64)
     }
 
     /// One residual with `coefficients` and `samples`.
@@ -227,8 +154,8 @@ impl SystemSize {
         transforms + LAW * self.pairs as f64 * samples
     }
 
-    /// The check of samples and harmonics that every row has: the whole Jacobian, or in its place that of harmonic 1, and
-    /// a complex block of each harmonic besides, then evaluations with all harmonics up to 15.
+    /// The check of samples and harmonics that every row has: the whole Jacobian, that of harmonic 1, and a complex block of each
+    /// harmonic besides, then evaluations with all harmonics up to 15.
     #[must_use]
     pub fn check(&self) -> f64 {
         let under = Self {
@@ -247,35 +174,11 @@ impl SystemSize {
             (CHECK_COEFFICIENTS, CHECK_BLOCKS)
         };
         let evaluation = self.evaluation(coefficients, samples);
-        if self.condenses() {
-            return self.check_by_contact(samples);
-        }
-        let factors = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
-            self.by_harmonic(blocks) + self.whole_jacobian(self.unknowns())
-        } else {
-            self.by_harmonic(blocks)
-        };
+        let factors = self.by_harmonic(blocks) + self.whole_jacobian(self.unknowns());
         factors + CHECK_ITERATIONS * evaluation
     }
 
-    /// Operations of the check where contact motions are solved for: both Jacobians are those of the contact rows, unless
-    /// unknowns are many.
-    fn check_by_contact(&self, samples: f64) -> f64 {
-        let enlarged = Self {
-            coefficients: CHECK_COEFFICIENTS_ODD,
-            ..*self
-        };
-        let factors = if self.unknowns() <= LARGEST_WHOLE_JACOBIAN {
-            let systems = [self, &enlarged];
-            let factors = systems.map(|system| system.linear_parts() + system.per_factorisation());
-            factors.iter().sum()
-        } else {
-            self.by_harmonic(enlarged.beyond())
-        };
-        factors + CHECK_ITERATIONS * self.evaluation(enlarged.coefficients as f64, samples)
-    }
-
-    /// Operations of a row; points that are solved with fewer harmonics are counted as if they had all.
+    /// Operations of a row.
     #[must_use]
     pub fn operations(&self, work: &RowWork) -> f64 {
         self.search(work) + self.check() + EIGENPROBLEMS * eigenproblem(self.coordinates)
@@ -284,13 +187,7 @@ impl SystemSize {
     /// Operations of the search for the peak alone.
     #[must_use]
     pub fn search(&self, work: &RowWork) -> f64 {
-        let once_a_frequency = if self.condenses() {
-            self.linear_parts()
-        } else {
-            0.0
-        };
         work.factorisations * self.per_factorisation()
-            + work.nonlinear_solves * once_a_frequency
             + work.newton_iterations * self.per_iteration()
     }
 }
@@ -331,7 +228,6 @@ mod tests {
             pairs: 96,
             coefficients: SystemSize::coefficients_of(&[0, 1, 3]),
             samples: 128,
-            in_stages: false,
             law: Some(ContactLaw::Simplified3d),
             check_law: Some(ContactLaw::Simplified3d),
         };
@@ -343,30 +239,5 @@ mod tests {
         };
         let ratio = size(16_000).operations(&work) / size(8_000).operations(&work);
         assert!((7.0..8.0).contains(&ratio), "{ratio}");
-    }
-
-    #[test]
-    fn where_contact_motions_are_solved_for_coordinates_enter_once_a_frequency() {
-        let size = |coordinates, law| SystemSize {
-            coordinates,
-            contact_rows: 24,
-            pairs: 24,
-            coefficients: SystemSize::coefficients_of(&[1, 3]),
-            samples: 128,
-            in_stages: false,
-            law: Some(law),
-            check_law: Some(law),
-        };
-        let of = |count: fn(&SystemSize) -> f64, law| {
-            let [few, many] = [72, 96].map(|coordinates| count(&size(coordinates, law)));
-            many / few
-        };
-        let once = |law| of(SystemSize::per_factorisation, law);
-        assert!((once(ContactLaw::MacroSlip1d) - 1.0).abs() < 1e-15);
-        assert!(once(ContactLaw::Simplified3d) > 2.0);
-        let per_iteration = of(SystemSize::per_iteration, ContactLaw::MacroSlip1d);
-        assert!((per_iteration - 1.0).abs() < 1e-15);
-        let frequency = of(SystemSize::linear_parts, ContactLaw::MacroSlip1d);
-        assert!((1.8..2.5).contains(&frequency), "{frequency}");
     }
 }

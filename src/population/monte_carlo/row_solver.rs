@@ -28,6 +28,8 @@ pub struct RowSolver {
     pub(super) on_basis: BasisRows,
     /// What rows are solved on in the place of the basis.
     pub(super) on_receptances: Option<ReceptanceRows>,
+    /// Whether these receptances are those of the basis, and not of all contact degrees of freedom.
+    is_on_basis: bool,
     basis_error: f64,
 }
 
@@ -46,6 +48,7 @@ impl RowSolver {
         Ok(Self {
             on_basis: BasisRows::new(model, settings)?,
             on_receptances: None,
+            is_on_basis: false,
             basis_error: 0.0,
         })
     }
@@ -84,6 +87,20 @@ impl RowSolver {
         Ok(self)
     }
 
+    /// [`Self::with_engine`] of the basis itself: rows have the coordinates of the basis, and what it leaves out.
+    ///
+    /// # Errors
+    /// If the harmonics of a search cannot be told apart.
+    pub fn with_engine_of_basis(
+        mut self,
+        engine: Arc<ReceptanceEngine>,
+        model: &ReducedModel,
+        engine_orders: &[u32],
+    ) -> Result<Self, TransformError> {
+        self.is_on_basis = true;
+        self.with_engine(engine, model, engine_orders)
+    }
+
     /// The wheel's coordinates.
     #[must_use]
     pub fn basis(&self) -> &WheelBasis {
@@ -100,32 +117,33 @@ impl RowSolver {
         points.nominal(scenario.engine_order, scenario.contact)
     }
 
-    /// Settings of a search with fewer harmonics on the basis, where rows with `points` have one.
-    #[must_use]
-    pub fn search<'a>(&self, points: &'a PointSettings) -> Option<&'a PointSettings> {
-        self.on_basis.search(points)
-    }
-
     /// Harmonic sets chosen for single scenarios.
     pub fn choices(&self) -> impl Iterator<Item = &HarmonicChoice> {
         self.on_basis.points.choices()
     }
 
+    /// Whether rows have the receptances of the tuned wheel with all its contact degrees of freedom, and leave out no basis.
+    pub(super) fn has_all_receptances(&self) -> bool {
+        self.on_receptances.is_some() && !self.is_on_basis
+    }
+
     /// What rows are solved on: a basis, or the receptances of the tuned wheel.
     #[must_use]
     pub fn basis_name(&self) -> String {
-        match &self.on_receptances {
-            Some(_) => TUNED_RECEPTANCES.to_owned(),
-            None => self.basis().model().basis_name(),
+        if self.has_all_receptances() {
+            TUNED_RECEPTANCES.to_owned()
+        } else {
+            self.basis().model().basis_name()
         }
     }
 
     /// [`Self::basis_name`], where the whole space counts as the basis that it was made by.
     #[must_use]
     pub fn rows_on(&self) -> String {
-        match &self.on_receptances {
-            Some(_) => TUNED_RECEPTANCES.to_owned(),
-            None => self.basis().model().basis.to_string(),
+        if self.has_all_receptances() {
+            TUNED_RECEPTANCES.to_owned()
+        } else {
+            self.basis().model().basis.to_string()
         }
     }
 
@@ -336,7 +354,7 @@ impl RowSolver {
             basis: self.model_error(scenario),
             // A remainder that could not be measured bounds nothing, but rows on tuned receptances are asked themselves.
             harmonics: match choice.map(|choice| choice.remainder) {
-                Some(None) if self.on_receptances.is_none() => f64::INFINITY,
+                Some(None) if !self.has_all_receptances() => f64::INFINITY,
                 Some(remainder) => remainder.unwrap_or(0.0),
                 None => 0.0,
             },
@@ -388,9 +406,10 @@ impl RowSolver {
             stated_error: errors
                 .map(|errors| {
                     let of_scenario = self.scenario_error(scenario);
-                    let safety = match &self.on_receptances {
-                        Some(_) => HARMONIC_SAFETY_ON_RECEPTANCES,
-                        None => HARMONIC_SAFETY,
+                    let safety = if self.has_all_receptances() {
+                        HARMONIC_SAFETY_ON_RECEPTANCES
+                    } else {
+                        HARMONIC_SAFETY
                     };
                     let tolerance = self.settings().solver.peak_tolerance;
                     stated_error(&errors, &of_scenario, safety, tolerance)

@@ -8,7 +8,7 @@ use crate::response::forced_response::{
 };
 use crate::response::friction::{ContactLaw, Ring};
 use crate::response::mistuning::Pattern;
-use crate::response::receptance::{EngineOptions, EngineWheel, ReceptanceEngine, WaveForce};
+use crate::response::receptance::EngineWheel;
 use crate::response::stability::{ContactMotion, StabilityOptions, multipliers};
 
 /// Highest harmonic of the motion that is looked at: when pairs slip and open decides, and few harmonics say that badly.
@@ -17,10 +17,6 @@ const HIGHEST: u32 = 31;
 const SAMPLES: usize = 512;
 /// Steps per period.
 const STEPS: usize = 1024;
-/// Relative margin of the band of an engine that is made for one frequency.
-const BAND_MARGIN: f64 = 0.1;
-/// Deviation of a blade that such an engine is made for at least.
-const DEVIATION: f64 = 0.01;
 
 /// Whether small disturbances of the motion of `row`, which `solvers` gave, at its peak die out; none for a linear limit and a
 /// creeping ring, and where that is not settled.
@@ -60,13 +56,8 @@ fn stays(
     if settings.ring != Ring::Locked {
         return None;
     }
-    let of_basis;
-    let (engine, force) = if let Some(rows) = &solver.on_receptances {
-        (rows.receptances(), rows.force(scenario.engine_order)?)
-    } else {
-        of_basis = engine_at(solver, pattern, scenario.engine_order, hz)?;
-        (&of_basis.0, &of_basis.1)
-    };
+    let rows = solver.on_receptances.as_ref()?;
+    let (engine, force) = (rows.receptances(), rows.force(scenario.engine_order)?);
     let wheel = EngineWheel::new(pattern, engine.sectors());
     let row = EngineRow {
         engine,
@@ -105,27 +96,4 @@ fn finer(
         ..options.clone()
     };
     points.with_harmonics(&harmonics, &options).ok()
-}
-
-/// An engine on the basis that rows are solved on, made for one frequency.
-fn engine_at(
-    solver: &RowSolver,
-    pattern: Option<&Pattern>,
-    engine_order: u32,
-    hz: f64,
-) -> Option<(ReceptanceEngine, WaveForce)> {
-    let model = solver.basis().model();
-    let settings = solver.settings();
-    let force = WaveForce::new(model, engine_order, settings.amplitude_n);
-    let options = EngineOptions {
-        damping: settings.damping,
-        projection: settings.projection,
-        forces: vec![force.clone()],
-        deviation: pattern
-            .map_or(0.0, Pattern::largest_deviation)
-            .max(DEVIATION),
-        band_hz: Some((hz * (1.0 - BAND_MARGIN), hz * (1.0 + BAND_MARGIN))),
-    };
-    let (_, engine) = ReceptanceEngine::of_model(model.clone(), &options, 1)?;
-    Some((engine, force))
 }

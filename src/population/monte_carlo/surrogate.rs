@@ -157,7 +157,6 @@ impl Surrogate<'_> {
             coordinates: vectors,
             coefficients: 2,
             samples: SAMPLES,
-            in_stages: false,
             ..SystemSize::of_rows(self.solver, &self.scenario)
         };
         let projection = 2.0 * n * m * (n + 2.0 * m);

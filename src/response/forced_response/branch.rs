@@ -260,7 +260,6 @@ impl RowEquation<'_> {
             residual: point.residual,
             shares: point.shares,
             ring_drift_m: [0.0; 2],
-            slope: None,
         }
     }
 

@@ -240,15 +240,6 @@ impl Excited {
         }
     }
 
-    /// Copy of this structure under its excitation with some of its harmonics alone, 1 among them.
-    #[must_use]
-    pub fn in_harmonics(&self, harmonics: &[u32]) -> Self {
-        let mut copy = self.clone();
-        copy.blocks
-            .retain(|block| harmonics.contains(&block.harmonic));
-        copy
-    }
-
     /// Copy of this structure with viscous damping that is equal to its damping at the angular frequency
     /// `omega`, rad/s, see [`Structure::with_viscous_damping`].
     #[must_use]

@@ -22,9 +22,7 @@ mod point_source;
 mod receptance_errors;
 mod receptance_peak;
 mod receptance_points;
-mod refined_peak;
 mod row_equation;
-mod screened;
 mod search;
 mod tops;
 
@@ -39,10 +37,9 @@ pub use options::{
     RowsBeyondTolerance, SearchHarmonics, SolverOptions, samples_per_period,
 };
 pub use peak::{
-    Peak, SearchPlan, Window, mistuned_window, peak, search_plan, slopes_lead, tuned_span,
-    tuned_span_of,
+    Peak, SearchPlan, Window, mistuned_window, peak, search_plan, tuned_span, tuned_span_of,
 };
-pub use point::{Point, Slope, Work};
+pub use point::{Point, Work};
 pub use point_settings::PointSettings;
 pub use point_solver::PointSolver;
 pub use receptance_errors::{
@@ -53,5 +50,4 @@ pub use receptance_points::{
     ContactMotion, EngineRow, receptance_contact_motion, receptance_curve, receptance_plan,
     receptance_state,
 };
-pub use refined_peak::{Search, refined};
 pub use search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};

@@ -97,27 +97,6 @@ impl ObservedAmplitude {
         harmonic == 1 || self.time_grid.is_some()
     }
 
-    /// [`Self::of`], and the rates at which the amplitudes change where `solution` changes by `slope`.
-    #[must_use]
-    pub(super) fn with_rates(
-        &self,
-        blocks: &[ObservedBlock<'_>],
-        solution: &[f64],
-        slope: &[f64],
-    ) -> (Vec<f64>, Vec<f64>) {
-        let (whole, change) = (observed(blocks, solution), observed(blocks, slope));
-        let blades = whole[0].displacement.len() / 3;
-        (0..blades)
-            .map(|blade| match &self.time_grid {
-                None => norm_and_rate(fundamental(&whole, blade), fundamental(&change, blade)),
-                Some(grid) => grid.largest_norm_and_rate(
-                    &channels(grid, &whole, blade),
-                    &channels(grid, &change, blade),
-                ),
-            })
-            .unzip()
-    }
-
     /// Whether `step` changes no amplitude by more than `share` of the largest one of `solution`.
     pub(super) fn is_steady(
         &self,
@@ -228,16 +207,6 @@ fn fundamental(harmonics: &[ObservedHarmonic], blade: usize) -> &[Complex64] {
         })
 }
 
-/// `|u|` and how it changes where u changes by `rates`.
-fn norm_and_rate(u: &[Complex64], rates: &[Complex64]) -> (f64, f64) {
-    let norm = |u: &[Complex64]| u.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
-    let along: f64 = u.iter().zip(rates).map(|(u, r)| (u.conj() * r).re).sum();
-    match norm(u) {
-        0.0 => (0.0, norm(rates)),
-        length => (length, along / length),
-    }
-}
-
 /// Largest norm over one period of a blade's displacement, harmonic 0 left out.
 fn time_maximum(grid: &HarmonicTransform, harmonics: &[ObservedHarmonic], blade: usize) -> f64 {
     grid.largest_norm(&channels(grid, harmonics, blade))
@@ -260,49 +229,4 @@ fn channels(grid: &HarmonicTransform, harmonics: &[ObservedHarmonic], blade: usi
         }
     }
     channels
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rates_are_differences_of_norms() {
-        let u = [Complex64::new(0.3, -1.2), Complex64::new(0.7, 0.4)];
-        let rates = [Complex64::new(-0.5, 0.2), Complex64::new(1.1, 0.9)];
-        let change = 1e-6;
-        let at = |share: f64| -> Vec<Complex64> {
-            let moved = u.iter().zip(&rates).map(|(u, r)| u + r * share);
-            moved.collect()
-        };
-        let (norm, rate) = norm_and_rate(&u, &rates);
-        let difference =
-            norm_and_rate(&at(change), &rates).0 - norm_and_rate(&at(-change), &rates).0;
-        assert!((rate - difference / (2.0 * change)).abs() < 1e-9 && norm > 1.0);
-        // A blade at rest begins to move at the rate of its motion.
-        let begins = norm_and_rate(&[Complex64::default()], &rates[..1]).1;
-        assert!((begins - rates[0].norm()).abs() < 1e-15);
-    }
-
-    #[test]
-    fn rates_of_largest_norms_are_their_differences() {
-        for harmonics in [&[1][..], &[1, 3], &[0, 1, 2]] {
-            let grid = HarmonicTransform::new(harmonics, 1024).expect("enough samples");
-            let count = 2 * grid.n_coefficients();
-            let u: Vec<f64> = (0..count).map(|i| (0.4 + 1.7 * i as f64).sin()).collect();
-            let rates: Vec<f64> = (0..count).map(|i| (2.9 * i as f64).cos()).collect();
-            let at = |share: f64| {
-                let moved = u.iter().zip(&rates).map(|(u, r)| u + share * r);
-                grid.largest_norm(&moved.collect::<Vec<f64>>())
-            };
-            let change = 1e-7;
-            let (norm, rate) = grid.largest_norm_and_rate(&u, &rates);
-            let expected = (at(change) - at(-change)) / (2.0 * change);
-            assert_eq!(norm.to_bits(), at(0.0).to_bits());
-            assert!(
-                (rate - expected).abs() < 1e-6,
-                "{harmonics:?}: {rate} {expected}"
-            );
-        }
-    }
 }

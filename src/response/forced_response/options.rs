@@ -25,7 +25,7 @@ pub enum Harmonics {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SearchHarmonics {
     /// Harmonic 1 on tuned receptances, and 0 to 3 where contacts open and an automatic set goes beyond 5 and has these. On a
-    /// basis harmonic 1 where the equation of the whole set is large, and far below the peak where contact rows are few; else all.
+    /// basis all.
     Auto,
     /// The whole set, without a search before.
     All,

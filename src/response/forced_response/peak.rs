@@ -7,12 +7,10 @@ use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use super::point_solver::PointSolver;
 use super::point_source::{PointSource, Watched};
-use super::screened::Screened;
 use super::search::Sample;
 use super::search::{Envelope, SearchSettings};
 use super::search::{SearchEnd, SearchResult, find_peak};
-use crate::response::friction::Ring;
-use crate::response::harmonic_balance::{Status, condensing_pays};
+use crate::response::harmonic_balance::Status;
 use crate::response::receptance::{Resonance, reach_of_mistuning, resonances_that_count};
 
 /// Tolerance of peaks of linear limits, which cost almost nothing.
@@ -22,16 +20,8 @@ pub(super) const EVALUATIONS: usize = 1500;
 /// Precision of the amplitudes that the search compares, over its tolerance: far below the share of it that a
 /// summit may be missed by.
 pub(super) const SEARCH_PRECISION: f64 = 0.01;
-/// Tolerance to which slopes lead a search at best: they jump where contact begins to slip at one more sample of the period.
-const LEAST_FOR_SLOPES: f64 = 2e-4;
-/// Precision of the amplitudes that only tell where all harmonics need not be solved.
-const SCREENING_PRECISION: f64 = 1e-3;
 /// Starting points between the dominant stuck and slide peaks.
 const STARTS_BETWEEN: usize = 5;
-/// Starting points between the dominant stuck and slide peaks where points have slopes.
-const SPARSE_BETWEEN: usize = 2;
-/// Least distance of starting points that have slopes, in half-bandwidths of a linear resonance.
-const SPARSE: f64 = 1.5;
 /// Times the automatic band is widened while the largest value lies at its end.
 const BAND_EXTENSIONS: usize = 5;
 
@@ -126,8 +116,6 @@ pub struct SearchPlan {
     pub band_hz: (f64, f64),
     /// First frequencies to try, Hz.
     pub starts_hz: Vec<f64>,
-    /// First frequencies to try where points have slopes, which say more of what lies between, ascending, Hz.
-    pub sparse_starts_hz: Vec<f64>,
     /// Resonances of the stuck limit, or of the limit itself, in the band and within its width of it.
     pub stuck: Vec<Resonance>,
     /// Least width of a peak.
@@ -184,23 +172,10 @@ pub(super) fn search_plan_of(
     Ok(SearchPlan {
         stuck: near_band(limits.first().map_or(&[], Vec::as_slice), band_hz),
         band_hz,
-        starts_hz: starting_points(&limits, &candidates, STARTS_BETWEEN),
-        sparse_starts_hz: thinned(
-            starting_points(&limits, &candidates, SPARSE_BETWEEN),
-            SPARSE * envelope.linear_half_bandwidth_hz,
-        ),
+        starts_hz: starting_points(&limits, &candidates),
         envelope,
         extensions,
     })
-}
-
-/// Whether slopes lead the search for the peak of a mistuned wheel of `modes` coordinates with `contact_rows`, all of whose
-/// harmonics are those of the mistuned wheel: the wheels for which [`PointSolver`] finds slopes.
-#[must_use]
-pub fn slopes_lead(settings: &PointSettings, modes: usize, contact_rows: usize) -> bool {
-    let coefficients = settings.transform.n_coefficients();
-    let pays = |(law, _)| condensing_pays(law, coefficients, modes, contact_rows);
-    settings.ring == Ring::Locked && settings.contact.is_some_and(pays)
 }
 
 /// Finds the peak of one row.
@@ -229,7 +204,9 @@ pub fn peak(
         extensions: plan.extensions,
         rivals_from: 1.0,
     };
-    let (result, mut solver, screening) = searched(excited, condition, settings, &plan, search);
+    let precision = SEARCH_PRECISION * search.tolerance;
+    let mut solver = PointSolver::new(excited, condition, settings).with_precision(precision);
+    let result = searched(&mut solver, &plan, search);
     let (status, point) = settled(&result, &mut solver);
     // Contacts that open can fold the curve; where they do, the samples fall off a cliff.
     let cliff = result
@@ -252,7 +229,7 @@ pub fn peak(
         point,
         bracketed: result.bracketed,
         mean_friction_n,
-        work: solver.work().plus(screening),
+        work: solver.work(),
     }
 }
 
@@ -278,7 +255,7 @@ fn settled(result: &SearchResult, solver: &mut impl PointSource) -> (Status, Opt
     (status, point)
 }
 
-/// [`peak`] by `plan` with the points of `solver`, whose values alone lead the search.
+/// [`peak`] by `plan` with the points of `solver`.
 pub(super) fn peak_by(
     plan: &SearchPlan,
     condition: ContactCondition,
@@ -298,7 +275,7 @@ pub(super) fn peak_by(
         rivals_from: 1.0,
     };
     solver.set_precision(SEARCH_PRECISION * tolerance);
-    let result = by_values(&mut solver, (plan.band_hz, &plan.starts_hz), plan, search);
+    let result = searched(&mut solver, plan, search);
     let (status, point) = settled(&result, &mut solver);
     let mean_friction_n = point
         .as_ref()
@@ -313,71 +290,8 @@ pub(super) fn peak_by(
     }
 }
 
-/// The search by `plan`, the solver of its points with all harmonics, and the work of those with fewer.
-///
-/// Where points have slopes these lead, down to what they can tell; what is asked for more exactly is then sought by values
-/// alone, from the points to which they led and the ordinary first ones.
-fn searched<'a>(
-    excited: &'a Excited,
-    condition: ContactCondition,
-    settings: &'a PointSettings,
-    plan: &SearchPlan,
-    search: SearchSettings,
-) -> (SearchResult, PointSolver<'a>, Work) {
-    let precision = SEARCH_PRECISION * search.tolerance;
-    let solver = PointSolver::new(excited, condition, settings).with_precision(precision);
-    let mut solver = solver.with_slopes();
-    if !solver.is_sloped() {
-        let result = by_values(&mut solver, (plan.band_hz, &plan.starts_hz), plan, search);
-        return (result, solver, Work::default());
-    }
-    let finer = search.tolerance < LEAST_FOR_SLOPES;
-    let few = settings.search().filter(|_| !finer);
-    let few = few.map(|few| (excited.in_harmonics(few.harmonics()), few));
-    let few = few.as_ref().map(|(excited, settings)| {
-        let few =
-            PointSolver::new(excited, condition, settings).with_precision(SCREENING_PRECISION);
-        (excited, few.with_slopes())
-    });
-    let mut screened = Screened::new(solver, few, &plan.stuck);
-    let starts_hz = &plan.sparse_starts_hz;
-    screened.begin(starts_hz);
-    let led = SearchSettings {
-        tolerance: search.tolerance.max(LEAST_FOR_SLOPES),
-        ..search
-    };
-    let result = find_peak(plan.band_hz, starts_hz, plan.envelope, led, &mut screened);
-    let (mut solver, screening) = screened.into_parts();
-    if !finer {
-        return (result, solver, screening);
-    }
-    let (band_hz, starts_hz) = beginning_with(solver.points(), plan);
-    let result = by_values(&mut solver, (band_hz, &starts_hz), plan, search);
-    (result, solver, screening)
-}
-
-/// The band of a plan with all these points, and first frequencies: the highest of the points, and what is not nearer to another
-/// one than a search tells apart.
-fn beginning_with(points: &[Point], plan: &SearchPlan) -> ((f64, f64), Vec<f64>) {
-    let mut points: Vec<&Point> = points.iter().collect();
-    points.sort_by(|a, b| b.largest_amplitude_m().total_cmp(&a.largest_amplitude_m()));
-    let known = points.iter().map(|point| point.frequency_hz);
-    let (low, high) = known
-        .clone()
-        .fold(plan.band_hz, |(low, high), f| (low.min(f), high.max(f)));
-    let mut starts_hz: Vec<f64> = Vec::new();
-    for start in known.chain(plan.starts_hz.iter().copied()) {
-        let apart = |known_hz: &f64| (known_hz - start).abs() > plan.envelope.resolution_hz();
-        if starts_hz.iter().all(apart) {
-            starts_hz.push(start);
-        }
-    }
-    ((low, high), starts_hz)
-}
-
-fn by_values(
+fn searched(
     solver: &mut impl PointSource,
-    (band_hz, starts_hz): ((f64, f64), &[f64]),
     plan: &SearchPlan,
     search: SearchSettings,
 ) -> SearchResult {
@@ -385,7 +299,13 @@ fn by_values(
         solver,
         stuck: &plan.stuck,
     };
-    find_peak(band_hz, starts_hz, plan.envelope, search, watched)
+    find_peak(
+        plan.band_hz,
+        &plan.starts_hz,
+        plan.envelope,
+        search,
+        watched,
+    )
 }
 
 /// Status of the failed frequency nearest to the best point, among those with no lower amplitude
@@ -455,19 +375,8 @@ fn band_of(candidates: &[Resonance]) -> (f64, f64) {
         })
 }
 
-/// The points in ascending order without those that follow another one by no more than `distance`.
-fn thinned(mut points: Vec<f64>, distance: f64) -> Vec<f64> {
-    points.sort_by(f64::total_cmp);
-    points.dedup_by(|later, earlier| *later - *earlier <= distance);
-    points
-}
-
-/// Every candidate resonance, and as many points `between` the dominant ones of the limits.
-fn starting_points(
-    limits: &[Vec<Resonance>],
-    candidates: &[Resonance],
-    between: usize,
-) -> Vec<f64> {
+/// Every candidate resonance, and points between the dominant ones of the limits.
+fn starting_points(limits: &[Vec<Resonance>], candidates: &[Resonance]) -> Vec<f64> {
     let mut starts: Vec<f64> = candidates.iter().map(|peak| peak.frequency_hz).collect();
     let dominant: Vec<f64> = limits
         .iter()
@@ -479,8 +388,8 @@ fn starting_points(
         .map(|peak| peak.frequency_hz)
         .collect();
     if let [first, second] = dominant[..] {
-        for i in 1..=between {
-            let share = i as f64 / (between + 1) as f64;
+        for i in 1..=STARTS_BETWEEN {
+            let share = i as f64 / (STARTS_BETWEEN + 1) as f64;
             starts.push(first + share * (second - first));
         }
     }

@@ -1,6 +1,5 @@
 //! A solution at one frequency, and the work that solutions took.
 
-use super::search::Reading;
 use crate::response::harmonic_balance::ContactShares;
 
 /// Work done for a row.
@@ -51,17 +50,6 @@ pub struct Point {
     pub shares: ContactShares,
     /// Drift of the ring along its rigid motions, m per period: 0 unless it creeps.
     pub ring_drift_m: [f64; 2],
-    /// How the point moves on with frequency, where that was asked for and is cheap.
-    pub slope: Option<Slope>,
-}
-
-/// Derivatives of a point by frequency.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Slope {
-    /// Derivatives of the unknowns, per Hz.
-    pub solution: Vec<f64>,
-    /// Derivative of the amplitude of every blade, m/Hz.
-    pub amplitudes_m_per_hz: Vec<f64>,
 }
 
 impl Point {
@@ -69,15 +57,6 @@ impl Point {
     #[must_use]
     pub fn largest_amplitude_m(&self) -> f64 {
         self.amplitudes_m.iter().copied().fold(0.0, f64::max)
-    }
-
-    /// What a search reads.
-    pub(super) fn reading(&self) -> Reading {
-        let slope = self.slope.as_ref();
-        Reading {
-            amplitudes: self.amplitudes_m.clone(),
-            slopes: slope.map(|slope| slope.amplitudes_m_per_hz.clone()),
-        }
     }
 
     /// Blade of the largest amplitude, the first where several share it.

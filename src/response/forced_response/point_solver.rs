@@ -5,7 +5,7 @@ use super::branch::ResponseTrace;
 use super::excited::Excited;
 use super::folded_peak::over_folds;
 use super::homotopy::{lower_normal_load, stiffen_contact};
-use super::initial_guess::{KnownPoints, beside, between};
+use super::initial_guess::{KnownPoints, between};
 use super::observed_amplitude::ObservedBlock;
 use super::options::ContactCondition;
 use super::point::{Point, Work, point_at};
@@ -113,47 +113,13 @@ impl<'a> PointSolver<'a> {
         }
     }
 
-    /// This solver with the slope of every point, where Newton's method has it at hand: for wheels with few contact
-    /// rows and a locked ring.
-    #[must_use]
-    pub(super) fn with_slopes(mut self) -> Self {
-        if let Some(row) = &mut self.nonlinear {
-            row.sloped = row.system.condenses() && self.settings.ring == Ring::Locked;
-        }
-        self
-    }
-
-    /// Whether points have slopes.
-    pub(super) fn is_sloped(&self) -> bool {
-        self.nonlinear.as_ref().is_some_and(|row| row.sloped)
-    }
-
-    /// This solver for points that begin at the solutions of `coarse`, a solver with fewer harmonics.
-    #[must_use]
-    pub(super) fn refining(mut self, coarse: &PointSolver<'_>) -> Self {
-        for point in coarse.points() {
-            self.start_beside(coarse.excited, point.clone());
-        }
-        self
-    }
-
-    /// From now on `point`, solved with the fewer harmonics of `excited`, tells where to start.
-    pub(super) fn start_beside(&mut self, excited: &Excited, point: Point) {
-        self.known.coarse.push(beside(excited, self.excited, point));
-    }
-
-    /// The converged point nearest to a frequency, Hz.
-    pub(super) fn nearest(&self, frequency_hz: f64) -> Option<&Point> {
-        self.known.nearest(frequency_hz)
-    }
-
     /// The point at `frequency_hz` again, to the tolerance of the residual.
     ///
     /// # Errors
     /// The status of the last attempt, if none converged.
     pub fn finish(&mut self, frequency_hz: f64) -> Result<&Point, Status> {
         if let Some(row) = &mut self.nonlinear {
-            (row.precision, row.sloped) = (None, false);
+            row.precision = None;
         }
         let same = |point: &Point| point.frequency_hz.total_cmp(&frequency_hz).is_eq();
         let tolerance = self.settings.bounds.residual_tolerance;
@@ -216,7 +182,6 @@ impl<'a> PointSolver<'a> {
             residual: 0.0,
             shares: ContactShares::default(),
             ring_drift_m: [0.0; 2],
-            slope: None,
         })
     }
 
@@ -226,9 +191,7 @@ impl<'a> PointSolver<'a> {
         };
         row.work.nonlinear_solves += 1;
         let mut last = Status::IterationLimit;
-        let ladder = Attempt::ladder(row.system.condenses(), !self.known.coarse.is_empty());
-        for (rung, attempt) in ladder.enumerate() {
-            row.set_steps(attempt.steps());
+        for (rung, attempt) in Attempt::ALL.into_iter().enumerate() {
             match attempt_at(row, &self.known, attempt, frequency_hz) {
                 Ok(point) => {
                     row.work.retries += u64::from(rung > 0);
@@ -284,11 +247,7 @@ fn attempt_at(
     frequency_hz: f64,
 ) -> Result<Point, Status> {
     let start = match attempt {
-        Attempt::Renewed | Attempt::ByHarmonic | Attempt::Once if !known.coarse.is_empty() => {
-            let starts = known.expected_from_coarse(frequency_hz);
-            row.of_least_residual(starts.ok_or(Status::SingularJacobian)?, frequency_hz)?
-        }
-        Attempt::Renewed | Attempt::ByHarmonic | Attempt::Once | Attempt::Neighbours => {
+        Attempt::Neighbours => {
             let (mut starts, stuck_too) = known.expected(frequency_hz);
             if stuck_too {
                 starts.push(row.stuck_start(frequency_hz)?);

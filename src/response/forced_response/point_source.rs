@@ -3,7 +3,7 @@
 
 use super::point::{Point, Work, point_at};
 use super::point_solver::PointSolver;
-use super::search::{Curve, Reading, Sample};
+use super::search::{Curve, Sample};
 use crate::response::harmonic_balance::Status;
 use crate::response::receptance::Resonance;
 
@@ -13,6 +13,8 @@ const STICKS: f64 = 0.5;
 const JOINED: f64 = 2.0;
 /// Distance of a sample that has seen a resonance, in half-bandwidths.
 const SEEN: f64 = 0.5;
+/// Height of such a sample over that of the best, from which the resonance may be the higher one: at that distance it reads a tenth lower.
+const RIVAL: f64 = 0.89;
 
 /// A row at any frequency.
 pub(super) trait PointSource {
@@ -78,8 +80,8 @@ pub(super) struct Watched<'a, S> {
 }
 
 impl<S: PointSource> Curve for Watched<'_, S> {
-    fn read(&mut self, frequency_hz: f64) -> Option<Reading> {
-        self.solver.amplitudes_at(frequency_hz).map(Reading::from)
+    fn read(&mut self, frequency_hz: f64) -> Option<Vec<f64>> {
+        self.solver.amplitudes_at(frequency_hz)
     }
 
     fn unseen(&self, samples: &[Sample], best: usize) -> Option<f64> {
@@ -103,29 +105,43 @@ pub(super) fn sticks(point: &Point) -> bool {
     point.shares.slipping < STICKS
 }
 
-/// The frequency, Hz, of a resonance that may be higher than the best, that no sample is near enough to have seen, and that lies outside of
-/// the samples or where the contact of one beside it sticks: the band of a search is that of the high resonances alone.
+/// The frequency, Hz, at which a resonance may be higher than the best: one that no sample is near enough to have seen, and that lies outside
+/// of the samples or where the contact of one beside it sticks: the band of a search is that of the high resonances alone. Where a sample
+/// has seen it nearly as high as the best, one on its other side tells whether it is higher.
 pub(super) fn unseen(
     stuck: &[Resonance],
     samples: &[Sample],
     best: usize,
     sticks: impl Fn(f64) -> bool,
 ) -> Option<f64> {
-    let is_unseen = |peak: &&Resonance| {
-        let below = |sample: &Sample| sample.frequency_hz < peak.frequency_hz;
-        let right = samples.partition_point(below);
-        let beside = || {
-            let left = right.checked_sub(1).and_then(|left| samples.get(left));
-            left.into_iter().chain(samples.get(right))
-        };
-        let seen = |sample: &Sample| {
-            let distance = (sample.frequency_hz - peak.frequency_hz).abs();
-            distance <= SEEN * peak.half_bandwidth_hz
-        };
+    let best = &samples[best];
+    let unseen_at = |peak: &Resonance| {
+        let at = peak.frequency_hz;
+        let right = samples.partition_point(|sample| sample.frequency_hz < at);
+        let left = right.checked_sub(1).and_then(|left| samples.get(left));
+        let beside = [left, samples.get(right)];
+        let both = || beside.into_iter().flatten();
         // Outside of the samples the nearest one is too far away to tell.
-        let may_stick =
-            || beside().count() < 2 || beside().any(|sample| sticks(sample.frequency_hz));
-        JOINED * peak.amplitude_m > samples[best].largest && !beside().any(seen) && may_stick()
+        let may_stick = || both().count() < 2 || both().any(|sample| sticks(sample.frequency_hz));
+        if JOINED * peak.amplitude_m <= best.largest || !may_stick() {
+            return None;
+        }
+        let within = |sample: &Sample, half_bandwidths: f64| {
+            (sample.frequency_hz - at).abs() <= half_bandwidths * peak.half_bandwidth_hz
+        };
+        let Some(near) = both().find(|sample| within(sample, SEEN)) else {
+            return Some(at);
+        };
+        let is_rival = near.largest > RIVAL * best.largest
+            && near.frequency_hz.total_cmp(&best.frequency_hz).is_ne();
+        let [alone_below, alone_above] =
+            beside.map(|sample| sample.is_none_or(|sample| !within(sample, 2.0 * SEEN)));
+        let beside_it = SEEN * peak.half_bandwidth_hz;
+        match is_rival {
+            true if alone_below => Some(at - beside_it),
+            true if alone_above => Some(at + beside_it),
+            _ => None,
+        }
     };
-    stuck.iter().find(is_unseen).map(|peak| peak.frequency_hz)
+    stuck.iter().find_map(unseen_at)
 }

@@ -120,8 +120,12 @@ pub(super) struct ReceptancePoints<'a> {
 
 impl<'a> ReceptancePoints<'a> {
     pub(super) fn new(row: &EngineRow<'a>, settings: &'a PointSettings) -> Self {
+        let mut solver = row.solver(settings, &settings.transform, None);
+        if settings.search().is_none() {
+            solver.take_whole_derivative();
+        }
         Self {
-            solver: row.solver(settings, &settings.transform, None),
+            solver,
             row: *row,
             settings,
             points: Vec::new(),
@@ -181,7 +185,6 @@ impl<'a> ReceptancePoints<'a> {
             residual,
             shares,
             ring_drift_m: [0.0; 2],
-            slope: None,
         })
     }
 

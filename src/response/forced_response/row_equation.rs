@@ -6,12 +6,12 @@ use std::sync::Arc;
 use super::excited::Excited;
 use super::observed_amplitude::ObservedBlock;
 use super::options::ContactCondition;
-use super::point::{Point, Slope, Work};
+use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use crate::linalg::{Complex64, LuWorkspace};
 use crate::response::friction::Ring;
 use crate::response::harmonic_balance::{
-    HarmonicSystem, NewtonWorkspace, Status, Steps, response_slope, solve, solve_creeping,
+    HarmonicSystem, NewtonWorkspace, Status, solve, solve_creeping,
 };
 
 /// The equation of one row, with the buffers of its solver.
@@ -25,8 +25,6 @@ pub(super) struct RowEquation<'a> {
     stuck: LuWorkspace<Complex64>,
     /// Relative precision of the amplitudes at which a point may end before its residual is met.
     pub(super) precision: Option<f64>,
-    /// Whether the slopes of points are asked for.
-    pub(super) sloped: bool,
     pub(super) work: Work,
 }
 
@@ -56,7 +54,6 @@ impl<'a> RowEquation<'a> {
             system,
             stuck: LuWorkspace::new(excited.linear.structure.size()),
             precision: None,
-            sloped: false,
             work: Work::default(),
         })
     }
@@ -67,17 +64,8 @@ impl<'a> RowEquation<'a> {
         (&self.system, &mut self.workspace)
     }
 
-    /// How steps are made from now on.
-    pub(super) fn set_steps(&mut self, steps: Steps) {
-        self.workspace.set_steps(steps);
-    }
-
     /// The response with every pair stuck, as a start.
     pub(super) fn stuck_start(&mut self, frequency_hz: f64) -> Result<Vec<f64>, Status> {
-        let omega = TAU * frequency_hz;
-        if let Some(stuck) = self.workspace.stuck_response(&self.system, omega) {
-            return Ok(stuck);
-        }
         let stuck = self
             .excited
             .linear_response(self.condition, frequency_hz, &mut self.stuck)
@@ -113,7 +101,6 @@ impl<'a> RowEquation<'a> {
         let mut x = start;
         let omega = TAU * frequency_hz;
         let bounds = self.settings.bounds;
-        let bounds = workspace.steps().bounds(bounds);
         let (outcome, ring_drift_m) = if let Some(other) = other {
             // On the way the ring is locked.
             let outcome = solve(other, omega, &mut x, bounds, None, workspace);
@@ -140,32 +127,13 @@ impl<'a> RowEquation<'a> {
         if outcome.status != Status::Ok {
             return Err(outcome.status);
         }
-        let slope = if self.sloped && other.is_none() {
-            self.work.factorisations += 1;
-            response_slope(&self.system, omega, &x, &mut self.workspace)
-        } else {
-            None
-        };
-        let (amplitudes_m, slope) = match slope {
-            Some(per_rad_per_s) => {
-                let solution: Vec<f64> = per_rad_per_s.iter().map(|rate| TAU * rate).collect();
-                let (amplitudes_m, amplitudes_m_per_hz) = self.amplitudes_with_rates(&x, &solution);
-                let slope = Slope {
-                    solution,
-                    amplitudes_m_per_hz,
-                };
-                (amplitudes_m, Some(slope))
-            }
-            None => (self.amplitudes_of(&x), None),
-        };
         Ok(Point {
             frequency_hz,
-            amplitudes_m,
+            amplitudes_m: self.amplitudes_of(&x),
             solution: x,
             residual: outcome.residual,
             shares: outcome.shares,
             ring_drift_m,
-            slope,
         })
     }
 
@@ -173,12 +141,6 @@ impl<'a> RowEquation<'a> {
     pub(super) fn amplitudes_of(&self, solution: &[f64]) -> Vec<f64> {
         let blocks = ObservedBlock::all(&self.excited.blocks);
         self.settings.amplitude.of(&blocks, solution)
-    }
-
-    /// [`Self::amplitudes_of`], and what they change by where the solution changes by `slope`.
-    fn amplitudes_with_rates(&self, solution: &[f64], slope: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let blocks = ObservedBlock::all(&self.excited.blocks);
-        self.settings.amplitude.with_rates(&blocks, solution, slope)
     }
 }
 

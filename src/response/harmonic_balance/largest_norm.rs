@@ -29,30 +29,7 @@ impl HarmonicTransform {
         if !coefficients.iter().all(|value| value.is_finite()) {
             return f64::NAN;
         }
-        let (square, _) = self.largest_square(coefficients);
-        square.sqrt()
-    }
-
-    /// [`Self::largest_norm`], and how it changes where the coefficients change by `rates`, the instant of the largest
-    /// being held: it is stationary in time there. Without motion it changes as fast as motion begins.
-    #[must_use]
-    pub fn largest_norm_and_rate(&self, coefficients: &[f64], rates: &[f64]) -> (f64, f64) {
-        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-        if !finite(coefficients) || !finite(rates) {
-            return (f64::NAN, f64::NAN);
-        }
-        let (square, instant) = self.largest_square(coefficients);
-        let norm = square.sqrt();
-        if norm == 0.0 {
-            return (norm, self.largest_norm(rates));
-        }
-        let count = self.n_coefficients();
-        let components = coefficients
-            .chunks_exact(count)
-            .zip(rates.chunks_exact(count));
-        let products = components
-            .map(|(component, rates)| self.at(component, instant) * self.at(rates, instant));
-        (norm, products.sum::<f64>() / norm)
+        self.largest_square(coefficients).sqrt()
     }
 
     /// Oscillation of one component at an instant.
@@ -62,17 +39,15 @@ impl HarmonicTransform {
         oscillation.map(|(c, x)| x * self.basis(c)[instant]).sum()
     }
 
-    /// Largest square of the norm, and the first instant that has it.
-    fn largest_square(&self, coefficients: &[f64]) -> (f64, usize) {
+    /// Largest square of the norm.
+    fn largest_square(&self, coefficients: &[f64]) -> f64 {
         let first = usize::from(self.has_mean());
         let components = coefficients.chunks_exact(self.n_coefficients().max(1));
         let moving: Vec<&[f64]> = components
             .filter(|component| component[first..].iter().any(|&value| value != 0.0))
             .collect();
-        let mut ranges = self.instants_of_largest(&moving);
-        ranges.sort_by_key(|range| range.start);
-        let mut largest = (0.0, 0);
-        for range in ranges {
+        let mut largest = 0.0_f64;
+        for range in self.instants_of_largest(&moving) {
             let mut squares = vec![0.0; range.len()];
             let mut history = squares.clone();
             for component in &moving {
@@ -86,11 +61,7 @@ impl HarmonicTransform {
                     *square += x * x;
                 }
             }
-            for (square, instant) in squares.into_iter().zip(range) {
-                if square > largest.0 {
-                    largest = (square, instant);
-                }
-            }
+            largest = squares.into_iter().fold(largest, f64::max);
         }
         largest
     }

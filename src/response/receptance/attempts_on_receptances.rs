@@ -11,7 +11,7 @@ pub(super) const DAMPING: f64 = 0.5;
 /// Newton steps of an attempt at most.
 pub(super) const NEWTON_STEPS: usize = 40;
 /// Most unknowns of a contact that are few: the whole derivative is factorised in the time of some steps.
-const FEW_UNKNOWNS: usize = 150;
+pub(super) const FEW_UNKNOWNS: usize = 150;
 /// Most harmonics that are few: with more a step takes so long that attempts are ended early, and that no pair is preconditioned by itself.
 const FEW_HARMONICS: usize = 6;
 
@@ -157,7 +157,7 @@ const WITH_MANY_HARMONICS: [(Start, Attempt); 8] = [
     (Known, Accelerated(combining_all(RENEWED_RESONANT))),
     (Linear, Accelerated(combining_all(RENEWED_RESONANT))),
 ];
-/// With few unknowns, before those above: steps of Newton's method, whose derivative is kept for some.
+/// With few unknowns of several harmonics, before those above: steps of Newton's method, whose derivative is kept for some.
 const WITH_FEW_UNKNOWNS: [(Start, Attempt); 2] = [
     (Known, Accelerated(BY_WHOLE)),
     (Linear, Accelerated(BY_WHOLE)),
@@ -166,13 +166,13 @@ const BY_WHOLE: Plan = plan(&[0, 7, 14, 21, 28], 40, Whole);
 const RENEWED: Plan = plan(&[0, 10, 25], 160, FirstOfFundamental);
 const RENEWED_RESONANT: Plan = plan(&[0, 10, 25], 160, Resonant);
 
-/// The attempts with so many unknowns and harmonics, in their order; without a known start the linear response begins.
+/// The attempts with so many harmonics, by the whole derivative first or not, in their order; without a known start the linear response begins.
 pub(super) fn attempts(
-    unknowns: usize,
+    by_whole: bool,
     harmonics: usize,
     has_known: bool,
 ) -> impl Iterator<Item = &'static (Start, Attempt)> {
-    let first: &[_] = if unknowns <= FEW_UNKNOWNS {
+    let first: &[_] = if by_whole && harmonics > 1 {
         &WITH_FEW_UNKNOWNS
     } else {
         &[]
@@ -192,15 +192,15 @@ pub(super) const BESIDE: Plan = combining_all(plan(&[0], 120, FirstOfFundamental
 
 #[cfg(test)]
 mod tests {
-    use super::{Best, FEW_HARMONICS, FEW_UNKNOWNS, Known, Linear, attempts};
+    use super::{Best, FEW_HARMONICS, Known, Linear, attempts};
 
     #[test]
     fn without_a_known_start_the_linear_response_begins() {
         let counts = [1, FEW_HARMONICS, FEW_HARMONICS + 1, 16];
-        let counts = counts.map(|harmonics| [(FEW_UNKNOWNS, harmonics), (1000, harmonics)]);
-        for (unknowns, harmonics) in counts.into_iter().flatten() {
+        let counts = counts.map(|harmonics| [(false, harmonics), (true, harmonics)]);
+        for (by_whole, harmonics) in counts.into_iter().flatten() {
             let starts =
-                |has_known: bool| attempts(unknowns, harmonics, has_known).map(|(start, _)| *start);
+                |has_known: bool| attempts(by_whole, harmonics, has_known).map(|(start, _)| *start);
             assert!(starts(false).next() == Some(Linear));
             assert!(starts(false).all(|start| start != Known));
             assert!(starts(true).next() == Some(Known));

@@ -10,7 +10,7 @@ use crate::response::harmonic_balance::{ContactShares, Status};
 use super::attempts_on_receptances::Attempt::{Accelerated, Newton};
 use super::attempts_on_receptances::Start::{Best, Known, Linear};
 use super::attempts_on_receptances::{
-    BESIDE, DAMPING, NEAR, NEWTON_STEPS, NewtonPlan, Plan, attempts,
+    BESIDE, DAMPING, FEW_UNKNOWNS, NEAR, NEWTON_STEPS, NewtonPlan, Plan, attempts,
 };
 use super::contact_equation::Preconditioned::{FirstOfFundamental, Whole};
 use super::contact_equation::{Buffers, ContactEquation, StepPreconditioner};
@@ -95,17 +95,17 @@ pub(super) struct Outcome {
 
 impl ContactEquation<'_> {
     /// Solves from the best of `starts`, or from the linear response without any, until the residual is within `tolerance`, by so many
-    /// attempts at most.
+    /// attempts at most; by the whole derivative first, where it is to be taken and the unknowns are few.
     pub(super) fn solve(
         &mut self,
         starts: &[Vec<f64>],
         tolerance: f64,
-        most_attempts: usize,
+        (takes_whole, most_attempts): (bool, usize),
     ) -> Outcome {
         let linear = self.linear_start();
         let known = self.best_of(starts);
-        let unknowns = self.contact.motion().len();
-        let attempts = attempts(unknowns, self.harmonics.len(), known.is_some());
+        let by_whole = takes_whole && self.contact.motion().len() <= FEW_UNKNOWNS;
+        let attempts = attempts(by_whole, self.harmonics.len(), known.is_some());
         let attempts = attempts.take(most_attempts);
         let mut best = (f64::INFINITY, linear.clone());
         let mut total = Outcome::none();

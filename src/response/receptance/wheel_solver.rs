@@ -27,6 +27,8 @@ pub struct WheelSolver<'a> {
     /// Forces on the contact besides its own.
     added_forces: Option<ContactForces>,
     most_attempts: usize,
+    /// Whether the whole derivative is taken of a contact with few unknowns.
+    takes_whole: bool,
     buffers: Buffers,
     /// Tuned response to the excitation of the motions [contact, strain, observed].
     excited: Vec<Complex64>,
@@ -82,6 +84,7 @@ impl<'a> WheelSolver<'a> {
             linear: Field::default(),
             added_forces: None,
             most_attempts: usize::MAX,
+            takes_whole: false,
             buffers: Buffers::default(),
             excited: Vec::new(),
         }
@@ -90,6 +93,12 @@ impl<'a> WheelSolver<'a> {
     /// So many attempts at most from now on at every frequency; all of them at first.
     pub fn limit_attempts(&mut self, most: usize) {
         self.most_attempts = most;
+    }
+
+    /// From now on the whole derivative is taken first of a contact with few unknowns, in the place of the mean tangent: where its harmonics
+    /// are solved with from the start, and not where others have led to.
+    pub(crate) fn take_whole_derivative(&mut self) {
+        self.takes_whole = true;
     }
 
     /// This solver with derivatives from `contact`, which is its contact with fewer samples; none: from its contact itself.
@@ -157,7 +166,7 @@ impl<'a> WheelSolver<'a> {
         if !self.prepare(frequency_hz) {
             return (Err(Status::SingularJacobian), work);
         }
-        let most_attempts = self.most_attempts;
+        let (takes_whole, most_attempts) = (self.takes_whole, self.most_attempts);
         let Some(mut equation) = self.equation() else {
             let solution = WheelSolution {
                 motions: Vec::new(),
@@ -166,7 +175,7 @@ impl<'a> WheelSolver<'a> {
             };
             return (Ok(solution), work);
         };
-        let outcome = equation.solve(starts, tolerance, most_attempts);
+        let outcome = equation.solve(starts, tolerance, (takes_whole, most_attempts));
         work.iterations = outcome.iterations;
         work.tangents = outcome.tangents;
         work.retries = outcome.retries;

@@ -29,6 +29,7 @@ use crate::settings::basis_choice::judged_conditions;
 use crate::settings::fixed_interface::{FixedInterface, reduce_sector, sensitivity_vectors};
 use crate::settings::harmonics_on_basis::{choose_harmonics, with_separation};
 use crate::settings::row_settings::{contact_stiffness, row_settings};
+use crate::settings::tuned_receptances::Made;
 use crate::study::{Excitation, PipelineError, Study, excitations, solver_under};
 
 /// Largest relative change of a tuned peak by more fixed-interface modes.
@@ -188,13 +189,19 @@ impl<'a> LadderBench<'a> {
             }
             HarmonicLevel::Set(_) => None,
         };
-        let solver = solver_under(&excitations(&study), |case| {
+        let excitations = excitations(&study);
+        let made = Made::on_basis(&study, &excitations, &model);
+        let solver = solver_under(&excitations, |case| {
             let settings = row_settings(&case.study);
             let model = Arc::new(case.of(&model));
+            let on_engine = |solver: RowSolver| match &made {
+                Some(made) => made.takes_rows_of(solver, case),
+                None => Ok(solver),
+            };
             let solver = RowSolver::new(Arc::clone(&model), settings.clone())?;
             let (HarmonicLevel::Automatic(tolerance), Some(full)) = (&setting.harmonics, &full)
             else {
-                return Ok(LoadCaseSolver::from(solver));
+                return Ok(LoadCaseSolver::from(on_engine(solver)?));
             };
             let full = Arc::new(case.of(full));
             let sets = choose_harmonics(
@@ -205,14 +212,14 @@ impl<'a> LadderBench<'a> {
                 &settings.harmonics,
                 Some(*tolerance),
             )?;
-            let solver = solver.with_choices(sets.clone(), 0.0)?;
+            let solver = on_engine(solver.with_choices(sets.clone(), 0.0)?)?;
             let solver = LoadCaseSolver::from(solver);
             if !setting.law.has_variable_load() {
                 return Ok(solver);
             }
             let sets = with_separation(&full, &settings, sets)?;
             let finer = RowSolver::new(model, settings)?.with_choices(sets, 0.0)?;
-            Ok::<_, PipelineError>(solver.with_fallback(finer, false))
+            Ok::<_, PipelineError>(solver.with_fallback(on_engine(finer)?, false))
         })?;
         Ok(LadderEngine::new(
             solver,

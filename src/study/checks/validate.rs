@@ -18,7 +18,7 @@ use super::validate_stop::stop;
 use crate::input::{Finding, Problem, SourceMap};
 use crate::model::reduction::{Basis, ReductionOptions};
 use crate::model::sector::{Damper, DamperBody, DamperShape, ParametricOptions};
-use crate::response::forced_response::{Harmonics, SolverOptions};
+use crate::response::forced_response::{Harmonics, SearchHarmonics, SolverOptions};
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
 use crate::response::receptance::HIGHEST_HARMONIC;
 use crate::study::keys::contact::ContactTable;
@@ -179,6 +179,13 @@ fn resolve(
         for (key, reason) in against_receptances(ring, &solver) {
             check.conflict(key, &format!("basis = \"tuned_receptances\" {reason}"));
         }
+    }
+    let is_creeping = contact.as_ref().map(|contact| contact.ring) == Some(Ring::Creeping);
+    let sought_with_all = reduction.basis == Basis::StickSlide || is_creeping;
+    if let (SearchHarmonics::Set(_), true) = (&solver.search_harmonics, sought_with_all) {
+        let reason = "is for tuned receptances; on a basis of modes peaks are sought with all \
+                      harmonics; accepted: \"auto\" or \"all\"";
+        check.conflict("solver.search_harmonics", reason);
     }
     let patterns = (head.patterns, given.records);
     let mistuning = mistuning(check, path, file.mistuning, &sweep, patterns)?;

@@ -3,27 +3,26 @@
 mod envelope;
 mod peak_search;
 mod samples;
-mod sloped;
 pub(super) mod summit;
 
 pub(super) use envelope::VERTEX_SHARE;
 pub use envelope::{Envelope, SearchSettings};
 pub use peak_search::{SearchEnd, SearchResult, find_peak};
 pub(super) use samples::Samples;
-pub use samples::{Curve, Reading, Sample};
+pub use samples::{Curve, Sample};
 
 /// Points that fail beside a flank of a steep curve.
 #[cfg(test)]
 mod tests {
     use super::peak_search::tests::{ENVELOPE, SETTINGS, curves};
-    use super::{Curve, Reading, SearchEnd, find_peak};
+    use super::{Curve, SearchEnd, find_peak};
 
     /// A curve that can be steeper than the envelope allows for.
     struct Steep<F>(F);
 
     impl<F: FnMut(f64) -> Option<Vec<f64>>> Curve for Steep<F> {
-        fn read(&mut self, frequency_hz: f64) -> Option<Reading> {
-            (self.0)(frequency_hz).map(Reading::from)
+        fn read(&mut self, frequency_hz: f64) -> Option<Vec<f64>> {
+            (self.0)(frequency_hz)
         }
 
         fn is_steep(&self) -> bool {

@@ -10,8 +10,8 @@ const BESIDE_LOST: f64 = 0.1;
 
 /// Curves over frequency, one per blade, that a search reads.
 pub trait Curve {
-    /// What is read at a frequency, Hz; none where the solution failed.
-    fn read(&mut self, frequency_hz: f64) -> Option<Reading>;
+    /// Amplitude of every blade, m, at a frequency, Hz; none where the solution failed.
+    fn read(&mut self, frequency_hz: f64) -> Option<Vec<f64>>;
 
     /// A frequency, Hz, that a search has to look at for other reasons than its `samples`, of which `best` is the highest.
     fn unseen(&self, _samples: &[Sample], _best: usize) -> Option<f64> {
@@ -24,27 +24,9 @@ pub trait Curve {
     }
 }
 
-impl<F: FnMut(f64) -> Option<R>, R: Into<Reading>> Curve for F {
-    fn read(&mut self, frequency_hz: f64) -> Option<Reading> {
-        self(frequency_hz).map(R::into)
-    }
-}
-
-/// Amplitude of every blade at one frequency.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reading {
-    /// Amplitudes, m.
-    pub amplitudes: Vec<f64>,
-    /// Derivatives of the amplitudes by frequency, m/Hz; none where they are not known.
-    pub slopes: Option<Vec<f64>>,
-}
-
-impl From<Vec<f64>> for Reading {
-    fn from(amplitudes: Vec<f64>) -> Self {
-        Self {
-            amplitudes,
-            slopes: None,
-        }
+impl<F: FnMut(f64) -> Option<Vec<f64>>> Curve for F {
+    fn read(&mut self, frequency_hz: f64) -> Option<Vec<f64>> {
+        self(frequency_hz)
     }
 }
 
@@ -55,8 +37,6 @@ pub struct Sample {
     pub frequency_hz: f64,
     /// Amplitude of every blade; empty where the solution failed.
     pub amplitudes: Vec<f64>,
-    /// Derivatives of the amplitudes by frequency; none where they are not known.
-    pub slopes: Option<Vec<f64>>,
     /// Largest amplitude over the blades.
     pub largest: f64,
     /// Blade of the largest amplitude.
@@ -79,11 +59,9 @@ pub(super) enum Lost {
 pub struct Samples(pub Vec<Sample>);
 
 impl Samples {
-    pub fn insert(&mut self, frequency_hz: f64, reading: Option<Reading>) {
-        let (amplitudes, slopes) = match reading {
-            Some(reading) => (reading.amplitudes, reading.slopes),
-            None => (Vec::new(), None),
-        };
+    /// Adds what was read at a frequency, Hz; none where the solution failed.
+    pub fn insert(&mut self, frequency_hz: f64, amplitudes: Option<Vec<f64>>) {
+        let amplitudes = amplitudes.unwrap_or_default();
         let (blade, largest) = amplitudes.iter().copied().enumerate().fold(
             (0, f64::NEG_INFINITY),
             |best, (blade, amplitude)| {
@@ -102,7 +80,6 @@ impl Samples {
             Sample {
                 frequency_hz,
                 amplitudes,
-                slopes,
                 largest,
                 blade,
             },
@@ -165,7 +142,7 @@ impl Samples {
         self.lost_between(left, right, linear_half_bandwidth_hz)
     }
 
-    /// Whether lower amplitudes were seen on both sides, or are told by the slope at an end.
+    /// Whether lower amplitudes were seen on both sides.
     pub fn bracketed(&self, best: usize) -> bool {
         let sample = &self.0[best];
         // Where the curve jumps a search can ask for the same frequency twice.
@@ -179,7 +156,7 @@ impl Samples {
             (Some(left), Some(right)) => {
                 left.largest < sample.largest && right.largest < sample.largest
             }
-            _ => self.rises_inward(best),
+            _ => false,
         }
     }
 
@@ -211,20 +188,6 @@ impl Samples {
                     .filter_map(move |&i| summit::of_cubic(points, self.point(i, blade)))
             })
             .collect()
-    }
-
-    /// The height of the best, or what polynomials through it and its neighbours promise above it.
-    pub fn promised(&self) -> f64 {
-        let Some(best) = self.best() else {
-            return 0.0;
-        };
-        let parabola = self.neighbours(best).and_then(|(left, right)| {
-            summit::of_parabola(self.points([left, best, right], self.0[best].blade))
-        });
-        let summits = self.skewed_summits(best).into_iter().chain(parabola);
-        summits.fold(self.0[best].largest, |height, summit| {
-            height.max(summit.amplitude)
-        })
     }
 
     /// The summit of another local maximum that may be higher than the best.

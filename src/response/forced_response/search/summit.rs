@@ -6,9 +6,6 @@
 /// A point of a curve: frequency, Hz, and `1/A^2`.
 pub type CurvePoint = (f64, f64);
 
-/// A point of a curve with its slope: frequency, Hz, `1/A^2` and its derivative by frequency.
-pub type SlopedPoint = (f64, f64, f64);
-
 /// What a polynomial says of the highest place between the outer two of three points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summit {
@@ -66,25 +63,6 @@ pub fn of_cubic(points: [CurvePoint; 3], fourth: CurvePoint) -> Option<Summit> {
     (summit.frequency_hz > x0 && summit.frequency_hz < x2).then_some(summit)
 }
 
-/// Summit of the cubic through two points with their slopes, ascending in frequency; none if it has none between them.
-pub fn of_slopes(left: SlopedPoint, right: SlopedPoint) -> Option<Summit> {
-    let width = right.0 - left.0;
-    let rise = right.1 - left.1;
-    let (start, end) = (width * left.2, width * right.2);
-    // y = y0 + start t + curvature t^2 + c t^3, t from 0 to 1.
-    let (curvature, c) = (3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise);
-    let bend = (curvature * curvature - 3.0 * c * start).sqrt();
-    let t = -start / (curvature + bend);
-    if !(bend > 0.0 && t > 0.0 && t < 1.0) {
-        return None;
-    }
-    let bottom = left.1 + t * (start + t * (curvature + t * c));
-    Some(Summit {
-        frequency_hz: left.0 + t * width,
-        ..summit_at(bottom, bend / (width * width))
-    })
-}
-
 /// Height and width where `1/A^2` has this minimum and half this second derivative.
 fn summit_at(bottom: f64, bend: f64) -> Summit {
     let open = bottom > 0.0;
@@ -140,25 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn two_points_with_slopes_tell_a_parabola_and_a_cubic() {
-        for c in [0.0, 0.1, -0.1] {
-            // Minimum at 1.
-            let point = |x: f64| {
-                let t = x - 1.0;
-                let y = 2.0 + 0.5 * t * t + c * t.powi(3);
-                (x, y, t + 3.0 * c * t * t)
-            };
-            let summit = of_slopes(point(-0.3), point(1.9)).expect("minimum inside");
-            assert!((summit.frequency_hz - 1.0).abs() < 1e-12);
-            assert!((summit.amplitude - 2.0_f64.powf(-0.5)).abs() < 1e-12);
-            assert!((summit.half_bandwidth_hz - 2.0).abs() < 1e-11);
-            assert_eq!(of_slopes(point(1.1), point(1.9)), None);
-        }
-    }
-
-    #[test]
     fn a_valley_has_no_summit() {
         assert_eq!(of_parabola([(0.0, 1.0), (1.0, 2.0), (2.0, 1.0)]), None);
-        assert_eq!(of_slopes((0.0, 1.0, 1.0), (2.0, 1.0, -1.0)), None);
     }
 }

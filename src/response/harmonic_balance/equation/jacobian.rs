@@ -4,9 +4,6 @@
 //! dR_k / dx_l = delta_kl (Z(k omega) + C^H k_c C) + C^H (dG_k / dd_l) C
 //! ```
 
-use std::ops::Range;
-
-use super::harmonic_blocks::Link;
 use super::{HarmonicSystem, SystemWorkspace};
 use crate::linalg::{Complex64, Matrix};
 
@@ -14,24 +11,9 @@ impl HarmonicSystem {
     /// Derivative of the residual at the point last given to [`Self::residual`] with `derivative`,
     /// column-major `n x n` into `jacobian`.
     pub fn jacobian(&self, omega: f64, workspace: &mut SystemWorkspace, jacobian: &mut [f64]) {
-        let all = 0..self.blocks().len();
-        self.jacobian_of(all.clone(), all, omega, workspace, jacobian);
-    }
-
-    /// Derivative of the harmonics at the places `rows` of the set by those at `columns`, which are among them.
-    pub(in crate::response::harmonic_balance) fn jacobian_of(
-        &self,
-        rows: Range<usize>,
-        columns: Range<usize>,
-        omega: f64,
-        workspace: &mut SystemWorkspace,
-        jacobian: &mut [f64],
-    ) {
         let blocks = &self.linear.blocks;
-        let wanted_rows = blocks.unknowns_of(rows.clone());
-        let wanted_columns = blocks.unknowns_of(columns.clone());
-        let height = wanted_rows.len();
-        self.linear.jacobian_of(rows, columns, omega, jacobian);
+        let height = blocks.unknowns();
+        self.linear.jacobian(omega, jacobian);
         let SystemWorkspace {
             contact, active, ..
         } = workspace;
@@ -40,17 +22,16 @@ impl HarmonicSystem {
         }
         let interface = &self.contact.interface;
         let links = blocks.links();
-        let rows: Vec<&Link<'_>> = within(&links, &wanted_rows);
         let (mut moved, mut loaded): (Option<&Matrix<f64>>, Option<&Matrix<f64>>) = (None, None);
         let n_coefficients = self.contact.transform.n_coefficients();
-        for column in within(&links, &wanted_columns) {
+        for column in &links {
             if !moved.is_some_and(|rows| std::ptr::eq(rows, column.rows)) {
                 active.pack_motions(interface, column.rows);
                 moved = Some(column.rows);
             }
             let mut changed: Option<usize> = None;
             for c in 0..n_coefficients {
-                for row in rows.iter().filter(|row| row.coefficient == c) {
+                for row in links.iter().filter(|row| row.coefficient == c) {
                     if !loaded.is_some_and(|rows| std::ptr::eq(rows, row.rows)) {
                         active.pack_forces(interface, row.rows, contact.separated);
                         loaded = Some(row.rows);
@@ -60,8 +41,7 @@ impl HarmonicSystem {
                         active.change(interface, contact, column.size, |slopes| slopes[entry]);
                         changed = Some(c);
                     }
-                    let at = (column.unknown - wanted_columns.start) * height
-                        + (row.unknown - wanted_rows.start);
+                    let at = column.unknown * height + row.unknown;
                     let end = at + (column.size - 1) * height + row.size;
                     let sign = row.sign * column.sign;
                     let size = (row.size, column.size);
@@ -116,12 +96,4 @@ impl HarmonicSystem {
             0.5 * (slopes[im * count + re] - slopes[re * count + im])
         });
     }
-}
-
-/// The links whose unknowns are among `unknowns`.
-fn within<'a, 'b>(links: &'a [Link<'b>], unknowns: &Range<usize>) -> Vec<&'a Link<'b>> {
-    links
-        .iter()
-        .filter(|link| unknowns.contains(&link.unknown))
-        .collect()
 }

@@ -9,8 +9,6 @@
 //! A wheel leaves the stuck springs to the contact forces: where contact is stiff and slips, these are far smaller than
 //! spring and correction by themselves, whose rounding would be left.
 
-use std::ops::Range;
-
 use super::harmonic_blocks::HarmonicBlocks;
 use super::linear_response;
 use crate::linalg::{Complex64, LuWorkspace, add_times_vector};
@@ -95,36 +93,26 @@ impl LinearPart {
         }
     }
 
-    /// Derivative of the linear part of the harmonics at `rows` by those at `columns`, column-major.
-    pub(super) fn jacobian_of(
-        &self,
-        rows: Range<usize>,
-        columns: Range<usize>,
-        omega: f64,
-        jacobian: &mut [f64],
-    ) {
-        let rows = self.blocks.unknowns_of(rows);
-        let height = rows.len();
-        let first_column = self.blocks.unknowns_of(columns.clone()).start;
+    /// Derivative of the linear part, column-major.
+    pub(super) fn jacobian(&self, omega: f64, jacobian: &mut [f64]) {
+        let height = self.blocks.unknowns();
         jacobian.fill(0.0);
-        for index in columns {
-            let block = &self.blocks.as_slice()[index];
+        for (index, block) in self.blocks.as_slice().iter().enumerate() {
             let n = block.structure.size();
             let start = self.blocks.unknowns_of(index..index).start;
-            let (top, left) = (start - rows.start, start - first_column);
             let k_omega = f64::from(block.harmonic) * omega;
             let parts = if block.harmonic == 0 { 1 } else { 2 };
             for part in 0..parts {
-                let row = top + part * n;
+                let row = start + part * n;
                 for j in 0..n {
-                    let column = &mut jacobian[(left + part * n + j) * height..][..height];
+                    let column = &mut jacobian[(start + part * n + j) * height..][..height];
                     column[row..row + n].copy_from_slice(block.stuck.real.column(j));
                     column[row + j] += block.structure.eigenvalues()[j] - k_omega * k_omega;
                     if let (2, Some(imaginary)) = (parts, &block.stuck.imaginary) {
                         let (other, sign) = if part == 0 {
-                            (top + n, 1.0)
+                            (start + n, 1.0)
                         } else {
-                            (top, -1.0)
+                            (start, -1.0)
                         };
                         for (i, &value) in imaginary.column(j).iter().enumerate() {
                             column[other + i] += sign * value;
@@ -134,8 +122,8 @@ impl LinearPart {
             }
             if parts == 2 {
                 block.structure.for_each_damping(k_omega, |i, j, d| {
-                    jacobian[(left + j) * height + top + n + i] += d;
-                    jacobian[(left + n + j) * height + top + i] -= d;
+                    jacobian[(start + j) * height + start + n + i] += d;
+                    jacobian[(start + n + j) * height + start + i] -= d;
                 });
             }
         }

@@ -7,9 +7,6 @@
 //! with `lambda` the contact-free eigenvalues, mistuning included; contact springs are undamped
 //! and harmonic 0 has no damping.
 
-use std::sync::{Arc, OnceLock};
-
-use super::contact_coordinates::ContactCoordinates;
 use crate::linalg::{Complex64, Matrix, add_times};
 use crate::response::harmonic_balance::Damping;
 use crate::response::mistuning::{ModalRows, StructuralModes};
@@ -38,8 +35,6 @@ pub struct Structure {
     contact: ModalRows,
     observed: ModalRows,
     sectors: usize,
-    /// Found where they are asked for.
-    contact_coordinates: OnceLock<Arc<ContactCoordinates>>,
 }
 
 /// Linear contact stiffness `C^H diag(springs) C` in modal coordinates.
@@ -83,7 +78,6 @@ impl Structure {
             contact: modes.contact,
             observed: modes.observed,
             sectors: modes.sectors,
-            contact_coordinates: OnceLock::new(),
         }
     }
 
@@ -97,7 +91,6 @@ impl Structure {
         if eta != 0.0 {
             let added = self.eigenvalues.iter().map(|lambda| eta * lambda / omega);
             structure.damping.viscous.add_diagonal(added.collect());
-            structure.contact_coordinates = OnceLock::new();
         }
         structure
     }
@@ -124,19 +117,6 @@ impl Structure {
     #[must_use]
     pub fn contact(&self) -> &ModalRows {
         &self.contact
-    }
-
-    /// The structure in coordinates of which few move the contact, whose rows are taken to be real.
-    pub(in crate::response::harmonic_balance) fn contact_coordinates(
-        &self,
-    ) -> &Arc<ContactCoordinates> {
-        self.contact_coordinates.get_or_init(|| {
-            let viscous = (self.damping.viscous != Viscous::None)
-                .then_some(|matrix: &Matrix<f64>| self.damping.viscous.times(matrix));
-            let (contact, lambda) = (&self.contact.real, &self.eigenvalues);
-            let eta = self.damping.loss_factor;
-            Arc::new(ContactCoordinates::new(contact, lambda, eta, viscous))
-        })
     }
 
     /// Displacement r, theta, z of the observed node, blade after blade.
@@ -312,18 +292,6 @@ impl Viscous {
                 Self::Full(rotation.adjoint_times(&scaled))
             }
             _ => Self::Diagonal(tuned),
-        }
-    }
-
-    /// `C matrix`.
-    fn times(&self, matrix: &Matrix<f64>) -> Matrix<f64> {
-        let (rows, columns) = (matrix.rows(), matrix.columns());
-        match self {
-            Self::None => Matrix::zeros(rows, columns),
-            Self::Diagonal(viscous) => {
-                Matrix::from_fn(rows, columns, |i, j| viscous[i] * matrix[(i, j)])
-            }
-            Self::Full(viscous) => viscous.times(matrix),
         }
     }
 

@@ -17,7 +17,6 @@ use super::active_rows::ActiveRows;
 use super::equivalent_contact::equivalent_springs;
 use super::harmonic_blocks::HarmonicBlocks;
 use super::linear_part::LinearPart;
-use super::step_cost::condensing_pays;
 use crate::linalg::Complex64;
 use crate::response::friction::{ContactLaw, PairParameters};
 use crate::response::harmonic_balance::HarmonicTransform;
@@ -49,11 +48,6 @@ impl SystemWorkspace {
     /// itself, see [`crate::response::harmonic_balance::PairHarmonics::couple_first`].
     pub(in crate::response::harmonic_balance) fn couple_first(&mut self, coefficients: usize) {
         self.contact.pairs.couple_first(coefficients);
-    }
-
-    /// From now on derivatives of pairs are those of all harmonics again.
-    pub(in crate::response::harmonic_balance) fn couple_all(&mut self) {
-        self.couple_first(usize::MAX);
     }
 }
 
@@ -168,37 +162,6 @@ impl HarmonicSystem {
     #[must_use]
     pub fn free_ring_motions(&self) -> [bool; 2] {
         self.contact.interface.geometry.ring_free
-    }
-
-    /// Number of the leading harmonics, 0 and 1: those that the others are small beside.
-    pub(in crate::response::harmonic_balance) fn leading(&self) -> usize {
-        self.fundamental() + 1
-    }
-
-    /// Real coefficients of the leading harmonics.
-    pub(in crate::response::harmonic_balance) fn leading_coefficients(&self) -> usize {
-        let after = self.linear.blocks.coefficients().get(self.leading());
-        let all = self.contact.transform.n_coefficients();
-        after.copied().unwrap_or(all)
-    }
-
-    /// Whether all harmonics have the same real matrices.
-    pub(in crate::response::harmonic_balance) fn is_shared(&self) -> bool {
-        self.linear.blocks.are_shared()
-    }
-
-    /// Whether the step by contact forces is the cheaper one, see [`condensing_pays`].
-    #[must_use]
-    pub fn condenses(&self) -> bool {
-        let modes = self.blocks()[0].structure.size();
-        let coefficients = self.contact.transform.n_coefficients();
-        self.is_shared()
-            && condensing_pays(
-                self.contact.interface.law,
-                coefficients,
-                modes,
-                self.contact.rows,
-            )
     }
 
     /// Buffers for this system.
@@ -320,5 +283,121 @@ impl HarmonicSystem {
         }
         self.contact_displacement(x, &mut workspace.contact.displacement);
         self.contact.mean_friction_n(&mut workspace.contact)
+    }
+}
+
+#[cfg(test)]
+pub(in crate::response::harmonic_balance) mod tests {
+    use super::*;
+    use crate::linalg::Matrix;
+    use crate::model::cyclic::ContactGeometry;
+    use crate::response::harmonic_balance::Damping;
+    use crate::response::harmonic_balance::equation::Structure;
+    use crate::response::mistuning::{ModalRows, StructuralModes};
+
+    pub(crate) const OMEGA: f64 = 1.1;
+    const MODES: usize = 5;
+
+    /// Five modes with damping between them, four pairs of which some have a normal row.
+    pub(crate) fn system(law: ContactLaw, harmonics: &[usize], samples: usize) -> HarmonicSystem {
+        let rows = |count, factor: f64| ModalRows {
+            real: Matrix::from_fn(count, MODES, |i, j| {
+                (factor * (1 + i + 3 * j + i * j) as f64).sin()
+            }),
+            imaginary: None,
+        };
+        let eigenvalues = vec![1.0, 3.5, 1.7, 9.0, 14.0];
+        let structure = Arc::new(Structure::new(
+            StructuralModes {
+                tuned_eigenvalues: eigenvalues.iter().map(|lambda| 1.1 * lambda).collect(),
+                eigenvalues,
+                rotation: Some(Matrix::from_fn(MODES, MODES, |i, j| {
+                    f64::from(u8::from(i == j)) + 0.2 * ((3 * i + j) as f64).cos()
+                })),
+                added_damping_per_s: vec![0.0; MODES],
+                contact: rows(10, 1.0),
+                observed: rows(3, 2.0),
+                sectors: 2,
+            },
+            Damping::Rayleigh {
+                mass_per_s: 0.02,
+                stiffness_s: 0.01,
+            },
+        ));
+        let stuck = Arc::new(structure.contact_stiffness(&[0.7, 0.9, 0.9, 0.6, 0.8]));
+        let blocks = harmonics.iter().map(|&harmonic| HarmonicBlock {
+            harmonic: harmonic as u32,
+            structure: Arc::clone(&structure),
+            stuck: Arc::clone(&stuck),
+        });
+        let pair = PairParameters {
+            normal_load_n: 0.4,
+            normal_stiffness_n_per_m: 0.7,
+            tangential_stiffness_n_per_m: 0.9,
+            friction_coefficient: 0.3,
+        };
+        let loads = [0.4, 0.0, 50.0, 0.2];
+        let interface = ContactInterface {
+            law,
+            geometry: ContactGeometry {
+                weights: vec![0.5; 2],
+                load_weights: vec![0.5; 2],
+                rows: vec![[Some(0), Some(1), Some(2)], [None, Some(3), Some(4)]],
+                ring_motion: vec![[[0.0; 2]; 2]; 2],
+                ring_free: [false; 2],
+            },
+            pairs: loads
+                .map(|normal_load_n| PairParameters {
+                    normal_load_n,
+                    ..pair
+                })
+                .to_vec(),
+        };
+        let force: Vec<Complex64> = (0..MODES)
+            .map(|i| Complex64::new(1.0, 0.3 * i as f64))
+            .collect();
+        let transform = HarmonicTransform::new(harmonics, samples).expect("enough samples");
+        HarmonicSystem::new(blocks.collect(), force, interface, Arc::new(transform))
+    }
+
+    /// A state in which some pairs slip.
+    pub(crate) fn state(system: &HarmonicSystem) -> Vec<f64> {
+        let entry = |i: usize| 0.4 * (0.7 + 1.3 * i as f64).sin() / (1.0 + (i / 10) as f64);
+        (0..system.unknowns()).map(entry).collect()
+    }
+
+    #[test]
+    fn the_jacobian_is_the_difference_of_residuals() {
+        let change = 1e-7;
+        for law in ContactLaw::ALL {
+            for harmonics in [&[1][..], &[1, 3], &[0, 1, 2]] {
+                let system = system(law, harmonics, 64);
+                let x = state(&system);
+                let n = x.len();
+                let mut workspace = system.workspace();
+                let mut residual = vec![0.0; n];
+                let (_, shares) = system.residual(OMEGA, &x, &mut residual, true, &mut workspace);
+                assert!((0.3..1.0).contains(&shares.slipping), "{law:?}: {shares:?}");
+                let mut jacobian = vec![0.0; n * n];
+                system.jacobian(OMEGA, &mut workspace, &mut jacobian);
+                for (at, column) in jacobian.chunks_exact(n).enumerate() {
+                    let mut difference = vec![0.0; n];
+                    for sign in [1.0, -1.0] {
+                        let mut moved = x.clone();
+                        moved[at] += sign * change;
+                        system.residual(OMEGA, &moved, &mut residual, false, &mut workspace);
+                        for (sum, r) in difference.iter_mut().zip(&residual) {
+                            *sum += sign * r / (2.0 * change);
+                        }
+                    }
+                    for (i, (exact, found)) in difference.iter().zip(column).enumerate() {
+                        assert!(
+                            (exact - found).abs() < 1e-6,
+                            "{law:?} {harmonics:?}: {at} {i}"
+                        );
+                    }
+                }
+            }
+        }
     }
 }

@@ -306,7 +306,7 @@ impl MacroSlipPairs {
 mod tests {
     use super::super::{PairHarmonics, PairJacobian};
     use super::*;
-    use crate::response::harmonic_balance::condensed::newton_step::tests::{OMEGA, state, system};
+    use crate::response::harmonic_balance::equation::system_for_tests::{OMEGA, state, system};
 
     /// Half waves and not, with an odd number of samples, with derivatives between harmonics and without.
     #[test]

@@ -412,7 +412,7 @@ fn attained(y: &[f64; LANES], limit: &[f64; LANES], elastic: &[f64; LANES]) -> [
 mod tests {
     use super::super::{PairHarmonics, PairJacobian};
     use super::*;
-    use crate::response::harmonic_balance::condensed::newton_step::tests::{OMEGA, state, system};
+    use crate::response::harmonic_balance::equation::system_for_tests::{OMEGA, state, system};
 
     /// With the mean and without, odd numbers of samples, derivatives between harmonics and without.
     #[test]

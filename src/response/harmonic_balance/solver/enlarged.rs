@@ -7,8 +7,6 @@
 //! P = J    or    P = [J_ss, 0; 0, diag_k (part of J_kk linear in complex unknowns)]
 //! ```
 //!
-//! (where `J_ss` itself is large, only its leading harmonics whole, see [`super::kept_jacobian`])
-//!
 //! is solved by the fixed-point iteration `x <- x - P^-1 R(x)` with Anderson's acceleration (Anderson
 //! 1965; Walker & Ni 2011, SIAM J. Numer. Anal. 49(4)). P is the whole enlarged Jacobian where that is
 //! small (one sector of a tuned wheel): the first step is then Newton's. On a wheel it would cost more
@@ -20,12 +18,9 @@ use std::sync::Arc;
 
 use super::NewtonWorkspace;
 use super::anderson::Anderson;
-use super::kept_jacobian::{KeptJacobian, solve_complex};
-use super::newton_iteration::norm_of;
+use super::newton_workspace::WholeJacobian;
 use crate::linalg::{Complex64, LuWorkspace};
-use crate::response::harmonic_balance::equation::{
-    HarmonicBlock, HarmonicSystem, LARGEST_WHOLE_JACOBIAN, SystemWorkspace,
-};
+use crate::response::harmonic_balance::equation::{HarmonicBlock, HarmonicSystem, SystemWorkspace};
 use crate::response::harmonic_balance::{HarmonicTransform, TransformError};
 
 /// Highest harmonic that is looked at, and where a set has all up to that one.
@@ -123,8 +118,7 @@ fn excited_up_to(highest: u32, variable_load: bool) -> Vec<u32> {
 pub struct Enlarged {
     /// The solution, zero outside of the set.
     pub before: Vec<f64>,
-    /// The solution after one Newton correction at the finer sampling, in the set alone, or after as many accelerated steps as
-    /// bring it about where the Jacobian is not to be had.
+    /// The solution after one Newton correction at the finer sampling, in the set alone.
     pub resampled: Vec<f64>,
     /// The solution in the set alone at the sampling of the enlarged set: what `after` would be without harmonics outside.
     pub alone: Vec<f64>,
@@ -160,11 +154,9 @@ struct Enlargement<'a> {
 /// Factors of P.
 enum Factors {
     /// Factors of the whole J.
-    Whole(Box<KeptJacobian>),
+    Whole(WholeJacobian),
     /// Factors of each harmonic outside of the set; those of `J_ss` are in the workspace of the set.
     Blocks(Vec<Option<LuWorkspace<Complex64>>>),
-    /// Factors of every harmonic by itself.
-    ByHarmonic(Box<KeptJacobian>),
 }
 
 /// Corrects the solution `x` of `system` at `omega` towards that of the enlarged set; `blocks` are
@@ -199,16 +191,11 @@ pub fn enlarge(
     let places: Vec<Option<usize>> = blocks.iter().map(same).collect();
     let before = embed(system, &enlarged, &places, x);
     let linearised = with(blocks, &set.linearised);
-    let large = system.unknowns() > LARGEST_WHOLE_JACOBIAN && system.is_shared();
     let buffers = enlarged.workspace();
-    let factors = if large {
-        Factors::by_harmonic(&linearised, omega, &before)?
-    } else {
-        if !workspace.factor_at(system, omega, x) {
-            return None;
-        }
-        Factors::of(&linearised, &places, omega, &before)?
-    };
+    if !workspace.factor_at(system, omega, x) {
+        return None;
+    }
+    let factors = Factors::of(&linearised, &places, omega, &before)?;
     let mut enlargement = Enlargement {
         system,
         workspace,
@@ -290,7 +277,7 @@ impl Enlargement<'_> {
             _ => Vec::new(),
         };
         match &mut self.factors {
-            Factors::Whole(factors) | Factors::ByHarmonic(factors) => factors.solve(&mut step),
+            Factors::Whole(factors) => factors.solve(&mut step),
             Factors::Blocks(blocks) => {
                 for (index, factors) in blocks.iter_mut().enumerate() {
                     let place = range(&self.enlarged, index);
@@ -307,52 +294,23 @@ impl Enlargement<'_> {
         step
     }
 
-    /// `J_ss^-1 residual_s`, or what stands for it, zero outside of the set.
+    /// `J_ss^-1 residual_s`, zero outside of the set.
     fn set_step(&mut self, residual: &[f64]) -> Vec<f64> {
-        if let Factors::ByHarmonic(factors) = &mut self.factors {
-            let mut step = residual.to_vec();
-            factors.solve(&mut step);
-            for (index, place) in self.places.iter().enumerate() {
-                if place.is_none() {
-                    step[range(&self.enlarged, index)].fill(0.0);
-                }
-            }
-            return step;
-        }
         let mut restricted = self.restricted(residual);
         self.workspace.solve_linear(&mut restricted);
         embed(self.system, &self.enlarged, &self.places, &restricted)
     }
 
     /// The solution of `other`, which has the harmonics of the set, near its solution `x` at another sampling, in the
-    /// unknowns of the enlarged system: by one Newton correction, or by accelerated steps. None if they diverge.
+    /// unknowns of the enlarged system: by one Newton correction. None if it is not finite.
     fn in_set_of(&mut self, other: &HarmonicSystem, x: &[f64]) -> Option<Vec<f64>> {
-        let newton = !matches!(self.factors, Factors::ByHarmonic(_));
-        let evaluations = if newton { 1 } else { EVALUATIONS };
+        let mut step = vec![0.0; x.len()];
         let mut buffers = other.workspace();
-        let mut acceleration = Anderson::new(x.len(), evaluations);
-        let scale = norm_of(x);
-        let mut iterate = x.to_vec();
-        let (mut next, mut residual) = (iterate.clone(), vec![0.0; x.len()]);
-        for _ in 0..evaluations {
-            other.residual(self.omega, &iterate, &mut residual, false, &mut buffers);
-            let residual = embed(self.system, &self.enlarged, &self.places, &residual);
-            let step = self.set_step(&residual);
-            let mut step = self.restricted(&step);
-            if !step.iter().all(|s| s.is_finite()) {
-                return None;
-            }
-            for s in &mut step {
-                *s = -*s;
-            }
-            acceleration.next(&iterate, &step, &mut next);
-            std::mem::swap(&mut iterate, &mut next);
-            let change: Vec<f64> = iterate.iter().zip(x).map(|(a, b)| a - b).collect();
-            if norm_of(&step) <= f64::max(NEGLIGIBLE * scale, SETTLED * norm_of(&change)) {
-                break;
-            }
-        }
-        Some(embed(self.system, &self.enlarged, &self.places, &iterate))
+        other.residual(self.omega, x, &mut step, false, &mut buffers);
+        self.workspace.solve_linear(&mut step);
+        let corrected: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x - s).collect();
+        let is_finite = step.iter().all(|s| s.is_finite());
+        is_finite.then(|| embed(self.system, &self.enlarged, &self.places, &corrected))
     }
 
     /// The unknowns of the set.
@@ -404,6 +362,22 @@ impl Enlargement<'_> {
     }
 }
 
+/// Solves for the unknowns of one harmonic, in place: real parts, then imaginary ones where it is not harmonic 0.
+fn solve_complex(factors: &mut LuWorkspace<Complex64>, unknowns: &mut [f64]) {
+    let n = factors.dimension();
+    let imaginary = |i: usize| unknowns.get(n + i).copied().unwrap_or(0.0);
+    let mut right: Vec<Complex64> = (0..n)
+        .map(|i| Complex64::new(unknowns[i], imaginary(i)))
+        .collect();
+    factors.solve(&mut right);
+    for (i, solution) in right.iter().enumerate() {
+        unknowns[i] = solution.re;
+        if let Some(imaginary) = unknowns.get_mut(n + i) {
+            *imaginary = solution.im;
+        }
+    }
+}
+
 fn range(system: &HarmonicSystem, block: usize) -> std::ops::Range<usize> {
     system.block_start(block)..system.block_start(block + 1)
 }
@@ -425,17 +399,6 @@ fn embed(
 }
 
 impl Factors {
-    /// Factors of every harmonic of `system` by itself at `x`, its leading ones together; none if one is singular.
-    fn by_harmonic(system: &HarmonicSystem, omega: f64, x: &[f64]) -> Option<Self> {
-        let mut buffers = system.workspace();
-        buffers.couple_first(system.leading_coefficients());
-        let mut residual = vec![0.0; system.unknowns()];
-        system.residual(omega, x, &mut residual, true, &mut buffers);
-        let mut factors = KeptJacobian::new();
-        let regular = factors.factor_by_harmonic(system, omega, &mut buffers);
-        regular.then(|| Self::ByHarmonic(Box::new(factors)))
-    }
-
     /// Factors of P at `x`: of the whole Jacobian for one sector or a small wheel, else of a block for each harmonic outside of
     /// the set; none if one is singular.
     fn of(
@@ -453,9 +416,9 @@ impl Factors {
         let mut residual = vec![0.0; system.unknowns()];
         system.residual(omega, x, &mut residual, true, &mut buffers);
         if whole {
-            let mut factors = KeptJacobian::new();
-            let regular = factors.factor_cheaply(system, omega, &mut buffers);
-            return regular.then(|| Self::Whole(Box::new(factors)));
+            let mut factors = WholeJacobian::default();
+            let regular = factors.factor(system, omega, &mut buffers);
+            return regular.then_some(Self::Whole(factors));
         }
         let mut blocks = Vec::with_capacity(places.len());
         for (index, place) in places.iter().enumerate() {

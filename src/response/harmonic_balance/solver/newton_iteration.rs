@@ -1,63 +1,12 @@
 //! Damped Newton iteration with a Jacobian kept while it serves, for any equation that can be linearised.
 
 use super::NewtonBounds;
-use super::anderson::Anderson;
-use super::serves::{ACCELERATED, ONCE, PLAIN, RENEWED, Serves};
 use crate::response::harmonic_balance::Status;
 use crate::response::harmonic_balance::pairs::ContactShares;
 
-/// How the steps of a solve are made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Steps {
-    /// Newton's, damped; the whole Jacobian is kept while simplified steps shrink by themselves.
-    Plain,
-    /// Simplified steps combined by Anderson's acceleration, with a Jacobian (its lower block triangle where it is
-    /// large) that is renewed where they shrink too slowly.
-    Accelerated,
-    /// Simplified steps combined by Anderson's acceleration, with a Jacobian that is renewed as soon as they do
-    /// not shrink fast: for a system that
-    /// [`crate::response::harmonic_balance::equation::HarmonicSystem::condenses`].
-    Renewed,
-    /// From a good start: the acceleration alone, with the derivatives of harmonic 1 and of every other one by
-    /// themselves, found once. Steps may grow on the way.
-    ByHarmonic,
-    /// From a good start: the acceleration alone, with the whole Jacobian, found once. Steps may grow on the way.
-    Once,
-}
-
-impl Steps {
-    /// Whether one Jacobian is to do.
-    pub(super) fn keep_jacobian(self) -> bool {
-        matches!(self, Self::ByHarmonic | Self::Once)
-    }
-
-    /// When a Jacobian serves on for accelerated steps.
-    fn serves(self) -> Serves {
-        match self {
-            Self::ByHarmonic | Self::Once => ONCE,
-            Self::Renewed => RENEWED,
-            Self::Accelerated | Self::Plain => ACCELERATED,
-        }
-    }
-
-    /// `bounds` for steps of this kind: what costs a small part may be more.
-    #[must_use]
-    pub fn bounds(self, bounds: NewtonBounds) -> NewtonBounds {
-        NewtonBounds {
-            iterations: if self.keep_jacobian() {
-                4 * bounds.iterations
-            } else {
-                bounds.iterations
-            },
-            ..bounds
-        }
-    }
-}
-
-/// Earlier iterates that the acceleration combines.
-pub(super) const DEPTH: usize = 16;
-/// Earlier iterates that the acceleration combines where all of them are needed, see [`ONCE`].
-pub(super) const DEPTH_OF_ONCE: usize = 120;
+/// Length of a simplified step over that of the step before, up to which the step is taken, and up to which its Jacobian serves on.
+const LONGEST: f64 = 0.75;
+const SERVES: f64 = 0.6;
 
 /// Outcome of one nonlinear solve; the solution itself is left in the caller's vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,19 +21,6 @@ pub struct NewtonOutcome {
     pub residual: f64,
     /// Shares of slipping and separated pairs.
     pub shares: ContactShares,
-}
-
-impl NewtonOutcome {
-    /// A solve that ended before its first step.
-    pub(super) fn failed(status: Status) -> Self {
-        Self {
-            status,
-            iterations: 0,
-            factorisations: 0,
-            residual: f64::INFINITY,
-            shares: ContactShares::default(),
-        }
-    }
 }
 
 /// An equation `R(u) = 0` as the iteration sees it.
@@ -117,8 +53,6 @@ pub(in crate::response::harmonic_balance) struct NewtonBuffers {
     pub(super) step: Vec<f64>,
     trial: Vec<f64>,
     trial_step: Vec<f64>,
-    acceleration: Option<Anderson>,
-    pub(super) steps: Steps,
 }
 
 impl NewtonBuffers {
@@ -129,16 +63,6 @@ impl NewtonBuffers {
             step: vec![0.0; n],
             trial: vec![0.0; n],
             trial_step: vec![0.0; n],
-            acceleration: None,
-            steps: Steps::Accelerated,
-        }
-    }
-
-    /// Vectors for `n` unknowns, with room to accelerate simplified steps by `depth` earlier iterates.
-    pub(super) fn accelerated(n: usize, depth: usize) -> Self {
-        Self {
-            acceleration: Some(Anderson::new(n, depth)),
-            ..Self::new(n)
         }
     }
 }
@@ -149,9 +73,7 @@ impl NewtonBuffers {
 /// Methods for Nonlinear Problems, section 3.3): a damped step is taken where the next simplified
 /// step `-J^-1 R(u + factor s)`, with the same Jacobian, is the shorter one. Unlike the residual
 /// itself this does not depend on how the equations are scaled, and contact forces are far from
-/// well scaled. While the simplified steps become shorter the Jacobian is kept. With room for it they are
-/// combined by Anderson's acceleration, unless contact opens: they tend to what a renewed Jacobian would say, at a
-/// fraction of its cost.
+/// well scaled. While the simplified steps become shorter the Jacobian is kept.
 pub(in crate::response::harmonic_balance) fn iterate(
     equation: &mut impl Equation,
     u: &mut Vec<f64>,
@@ -163,13 +85,7 @@ pub(in crate::response::harmonic_balance) fn iterate(
         step,
         trial,
         trial_step,
-        acceleration,
-        steps,
     } = buffers;
-    let once = steps.keep_jacobian();
-    if let Some(acceleration) = acceleration {
-        acceleration.begin();
-    }
     let (first, shares) = equation.residual(u, residual);
     let mut state = NewtonOutcome {
         status: Status::IterationLimit,
@@ -185,9 +101,6 @@ pub(in crate::response::harmonic_balance) fn iterate(
     if kept {
         negative_step(equation, residual, step);
     }
-    let mut before_last = 0.0;
-    let mut served = 0;
-    let mut settled_before = !once;
     loop {
         if let Some(status) = bounds.judge(first, state.residual, state.iterations as usize) {
             // Forces of a pair without a periodic state prove nothing, however small the residual.
@@ -200,42 +113,17 @@ pub(in crate::response::harmonic_balance) fn iterate(
             }
             state.factorisations += 1;
             negative_step(equation, residual, step);
-            if let Some(acceleration) = acceleration {
-                acceleration.begin();
-            }
-            before_last = 0.0;
-            served = 0;
         }
         state.iterations += 1;
-        served += 1;
         let length = norm_of(step);
-        // Contact that opens folds the curve, and a step that is too long ends on another branch of it.
-        let serves = match acceleration {
-            Some(acceleration) if *steps != Steps::Plain && state.shares.separated == 0.0 => {
-                acceleration.next(u, step, trial);
-                // A step of such a Jacobian is as good as the first.
-                kept |= once;
-                steps.serves()
-            }
-            _ => {
-                add_scaled(trial, u, 1.0, step);
-                PLAIN
-            }
-        };
         let halvings = if kept { 0 } else { bounds.halvings };
         let accepted = (0..=halvings).find_map(|halving| {
             let factor = 0.5_f64.powi(halving as i32);
-            if halving > 0 {
-                add_scaled(trial, u, factor, step);
-            }
+            add_scaled(trial, u, factor, step);
             let (norm, shares) = equation.residual(trial, residual);
             negative_step(equation, residual, trial_step);
             let contraction = norm_of(trial_step) / length;
-            let bound = if kept {
-                serves.longer
-            } else {
-                1.0 - 0.25 * factor
-            };
+            let bound = if kept { LONGEST } else { 1.0 - 0.25 * factor };
             let monotone = contraction <= bound;
             (monotone || norm <= bounds.residual_tolerance).then_some((norm, shares, contraction))
         });
@@ -245,15 +133,10 @@ pub(in crate::response::harmonic_balance) fn iterate(
                 (state.residual, state.shares) = (norm, shares);
                 // Where contact opens, a step tells little of what is left.
                 let proven = shares.separated == 0.0 && shares.unclosed == 0.0;
-                let settled = proven && equation.is_settled(u, trial_step);
-                if settled && settled_before {
+                if proven && equation.is_settled(u, trial_step) {
                     return ended(state, Status::Ok);
                 }
-                settled_before = settled || !once;
-                kept = served < serves.steps
-                    && (contraction <= serves.one_step
-                        || contraction * length <= serves.two_steps * before_last);
-                before_last = length;
+                kept = contraction <= SERVES;
                 if kept {
                     std::mem::swap(step, trial_step);
                 }

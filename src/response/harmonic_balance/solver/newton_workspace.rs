@@ -1,22 +1,54 @@
-//! Buffers of Newton's method for one system, and the choice of where it starts.
+//! Buffers of Newton's method for one system, the factors of its Jacobian, and the choice of where it starts.
 
-use super::Steps;
-use super::contact_motions::{ContactMotions, MotionSolver};
-use super::kept_jacobian::KeptJacobian;
-use super::newton_iteration::{DEPTH, DEPTH_OF_ONCE, NewtonBuffers};
+use super::newton_iteration::NewtonBuffers;
+use crate::linalg::LuWorkspace;
 use crate::response::harmonic_balance::equation::{HarmonicSystem, SystemWorkspace};
 use crate::response::harmonic_balance::pairs::ContactShares;
+
+/// Factors of the Jacobian of one system, of the last point at which it was factored.
+#[derive(Default)]
+pub(super) struct WholeJacobian {
+    factors: Option<LuWorkspace<f64>>,
+    is_factored: bool,
+}
+
+impl WholeJacobian {
+    /// Factors the Jacobian at the point last given to [`HarmonicSystem::residual`] with derivative; false if it is singular.
+    pub(super) fn factor(
+        &mut self,
+        system: &HarmonicSystem,
+        omega: f64,
+        workspace: &mut SystemWorkspace,
+    ) -> bool {
+        let unknowns = system.unknowns();
+        let factors = self
+            .factors
+            .get_or_insert_with(|| LuWorkspace::new(unknowns));
+        system.jacobian(omega, workspace, factors.matrix_mut());
+        self.is_factored = factors.factor();
+        self.is_factored
+    }
+
+    /// Whether there are factors, of this or of an earlier point.
+    pub(super) fn is_factored(&self) -> bool {
+        self.is_factored
+    }
+
+    /// `J^-1 residual` with the factors at hand, in place.
+    pub(super) fn solve(&mut self, residual: &mut [f64]) {
+        if let Some(factors) = &mut self.factors {
+            factors.solve(residual);
+        }
+    }
+}
 
 /// Buffers of Newton's method for one system.
 pub struct NewtonWorkspace {
     pub(super) system: SystemWorkspace,
-    /// Factors of the Jacobian, of the last point at which it was factored.
-    pub(super) jacobian: KeptJacobian,
+    pub(super) jacobian: WholeJacobian,
     pub(super) buffers: NewtonBuffers,
     /// The start of the solve that follows, where several were compared.
     pub(super) start: Option<Start>,
-    /// Solver for the motions at the contact rows.
-    pub(super) motions: MotionSolver,
 }
 
 /// A start with what its choice has found.
@@ -32,13 +64,11 @@ impl NewtonWorkspace {
     /// Buffers for `system`.
     #[must_use]
     pub fn new(system: &HarmonicSystem) -> Self {
-        let n = system.unknowns();
         Self {
             system: system.workspace(),
-            jacobian: KeptJacobian::new(),
-            buffers: NewtonBuffers::accelerated(n, DEPTH),
+            jacobian: WholeJacobian::default(),
+            buffers: NewtonBuffers::new(system.unknowns()),
             start: None,
-            motions: MotionSolver::default(),
         }
     }
 
@@ -51,12 +81,6 @@ impl NewtonWorkspace {
         mut starts: Vec<Vec<f64>>,
     ) -> Option<Vec<f64>> {
         self.start = None;
-        self.motions.forget_start();
-        if self.moves_contact(system) {
-            let (workspace, jacobian) = (&mut self.system, &mut self.jacobian);
-            let mut equation = ContactMotions::new(system, omega, workspace, jacobian)?;
-            return self.motions.of_least_motion(&mut equation, starts);
-        }
         if let [_] = starts[..] {
             return starts.pop();
         }
@@ -76,62 +100,15 @@ impl NewtonWorkspace {
         self.start.as_ref().map(|best| best.x.clone())
     }
 
-    /// Whether the motions at the contact rows are what is solved for.
-    pub(super) fn moves_contact(&self, system: &HarmonicSystem) -> bool {
-        self.steps() == Steps::Renewed && system.condenses()
-    }
-
-    /// The response with every pair stuck, where what it takes is needed anyway; none where it is not, or is singular.
-    pub fn stuck_response(&mut self, system: &HarmonicSystem, omega: f64) -> Option<Vec<f64>> {
-        if !self.moves_contact(system) {
-            return None;
-        }
-        let condensed = self.jacobian.condensed();
-        condensed.factor_linear(system, omega).then(|| {
-            let forces = vec![0.0; self.system.contact.displacement.len()];
-            condensed.response_of(system, &forces)
-        })
-    }
-
     /// Buffers of the system itself, whose residual was last taken anywhere.
     pub fn system_mut(&mut self) -> &mut SystemWorkspace {
         &mut self.system
     }
 
-    /// How steps are made.
-    #[must_use]
-    pub fn steps(&self) -> Steps {
-        self.buffers.steps
-    }
-
-    /// How steps are made from now on; at first they are accelerated.
-    pub fn set_steps(&mut self, steps: Steps) {
-        if self.buffers.steps == steps {
-            return;
-        }
-        if steps.keep_jacobian() || self.buffers.steps.keep_jacobian() {
-            // Factors of another kind are of no use.
-            self.jacobian.forget();
-            let n = self.buffers.step.len();
-            self.buffers = if steps.keep_jacobian() {
-                NewtonBuffers::accelerated(n, DEPTH_OF_ONCE)
-            } else {
-                NewtonBuffers::accelerated(n, DEPTH)
-            };
-        }
-        self.buffers.steps = steps;
-    }
-
     /// Assembles and factors the Jacobian of `system` at `x`; false if it is singular.
     pub fn factor_at(&mut self, system: &HarmonicSystem, omega: f64, x: &[f64]) -> bool {
-        if system.condenses() {
-            // Factors need the derivatives of the contact alone, not the residual.
-            system.contact_at(x, true, &mut self.system);
-        } else {
-            system.residual(omega, x, &mut self.buffers.residual, true, &mut self.system);
-        }
-        self.jacobian
-            .factor_cheaply(system, omega, &mut self.system)
+        system.residual(omega, x, &mut self.buffers.residual, true, &mut self.system);
+        self.jacobian.factor(system, omega, &mut self.system)
     }
 
     /// `J^-1 residual` with the factors at hand, in place.
