@@ -9,6 +9,7 @@ mod harmonics_on_basis;
 mod harmonics_on_receptances;
 pub(crate) mod ladder;
 mod progress;
+mod receptances_of_basis;
 mod reduced_study;
 mod row_settings;
 mod time_left;

@@ -14,11 +14,12 @@ use super::fixed_interface::{
 use super::harmonics_on_basis::{choose_harmonics, with_separation};
 use super::harmonics_on_receptances::{JudgingWheels, choice_of};
 use super::progress::Progress;
+use super::receptances_of_basis::on_receptances_of_basis;
 use super::row_settings::{contact_stiffness, row_settings};
-use super::tuned_receptances::{COMPANION_MODES, Made, Refined, engine_options, no_modes, refined};
+use super::tuned_receptances::{COMPANION_MODES, Refined, engine_options, no_modes, refined};
 use crate::identity::bytes_of;
 use crate::model::cyclic::pair_tangents;
-use crate::model::reduction::{Basis, BasisChoice, Reduction};
+use crate::model::reduction::{Basis, BasisChoice, Reduction, WHOLE_SPACE_DOFS};
 use crate::model::sector::SectorModel;
 use crate::model::{ReducedModel, read_cached, reduction_digest, write_cached};
 use crate::population::monte_carlo::{
@@ -206,7 +207,7 @@ pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> Result<String
 }
 
 /// Whether rows are solved on the receptances of the tuned wheel: where the study names them, and by default wherever they are ready for
-/// what it asks.
+/// what it asks. Settings of small sectors for `[accuracy]` are chosen on a ladder, in the whole space as a basis.
 pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
     // A law of constant normal load acts along the tangents alone.
     let rubs = |tangents: [bool; 2]| tangents.contains(&true);
@@ -215,6 +216,7 @@ pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
         let contact = study.contact.as_ref();
         !sector.contact_pairs.is_empty()
             && contact.is_none_or(|contact| contact.law.has_variable_load() || can_rub())
+            && (sector.dofs.len() > WHOLE_SPACE_DOFS || study.accuracy.is_none())
             && contact.is_none_or(|contact| contact.in_place_of.is_none())
             && against_receptances(contact.map(|contact| contact.ring), &study.solver).is_empty()
     };
@@ -419,15 +421,6 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
         Ok::<_, PipelineError>((engine_model, engine?))
     });
     let engine = engine.transpose()?;
-    let on_basis = |model: &ReducedModel| {
-        if engine.is_some() {
-            return None;
-        }
-        Made::on_basis(study, &excitations, model)
-    };
-    let of_basis = on_basis(&stored.model);
-    let beyond = stored.beyond.as_ref();
-    let of_beyond = beyond.and_then(|beyond| on_basis(&beyond.model));
     solver_under(&excitations, |case| {
         // The sets of a case stand together.
         let sets = first..first + loads * case.study.engine_orders.len();
@@ -435,16 +428,15 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
         let settings = row_settings(&case.study);
         let solver = RowSolver::new(Arc::new(case.of(&stored.model)), settings.clone())?
             .with_choices(stored.harmonics[sets.clone()].to_vec(), error)?;
-        let on_engine = |solver: RowSolver, of_basis: &Option<Made>| match (&engine, of_basis) {
-            (Some((engine_model, engine)), _) => {
+        let on_engine = |solver: RowSolver, model: &ReducedModel| match &engine {
+            Some((engine_model, engine)) => {
                 let orders = &case.study.engine_orders;
                 solver.with_engine(Arc::clone(engine), &case.of(&engine_model.model), orders)
             }
-            (None, Some(made)) => made.takes_rows_of(solver, case),
-            (None, None) => Ok(solver),
+            None => on_receptances_of_basis(solver, case, model),
         };
-        let mut solver = LoadCaseSolver::from(on_engine(solver, &of_basis)?);
-        let Some(beyond) = beyond else {
+        let mut solver = LoadCaseSolver::from(on_engine(solver, &stored.model)?);
+        let Some(beyond) = &stored.beyond else {
             return Ok(solver);
         };
         let model = Arc::new(case.of(&beyond.model));
@@ -453,7 +445,7 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
                 harmonics[sets.clone()].to_vec(),
                 beyond.basis_error + truncation,
             )?;
-            solver = solver.with_fallback(on_engine(other, &of_beyond)?, inexact);
+            solver = solver.with_fallback(on_engine(other, &beyond.model)?, inexact);
         }
         Ok(solver)
     })
@@ -475,8 +467,10 @@ pub(super) fn models_digest(study: &Study, stored: &Stored) -> String {
     }
     if let Some(engine) = &stored.engine {
         hasher.update(&bytes_of(engine));
-        let options = engine_options(study, &excitations(study), &engine.model);
-        hasher.update(&options.bytes());
     }
+    let engine = stored.engine.as_ref();
+    let model = engine.map_or(&stored.model, |engine| &engine.model);
+    let options = engine_options(study, &excitations(study), model);
+    hasher.update(&options.bytes());
     hasher.finalize().to_hex().to_string()
 }

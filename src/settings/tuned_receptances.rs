@@ -8,17 +8,15 @@ use super::harmonics_on_receptances::{JudgedSet, JudgedTop, Judges, JudgingWheel
 use crate::model::ReducedModel;
 use crate::model::reduction::{BasisChoice, Reduction};
 use crate::model::sector::{ModelError, SectorModel, StiffnessKind};
-use crate::population::monte_carlo::{HarmonicChoice, RowSolver, TUNED_RECEPTANCES};
+use crate::population::monte_carlo::{HarmonicChoice, TUNED_RECEPTANCES};
 use crate::response::forced_response::{
     ContactCondition, EngineRow, FrequencyBand, PointSettings, Window, receptance_peak,
 };
-use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::TransformError;
 use crate::response::mistuning::{Distribution, Pattern, PatternSource};
 use crate::response::receptance::{
     EngineModel, EngineOptions, EngineWheel, Limit, ReceptanceEngine, WaveForce,
 };
-use crate::study::checks::against_receptances;
 use crate::study::{Excitation, PipelineError, Study};
 
 /// Standard deviations that a blade deviates by at most, for the choice of its shapes.
@@ -41,8 +39,6 @@ const FIRST_MODES: usize = 60;
 const MOST_MODES: usize = 320;
 /// Error of as many modes as the study says, over what twice as many change.
 const FIXED_MARGIN: f64 = 1.5;
-/// Factor on the number of shapes on a basis, whose errors are its own: 12 of them are within 3e-5 of all under 3 % deviations.
-const SHAPES_ON_BASIS: usize = 4;
 /// Modes of the companion model of each kind.
 pub(super) const COMPANION_MODES: usize = 4;
 
@@ -78,20 +74,6 @@ pub(super) fn no_modes() -> ModelError {
     }
 }
 
-/// Whether rows of `study` on a basis are solved on receptances in its coordinates: those of a locked ring that can rub.
-fn has_receptances(study: &Study, model: &ReducedModel) -> bool {
-    let contact = study.contact.as_ref();
-    let [rubs, presses] = [1..3, 0..1].map(|directions: std::ops::Range<usize>| {
-        let rows = model.contact.rows.iter();
-        rows.flat_map(|rows| &rows[directions.clone()])
-            .any(Option::is_some)
-    });
-    let acts = |law: ContactLaw| rubs || law.has_variable_load() && presses;
-    contact.is_none_or(|contact| acts(contact.law))
-        && (rubs || presses)
-        && against_receptances(contact.map(|contact| contact.ring), &study.solver).is_empty()
-}
-
 /// An engine with what it was made of.
 pub(super) struct Made {
     pub(super) own: EngineModel,
@@ -112,35 +94,6 @@ impl Made {
         let (own, engine) = made.ok_or_else(no_modes)?;
         let receptances = Arc::new(engine);
         Ok(Self { own, receptances })
-    }
-
-    /// On a basis, in whose coordinates `model` is; none where rows are not solved on receptances there, or modes are not found.
-    pub(super) fn on_basis(
-        study: &Study,
-        excitations: &[Excitation],
-        model: &ReducedModel,
-    ) -> Option<Self> {
-        if !has_receptances(study, model) {
-            return None;
-        }
-        let options = engine_options(study, excitations, model);
-        let made = ReceptanceEngine::of_model(model.clone(), &options, SHAPES_ON_BASIS);
-        let (own, engine) = made?;
-        Some(Self {
-            own,
-            receptances: Arc::new(engine),
-        })
-    }
-
-    /// `solver`, which is on the basis of this engine, with rows that are solved on its receptances under a force vector.
-    pub(super) fn takes_rows_of(
-        &self,
-        solver: RowSolver,
-        case: &Excitation,
-    ) -> Result<RowSolver, TransformError> {
-        let engine = Arc::clone(&self.receptances);
-        let orders = &case.study.engine_orders;
-        solver.with_engine_of_basis(engine, &case.of(&self.own.model), orders)
     }
 
     /// This engine with `shape_factor` times as many blade shapes as an engine has at least.

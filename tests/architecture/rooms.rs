@@ -40,6 +40,7 @@ const NAME_THE_STUDY: &[&str] = &[
     "settings/ladder/search.rs",
     "settings/ladder/setting.rs",
     "settings/harmonics_on_receptances.rs",
+    "settings/receptances_of_basis.rs",
     "settings/reduced_study.rs",
     "settings/row_settings.rs",
     "settings/tuned_receptances.rs",

@@ -346,15 +346,6 @@ pub const CASES: &[Case] = &[
     ),
     (
         "[1, 3]",
-        "[1, 3]\nsearch_harmonics = [1]\n[reduction]\nbasis = \"stick_slide\"",
-        &[
-            "solver.search_harmonics",
-            "is for tuned receptances",
-            "\"auto\" or \"all\"",
-        ],
-    ),
-    (
-        "[1, 3]",
         "[1, 3]\nhigher_harmonics = \"tuned\"",
         &[
             "solver.higher_harmonics",

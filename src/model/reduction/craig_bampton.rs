@@ -9,7 +9,7 @@ use crate::model::cyclic::CyclicSector;
 use crate::model::sector::{ModelError, StiffnessKind};
 
 /// At most so many independent dofs, the whole space is the basis.
-const WHOLE_SPACE_DOFS: usize = 12;
+pub const WHOLE_SPACE_DOFS: usize = 12;
 /// Share of their mass below which a combination of residual vectors is known by the others.
 const KNOWN_ALREADY: f64 = 1e-8;
 /// At most so many interior dofs, the fixed-interface modes are found by a dense solution.

@@ -9,7 +9,7 @@ mod options;
 mod reduce;
 
 pub use super::reduced_model::{BasisChoice, CantileverModes, ContactSprings};
-pub use craig_bampton::CraigBampton;
+pub use craig_bampton::{CraigBampton, WHOLE_SPACE_DOFS};
 pub use error::wanted_reach_hz;
 pub use nodal_diameter_damping::{DampedModes, NodalDiameterDamping};
 pub use options::{Basis, ReductionOptions};

@@ -228,11 +228,16 @@ impl LoadCaseSolvers {
         pattern: &Pattern,
         scenarios: &[(&Scenario, &TunedReference)],
     ) -> Vec<ResponseRow> {
-        // The wheel is the same under every load case.
+        // The wheel is the same under every load case, unless each has receptances of its own.
         let wheel = self.first.rows.mistuned(pattern, scenarios);
         let row = |&(scenario, tuned): &(&Scenario, &TunedReference)| {
             let solver = self.under(scenario);
-            let row = solver.rows.row(&wheel, pattern, scenario, tuned);
+            let row = if solver.rows.has_receptances_of(&self.first.rows) {
+                solver.rows.row(&wheel, pattern, scenario, tuned)
+            } else {
+                let wheel = solver.rows.mistuned(pattern, &[(scenario, tuned)]);
+                solver.rows.row(&wheel, pattern, scenario, tuned)
+            };
             solver.solved_again(pattern, scenario, row)
         };
         scenarios.iter().map(row).collect()

@@ -108,21 +108,22 @@ impl RowPoints {
         Ok(())
     }
 
-    /// From now on for rows on tuned receptances: a search with fewer harmonics has so many samples per period, and there is none where
-    /// the harmonics stated give the contact of all `sectors` few unknowns, unless the study asks for it.
+    /// From now on for rows on tuned receptances, those of a basis or all: a search with fewer harmonics has so many samples per period, and
+    /// there is none where harmonics that are stated, or those of a basis, give the contact of all `sectors` few unknowns, unless the study
+    /// asks for it.
     pub(super) fn search_on_receptances(
         &mut self,
-        samples: usize,
+        (samples, of_basis): (usize, bool),
         (sectors, rows): (usize, usize),
     ) -> Result<(), TransformError> {
         let solver = &self.settings.solver;
-        let is_stated =
-            solver.harmonics != Harmonics::Auto && solver.search_harmonics == SearchHarmonics::Auto;
+        let goes_without = (of_basis || solver.harmonics != Harmonics::Auto)
+            && solver.search_harmonics == SearchHarmonics::Auto;
         let unknowns = |points: &PointSettings| 2 * points.harmonics().len() * sectors * rows;
         let chosen = self.chosen.iter_mut().map(|(_, points)| points);
         for points in std::iter::once(&mut self.full).chain(chosen) {
             let own = points.clone();
-            *points = if is_stated && unknowns(points) <= UNKNOWNS_WITHOUT_SEARCH {
+            *points = if goes_without && unknowns(points) <= UNKNOWNS_WITHOUT_SEARCH {
                 own.without_search()
             } else {
                 own.with_search_samples(samples)?

@@ -80,7 +80,7 @@ impl RowSolver {
     ) -> Result<Self, TransformError> {
         let points = &mut self.on_basis.points;
         let rows = model.contact.row_count();
-        points.search_on_receptances(SEARCH_SAMPLES, (model.sectors, rows))?;
+        points.search_on_receptances((SEARCH_SAMPLES, self.is_on_basis), (model.sectors, rows))?;
         let amplitude_n = points.settings.amplitude_n;
         let rows = ReceptanceRows::new(engine, model, engine_orders, amplitude_n);
         self.on_receptances = Some(rows);
@@ -125,6 +125,14 @@ impl RowSolver {
     /// Whether rows have the receptances of the tuned wheel with all its contact degrees of freedom, and leave out no basis.
     pub(super) fn has_all_receptances(&self) -> bool {
         self.on_receptances.is_some() && !self.is_on_basis
+    }
+
+    /// Whether rows are solved on the very receptances of `other`, or both on none.
+    pub(super) fn has_receptances_of(&self, other: &Self) -> bool {
+        match (&self.on_receptances, &other.on_receptances) {
+            (Some(own), Some(other)) => std::ptr::eq(own.receptances(), other.receptances()),
+            (own, other) => own.is_none() && other.is_none(),
+        }
     }
 
     /// What rows are solved on: a basis, or the receptances of the tuned wheel.

@@ -24,8 +24,8 @@ pub enum Harmonics {
 /// Harmonics with which the tops of a row are sought, before the whole set is solved there.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SearchHarmonics {
-    /// Harmonic 1 on tuned receptances, and 0 to 3 where contacts open and an automatic set goes beyond 5 and has these. On a
-    /// basis all.
+    /// Harmonic 1 on tuned receptances, and 0 to 3 where contacts open and an automatic set goes beyond 5 and has these; the whole
+    /// set where it is stated and the contact has few unknowns, and with a creeping ring.
     Auto,
     /// The whole set, without a search before.
     All,

@@ -28,8 +28,8 @@ use crate::settings::Progress;
 use crate::settings::basis_choice::judged_conditions;
 use crate::settings::fixed_interface::{FixedInterface, reduce_sector, sensitivity_vectors};
 use crate::settings::harmonics_on_basis::{choose_harmonics, with_separation};
+use crate::settings::receptances_of_basis::on_receptances_of_basis;
 use crate::settings::row_settings::{contact_stiffness, row_settings};
-use crate::settings::tuned_receptances::Made;
 use crate::study::{Excitation, PipelineError, Study, excitations, solver_under};
 
 /// Largest relative change of a tuned peak by more fixed-interface modes.
@@ -189,15 +189,10 @@ impl<'a> LadderBench<'a> {
             }
             HarmonicLevel::Set(_) => None,
         };
-        let excitations = excitations(&study);
-        let made = Made::on_basis(&study, &excitations, &model);
-        let solver = solver_under(&excitations, |case| {
+        let solver = solver_under(&excitations(&study), |case| {
             let settings = row_settings(&case.study);
+            let on_engine = |solver: RowSolver| on_receptances_of_basis(solver, case, &model);
             let model = Arc::new(case.of(&model));
-            let on_engine = |solver: RowSolver| match &made {
-                Some(made) => made.takes_rows_of(solver, case),
-                None => Ok(solver),
-            };
             let solver = RowSolver::new(Arc::clone(&model), settings.clone())?;
             let (HarmonicLevel::Automatic(tolerance), Some(full)) = (&setting.harmonics, &full)
             else {

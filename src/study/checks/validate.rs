@@ -181,10 +181,9 @@ fn resolve(
         }
     }
     let is_creeping = contact.as_ref().map(|contact| contact.ring) == Some(Ring::Creeping);
-    let sought_with_all = reduction.basis == Basis::StickSlide || is_creeping;
-    if let (SearchHarmonics::Set(_), true) = (&solver.search_harmonics, sought_with_all) {
-        let reason = "is for tuned receptances; on a basis of modes peaks are sought with all \
-                      harmonics; accepted: \"auto\" or \"all\"";
+    if let (SearchHarmonics::Set(_), true) = (&solver.search_harmonics, is_creeping) {
+        let reason = "is for a locked ring; peaks of a creeping one are sought with all harmonics; \
+                      accepted: \"auto\" or \"all\"";
         check.conflict("solver.search_harmonics", reason);
     }
     let patterns = (head.patterns, given.records);

@@ -18,7 +18,7 @@ options_table! {
             "`auto`: 0 to 15, on a basis per engine order and load by the tuned full contact model ([formulation.md](formulation.md)); a list has 1 among them")
             .of_accuracy().told("\"auto\" or an ascending list of harmonics from 0 to 100 that contains 1, like [1, 3]"),
         search_harmonics: SearchHarmonics = key(Either(&[Name(&["auto", "all"]), Ascending(&Whole(0, 100), None)]), "`\"auto\"`",
-            "local maxima of the response are located with these, then solved with `harmonics` ([formulation.md](formulation.md)); `auto`: 1; `all`: located with `harmonics`, as always on a basis of modes")
+            "local maxima of the response are located with these, then solved with `harmonics` ([formulation.md](formulation.md)); `auto`: 1, or `harmonics` where a set is stated and the contact of a wheel of few masses has few unknowns; `all`: located with `harmonics`, as always with a creeping ring")
             .of_accuracy().told("\"auto\", \"all\" or an ascending list of harmonics from 0 to 100 that contains 1, like [1, 3]"),
         harmonic_tolerance: f64 = key(Number(Range::from_to(1e-6, 1.0)), "0.02",
             "wanted relative error of the amplitude by the harmonics left out; on a basis `auto` chooses by it; rows beyond it are marked")

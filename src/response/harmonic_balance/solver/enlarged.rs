@@ -274,7 +274,7 @@ impl Enlargement<'_> {
         let mut step = self.residual(x);
         let set_step = match &self.factors {
             Factors::Blocks(_) => self.set_step(&step),
-            _ => Vec::new(),
+            Factors::Whole(_) => Vec::new(),
         };
         match &mut self.factors {
             Factors::Whole(factors) => factors.solve(&mut step),
