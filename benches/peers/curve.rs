@@ -1,20 +1,17 @@
-//! Processor time of one curve, one peak and one row of lumped24, checked against the stored reference.
+//! Processor time of one curve and one row of lumped24, checked against the stored reference.
 //!
 //! `cargo bench --bench curve` prints them as `name = value`, in ms, the smallest of a few repetitions on one thread,
 //! with the model reduced before; `benches/peers/run.py` reads that.
 
 #![allow(clippy::print_stdout)] // The figures are the result of this program.
 
-#[path = "../common/mod.rs"]
-mod common;
-
 use std::path::Path;
 use std::time::Instant;
 
 use blisk::population::monte_carlo::Scenario;
 use blisk::response::forced_response::ContactCondition;
-
-use common::case::Case;
+use blisk::settings::{EngineSource, ReducedEngineSource};
+use blisk::study::{Study, load_sector_model, pattern_source};
 
 const REPETITIONS: usize = 8;
 const LEAST_REPETITION_MS: f64 = 300.0;
@@ -27,10 +24,18 @@ const CURVE_TOLERANCE: f64 = 1e-6;
 const FINE_STEP_HZ: f64 = 0.002;
 
 fn main() {
-    let case = Case::new("lumped24", 1);
-    let pattern = &case.patterns[0];
-    let solver = &case.solver;
-    let options = &case.study.solver;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let study = Study::read(&root.join("studies/lumped24.toml")).expect("a valid study");
+    let sector = load_sector_model(&study).expect("a valid model");
+    let patterns = pattern_source(&study, &sector).expect("patterns");
+    let pattern = &patterns
+        .pattern(0, study.standard_deviations[0])
+        .expect("a pattern");
+    let engine = ReducedEngineSource
+        .build(&study, &sector, None)
+        .expect("an engine");
+    let solver = engine.solvers().expect("solvers").first().rows();
+    let options = &study.solver;
     assert!(options.residual_tolerance <= 1e-8 && options.peak_tolerance <= 1e-3);
 
     let reference = reference();
@@ -52,8 +57,6 @@ fn main() {
         .fold(0.0, f64::max);
     assert!(difference <= CURVE_TOLERANCE, "{difference:e}");
 
-    let (peak_ms, peak) =
-        smallest(|| case.peak(pattern, &case.excited(pattern, case.harmonics()), LOAD));
     let scenario = Scenario {
         index: 0,
         load_case: None,
@@ -62,11 +65,12 @@ fn main() {
         contact: LOAD,
     };
     let tuned = solver.tuned(&scenario);
-    let (row_ms, _) = smallest(|| solver.rows(pattern, &[(&scenario, &tuned)]));
-    let point = peak.point.as_ref().expect("a peak");
-    let amplitude = point.largest_amplitude_m();
+    let (row_ms, mut rows) = smallest(|| solver.rows(pattern, &[(&scenario, &tuned)]));
+    let row = rows.pop().expect("a row");
+    let amplitude = row.peak_amplitude_m.expect("a peak");
+    let frequency_hz = row.peak_frequency_hz.expect("a peak");
     let around: Vec<f64> = (-500..=500)
-        .map(|step| point.frequency_hz + FINE_STEP_HZ * f64::from(step))
+        .map(|step| frequency_hz + FINE_STEP_HZ * f64::from(step))
         .collect();
     let highest = curve_at(&around)
         .iter()
@@ -82,13 +86,12 @@ fn main() {
     println!("curve_points = {}", curve.len());
     println!("curve_ms = {curve_ms:.2}");
     println!("curve_difference = {difference:e}");
-    println!("peak_ms = {peak_ms:.2}");
-    println!("peak_hz = {}", point.frequency_hz);
+    println!("peak_hz = {frequency_hz}");
     println!("peak_m = {amplitude:e}");
     println!("peak_difference = {peak_difference:e}");
-    println!("peak_solves = {}", peak.work.nonlinear_solves);
-    println!("peak_iterations = {}", peak.work.newton_iterations);
-    println!("peak_factorisations = {}", peak.work.factorisations);
+    println!("peak_solves = {}", row.nonlinear_solves);
+    println!("peak_iterations = {}", row.newton_iterations);
+    println!("peak_factorisations = {}", row.factorisations);
     println!("row_ms = {row_ms:.2}");
 }
 
