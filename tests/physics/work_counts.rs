@@ -71,13 +71,13 @@ fn a_peak_of_a_wheel_of_many_unknowns_takes_the_work_known_for_it() {
         &wheel24(),
         &[
             (160.0, [18, 151, 10]),
-            (320.0, [18, 93, 9]),
-            (1280.0, [28, 104, 14]),
+            (320.0, [18, 93, 14]),
+            (1280.0, [28, 126, 14]),
         ],
     );
 }
 
-/// Few contact rows: a factorisation, of contact forces alone, costs no more than two steps.
+/// A lumped wheel, all of whose pairs slip.
 #[test]
 fn a_peak_of_a_wheel_of_few_unknowns_takes_the_work_known_for_it() {
     let wheel = Wheel {
@@ -87,9 +87,9 @@ fn a_peak_of_a_wheel_of_few_unknowns_takes_the_work_known_for_it() {
     assert_work(
         &wheel,
         &[
-            (25.0, [17, 95, 61]),
-            (50.0, [18, 93, 68]),
-            (150.0, [21, 81, 62]),
+            (25.0, [19, 185, 40]),
+            (50.0, [20, 170, 53]),
+            (150.0, [25, 144, 41]),
         ],
     );
 }
