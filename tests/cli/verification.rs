@@ -329,7 +329,11 @@ fn verify_of_another_study_exits_with_9() {
 
 #[test]
 fn response_on_the_full_model_agrees_where_nothing_is_reduced() {
-    let place = Place::with(GOOD);
+    // Six sectors of a travelling wave are sampled alike where the samples are a multiple of six.
+    let place = Place::with(&GOOD.replace(
+        "harmonics = [1, 3]",
+        "harmonics = [1, 3]\nsamples_per_period = 192",
+    ));
     let curve = |more: &[&str]| -> Vec<f64> {
         let arguments = [
             "response",
@@ -354,7 +358,7 @@ fn response_on_the_full_model_agrees_where_nothing_is_reduced() {
     for pattern in ["tuned", "3"] {
         let own = ["--pattern", pattern];
         let reduced = curve(&own);
-        let full = curve(&[&own[..], &["--fidelity", "full", "--samples", "128"]].concat());
+        let full = curve(&[&own[..], &["--fidelity", "full", "--samples", "192"]].concat());
         let largest = reduced.iter().copied().fold(0.0, f64::max);
         assert_eq!(full.len(), 42);
         for (reduced, full) in reduced.iter().zip(&full) {
@@ -555,6 +559,14 @@ fn a_row_that_cannot_be_integrated_in_time_is_refused() {
     let ended = place.run(&["verify", RESULTS, "--time-domain"]);
     assert_eq!(ended.code, 2, "{}", ended.stdout);
     assert!(ended.stderr.contains("contact.ring"), "{}", ended.stderr);
+    // Its peaks are sought with all harmonics.
+    let led = "harmonics = [1, 3]\nsearch_harmonics = [1]";
+    let place = Place::with(&creeping.replace("harmonics = [1, 3]", led));
+    let ended = place.run(&["check", "study.toml"]);
+    assert_eq!(ended.code, 3, "{}", ended.stdout);
+    for words in ["solver.search_harmonics", "creeping", "\"all\""] {
+        assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
+    }
 }
 
 /// Where nothing is reduced both fidelities take the same set, and solve the same equation. An automatic set up to harmonic 15 has 192
