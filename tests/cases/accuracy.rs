@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::support::{Case, package};
 
-/// The wheel of masses of lumped24, with `sectors` of them and random blades.
+/// The wheel of masses of lumped24, with `sectors` of them and random blades, on a basis.
 fn lumped(sectors: u32, patterns: u32) -> Study {
     let text = std::fs::read_to_string(package("studies/lumped24.toml")).unwrap();
     let (before, _) = text.split_once("[mistuning]").unwrap();
@@ -18,7 +18,8 @@ fn lumped(sectors: u32, patterns: u32) -> Study {
         .replace("sectors = 24", &format!("sectors = {sectors}"));
     let text = format!(
         "{before}[mistuning]\ndistribution = {{ kind = \"normal\" }}\n[sweep]\n\
-         normal_load_n = [30, 50, 100]\nstandard_deviation = [0.03]\n"
+         normal_load_n = [30, 50, 100]\nstandard_deviation = [0.03]\n\
+         [reduction]\nbasis = \"stick_slide\"\n"
     );
     Study::parse(&package("studies/lumped24.toml"), &text).unwrap()
 }

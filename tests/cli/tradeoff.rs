@@ -140,7 +140,7 @@ fn an_accepted_error_chooses_settings_once_and_records_the_evidence() {
             .expect("a list")
             .is_empty()
     );
-    // The rows are those of the settings written by hand.
+    // The rows are those of the settings written by hand, on the basis that a small sector has: its whole space.
     let setting = &chosen["setting"];
     let level = setting["harmonics"].as_str().expect("a level");
     let harmonics = match level.strip_prefix("auto ") {
@@ -149,7 +149,7 @@ fn an_accepted_error_chooses_settings_once_and_records_the_evidence() {
     };
     let text = |key: &str| setting[key].as_str().expect("a number").to_owned();
     let by_hand = format!(
-        "{}[solver]\nharmonics = {harmonics}\nsamples_per_period = {}\nresidual_tolerance = {}\n\
+        "{}[reduction]\nbasis = \"stick_slide\"\n[solver]\nharmonics = {harmonics}\nsamples_per_period = {}\nresidual_tolerance = {}\n\
          peak_tolerance = {}\n",
         open(),
         text("samples_per_period"),
