@@ -227,7 +227,7 @@ impl PointSettings {
         &self.harmonics
     }
 
-    /// Settings of a search with fewer harmonics, if there is one, see [`super::refined_peak`].
+    /// Settings of a search with fewer harmonics, if there is one, see [`super::corrected_peak`].
     #[must_use]
     pub fn search(&self) -> Option<&Self> {
         self.search.as_deref()
