@@ -7,20 +7,15 @@ use serde::{Deserialize, Serialize};
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::model::reduction::{
-    Basis, BasisChoice, ContactSprings, Reduction, ReductionOptions, wanted_reach_hz,
+    BasisChoice, ContactSprings, Reduction, ReductionOptions, wanted_reach_hz,
 };
 use crate::population::monte_carlo::{HarmonicChoice, RowSettings, RowSolver};
 use crate::response::forced_response::{ContactCondition, Peak};
 use crate::response::mistuning::{ContactFactors, ContactQuantity, ContactVariation, PairFactors};
 use crate::study::{Excitation, PipelineError};
 
-/// Numbers of stick modes beside attachment vectors that are tried, ascending.
-const ATTACHMENT_LADDER: [usize; 5] = [4, 8, 14, 20, 28];
 /// Numbers of stick and of slide modes that are tried, ascending.
 const STICK_SLIDE_LADDER: [usize; 9] = [2, 3, 4, 6, 8, 10, 14, 20, 28];
-/// Contact rows of a sector up to which each has an attachment vector: the basis grows with them, and only it holds where contacts
-/// separate.
-const MOST_ATTACHMENTS: usize = 24;
 /// Loads of a study by which a basis is judged at most.
 const LOADS_JUDGED: usize = 8;
 /// Standard deviations at which a varied contact stiffness is judged: 90 % of a normal law lie within.
@@ -116,7 +111,7 @@ pub(super) fn choose_basis_under(
     };
     let reference = of_cases(&wholes)?;
     let mut tried: Vec<(BasisChoice, BasisError, f64)> = Vec::new();
-    for choice in candidates(reduction, options) {
+    for choice in candidates(options) {
         let model = reduction.tuned(choice)?;
         let models: Vec<ReducedModel> = cases.iter().map(|(case, _)| case.of(&model)).collect();
         let errors = of_cases(&models)?;
@@ -164,25 +159,18 @@ pub(super) fn choose_basis_under(
 }
 
 /// Bases to try, the cheapest first; one that the user fixed stands alone.
-fn candidates(reduction: &Reduction<'_>, options: &ReductionOptions) -> Vec<BasisChoice> {
-    let attachments = ATTACHMENT_LADDER.map(|stick| BasisChoice::StickAttachment { stick });
+fn candidates(options: &ReductionOptions) -> Vec<BasisChoice> {
     let ladder = STICK_SLIDE_LADDER.map(|modes| BasisChoice::StickSlide {
         stick: modes,
         slide: modes,
     });
-    match (options.basis, options.stick_modes, options.slide_modes) {
-        (Basis::StickAttachment, Some(stick), _) => vec![BasisChoice::StickAttachment { stick }],
-        (Basis::Auto | Basis::StickAttachment, None, None)
-            if (1..=MOST_ATTACHMENTS).contains(&reduction.contact_rows()) =>
-        {
-            attachments.to_vec()
-        }
-        (_, Some(stick), Some(slide)) => vec![BasisChoice::StickSlide { stick, slide }],
-        (_, Some(modes), None) | (_, None, Some(modes)) => vec![BasisChoice::StickSlide {
+    match (options.stick_modes, options.slide_modes) {
+        (Some(stick), Some(slide)) => vec![BasisChoice::StickSlide { stick, slide }],
+        (Some(modes), None) | (None, Some(modes)) => vec![BasisChoice::StickSlide {
             stick: modes,
             slide: modes,
         }],
-        (_, None, None) => ladder.to_vec(),
+        (None, None) => ladder.to_vec(),
     }
 }
 

@@ -29,7 +29,6 @@ use crate::response::forced_response::{FEWER_HARMONICS, Harmonics, RowsBeyondTol
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::EnlargedSet;
 use crate::response::receptance::{EngineModel, ReceptanceEngine};
-use crate::study::checks::against_receptances;
 use crate::study::{Excitation, PipelineError, Study, excitations, judging_patterns, solver_under};
 
 /// Share of the harmonic tolerance by which the set for rows beyond it is chosen.
@@ -218,7 +217,6 @@ pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
             && contact.is_none_or(|contact| contact.law.has_variable_load() || can_rub())
             && (sector.dofs.len() > WHOLE_SPACE_DOFS || study.accuracy.is_none())
             && contact.is_none_or(|contact| contact.in_place_of.is_none())
-            && against_receptances(contact.map(|contact| contact.ring), &study.solver).is_empty()
     };
     match study.reduction.basis {
         Basis::TunedReceptances => true,
@@ -393,7 +391,7 @@ fn basis_error(evidence: &BasisEvidence) -> f64 {
 /// The solver of the study; with load cases that of the first, which knows those of the others.
 ///
 /// # Errors
-/// If the samples per period cannot tell the harmonics apart, or an engine is not found.
+/// If the samples per period cannot tell the harmonics apart, or modes are not found.
 pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolvers, PipelineError> {
     // Either part is measured on its own: what the basis leaves out of the Craig-Bampton model, and
     // what that model leaves out of the sector.
@@ -431,7 +429,8 @@ pub(super) fn solver_of(study: &Study, stored: &Stored) -> Result<LoadCaseSolver
         let on_engine = |solver: RowSolver, model: &ReducedModel| match &engine {
             Some((engine_model, engine)) => {
                 let orders = &case.study.engine_orders;
-                solver.with_engine(Arc::clone(engine), &case.of(&engine_model.model), orders)
+                let model = case.of(&engine_model.model);
+                Ok(solver.with_engine(Arc::clone(engine), &model, orders)?)
             }
             None => on_receptances_of_basis(solver, case, model),
         };

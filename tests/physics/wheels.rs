@@ -16,6 +16,7 @@ use blisk::response::harmonic_balance::Damping;
 use blisk::response::mistuning::{
     ContactFactors, Deviations, Pattern, Projection, StructuralModes, WheelBasis,
 };
+use blisk::response::receptance::{EngineOptions, ReceptanceEngine, WaveForce};
 
 use super::contact::random::Random;
 use super::sector_sources::data;
@@ -142,6 +143,22 @@ impl Wheel {
 
     pub fn solver(&self, harmonics: &[u32], options: SolverOptions) -> RowSolver {
         RowSolver::new(Arc::clone(&self.model), self.settings(harmonics, options)).unwrap()
+    }
+
+    /// [`Self::solver`] with rows on the receptances of the basis.
+    pub fn solver_on_receptances(&self, harmonics: &[u32], options: SolverOptions) -> RowSolver {
+        let engine_options = EngineOptions {
+            damping: self.damping,
+            projection: Projection::Exact,
+            forces: vec![WaveForce::new(&self.model, ENGINE_ORDER, self.amplitude_n)],
+            deviation: 0.1,
+            band_hz: None,
+        };
+        let made = ReceptanceEngine::of_model((*self.model).clone(), &engine_options, 4);
+        let (own, engine) = made.unwrap();
+        self.solver(harmonics, options)
+            .with_engine_of_basis(Arc::new(engine), &own.model, &[ENGINE_ORDER])
+            .unwrap()
     }
 
     /// The tuned wheel as one sector.

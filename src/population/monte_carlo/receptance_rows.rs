@@ -13,7 +13,7 @@ use crate::response::forced_response::{
 };
 use crate::response::harmonic_balance::{ContactShares, Status};
 use crate::response::mistuning::Pattern;
-use crate::response::receptance::{EngineWheel, ReceptanceEngine, Resonance, WaveForce, embedded};
+use crate::response::receptance::{EngineWheel, ReceptanceEngine, Resonance, WaveForce};
 
 /// Samples per period of a search with few harmonics: what it finds is only where to look.
 pub(super) const SEARCH_SAMPLES: usize = 32;
@@ -174,12 +174,11 @@ impl ReceptanceRows {
         let envelope = receptance_plan(&there, window.ok()?).ok()?.envelope;
         let [before, points] = [basis, finer.1].map(|rows| rows.points.of(pattern, case.0, case.1));
         let (point, _) = receptance_state(&there, &before, frequency_hz).ok()?;
-        let start = embedded(&point.solution, before.harmonics(), points.harmonics());
         let tolerance = BESIDE_SHARE * basis.points.settings.solver.peak_tolerance;
         receptance_top_beside(
             &here,
             &points,
-            (frequency_hz, start),
+            (&point, before.harmonics()),
             CLIMBED * envelope.linear_half_bandwidth_hz,
             tolerance.clamp(BESIDE_TOLERANCES.0, BESIDE_TOLERANCES.1),
         )

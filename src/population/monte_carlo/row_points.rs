@@ -109,7 +109,7 @@ impl RowPoints {
     }
 
     /// From now on for rows on tuned receptances, those of a basis or all: a search with fewer harmonics has so many samples per period, and
-    /// there is none where harmonics that are stated, or those of a basis, give the contact of all `sectors` few unknowns, unless the study
+    /// there is none with a creeping ring, nor where harmonics that are stated, or those of a basis, give the contact of all `sectors` few unknowns, unless the study
     /// asks for it.
     pub(super) fn search_on_receptances(
         &mut self,
@@ -119,11 +119,12 @@ impl RowPoints {
         let solver = &self.settings.solver;
         let goes_without = (of_basis || solver.harmonics != Harmonics::Auto)
             && solver.search_harmonics == SearchHarmonics::Auto;
+        let creeps = self.settings.ring == Ring::Creeping;
         let unknowns = |points: &PointSettings| 2 * points.harmonics().len() * sectors * rows;
         let chosen = self.chosen.iter_mut().map(|(_, points)| points);
         for points in std::iter::once(&mut self.full).chain(chosen) {
             let own = points.clone();
-            *points = if goes_without && unknowns(points) <= UNKNOWNS_WITHOUT_SEARCH {
+            *points = if creeps || goes_without && unknowns(points) <= UNKNOWNS_WITHOUT_SEARCH {
                 own.without_search()
             } else {
                 own.with_search_samples(samples)?

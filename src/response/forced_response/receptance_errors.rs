@@ -38,6 +38,7 @@ pub fn receptance_errors(
     let [alone, enlarged, tangents] = set.transforms();
     let settled = |mut solver: WheelSolver<'_>, start: &[f64], from: &[u32]| {
         let start = embedded(start, from, solver.harmonics());
+        solver.set_ring_drift(point.ring_drift_m);
         let (motions, unsettled) = solver.settle(point.frequency_hz, &start, tolerance)?;
         let observed = observed(&mut solver, amplitude);
         let observed = in_harmonics(&observed, set.harmonics(), row.engine.sectors());
@@ -78,6 +79,7 @@ pub fn receptance_top_m(
     let start = [point.solution.clone()];
     let mut solver = row.solver(settings, &settings.transform, None);
     let mut amplitude_m = |frequency_hz: f64| {
+        solver.set_ring_drift(point.ring_drift_m);
         let (solved, _) = solver.solve(frequency_hz, &start, tolerance);
         solved.ok()?;
         let observed = observed(&mut solver, &settings.amplitude);
@@ -118,18 +120,19 @@ pub struct TopBeside {
     pub unsettled: f64,
 }
 
-/// The top of a row near `frequency_hz`, climbed by steps of `step_hz` from motions `start` in the harmonics of `settings`. None where
-/// a solution does not settle, or the top is further away than some steps.
+/// The top of a row near `point`, a solution of the same wheel in harmonics `from`, which are among those of `settings`; climbed by steps of
+/// `step_hz`. None where a solution does not settle, or the top is further away than some steps.
 #[must_use]
 pub fn receptance_top_beside(
     row: &EngineRow<'_>,
     settings: &PointSettings,
-    (frequency_hz, start): (f64, Vec<f64>),
+    (point, from): (&Point, &[u32]),
     step_hz: f64,
     tolerance: f64,
 ) -> Option<TopBeside> {
     let mut solver = row.solver(settings, &settings.transform, None);
-    let mut motions = start;
+    let mut motions = embedded(&point.solution, from, settings.harmonics());
+    solver.set_ring_drift(point.ring_drift_m);
     let mut unsettled = 0.0_f64;
     let mut height_m = |frequency_hz: f64| -> Option<f64> {
         let (settled, left) = solver.settle(frequency_hz, &motions, tolerance)?;
@@ -139,10 +142,10 @@ pub fn receptance_top_beside(
         let amplitudes_m = settings.amplitude.of_observed(&observed).into_iter();
         Some(amplitudes_m.fold(0.0, f64::max))
     };
-    let middle = height_m(frequency_hz)?;
-    let low = height_m(frequency_hz - step_hz)?;
-    let mut heights = [low, middle, height_m(frequency_hz + step_hz)?];
-    let mut place = frequency_hz;
+    let mut place = point.frequency_hz;
+    let middle = height_m(place)?;
+    let low = height_m(place - step_hz)?;
+    let mut heights = [low, middle, height_m(place + step_hz)?];
     for _ in 0..MOST_STEPS {
         let [low, middle, high] = heights;
         if low > middle && low >= high {

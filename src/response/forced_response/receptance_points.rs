@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::initial_guess::between_neighbours;
+use super::initial_guess::{between_neighbours, nearest};
 use super::observed_amplitude::{ObservedAmplitude, ObservedHarmonic};
 use super::options::ContactCondition;
 use super::peak::{SearchPlan, Window, search_plan_of};
@@ -75,6 +75,7 @@ impl<'a> EngineRow<'a> {
         let set: Vec<u32> = transform.harmonics().iter().map(|&k| k as u32).collect();
         let limit = self.condition.limit();
         WheelSolver::new(self.engine, self.wheel, limit, self.force, &set, contact)
+            .with_ring(settings.ring)
     }
 
     /// The contact in the harmonics of `transform`; none for a linear limit of a wheel whose contact is nominal.
@@ -163,6 +164,9 @@ impl<'a> ReceptancePoints<'a> {
         starts: &[Vec<f64>],
         tolerance: f64,
     ) -> Result<Point, Status> {
+        let near = nearest(&self.points, frequency_hz);
+        self.solver
+            .set_ring_drift(near.map_or([0.0; 2], |point| point.ring_drift_m));
         let (solved, work) = self.solver.solve(frequency_hz, starts, tolerance);
         self.work.nonlinear_solves += u64::from(self.is_nonlinear);
         self.work.newton_iterations += work.iterations;
@@ -184,7 +188,7 @@ impl<'a> ReceptancePoints<'a> {
             amplitudes_m,
             residual,
             shares,
-            ring_drift_m: [0.0; 2],
+            ring_drift_m: self.solver.ring_drift_m(),
         })
     }
 
@@ -280,6 +284,7 @@ impl PointSource for ReceptancePoints<'_> {
     }
 
     fn mean_friction_n(&mut self, point: &Point) -> Option<[f64; 2]> {
+        self.solver.set_ring_drift(point.ring_drift_m);
         let force = self.solver.mean_friction_n(&point.solution);
         force.filter(|_| self.is_nonlinear)
     }

@@ -9,9 +9,10 @@ use super::options::ContactCondition;
 use super::point::{Point, Work};
 use super::point_settings::PointSettings;
 use crate::linalg::{Complex64, LuWorkspace};
-use crate::response::friction::Ring;
+use crate::response::friction::{PairParameters, Ring};
 use crate::response::harmonic_balance::{
-    HarmonicSystem, NewtonWorkspace, Status, solve, solve_creeping,
+    DriftingRing, HarmonicSystem, NewtonBounds, NewtonOutcome, NewtonWorkspace, Status, let_creep,
+    solve,
 };
 
 /// The equation of one row, with the buffers of its solver.
@@ -118,7 +119,20 @@ impl<'a> RowEquation<'a> {
             };
             let outcome = match self.settings.ring {
                 Ring::Locked => solve(system, omega, &mut x, bounds, Some(&steady), workspace),
-                Ring::Creeping => solve_creeping(system, omega, &mut x, bounds, workspace),
+                Ring::Creeping => {
+                    system.set_ring_drift([0.0; 2]);
+                    let mut ring = CreepingRing {
+                        system,
+                        omega,
+                        x: &mut x,
+                        bounds,
+                        workspace,
+                        outcome: None,
+                    };
+                    let status = let_creep(&mut ring);
+                    let outcome = ring.outcome.ok_or(status)?;
+                    NewtonOutcome { status, ..outcome }
+                }
             };
             (outcome, system.ring_drift_m())
         };
@@ -141,6 +155,58 @@ impl<'a> RowEquation<'a> {
     pub(super) fn amplitudes_of(&self, solution: &[f64]) -> Vec<f64> {
         let blocks = ObservedBlock::all(&self.excited.blocks);
         self.settings.amplitude.of(&blocks, solution)
+    }
+}
+
+/// The equation of a row at one frequency with a ring that creeps.
+struct CreepingRing<'a> {
+    system: &'a mut HarmonicSystem,
+    omega: f64,
+    x: &'a mut Vec<f64>,
+    bounds: NewtonBounds,
+    workspace: &'a mut NewtonWorkspace,
+    /// How the last solution ended, with the work of all.
+    outcome: Option<NewtonOutcome>,
+}
+
+impl DriftingRing for CreepingRing<'_> {
+    fn pairs(&self) -> &[PairParameters] {
+        self.system.pairs()
+    }
+
+    fn free_motions(&self) -> [bool; 2] {
+        self.system.free_ring_motions()
+    }
+
+    fn drift_m(&self) -> [f64; 2] {
+        self.system.ring_drift_m()
+    }
+
+    fn set_drift(&mut self, drift_m: [f64; 2]) {
+        self.system.set_ring_drift(drift_m);
+    }
+
+    fn mean_friction_n(&mut self) -> [f64; 2] {
+        self.system
+            .mean_friction_n(self.x, self.workspace.system_mut())
+    }
+
+    fn solve(&mut self) -> Status {
+        let bounds = self.bounds;
+        let mut found = solve(
+            self.system,
+            self.omega,
+            self.x,
+            bounds,
+            None,
+            self.workspace,
+        );
+        if let Some(before) = self.outcome {
+            found.iterations += before.iterations;
+            found.factorisations += before.factorisations;
+        }
+        self.outcome = Some(found);
+        found.status
     }
 }
 

@@ -15,7 +15,7 @@ pub use equation::{
     linear_response,
 };
 pub use follow::{
-    Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint, solve_creeping,
+    Continuation, ContinuationBounds, ContinuationWork, DriftingRing, Fold, PathPoint, let_creep,
 };
 pub use pairs::{
     ContactInterface, ContactShares, MeanTangent, PairContact, PairHarmonics, PairJacobian,

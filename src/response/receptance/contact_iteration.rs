@@ -328,6 +328,17 @@ impl Outcome {
         }
     }
 
+    /// This outcome with the work of an earlier one.
+    pub(super) fn after(self, before: Option<Self>) -> Self {
+        let Some(before) = before else { return self };
+        Self {
+            iterations: before.iterations + self.iterations,
+            tangents: before.tangents + self.tangents,
+            retries: before.retries + self.retries,
+            ..self
+        }
+    }
+
     /// The work of both, and how the second ended.
     fn followed_by(self, next: Self, rung: usize) -> Self {
         Self {

@@ -174,7 +174,7 @@ pub enum Limit {
 }
 
 /// Highest harmonic of a solution that an engine has tables for.
-pub const HIGHEST_HARMONIC: u32 = 63;
+pub const HIGHEST_HARMONIC: u32 = 100;
 /// Highest harmonic by whose motions strain coordinates are chosen.
 const HIGHEST_OF_SHAPES: u32 = 15;
 

@@ -3,10 +3,14 @@
 use std::f64::consts::TAU;
 
 use crate::linalg::Complex64;
-use crate::response::harmonic_balance::{ContactShares, PairContact, Status, WheelContact};
+use crate::response::friction::{PairParameters, Ring};
+use crate::response::harmonic_balance::{
+    ContactShares, DriftingRing, PairContact, Status, WheelContact, let_creep,
+};
 
 use super::contact_equation::{Buffers, ContactEquation};
 use super::contact_forces::ContactForces;
+use super::contact_iteration::Outcome;
 use super::engine::{EngineWheel, Limit, ReceptanceEngine};
 use super::fields::Field;
 use super::motions::{between_turning, phases_ahead, turned_ahead};
@@ -26,6 +30,8 @@ pub struct WheelSolver<'a> {
     linear: Field,
     /// Forces on the contact besides its own.
     added_forces: Option<ContactForces>,
+    /// What a free ring does under mean friction.
+    ring: Ring,
     most_attempts: usize,
     /// Whether the whole derivative is taken of a contact with few unknowns.
     takes_whole: bool,
@@ -56,6 +62,15 @@ pub struct SolutionWork {
     pub retries: u64,
 }
 
+/// How the motions at the contact are sought at one frequency.
+#[derive(Clone, Copy)]
+enum Way<'a> {
+    /// By all attempts, from the best of several motions, or from the linear response without any.
+    From(&'a [Vec<f64>]),
+    /// By one attempt beside motions.
+    Beside(&'a [f64]),
+}
+
 impl<'a> WheelSolver<'a> {
     /// A solver in the harmonics `set`, ascending and with 1; `contact` is none for a linear limit.
     #[must_use]
@@ -83,10 +98,31 @@ impl<'a> WheelSolver<'a> {
             harmonics: Vec::new(),
             linear: Field::default(),
             added_forces: None,
+            ring: Ring::Locked,
             most_attempts: usize::MAX,
             takes_whole: false,
             buffers: Buffers::default(),
             excited: Vec::new(),
+        }
+    }
+
+    /// This solver with what a free ring does under mean friction; it is locked at first.
+    #[must_use]
+    pub fn with_ring(self, ring: Ring) -> Self {
+        Self { ring, ..self }
+    }
+
+    /// Drift of the ring along its rigid motions (rotation, axial) at the solution last solved, m per period: zero at first.
+    #[must_use]
+    pub fn ring_drift_m(&self) -> [f64; 2] {
+        let contact = self.contact.as_ref();
+        contact.map_or([0.0; 2], WheelContact::ring_drift_m)
+    }
+
+    /// The drift from which that of a creeping ring is sought next.
+    pub fn set_ring_drift(&mut self, drift_m: [f64; 2]) {
+        for contact in self.contact.iter_mut().chain(&mut self.coarse_contact) {
+            contact.set_ring_drift(drift_m);
         }
     }
 
@@ -121,7 +157,7 @@ impl<'a> WheelSolver<'a> {
         if !self.prepare(frequency_hz) {
             return None;
         }
-        let outcome = self.equation()?.settle(start, tolerance);
+        let outcome = self.by_ring(Way::Beside(start), tolerance)?;
         let settled = matches!(outcome.status, Status::Ok | Status::IterationLimit);
         (settled && outcome.step < 1.0).then(|| (self.motions(), outcome.step))
     }
@@ -166,8 +202,7 @@ impl<'a> WheelSolver<'a> {
         if !self.prepare(frequency_hz) {
             return (Err(Status::SingularJacobian), work);
         }
-        let (takes_whole, most_attempts) = (self.takes_whole, self.most_attempts);
-        let Some(mut equation) = self.equation() else {
+        let Some(outcome) = self.by_ring(Way::From(starts), tolerance) else {
             let solution = WheelSolution {
                 motions: Vec::new(),
                 residual: 0.0,
@@ -175,7 +210,6 @@ impl<'a> WheelSolver<'a> {
             };
             return (Ok(solution), work);
         };
-        let outcome = equation.solve(starts, tolerance, (takes_whole, most_attempts));
         work.iterations = outcome.iterations;
         work.tangents = outcome.tangents;
         work.retries = outcome.retries;
@@ -185,6 +219,33 @@ impl<'a> WheelSolver<'a> {
             shares: outcome.shares,
         });
         (solved.ok_or(outcome.status), work)
+    }
+
+    /// Solves at the frequency prepared, with what the ring does; none for a linear limit.
+    fn by_ring(&mut self, way: Way<'_>, tolerance: f64) -> Option<Outcome> {
+        if self.ring == Ring::Locked || self.contact.is_none() {
+            return self.at_drift(way, tolerance);
+        }
+        let mut ring = CreepingRing {
+            solver: self,
+            way,
+            tolerance,
+            motions: None,
+            outcome: None,
+        };
+        let status = let_creep(&mut ring);
+        let outcome = ring.outcome?;
+        Some(Outcome { status, ..outcome })
+    }
+
+    /// Solves at the frequency prepared and the present drift of the ring; none for a linear limit.
+    fn at_drift(&mut self, way: Way<'_>, tolerance: f64) -> Option<Outcome> {
+        let attempts = (self.takes_whole, self.most_attempts);
+        let mut equation = self.equation()?;
+        Some(match way {
+            Way::From(starts) => equation.solve(starts, tolerance, attempts),
+            Way::Beside(start) => equation.settle(start, tolerance),
+        })
     }
 
     /// Receptances, deviations and linear response at a frequency; false where one is singular.
@@ -343,6 +404,65 @@ impl<'a> WheelSolver<'a> {
     #[must_use]
     pub fn harmonics(&self) -> &[u32] {
         &self.set
+    }
+}
+
+/// A wheel at the frequency prepared, whose ring creeps.
+struct CreepingRing<'a, 'b, 'c> {
+    solver: &'a mut WheelSolver<'b>,
+    /// How the first solution is sought.
+    way: Way<'c>,
+    tolerance: f64,
+    /// The motions last solved, from which the next ones are sought.
+    motions: Option<Vec<f64>>,
+    /// How the last solution ended, with the work of all.
+    outcome: Option<Outcome>,
+}
+
+impl DriftingRing for CreepingRing<'_, '_, '_> {
+    fn pairs(&self) -> &[PairParameters] {
+        { self.solver.contact.as_ref() }.map_or(&[], WheelContact::pairs)
+    }
+
+    fn free_motions(&self) -> [bool; 2] {
+        let contact = self.solver.contact.as_ref();
+        contact.map_or([false; 2], WheelContact::free_ring_motions)
+    }
+
+    fn drift_m(&self) -> [f64; 2] {
+        self.solver.ring_drift_m()
+    }
+
+    fn set_drift(&mut self, drift_m: [f64; 2]) {
+        self.solver.set_ring_drift(drift_m);
+    }
+
+    fn mean_friction_n(&mut self) -> [f64; 2] {
+        let motions = self.motions.as_deref().unwrap_or_default();
+        let friction = self.solver.mean_friction_n(motions);
+        friction.unwrap_or([f64::NAN; 2])
+    }
+
+    fn solve(&mut self) -> Status {
+        let known = self.motions.take();
+        let way = match (self.way, &known) {
+            (Way::From(_), Some(known)) => Way::From(std::slice::from_ref(known)),
+            (Way::Beside(_), Some(known)) => Way::Beside(known),
+            (way, None) => way,
+        };
+        let found = self.solver.at_drift(way, self.tolerance);
+        let found = found.map(|found| found.after(self.outcome));
+        let status = match (self.way, found) {
+            (_, None) => Status::SingularJacobian,
+            // What is left of a solution beside another one is told by its step.
+            (Way::Beside(_), Some(found)) if found.status == Status::IterationLimit => Status::Ok,
+            (_, Some(found)) => found.status,
+        };
+        self.outcome = found;
+        if status == Status::Ok {
+            self.motions = Some(self.solver.motions());
+        }
+        status
     }
 }
 

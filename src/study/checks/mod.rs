@@ -12,5 +12,3 @@ mod validate_loads;
 mod validate_mistuning;
 mod validate_solver;
 mod validate_stop;
-
-pub(crate) use validate::against_receptances;

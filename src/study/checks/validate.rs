@@ -18,9 +18,8 @@ use super::validate_stop::stop;
 use crate::input::{Finding, Problem, SourceMap};
 use crate::model::reduction::{Basis, ReductionOptions};
 use crate::model::sector::{Damper, DamperBody, DamperShape, ParametricOptions};
-use crate::response::forced_response::{Harmonics, SearchHarmonics, SolverOptions};
+use crate::response::forced_response::SearchHarmonics;
 use crate::response::friction::{ContactLaw, ContactOptions, Ring};
-use crate::response::receptance::HIGHEST_HARMONIC;
 use crate::study::keys::contact::ContactTable;
 use crate::study::keys::study_file::{HeadTable, SCHEMA, StudyFile};
 use crate::study::keys::{ModelKind, ModelTable, ReductionTable};
@@ -174,12 +173,6 @@ fn resolve(
         (Some(table), Some(contact)) => contact_variations(check, table, contact),
         _ => Vec::new(),
     };
-    if reduction.basis == Basis::TunedReceptances {
-        let ring = contact.as_ref().map(|contact| contact.ring);
-        for (key, reason) in against_receptances(ring, &solver) {
-            check.conflict(key, &format!("basis = \"tuned_receptances\" {reason}"));
-        }
-    }
     let is_creeping = contact.as_ref().map(|contact| contact.ring) == Some(Ring::Creeping);
     if let (SearchHarmonics::Set(_), true) = (&solver.search_harmonics, is_creeping) {
         let reason = "is for a locked ring; peaks of a creeping one are sought with all harmonics; \
@@ -362,26 +355,6 @@ fn reduction(check: &mut Check, table: Option<ReductionTable>) -> ReductionOptio
         }
     }
     options
-}
-
-/// Keys by which a study cannot be solved on tuned receptances, each with what would be accepted.
-pub(crate) fn against_receptances(
-    ring: Option<Ring>,
-    solver: &SolverOptions,
-) -> Vec<(&'static str, String)> {
-    let mut found = Vec::new();
-    if ring == Some(Ring::Creeping) {
-        let reason = "is solved with a locked ring only; accepted: \"locked\", or another basis";
-        found.push(("contact.ring", reason.to_owned()));
-    }
-    if let Harmonics::Set(set) = &solver.harmonics
-        && set.iter().any(|&harmonic| harmonic > HIGHEST_HARMONIC)
-    {
-        let reason =
-            format!("has harmonics up to {HIGHEST_HARMONIC}; accepted: these, or another basis");
-        found.push(("solver.harmonics", reason));
-    }
-    found
 }
 
 fn contact_options(check: &mut Check, table: &ContactTable) -> ContactOptions {

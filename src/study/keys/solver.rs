@@ -2,22 +2,26 @@
 
 use super::options_table::options_table;
 use super::ranges::ABOVE_ZERO;
-use crate::input::Value::{Ascending, Either, Flag, Name, Number, Whole};
+use crate::input::Value::{self, Ascending, Either, Flag, Name, Number, Whole};
 use crate::input::{REQUIRED, Range, key, toml_table};
 use crate::population::statistics::Quantity;
 use crate::population::table::Compression;
 use crate::response::forced_response::{
     AmplitudeMeasure, FrequencyBand, Harmonics, RowsBeyondTolerance, SearchHarmonics, SolverOptions,
 };
+use crate::response::receptance::HIGHEST_HARMONIC;
 use crate::study::{AccuracyOptions, OutputOptions};
+
+/// A harmonic of a solution.
+const HARMONIC: Value = Whole(0, HIGHEST_HARMONIC as i64);
 
 options_table! {
     /// `[solver]`.
     pub(in crate::study) struct SolverTable of SolverOptions {
-        harmonics: Harmonics = key(Either(&[Name(&["auto"]), Ascending(&Whole(0, 100), None)]), "`\"auto\"`",
+        harmonics: Harmonics = key(Either(&[Name(&["auto"]), Ascending(&HARMONIC, None)]), "`\"auto\"`",
             "`auto`: 0 to 15, on a basis per engine order and load by the tuned full contact model ([formulation.md](formulation.md)); a list has 1 among them")
             .of_accuracy().told("\"auto\" or an ascending list of harmonics from 0 to 100 that contains 1, like [1, 3]"),
-        search_harmonics: SearchHarmonics = key(Either(&[Name(&["auto", "all"]), Ascending(&Whole(0, 100), None)]), "`\"auto\"`",
+        search_harmonics: SearchHarmonics = key(Either(&[Name(&["auto", "all"]), Ascending(&HARMONIC, None)]), "`\"auto\"`",
             "local maxima of the response are located with these, then solved with `harmonics` ([formulation.md](formulation.md)); `auto`: 1, or `harmonics` where a set is stated and the contact of a wheel of few masses has few unknowns; `all`: located with `harmonics`, as always with a creeping ring")
             .of_accuracy().told("\"auto\", \"all\" or an ascending list of harmonics from 0 to 100 that contains 1, like [1, 3]"),
         harmonic_tolerance: f64 = key(Number(Range::from_to(1e-6, 1.0)), "0.02",

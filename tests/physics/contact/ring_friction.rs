@@ -1,12 +1,16 @@
 //! Mean friction on the ring, and the ring that creeps under it.
 
+use blisk::model::reduction::BasisChoice;
+use blisk::population::monte_carlo::ResponseRow;
 use blisk::response::forced_response::{
     ContactCondition, PointSettings, PointSolver, SolverOptions,
 };
 use blisk::response::friction::{ContactLaw, CoupledSlider, PeriodicSlider, Ring};
 use blisk::response::harmonic_balance::HarmonicTransform;
 
-use super::super::wheels::{ENGINE_ORDER, Wheel, full, pattern, relative, solve_row};
+use super::super::wheels::{
+    ENGINE_ORDER, Wheel, full, pattern, relative, scenario, solve_row, wheel8_sector,
+};
 use super::random::Random;
 
 /// Forces of the return map after `periods` periods of a displacement that grows by `drift` per
@@ -160,6 +164,85 @@ fn a_creeping_ring_feels_no_mean_friction_unless_pairs_that_stick_take_it() {
         }
     }
     assert!(creeping > 0 && held > 0, "{creeping} {held}");
+}
+
+/// Mistuned wheels, by Newton's method on a basis and on the receptances of that basis: the drift that both seek is the same, all
+/// else is not.
+#[test]
+fn a_mistuned_wheel_with_a_creeping_ring_is_that_of_newton_s_method() {
+    let wheel = Wheel {
+        ring: Ring::Creeping,
+        ..Wheel::wheel8()
+    };
+    let options = || SolverOptions {
+        peak_tolerance: 1e-6,
+        residual_tolerance: 1e-10,
+        ..SolverOptions::default()
+    };
+    let by_newton = wheel.solver(&[1, 3], options());
+    let on_receptances = wheel.solver_on_receptances(&[1, 3], options());
+    let mut random = Random(11);
+    let mut creeping = 0;
+    for load in [200.0, 400.0, 1600.0] {
+        let pattern = pattern(&wheel.deviations(&mut random, 0.03));
+        let rows =
+            [&by_newton, &on_receptances].map(|solver| solve_row(solver, &pattern, full(load)).1);
+        let [expected, found] = rows.each_ref().map(|row| row.peak_amplitude_m.unwrap());
+        let limit_n = 1e-6 * wheel.sector.friction_coefficient * load;
+        let locked = Wheel::wheel8().solver_on_receptances(&[1, 3], options());
+        let locked = solve_row(&locked, &pattern, full(load)).1;
+        let force_n = |row: &ResponseRow| row.mean_friction_circumferential_n.unwrap();
+        println!(
+            "{load} N: {:+.1e}, mean friction {:.2} N locked, {:.1e} and {:.1e} N creeping",
+            found / expected - 1.0,
+            force_n(&locked),
+            force_n(&rows[0]),
+            force_n(&rows[1])
+        );
+        assert!(relative(found, expected) < 1e-5);
+        if force_n(&rows[0]).abs() < limit_n {
+            creeping += 1;
+            assert!(force_n(&locked).abs() > 100.0 * limit_n);
+            assert!(force_n(&rows[1]).abs() < limit_n);
+        } else {
+            assert!(relative(force_n(&rows[1]), force_n(&rows[0])) < 1e-2);
+        }
+    }
+    assert!((1..3).contains(&creeping), "{creeping}");
+}
+
+/// The tuned wheel with all its contact, mean motion and even harmonics: one sector by Newton's method, all of them on receptances.
+#[test]
+fn a_tuned_wheel_with_a_creeping_ring_is_its_one_sector() {
+    let wheel8 = Wheel::wheel8();
+    let wheel = Wheel {
+        ring: Ring::Creeping,
+        ..Wheel::of(
+            &wheel8_sector(),
+            wheel8.law,
+            wheel8.sector,
+            wheel8.damping,
+            BasisChoice::CraigBampton,
+        )
+    };
+    let options = SolverOptions {
+        peak_tolerance: 1e-6,
+        residual_tolerance: 1e-10,
+        ..SolverOptions::default()
+    };
+    let solver = wheel.solver_on_receptances(&[0, 1, 2, 3, 5], options);
+    for load in [200.0, 400.0] {
+        let sector = solver.tuned_peak(ENGINE_ORDER, full(load));
+        let expected = sector.amplitude_m().unwrap();
+        let found = solver.tuned(&scenario(full(load))).amplitude_m.unwrap();
+        let drift = sector.point.unwrap().ring_drift_m;
+        println!(
+            "{load} N: {:+.1e}, drift {drift:?} m",
+            found / expected - 1.0
+        );
+        assert!(relative(found, expected) < 1e-5);
+        assert!(drift.iter().any(|drift| drift.abs() > 1e-9));
+    }
 }
 
 fn amplitude_at(wheel: &Wheel, ring: Ring, load: f64, frequency_hz: f64) -> f64 {

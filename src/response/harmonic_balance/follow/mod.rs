@@ -5,4 +5,4 @@ mod curve;
 mod ring_drift;
 
 pub use continuation::{Continuation, ContinuationBounds, ContinuationWork, Fold, PathPoint};
-pub use ring_drift::solve_creeping;
+pub use ring_drift::{DriftingRing, let_creep};

@@ -17,10 +17,6 @@
 
 use crate::response::friction::PairParameters;
 use crate::response::harmonic_balance::Status;
-use crate::response::harmonic_balance::equation::HarmonicSystem;
-use crate::response::harmonic_balance::solver::{
-    NewtonBounds, NewtonOutcome, NewtonWorkspace, solve,
-};
 
 /// Mean friction that counts as none, relative to the friction limit `mu N0` of a sector.
 const NO_FRICTION: f64 = 1e-7;
@@ -30,6 +26,43 @@ const SMALL_DRIFT: f64 = 1e-9;
 const FIRST_SLOPE: f64 = 0.3;
 /// Solutions at most.
 const SOLUTIONS: usize = 40;
+
+/// A wheel at one frequency whose ring may drift.
+pub trait DriftingRing {
+    /// Parameters of the pairs of a sector, or of the whole wheel where sectors differ.
+    fn pairs(&self) -> &[PairParameters];
+
+    /// Rigid motions of the ring (rotation, axial) that nothing but friction holds.
+    fn free_motions(&self) -> [bool; 2];
+
+    /// Drift of the ring along its rigid motions, m per period.
+    fn drift_m(&self) -> [f64; 2];
+
+    /// Sets the drift.
+    fn set_drift(&mut self, drift_m: [f64; 2]);
+
+    /// Mean friction on the ring along its rigid motions, N per sector, at the motions last solved and the present drift.
+    fn mean_friction_n(&mut self) -> [f64; 2];
+
+    /// Solves at the present drift, from the motions last solved.
+    fn solve(&mut self) -> Status;
+}
+
+/// Solves `R(x, s) = 0` with a ring that is free to creep along its free rigid motions, from the drift that it has; its drift is left in it.
+pub fn let_creep(ring: &mut impl DriftingRing) -> Status {
+    let sizes = Sizes::of(ring.pairs());
+    let known = ring.drift_m().map(|drift| drift.abs() > 0.0);
+    if known.contains(&true) && go_on(ring, known, &sizes) == Status::Ok {
+        return Status::Ok;
+    }
+    ring.set_drift([0.0; 2]);
+    let status = ring.solve();
+    if status == Status::Ok {
+        begin(ring, [false; 2], &sizes)
+    } else {
+        status
+    }
+}
 
 /// Sizes of a sector: friction limit, N, and tangential stiffness, N/m.
 struct Sizes {
@@ -50,76 +83,75 @@ impl Sizes {
                 .sum(),
         }
     }
+
+    fn small_drift_m(&self) -> f64 {
+        SMALL_DRIFT * self.limit_n / self.stiffness_n_per_m
+    }
+
+    /// Whether forces are as good as none.
+    fn are_negligible(&self, forces_n: [f64; 2]) -> bool {
+        let negligible = NO_FRICTION * self.limit_n;
+        forces_n.iter().all(|force| force.abs() <= negligible)
+    }
 }
 
-/// Solves `R(x, s) = 0` with a ring that is free to creep along its free rigid motions, in place
-/// from `x`; the drift is left in `system`. Starts from the locked ring.
-pub fn solve_creeping(
-    system: &mut HarmonicSystem,
-    omega: f64,
-    x: &mut Vec<f64>,
-    bounds: NewtonBounds,
-    workspace: &mut NewtonWorkspace,
-) -> NewtonOutcome {
-    system.set_ring_drift([0.0; 2]);
-    let mut outcome = solve(system, omega, x, bounds, None, workspace);
-    let free = system.free_ring_motions();
-    let sizes = Sizes::of(system.pairs());
-    let mut drifting = [false; 2];
+/// From the present drift along the motions `drifting`.
+fn go_on(ring: &mut impl DriftingRing, drifting: [bool; 2], sizes: &Sizes) -> Status {
+    let status = ring.solve();
+    if status != Status::Ok {
+        return status;
+    }
+    let friction = friction_along(ring, drifting);
+    let status = if sizes.are_negligible(friction) {
+        Status::Ok
+    } else {
+        balance(ring, (drifting, friction), sizes)
+    };
+    if status == Status::Ok {
+        begin(ring, drifting, sizes)
+    } else {
+        status
+    }
+}
+
+/// From a solution in which the motions `drifting` drift without mean friction: whether others have to, and then with them.
+fn begin(ring: &mut impl DriftingRing, mut drifting: [bool; 2], sizes: &Sizes) -> Status {
+    let free = ring.free_motions();
     for _ in 0..2 {
-        if outcome.status != Status::Ok {
-            return outcome;
-        }
-        let (mut begin, mut begins) = ([0.0; 2], false);
+        let (mut friction, mut begins) = ([0.0; 2], false);
         for motion in 0..2 {
             if free[motion]
                 && !drifting[motion]
-                && let Some(force) = unheld_friction(system, x, motion, &sizes, workspace)
+                && let Some(force) = unheld_friction(ring, motion, sizes)
             {
-                begin[motion] = force;
+                friction[motion] = force;
                 drifting[motion] = true;
                 begins = true;
             }
         }
         if !begins {
-            return outcome;
+            return Status::Ok;
         }
-        let found = balance(
-            system,
-            omega,
-            x,
-            bounds,
-            workspace,
-            (drifting, begin),
-            &sizes,
-        );
-        outcome = NewtonOutcome {
-            iterations: outcome.iterations + found.iterations,
-            factorisations: outcome.factorisations + found.factorisations,
-            ..found
-        };
+        let status = balance(ring, (drifting, friction), sizes);
+        if status != Status::Ok {
+            return status;
+        }
     }
-    outcome
+    Status::Ok
 }
 
 /// Mean friction on the ring along `motion` that no sticking pair can take up, at the present
 /// drift of the other motion; none where the ring is held.
-fn unheld_friction(
-    system: &mut HarmonicSystem,
-    x: &[f64],
-    motion: usize,
-    sizes: &Sizes,
-    workspace: &mut NewtonWorkspace,
-) -> Option<f64> {
-    let before = system.ring_drift_m();
-    let small = SMALL_DRIFT * sizes.limit_n / sizes.stiffness_n_per_m;
+fn unheld_friction(ring: &mut impl DriftingRing, motion: usize, sizes: &Sizes) -> Option<f64> {
+    let before = ring.drift_m();
+    let small = sizes.small_drift_m();
     let [forwards, backwards] = [small, -small].map(|drift| {
         let mut tried = before;
         tried[motion] = drift;
-        system.set_ring_drift(tried);
-        system.mean_friction_n(x, workspace.system_mut())[motion]
+        ring.set_drift(tried);
+        ring.mean_friction_n()[motion]
     });
-    system.set_ring_drift(before);
+    ring.set_drift(before);
     let negligible = NO_FRICTION * sizes.limit_n;
     if forwards > negligible {
         Some(forwards)
@@ -130,26 +162,30 @@ fn unheld_friction(
     }
 }
 
-/// Broyden's method on the mean friction of the drifting motions; `friction` is that without drift
-/// for those that only begin to drift.
+/// Mean friction along the motions that drift, N per sector.
+fn friction_along(ring: &mut impl DriftingRing, drifting: [bool; 2]) -> [f64; 2] {
+    let friction = ring.mean_friction_n();
+    [0, 1].map(|motion| {
+        if drifting[motion] {
+            friction[motion]
+        } else {
+            0.0
+        }
+    })
+}
+
+/// Broyden's method on the mean friction of the drifting motions; `friction` is that at the present drift, without any for those
+/// that only begin to drift.
 fn balance(
-    system: &mut HarmonicSystem,
-    omega: f64,
-    x: &mut Vec<f64>,
-    bounds: NewtonBounds,
-    workspace: &mut NewtonWorkspace,
+    ring: &mut impl DriftingRing,
     (drifting, mut friction): ([bool; 2], [f64; 2]),
     sizes: &Sizes,
-) -> NewtonOutcome {
+) -> Status {
     // Rows of dM/ds.
     let slope = -FIRST_SLOPE * sizes.stiffness_n_per_m;
     let mut slopes = [[slope, 0.0], [0.0, slope]];
-    let negligible = NO_FRICTION * sizes.limit_n;
-    let (mut iterations, mut factorisations) = (0, 0);
-    let mut status = Status::Stagnated;
-    let mut last = None;
     for _ in 0..SOLUTIONS {
-        let drift = system.ring_drift_m();
+        let drift = ring.drift_m();
         let determinant = slopes[0][0] * slopes[1][1] - slopes[0][1] * slopes[1][0];
         let full = [
             (slopes[0][1] * friction[1] - slopes[1][1] * friction[0]) / determinant,
@@ -165,24 +201,19 @@ fn balance(
                 }
             }
         }
-        system.set_ring_drift(next);
-        let outcome = solve(system, omega, x, bounds, None, workspace);
-        iterations += outcome.iterations;
-        factorisations += outcome.factorisations;
-        last = Some(outcome);
-        if outcome.status != Status::Ok {
-            status = outcome.status;
-            break;
+        let vanishes =
+            |motion: usize| drifting[motion] && next[motion].abs() < sizes.small_drift_m();
+        if (0..2).any(vanishes) {
+            return Status::Stagnated;
         }
-        let mut now = system.mean_friction_n(x, workspace.system_mut());
-        for motion in 0..2 {
-            if !drifting[motion] {
-                now[motion] = 0.0;
-            }
+        ring.set_drift(next);
+        let status = ring.solve();
+        if status != Status::Ok {
+            return status;
         }
-        if now.iter().all(|force| force.abs() <= negligible) {
-            status = Status::Ok;
-            break;
+        let now = friction_along(ring, drifting);
+        if sizes.are_negligible(now) {
+            return Status::Ok;
         }
         let step = [next[0] - drift[0], next[1] - drift[1]];
         let square = step[0] * step[0] + step[1] * step[1];
@@ -195,17 +226,5 @@ fn balance(
         }
         friction = now;
     }
-    let outcome = last.unwrap_or(NewtonOutcome {
-        status,
-        iterations,
-        factorisations,
-        residual: f64::NAN,
-        shares: crate::response::harmonic_balance::pairs::ContactShares::default(),
-    });
-    NewtonOutcome {
-        status,
-        iterations,
-        factorisations,
-        ..outcome
-    }
+    Status::Stagnated
 }

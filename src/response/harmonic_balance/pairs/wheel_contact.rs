@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::{ContactInterface, ContactShares, InterfaceForces, InterfaceWorkspace, PairContact};
 use crate::linalg::{Complex64, dot};
+use crate::response::friction::PairParameters;
 use crate::response::harmonic_balance::HarmonicTransform;
 
 /// The correction `G(u) = F(u) - k_c u` of the contact forces to those of the tuned wheel's stuck springs.
@@ -241,6 +242,29 @@ impl WheelContact {
     #[must_use]
     pub fn pair_rows(&self) -> &[[Option<usize>; 3]] {
         &self.contact.interface.geometry.rows
+    }
+
+    /// Pair parameters of one sector, or of the whole wheel where sectors differ.
+    #[must_use]
+    pub fn pairs(&self) -> &[PairParameters] {
+        &self.contact.interface.pairs
+    }
+
+    /// Rigid motions of the ring (rotation, axial) that nothing but friction holds.
+    #[must_use]
+    pub fn free_ring_motions(&self) -> [bool; 2] {
+        self.contact.interface.geometry.ring_free
+    }
+
+    /// Drift of the ring along its rigid motions (rotation, axial), m per period: zero at first.
+    #[must_use]
+    pub fn ring_drift_m(&self) -> [f64; 2] {
+        self.contact.ring_drift_m
+    }
+
+    /// Sets the drift of the ring.
+    pub fn set_ring_drift(&mut self, drift_m: [f64; 2]) {
+        self.contact.ring_drift_m = drift_m;
     }
 
     /// Mean friction force on the ring at the motions last given, N per sector, see [`crate::response::harmonic_balance::HarmonicSystem::mean_friction_n`].
