@@ -427,8 +427,8 @@ pub const CASES: &[Case] = &[
     ),
     (
         "[1, 3]",
-        "[1, 65]\nsamples_per_period = 512\n[reduction]\nbasis = \"tuned_receptances\"",
-        &["solver.harmonics", "harmonics up to 63"],
+        "[1, 101]\nsamples_per_period = 512\n[reduction]\nbasis = \"tuned_receptances\"",
+        &["solver.harmonics", "from 0 to 100"],
     ),
     (
         "[1, 3]",
