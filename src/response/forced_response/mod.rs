@@ -24,6 +24,7 @@ mod receptance_peak;
 mod receptance_points;
 mod row_equation;
 mod search;
+mod softer_contact;
 mod tops;
 
 pub use a_posteriori::{ErrorEstimate, Screening, estimate_errors, screen};

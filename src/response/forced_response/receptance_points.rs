@@ -9,6 +9,7 @@ use super::peak::{SearchPlan, Window, search_plan_of};
 use super::point::{Point, Work, point_at};
 use super::point_settings::PointSettings;
 use super::point_source::PointSource;
+use super::softer_contact::from_softer_contact;
 use crate::linalg::Complex64;
 use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{HarmonicTransform, PairContact, Status, WheelContact};
@@ -72,13 +73,40 @@ impl<'a> EngineRow<'a> {
         in_place_of: Option<ContactLaw>,
     ) -> WheelSolver<'a> {
         let contact = self.contact(settings, transform, in_place_of);
+        self.solver_with(contact, settings, transform)
+    }
+
+    /// Solver under a contact whose tangential stiffness is that of the settings times `factor`.
+    pub(super) fn softened_solver(&self, settings: &PointSettings, factor: f64) -> WheelSolver<'a> {
+        let contact = settings.contact.map(|(law, sector)| {
+            let load_n = self.condition.normal_load_n().unwrap_or(0.0);
+            let mut interface = settings.interface(law, sector, load_n);
+            let sectors = self.engine.sectors();
+            if interface.pairs.len() == interface.per_sector() {
+                interface.pairs = interface.pairs.repeat(sectors);
+            }
+            for pair in &mut interface.pairs {
+                pair.tangential_stiffness_n_per_m *= factor;
+            }
+            let springs = self.engine.springs(self.condition.limit());
+            WheelContact::new(interface, sectors, springs, Arc::clone(&settings.transform))
+        });
+        self.solver_with(contact, settings, &settings.transform)
+    }
+
+    fn solver_with(
+        &self,
+        contact: Option<WheelContact>,
+        settings: &PointSettings,
+        transform: &HarmonicTransform,
+    ) -> WheelSolver<'a> {
         let set: Vec<u32> = transform.harmonics().iter().map(|&k| k as u32).collect();
         let limit = self.condition.limit();
         WheelSolver::new(self.engine, self.wheel, limit, self.force, &set, contact)
             .with_ring(settings.ring)
     }
 
-    /// The contact in the harmonics of `transform`; none for a linear limit of a wheel whose contact is nominal.
+    /// The contact in the harmonics of `transform`; none for a linear limit of a wheel whose contact is nominal, and without springs.
     pub(super) fn contact(
         &self,
         settings: &PointSettings,
@@ -87,9 +115,11 @@ impl<'a> EngineRow<'a> {
     ) -> Option<WheelContact> {
         let limit = self.condition.limit();
         let springs = self.engine.springs(limit);
-        let varied = !settings.factors.is_nominal() && !springs.is_empty();
+        let acts = |_: &_| !springs.is_empty();
+        let varied = !settings.factors.is_nominal();
         let load_n = self.condition.normal_load_n();
-        let contact = settings.contact.filter(|_| load_n.is_some() || varied);
+        let contact = settings.contact.filter(acts);
+        let contact = contact.filter(|_| load_n.is_some() || varied);
         contact.map(|(law, sector)| {
             let own_springs = settings.factors.springs(springs, &settings.geometry.rows);
             let law = in_place_of.unwrap_or(law);
@@ -167,7 +197,16 @@ impl<'a> ReceptancePoints<'a> {
         let near = nearest(&self.points, frequency_hz);
         self.solver
             .set_ring_drift(near.map_or([0.0; 2], |point| point.ring_drift_m));
-        let (solved, work) = self.solver.solve(frequency_hz, starts, tolerance);
+        let (mut solved, mut work) = self.solver.solve(frequency_hz, starts, tolerance);
+        if solved.is_err() && !self.beside_lost && self.solver.has_few_unknowns() {
+            let (softer, on_the_way) =
+                from_softer_contact(&self.row, self.settings, frequency_hz, tolerance);
+            work = work.plus(on_the_way);
+            if let Some(start) = softer {
+                let (again, own) = self.solver.solve(frequency_hz, &[start], tolerance);
+                (solved, work) = (again, work.plus(own));
+            }
+        }
         self.work.nonlinear_solves += u64::from(self.is_nonlinear);
         self.work.newton_iterations += work.iterations;
         self.work.factorisations += work.tangents;

@@ -2,7 +2,7 @@
 
 use super::contact_equation::Preconditioned::{self, FirstOfFundamental, Resonant, Whole};
 
-use Attempt::{Accelerated, Newton};
+use Attempt::{Accelerated, Damped, Newton};
 use Start::{Best, Known, Linear};
 
 /// Damping of the shares of earlier steps, over the tolerance that is asked for.
@@ -10,7 +10,8 @@ pub(super) const DAMPING: f64 = 0.5;
 
 /// Newton steps of an attempt at most.
 pub(super) const NEWTON_STEPS: usize = 40;
-/// Most unknowns of a contact that are few: the whole derivative is factorised in the time of some steps.
+/// Most unknowns of a contact that are few: the whole derivative is factorised in the time of some steps. Where nothing else leads to a
+/// solution, it is factorised at every step.
 pub(super) const FEW_UNKNOWNS: usize = 150;
 /// Most harmonics that are few: with more a step takes so long that attempts are ended early, and that no pair is preconditioned by itself.
 const FEW_HARMONICS: usize = 6;
@@ -125,6 +126,8 @@ pub(super) enum Start {
 pub(super) enum Attempt {
     Accelerated(Plan),
     Newton(NewtonPlan),
+    /// Newton's method by the whole derivative, factorised at every step.
+    Damped,
 }
 
 /// What is tried, in this order, until an attempt ends with a solution. The tangent of a known start is near; that of the linear
@@ -162,28 +165,33 @@ const WITH_FEW_UNKNOWNS: [(Start, Attempt); 2] = [
     (Known, Accelerated(BY_WHOLE)),
     (Linear, Accelerated(BY_WHOLE)),
 ];
+/// With so few unknowns that the whole derivative can be factorised at every step, after those above.
+const WITH_WHOLE_STEPS: [(Start, Attempt); 3] = [(Known, Damped), (Linear, Damped), (Best, Damped)];
 const BY_WHOLE: Plan = plan(&[0, 7, 14, 21, 28], 40, Whole);
 const RENEWED: Plan = plan(&[0, 10, 25], 160, FirstOfFundamental);
 const RENEWED_RESONANT: Plan = plan(&[0, 10, 25], 160, Resonant);
 
-/// The attempts with so many harmonics, by the whole derivative first or not, in their order; without a known start the linear response begins.
+/// The attempts with so many harmonics and unknowns, by the whole derivative first or not, in their order; without a known start the linear
+/// response begins.
 pub(super) fn attempts(
-    by_whole: bool,
-    harmonics: usize,
+    takes_whole: bool,
+    (harmonics, unknowns): (usize, usize),
     has_known: bool,
 ) -> impl Iterator<Item = &'static (Start, Attempt)> {
-    let first: &[_] = if by_whole && harmonics > 1 {
+    let are_few = unknowns <= FEW_UNKNOWNS;
+    let first: &[_] = if are_few && takes_whole && harmonics > 1 {
         &WITH_FEW_UNKNOWNS
     } else {
         &[]
     };
+    let last: &[_] = if are_few { &WITH_WHOLE_STEPS } else { &[] };
     let attempts: &[_] = if harmonics <= FEW_HARMONICS {
         &WITH_FEW_HARMONICS
     } else {
         &WITH_MANY_HARMONICS
     };
-    let known =
-        { first.iter().chain(attempts) }.filter(move |(start, _)| has_known || *start != Known);
+    let known = { first.iter().chain(attempts).chain(last) }
+        .filter(move |(start, _)| has_known || *start != Known);
     known.skip_while(move |(start, _)| !has_known && *start == Best)
 }
 
@@ -197,10 +205,14 @@ mod tests {
     #[test]
     fn without_a_known_start_the_linear_response_begins() {
         let counts = [1, FEW_HARMONICS, FEW_HARMONICS + 1, 16];
-        let counts = counts.map(|harmonics| [(false, harmonics), (true, harmonics)]);
-        for (by_whole, harmonics) in counts.into_iter().flatten() {
-            let starts =
-                |has_known: bool| attempts(by_whole, harmonics, has_known).map(|(start, _)| *start);
+        let counts = counts.map(|harmonics| [false, true].map(|whole| (whole, harmonics)));
+        let counts = counts.into_iter().flatten();
+        for (case, unknowns) in counts.flat_map(|case| [(case, 100), (case, 10_000)]) {
+            let (takes_whole, harmonics) = case;
+            let starts = |has_known: bool| {
+                let attempts = attempts(takes_whole, (harmonics, unknowns), has_known);
+                attempts.map(|(start, _)| *start)
+            };
             assert!(starts(false).next() == Some(Linear));
             assert!(starts(false).all(|start| start != Known));
             assert!(starts(true).next() == Some(Known));

@@ -249,6 +249,11 @@ impl ContactEquation<'_> {
         (self.weighed(&self.buffers.residual) / self.weighed(&self.buffers.motions)).sqrt()
     }
 
+    /// Norm of the preconditioned residual.
+    pub(super) fn step_size(&self) -> f64 {
+        self.weighed(&self.buffers.residual).sqrt()
+    }
+
     /// Squared norm of a field per harmonic, of which harmonic k counts by `1/k`: forces that jump have harmonics that fall so, and so
     /// does what a motion in a harmonic changes of the others.
     fn weighed(&self, fields: &[Field]) -> f64 {

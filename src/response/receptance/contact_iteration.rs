@@ -1,22 +1,26 @@
 //! The motions at the contact of a mistuned wheel at one frequency: a preconditioned, accelerated iteration.
 //!
 //! A step is `-P r` with the inverse P of `I + A G'` for the mean tangent G' of the contact; Anderson's acceleration makes up for
-//! what the mean leaves out. What is approximate stands in P alone. Such an attempt ends by the residual and the next step.
-//! An attempt by Newton's method ends by the residual alone. Either can follow the other, in the order of `attempts_on_receptances.rs`.
+//! what the mean leaves out. What is approximate stands in P alone. Attempts by Newton's method can precede and follow, in the order of
+//! `attempts_on_receptances.rs`. Each ends by the residual and the next step: where contact is stiff, a small residual alone says little.
 
 use crate::linalg::gmres;
 use crate::response::harmonic_balance::{ContactShares, Status};
 
-use super::attempts_on_receptances::Attempt::{Accelerated, Newton};
+use super::attempts_on_receptances::Attempt::{Accelerated, Damped, Newton};
 use super::attempts_on_receptances::Start::{Best, Known, Linear};
 use super::attempts_on_receptances::{
-    BESIDE, DAMPING, FEW_UNKNOWNS, NEAR, NEWTON_STEPS, NewtonPlan, Plan, attempts,
+    BESIDE, DAMPING, NEAR, NEWTON_STEPS, NewtonPlan, Plan, attempts,
 };
 use super::contact_equation::Preconditioned::{FirstOfFundamental, Whole};
 use super::contact_equation::{Buffers, ContactEquation, StepPreconditioner};
 use super::fields::{Field, flatten, unflatten};
 use super::pair_preconditioner::PairPreconditioner;
 use super::preconditioner::Preconditioner;
+
+/// Steps by the whole derivative at most, and the share of one below which it is not tried.
+const DAMPED_STEPS: usize = 100;
+const LEAST_FACTOR: f64 = 1.0 / 256.0;
 
 /// What decides that an attempt is over.
 struct Judge {
@@ -63,8 +67,7 @@ impl Judge {
         }
     }
 
-    /// Whether the residual and the step that it leads to are within the tolerance; Newton's method asks with a step of 0. Forces of a
-    /// pair without a periodic state prove nothing.
+    /// Whether the residual and the step that it leads to are within the tolerance. Forces of a pair without a periodic state prove nothing.
     fn settled(&self, residual: f64, step: f64, shares: &ContactShares) -> Option<Status> {
         let is_closed = shares.unclosed == 0.0;
         let status = if is_closed {
@@ -104,8 +107,8 @@ impl ContactEquation<'_> {
     ) -> Outcome {
         let linear = self.linear_start();
         let known = self.best_of(starts);
-        let by_whole = takes_whole && self.contact.motion().len() <= FEW_UNKNOWNS;
-        let attempts = attempts(by_whole, self.harmonics.len(), known.is_some());
+        let size = (self.harmonics.len(), self.contact.motion().len());
+        let attempts = attempts(takes_whole, size, known.is_some());
         let attempts = attempts.take(most_attempts);
         let mut best = (f64::INFINITY, linear.clone());
         let mut total = Outcome::none();
@@ -119,6 +122,7 @@ impl ContactEquation<'_> {
             let outcome = match attempt {
                 Accelerated(plan) => self.accelerate(plan, tolerance),
                 Newton(plan) => self.newton(plan, tolerance),
+                Damped => self.damped_newton(tolerance),
             };
             total = total.followed_by(outcome, rung);
             if total.status == Status::Ok {
@@ -198,12 +202,6 @@ impl ContactEquation<'_> {
         let mut judge = Judge::of(tolerance);
         for _ in 0..NEWTON_STEPS {
             (outcome.residual, outcome.shares) = self.residual(true);
-            let settled = judge.settled(outcome.residual, 0.0, &outcome.shares);
-            let settled = settled.filter(|status| *status == Status::Ok);
-            if let Some(status) = settled.or_else(|| judge.lost(outcome.residual)) {
-                outcome.status = status;
-                break;
-            }
             outcome.tangents += 1;
             let pairs = plan.pairs;
             let mut by = NewtonPreconditioner {
@@ -211,6 +209,16 @@ impl ContactEquation<'_> {
                 pairs: pairs.then(|| PairPreconditioner::new(self.contact, self.harmonics)),
             };
             let right = self.preconditioned_residual(&mut by);
+            unflatten(&right, &mut self.buffers.residual);
+            outcome.step = self.step_over_motion();
+            let settled = judge.settled(outcome.residual, outcome.step, &outcome.shares);
+            let settled = settled.filter(|status| *status == Status::Ok);
+            if let Some(status) = settled.or_else(|| judge.lost(outcome.residual)) {
+                outcome.status = status;
+                // The forces of the motions, where the preconditioner of pairs has left products with the derivative.
+                self.residual(false);
+                break;
+            }
             let solved = gmres(&right, plan.step_error, plan.products, |direction| {
                 let mut turned = self.derivative(direction);
                 self.precondition_flat(&mut by, &mut turned);
@@ -235,6 +243,56 @@ impl ContactEquation<'_> {
         }
         self.contact.couple(false);
         outcome
+    }
+
+    /// Newton's method by the whole derivative, factorised at every step. A step is shortened until the next one with the same factors
+    /// would be shorter: the natural monotonicity test (Deuflhard 2004, section 3.3), which does not depend on how stiff a pair is.
+    fn damped_newton(&mut self, tolerance: f64) -> Outcome {
+        self.contact.couple(true);
+        let mut outcome = Outcome::none();
+        let mut judge = Judge::of(tolerance);
+        for _ in 0..DAMPED_STEPS {
+            (outcome.residual, outcome.shares) = self.residual(true);
+            let mut by = self.preconditioner(Whole);
+            outcome.tangents += 1;
+            outcome.iterations += 1;
+            self.precondition_by(&mut by);
+            outcome.step = self.step_over_motion();
+            let settled = judge.settled(outcome.residual, outcome.step, &outcome.shares);
+            if let Some(status) = settled.or_else(|| judge.lost(outcome.residual)) {
+                outcome.status = status;
+                break;
+            }
+            if !self.shortens_next(&mut by) {
+                outcome.status = Status::Stagnated;
+                break;
+            }
+        }
+        self.contact.couple(false);
+        outcome
+    }
+
+    /// Moves by the largest of the step in the place of the residual, its half and so on after which the next step `by` the same
+    /// derivative is shorter; false, and nothing moved, if there is none.
+    fn shortens_next(&mut self, by: &mut StepPreconditioner) -> bool {
+        let (mut from, mut step) = (Vec::new(), Vec::new());
+        flatten(&self.buffers.motions, 1.0, &mut from);
+        flatten(&self.buffers.residual, -1.0, &mut step);
+        let before = self.step_size();
+        let mut factor = 1.0;
+        while factor >= LEAST_FACTOR {
+            let moved = from.iter().zip(&step).map(|(u, s)| u + factor * s);
+            let moved: Vec<f64> = moved.collect();
+            unflatten(&moved, &mut self.buffers.motions);
+            self.residual(false);
+            self.precondition_by(by);
+            if self.step_size() <= (1.0 - 0.25 * factor) * before {
+                return true;
+            }
+            factor *= 0.5;
+        }
+        unflatten(&from, &mut self.buffers.motions);
+        false
     }
 
     /// Preconditions motions in place: every harmonic by itself, then every pair by itself what that leaves.

@@ -8,6 +8,7 @@ use crate::response::harmonic_balance::{
     ContactShares, DriftingRing, PairContact, Status, WheelContact, let_creep,
 };
 
+use super::attempts_on_receptances::FEW_UNKNOWNS;
 use super::contact_equation::{Buffers, ContactEquation};
 use super::contact_forces::ContactForces;
 use super::contact_iteration::Outcome;
@@ -69,6 +70,18 @@ enum Way<'a> {
     From(&'a [Vec<f64>]),
     /// By one attempt beside motions.
     Beside(&'a [f64]),
+}
+
+impl SolutionWork {
+    /// The sum of this work and `other`.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            iterations: self.iterations + other.iterations,
+            tangents: self.tangents + other.tangents,
+            retries: self.retries + other.retries,
+        }
+    }
 }
 
 impl<'a> WheelSolver<'a> {
@@ -398,6 +411,12 @@ impl<'a> WheelSolver<'a> {
     #[must_use]
     pub fn is_nonlinear(&self) -> bool {
         self.contact.is_some()
+    }
+
+    /// Whether its contact has few unknowns; a linear limit has none.
+    pub(crate) fn has_few_unknowns(&self) -> bool {
+        let contact = self.contact.as_ref();
+        contact.is_some_and(|contact| contact.motion().len() <= FEW_UNKNOWNS)
     }
 
     /// The harmonics, ascending.
