@@ -64,6 +64,9 @@ pub fn wheel8_contact() -> PairParameters {
     parameters(8e8, 4e8)
 }
 
+/// Factor on the number of blade shapes with which none is left out.
+const ALL_SHAPES: usize = 1000;
+
 /// Slipping starts near a load of 1 N times this for the lumped wheel.
 pub const LUMPED_KT: f64 = 8e5;
 
@@ -141,24 +144,35 @@ impl Wheel {
         }
     }
 
+    /// Rows on the receptances of the basis, as those of a study are solved, with every blade shape, under any engine order up to three
+    /// times the sectors.
     pub fn solver(&self, harmonics: &[u32], options: SolverOptions) -> RowSolver {
-        RowSolver::new(Arc::clone(&self.model), self.settings(harmonics, options)).unwrap()
+        self.solver_or_none(harmonics, options).unwrap()
     }
 
-    /// [`Self::solver`] with rows on the receptances of the basis.
-    pub fn solver_on_receptances(&self, harmonics: &[u32], options: SolverOptions) -> RowSolver {
+    /// [`Self::solver`]; none where there are no receptances.
+    pub fn solver_or_none(&self, harmonics: &[u32], options: SolverOptions) -> Option<RowSolver> {
+        let engine_orders: Vec<u32> = (0..=3 * self.model.sectors as u32)
+            .chain([ENGINE_ORDER, 10_000])
+            .collect();
+        let force = |&order: &u32| WaveForce::new(&self.model, order, self.amplitude_n);
         let engine_options = EngineOptions {
             damping: self.damping,
             projection: Projection::Exact,
-            forces: vec![WaveForce::new(&self.model, ENGINE_ORDER, self.amplitude_n)],
+            forces: engine_orders.iter().map(force).collect(),
             deviation: 0.1,
             band_hz: None,
         };
-        let made = ReceptanceEngine::of_model((*self.model).clone(), &engine_options, 4);
-        let (own, engine) = made.unwrap();
-        self.solver(harmonics, options)
-            .with_engine_of_basis(Arc::new(engine), &own.model, &[ENGINE_ORDER])
-            .unwrap()
+        let model = (*self.model).clone();
+        let (own, engine) = ReceptanceEngine::of_model(model, &engine_options, ALL_SHAPES)?;
+        let solver = self.newton_solver(harmonics, options);
+        let solver = solver.with_engine_of_basis(Arc::new(engine), &own.model, &engine_orders);
+        Some(solver.unwrap())
+    }
+
+    /// Rows on the basis by Newton's method.
+    pub fn newton_solver(&self, harmonics: &[u32], options: SolverOptions) -> RowSolver {
+        RowSolver::new(Arc::clone(&self.model), self.settings(harmonics, options)).unwrap()
     }
 
     /// The tuned wheel as one sector.

@@ -179,8 +179,8 @@ fn a_mistuned_wheel_with_a_creeping_ring_is_that_of_newton_s_method() {
         residual_tolerance: 1e-10,
         ..SolverOptions::default()
     };
-    let by_newton = wheel.solver(&[1, 3], options());
-    let on_receptances = wheel.solver_on_receptances(&[1, 3], options());
+    let by_newton = wheel.newton_solver(&[1, 3], options());
+    let on_receptances = wheel.solver(&[1, 3], options());
     let mut random = Random(11);
     let mut creeping = 0;
     for load in [200.0, 400.0, 1600.0] {
@@ -189,7 +189,7 @@ fn a_mistuned_wheel_with_a_creeping_ring_is_that_of_newton_s_method() {
             [&by_newton, &on_receptances].map(|solver| solve_row(solver, &pattern, full(load)).1);
         let [expected, found] = rows.each_ref().map(|row| row.peak_amplitude_m.unwrap());
         let limit_n = 1e-6 * wheel.sector.friction_coefficient * load;
-        let locked = Wheel::wheel8().solver_on_receptances(&[1, 3], options());
+        let locked = Wheel::wheel8().solver(&[1, 3], options());
         let locked = solve_row(&locked, &pattern, full(load)).1;
         let force_n = |row: &ResponseRow| row.mean_friction_circumferential_n.unwrap();
         println!(
@@ -230,7 +230,7 @@ fn a_tuned_wheel_with_a_creeping_ring_is_its_one_sector() {
         residual_tolerance: 1e-10,
         ..SolverOptions::default()
     };
-    let solver = wheel.solver_on_receptances(&[0, 1, 2, 3, 5], options);
+    let solver = wheel.solver(&[0, 1, 2, 3, 5], options);
     for load in [200.0, 400.0] {
         let sector = solver.tuned_peak(ENGINE_ORDER, full(load));
         let expected = sector.amplitude_m().unwrap();
