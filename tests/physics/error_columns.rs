@@ -227,6 +227,7 @@ fn stated_errors_of_a_mistuned_finite_element_wheel_hold() {
     judge(&compared);
 }
 
+/// Of Newton's method on one sector, by which a basis and its harmonics are judged.
 #[test]
 fn one_correction_at_four_times_the_samples_foretells_the_solution_with_them() {
     for (wheel, load) in [
@@ -236,7 +237,7 @@ fn one_correction_at_four_times_the_samples_foretells_the_solution_with_them() {
     ] {
         let solve = |samples| {
             let tuned = wheel
-                .solver(&[1, 3], options(samples))
+                .newton_solver(&[1, 3], options(samples))
                 .tuned(&scenario(full(load)));
             (tuned.amplitude_m.unwrap(), tuned.errors.unwrap())
         };

@@ -50,6 +50,8 @@ fn forces_at_the_ends_of_the_range_end_with_a_status() {
         for force in [
             1e-300,
             1e-160,
+            1e-30,
+            1e30,
             1e160,
             1e300,
             f64::MAX,
@@ -60,7 +62,11 @@ fn forces_at_the_ends_of_the_range_end_with_a_status() {
                 amplitude_n: force,
                 ..wheel.clone()
             };
-            let solver = wheel.solver(&[1], SolverOptions::default());
+            let Some(solver) = wheel.solver_or_none(&[1], SolverOptions::default()) else {
+                println!("{}, {force:e} N: no receptances", wheel.model.name);
+                assert!(!(1e-30..=1e30).contains(&force), "what a study may say");
+                continue;
+            };
             for contact in CONTACTS.into_iter().chain([force, 0.0, f64::MAX].map(full)) {
                 let (tuned, row) = solved(&solver, ORDER, &uneven(SECTORS, 0.03), contact);
                 println!(
