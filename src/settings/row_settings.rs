@@ -69,6 +69,7 @@ pub(super) fn reference_settings(
         residual_tolerance: ReferenceSettings::RESIDUAL_TOLERANCE,
         peak_tolerance: ReferenceSettings::PEAK_TOLERANCE,
         contact: row.contact,
+        ring: row.ring,
         damping: row.damping,
         amplitude_n: row.amplitude_n,
         amplitude: row.solver.amplitude,

@@ -9,7 +9,9 @@ use blisk::response::forced_response::{AmplitudeMeasure, ContactCondition, Solve
 use blisk::response::friction::{ContactLaw, Ring};
 use blisk::response::harmonic_balance::{Damping, HarmonicTransform, Status};
 use blisk::response::mistuning::{ContactFactors, Deviations, PairFactors, Pattern, Projection};
-use blisk::verification::reference::{ReferenceSettings, ReferenceSolver, reference_peak};
+use blisk::verification::reference::{
+    ReferencePoint, ReferenceSettings, ReferenceSolver, reference_peak,
+};
 
 use super::contact::random::Random;
 use super::wheels::{
@@ -83,6 +85,7 @@ impl Case {
             residual_tolerance: 1e-11,
             peak_tolerance: ReferenceSettings::PEAK_TOLERANCE,
             contact: self.settings.contact,
+            ring: self.settings.ring,
             damping: self.settings.damping,
             amplitude_n: self.settings.amplitude_n,
             amplitude: solver.amplitude,
@@ -127,6 +130,28 @@ impl Case {
             (worst.1, worst.2) = (point.shares.slipping, point.shares.separated);
         }
         worst
+    }
+
+    /// Largest difference of the highest blade from that of another case on the full-contact model, relative.
+    fn reference_change(
+        &self,
+        other: &Self,
+        contact: ContactCondition,
+        pattern: &Pattern,
+        frequencies_hz: &[f64],
+    ) -> f64 {
+        let of = |case: &Self| {
+            let (settings, pattern) = (case.reference(), Some(pattern));
+            ReferenceSolver::new(&case.model, &settings, ENGINE_ORDER, contact, pattern).unwrap()
+        };
+        let (mut own, mut other) = (of(self), of(other));
+        let largest =
+            |point: &ReferencePoint| point.amplitudes_m.iter().copied().fold(0.0, f64::max);
+        let changes = frequencies_hz.iter().map(|&hz| {
+            let own = largest(own.solve(hz).unwrap());
+            (largest(other.solve(hz).unwrap()) / own - 1.0).abs()
+        });
+        changes.fold(0.0, f64::max)
     }
 
     fn assert_same(
@@ -215,6 +240,24 @@ fn two_codes_agree_on_the_friction_circle_and_under_a_constant_normal_load() {
         let (slipping, _) = case.assert_same(full(300.0), &pattern(&deviations(8)), &frequencies);
         assert!(slipping > 0.2, "{law:?}: {slipping}");
     }
+}
+
+#[test]
+fn two_codes_agree_on_a_ring_that_creeps() {
+    let damping = Damping::StructuralLossFactor(0.002);
+    let locked = Case::wheel8(damping, &[1, 3], Projection::Exact);
+    let mut case = Case::wheel8(damping, &[1, 3], Projection::Exact);
+    case.settings.ring = Ring::Creeping;
+    let (pattern, frequencies) = (pattern(&deviations(8)), [611.0, 614.0, 617.0]);
+    let mut creeping = 0;
+    for load in [100.0, 200.0, 300.0] {
+        let (found, ..) = case.difference(full(load), Some(&pattern), &frequencies);
+        let change = case.reference_change(&locked, full(load), &pattern, &frequencies);
+        println!("{load} N: {found:.1e}, beside a locked ring {change:.1e}");
+        assert!(found < 1e-6, "{found:e}");
+        creeping += u32::from(change > 1e-4);
+    }
+    assert!(creeping > 0);
 }
 
 #[test]

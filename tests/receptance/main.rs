@@ -16,7 +16,7 @@ use blisk::model::ReducedModel;
 use blisk::model::reduction::{BasisChoice, ContactStiffness, Reduction};
 use blisk::model::sector::bundle;
 use blisk::response::forced_response::{AmplitudeMeasure, ContactCondition};
-use blisk::response::friction::{ContactLaw, PairParameters};
+use blisk::response::friction::{ContactLaw, PairParameters, Ring};
 use blisk::response::harmonic_balance::{
     ContactInterface, Damping, HarmonicTransform, WheelContact,
 };
@@ -167,6 +167,7 @@ impl Case {
             residual_tolerance: 1e-10,
             peak_tolerance: ReferenceSettings::PEAK_TOLERANCE,
             contact: Some((self.law, self.contact)),
+            ring: Ring::Locked,
             damping: self.damping,
             amplitude_n: 1.0,
             amplitude: AmplitudeMeasure::Fundamental,

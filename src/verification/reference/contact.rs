@@ -19,6 +19,8 @@ pub(super) struct ContactForces {
     pairs: Vec<PairParameters>,
     sectors: usize,
     transform: Arc<HarmonicTransform>,
+    /// Drift of the ring along its rigid motions (rotation, axial), m per period.
+    ring_drift_m: [f64; 2],
 }
 
 /// Derivative of the forces of one pair that slips or separates.
@@ -52,7 +54,61 @@ impl ContactForces {
             geometry,
             sectors,
             transform,
+            ring_drift_m: [0.0; 2],
         }
+    }
+
+    /// Parameters of the pairs of the first sector.
+    pub(super) fn first_pairs(&self) -> &[PairParameters] {
+        &self.pairs[..self.geometry.rows.len()]
+    }
+
+    /// Rigid motions of the ring that nothing but friction holds.
+    pub(super) fn free_ring_motions(&self) -> [bool; 2] {
+        self.geometry.ring_free
+    }
+
+    pub(super) fn ring_drift_m(&self) -> [f64; 2] {
+        self.ring_drift_m
+    }
+
+    pub(super) fn set_ring_drift(&mut self, drift_m: [f64; 2]) {
+        self.ring_drift_m = drift_m;
+    }
+
+    /// What a pair of a sector moves on by per period along its tangents, m: the blisk less the ring.
+    fn pair_drift_m(&self, pair: usize) -> [f64; 2] {
+        let motions = self.geometry.ring_motion[pair];
+        let by = self.ring_drift_m;
+        [0, 1].map(|tangent| -(motions[0][tangent] * by[0] + motions[1][tangent] * by[1]))
+    }
+
+    /// Mean friction force on the ring along its rigid motions at a displacement, N per sector.
+    pub(super) fn mean_friction_n(&self, displacement: &[f64]) -> [f64; 2] {
+        let coefficients = self.transform.n_coefficients();
+        let (per_sector, in_sector) = (self.geometry.row_count(), self.geometry.rows.len());
+        let rows = per_sector * self.sectors;
+        let mut pair_law = PairHarmonics::new(self.law, Arc::clone(&self.transform));
+        let [mut input, mut output] = [0, 1].map(|_| vec![0.0; 3 * coefficients]);
+        let mut sum = [0.0; 2];
+        for (index, parameters) in self.pairs.iter().enumerate() {
+            let (sector, pair) = (index / in_sector, index % in_sector);
+            input.fill(0.0);
+            for (direction, row) in self.geometry.rows[pair].iter().enumerate() {
+                let Some(row) = row else { continue };
+                for c in 0..coefficients {
+                    let place = c * rows + sector * per_sector + row;
+                    input[direction * coefficients + c] = displacement[place];
+                }
+            }
+            pair_law.set_drift(self.pair_drift_m(pair));
+            pair_law.evaluate(parameters, &input, &mut output, None);
+            let friction = pair_law.history().mean_friction_n();
+            for (sum, motion) in sum.iter_mut().zip(&self.geometry.ring_motion[pair]) {
+                *sum += motion[0] * friction[0] + motion[1] * friction[1];
+            }
+        }
+        sum.map(|sum| sum / self.sectors as f64)
     }
 
     /// Copy of this contact with the normal load of every pair multiplied by `factor`.
@@ -67,6 +123,7 @@ impl ContactForces {
             pairs: self.pairs.iter().map(loaded).collect(),
             sectors: self.sectors,
             transform: Arc::clone(&self.transform),
+            ring_drift_m: self.ring_drift_m,
         }
     }
 
@@ -91,7 +148,8 @@ impl ContactForces {
         }
         for sector in 0..self.sectors {
             let pairs = &self.pairs[sector * self.geometry.rows.len()..];
-            for (pair, directions) in pairs.iter().zip(&self.geometry.rows) {
+            for (place, (pair, directions)) in pairs.iter().zip(&self.geometry.rows).enumerate() {
+                pair_law.set_drift(self.pair_drift_m(place));
                 // (unknown of the pair, its place) of every direction that the pair moves in.
                 let places: Vec<(usize, usize)> = directions
                     .iter()

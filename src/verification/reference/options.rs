@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::response::forced_response::AmplitudeMeasure;
-use crate::response::friction::{ContactLaw, PairParameters};
+use crate::response::friction::{ContactLaw, PairParameters, Ring};
 use crate::response::harmonic_balance::{Damping, HarmonicTransform};
 use crate::response::mistuning::Projection;
 
@@ -18,6 +18,8 @@ pub struct ReferenceSettings {
     pub peak_tolerance: f64,
     /// Contact law and its parameters per sector; none for a model without contact.
     pub contact: Option<(ContactLaw, PairParameters)>,
+    /// What a free ring does under mean friction.
+    pub ring: Ring,
     /// Damping of the structure.
     pub damping: Damping,
     /// Factor on the model's force vector.

@@ -12,8 +12,8 @@ use crate::linalg::Complex64;
 use crate::model::ReducedModel;
 use crate::model::cyclic::nodal_diameter_of;
 use crate::response::forced_response::{AmplitudeMeasure, ContactCondition};
-use crate::response::friction::PairParameters;
-use crate::response::harmonic_balance::{ContactShares, Status};
+use crate::response::friction::{PairParameters, Ring};
+use crate::response::harmonic_balance::{ContactShares, DriftingRing, Status, let_creep};
 use crate::response::mistuning::{ContactFactors, Pattern};
 
 /// Work done on a row.
@@ -235,7 +235,10 @@ impl ReferenceSolver {
             force_norm,
             rows: structures[0].1.structure().contact_rows(),
         };
-        let solution = self.attempts(&system, contact, frequency_hz)?;
+        let solution = match self.settings.ring {
+            Ring::Locked => self.attempts(&system, contact, frequency_hz)?,
+            Ring::Creeping => self.creeping(&system, contact, frequency_hz)?,
+        };
         let observed: Vec<(u32, Vec<Complex64>)> = system
             .places()
             .map(|(start, harmonic)| {
@@ -255,6 +258,26 @@ impl ReferenceSolver {
             shares: solution.shares,
             displacement: solution.displacement,
         })
+    }
+
+    /// With a ring that is free to creep.
+    fn creeping(
+        &mut self,
+        system: &CondensedSystem<'_>,
+        contact: &ContactForces,
+        frequency_hz: f64,
+    ) -> Result<NewtonSolution, Status> {
+        let mut ring = CreepingRing {
+            solver: self,
+            system,
+            contact: contact.with_load_factor(1.0),
+            frequency_hz,
+            solution: None,
+        };
+        match let_creep(&mut ring) {
+            Status::Ok => ring.solution.ok_or(Status::Stagnated),
+            status => Err(status),
+        }
     }
 
     /// From the nearest solved frequency, from the stuck solution, by homotopy in normal load.
@@ -359,4 +382,59 @@ fn time_maximum(observed: &[(u32, Vec<Complex64>)], blade: usize, instants: usiz
         })
         .fold(0.0, f64::max)
         .sqrt()
+}
+
+/// A wheel at one frequency, whose ring creeps.
+struct CreepingRing<'a, 'b> {
+    solver: &'a mut ReferenceSolver,
+    system: &'a CondensedSystem<'b>,
+    contact: ContactForces,
+    frequency_hz: f64,
+    /// The last one, from which the next one is sought.
+    solution: Option<NewtonSolution>,
+}
+
+impl DriftingRing for CreepingRing<'_, '_> {
+    fn pairs(&self) -> &[PairParameters] {
+        self.contact.first_pairs()
+    }
+
+    fn free_motions(&self) -> [bool; 2] {
+        self.contact.free_ring_motions()
+    }
+
+    fn drift_m(&self) -> [f64; 2] {
+        self.contact.ring_drift_m()
+    }
+
+    fn set_drift(&mut self, drift_m: [f64; 2]) {
+        self.contact.set_ring_drift(drift_m);
+    }
+
+    fn mean_friction_n(&mut self) -> [f64; 2] {
+        let solution = self.solution.as_ref();
+        solution.map_or([f64::NAN; 2], |solution| {
+            self.contact.mean_friction_n(&solution.displacement)
+        })
+    }
+
+    fn solve(&mut self) -> Status {
+        let Self {
+            solver,
+            system,
+            contact,
+            ..
+        } = self;
+        let solved = match self.solution.take() {
+            Some(known) => {
+                let next = solver.newton(system, contact, known.displacement);
+                let status = next.status;
+                (status == Status::Ok).then_some(next).ok_or(status)
+            }
+            None => solver.attempts(system, contact, self.frequency_hz),
+        };
+        let status = solved.as_ref().err().copied();
+        self.solution = solved.ok();
+        status.unwrap_or(Status::Ok)
+    }
 }

@@ -29,7 +29,7 @@ const SOLUTIONS: usize = 40;
 
 /// A wheel at one frequency whose ring may drift.
 pub trait DriftingRing {
-    /// Parameters of the pairs of a sector, or of the whole wheel where sectors differ.
+    /// Parameters of the pairs of a sector, or of the whole wheel where sectors differ: they tell which forces and drifts are small.
     fn pairs(&self) -> &[PairParameters];
 
     /// Rigid motions of the ring (rotation, axial) that nothing but friction holds.
