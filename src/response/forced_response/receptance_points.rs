@@ -199,9 +199,12 @@ impl<'a> ReceptancePoints<'a> {
             .set_ring_drift(near.map_or([0.0; 2], |point| point.ring_drift_m));
         let (mut solved, mut work) = self.solver.solve(frequency_hz, starts, tolerance);
         if solved.is_err() && !self.beside_lost && self.solver.has_few_unknowns() {
-            let (softer, on_the_way) =
-                from_softer_contact(&self.row, self.settings, frequency_hz, tolerance);
-            work = work.plus(on_the_way);
+            let softer = from_softer_contact(|share, starts| {
+                let mut solver = self.row.softened_solver(self.settings, share);
+                let (solved, own) = solver.solve(frequency_hz, starts, tolerance);
+                work = work.plus(own);
+                Some(solved.ok()?.motions)
+            });
             if let Some(start) = softer {
                 let (again, own) = self.solver.solve(frequency_hz, &[start], tolerance);
                 (solved, work) = (again, work.plus(own));

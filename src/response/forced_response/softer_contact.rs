@@ -1,12 +1,8 @@
-//! The solution of a point on receptances by way of softer contact.
+//! The solution of a point by way of softer contact.
 //!
 //! What sticks or slips changes within `mu N0 / kt`, so that in stiff contact a solution is hard to find from one that is not near. Over
 //! `1 / kt` the solution tends to that of rigid contact along a line. So each stage begins at the extrapolation of the two before it in
 //! `1 / kt`.
-
-use super::point_settings::PointSettings;
-use super::receptance_points::EngineRow;
-use crate::response::receptance::SolutionWork;
 
 /// Softest contact: this power of [`RATIO`] below the wanted one.
 const STAGES: f64 = 6.0;
@@ -14,25 +10,16 @@ const RATIO: f64 = 4.0;
 /// Smallest step of its exponent.
 const SMALLEST_STEP: f64 = 1.0 / 8.0;
 
-/// Motions from which the point at a frequency, Hz, is to be found, with the work that they took; no motions where a stage on the way is not.
+/// Motions of the wanted contact, from the softest one on; none where a stage on the way is not found. `solved` gives the motions under
+/// a share of the wanted stiffness, from the best of several motions, or from the linear response without any.
 pub(super) fn from_softer_contact(
-    row: &EngineRow<'_>,
-    settings: &PointSettings,
-    frequency_hz: f64,
-    tolerance: f64,
-) -> (Option<Vec<f64>>, SolutionWork) {
-    let mut work = SolutionWork::default();
+    mut solved: impl FnMut(f64, &[Vec<f64>]) -> Option<Vec<f64>>,
+) -> Option<Vec<f64>> {
     let (mut exponent, mut step) = (STAGES, 1.0);
-    let mut solved_with = |exponent: f64, starts: &[Vec<f64>]| {
-        let mut solver = row.softened_solver(settings, RATIO.powf(-exponent));
-        let (solved, own) = solver.solve(frequency_hz, starts, tolerance);
-        work = work.plus(own);
-        Some(solved.ok()?.motions)
-    };
+    let mut solved_with =
+        |exponent: f64, starts: &[Vec<f64>]| solved(RATIO.powf(-exponent), starts);
     let compliance = |exponent: f64| RATIO.powf(exponent);
-    let Some(mut current) = solved_with(exponent, &[]) else {
-        return (None, work);
-    };
+    let mut current = solved_with(exponent, &[])?;
     let mut previous: Option<(f64, Vec<f64>)> = None;
     loop {
         let next = f64::max(exponent - step, 0.0);
@@ -46,14 +33,14 @@ pub(super) fn from_softer_contact(
             }
         };
         match solved_with(next, &[start]) {
-            Some(motions) if next <= 0.0 => return (Some(motions), work),
+            Some(motions) if next <= 0.0 => return Some(motions),
             Some(motions) => {
                 previous = Some((exponent, std::mem::replace(&mut current, motions)));
                 exponent = next;
                 step = f64::min(2.0 * step, 1.0);
             }
             None if step > SMALLEST_STEP => step *= 0.5,
-            None => return (None, work),
+            None => return None,
         }
     }
 }
