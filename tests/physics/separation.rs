@@ -324,10 +324,10 @@ normal_stiffness_n_per_m = 1.6e6
     Study::parse(&folder.join("study.toml"), &text).unwrap()
 }
 
-/// Under 35 N the tuned wheel has no peak with 0, 1, 2 and 4, the set that the largest effect asks for:
-/// another is chosen, so that its rows have an amplification factor.
+/// Under 35 N the tuned peak with 0, 1, 2 and 4 is hard to find. With it, and with automatic harmonics, rows have an amplification
+/// factor.
 #[test]
-fn a_set_without_a_tuned_peak_is_not_chosen() {
+fn a_light_load_has_a_tuned_peak_with_a_set_and_with_automatic_harmonics() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     bundle::write(&spatial_sector(5), &folder.join("spatial")).unwrap();
@@ -337,7 +337,7 @@ fn a_set_without_a_tuned_peak_is_not_chosen() {
     };
     for row in rows_of("fixed", "harmonics = [0, 1, 2, 4]") {
         assert_eq!(row.status, Status::Ok);
-        assert_eq!(row.amplification_factor, None);
+        assert!(row.amplification_factor.is_some());
     }
     for row in rows_of("automatic", "harmonics = \"auto\"") {
         println!("{} {:?}", row.harmonics, row.amplification_factor);
