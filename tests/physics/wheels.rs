@@ -152,6 +152,16 @@ impl Wheel {
 
     /// [`Self::solver`]; none where there are no receptances.
     pub fn solver_or_none(&self, harmonics: &[u32], options: SolverOptions) -> Option<RowSolver> {
+        self.solver_up_to(0.1, harmonics, options)
+    }
+
+    /// [`Self::solver_or_none`] for blades that deviate by at most so much.
+    pub fn solver_up_to(
+        &self,
+        deviation: f64,
+        harmonics: &[u32],
+        options: SolverOptions,
+    ) -> Option<RowSolver> {
         let engine_orders: Vec<u32> = (0..=3 * self.model.sectors as u32)
             .chain([ENGINE_ORDER, 10_000])
             .collect();
@@ -160,7 +170,7 @@ impl Wheel {
             damping: self.damping,
             projection: Projection::Exact,
             forces: engine_orders.iter().map(force).collect(),
-            deviation: 0.1,
+            deviation,
             band_hz: None,
         };
         let model = (*self.model).clone();

@@ -146,7 +146,9 @@ fn the_stuck_peak_is_that_of_the_assembled_wheel() {
 fn ends_well(rows: usize, most_failed: usize, highest: f64) {
     for (wheel, most_failed) in [(one_dimensional(&chain()), 0), (spatial(), most_failed)] {
         let name = &wheel.model.name;
-        let solver = wheel.solver(&[1, 3], SolverOptions::default());
+        let solver = wheel
+            .solver_up_to(0.9, &[1, 3], SolverOptions::default())
+            .unwrap();
         let mut random = Random(72);
         let mut failed = 0;
         for deviation in [0.0, 0.001, 0.01, 0.03, 0.1, 0.2, 0.3] {
@@ -194,7 +196,7 @@ fn thirty_percent_of_mistuning_is_solved() {
 #[test]
 #[ignore = "about 5 minutes: `cargo test --release --test physics extremes -- --ignored`"]
 fn thirty_percent_of_mistuning_is_solved_long() {
-    ends_well(100, 20, 7.7);
+    ends_well(100, 1, 7.7);
 }
 
 #[test]

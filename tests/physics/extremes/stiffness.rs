@@ -129,8 +129,7 @@ fn a_stiff_slider_settles_to_a_rigid_one() {
     settles(&decades(5, 13, 1), [0, 3]);
 }
 
-/// Fails today, as `results/validation/open_bars.toml` says: a row takes 2975 points where 1501 are the most (60 N, beyond
-/// 2e11 N/m). Of the rows before it one up to 2e10 N/m fails: 20 N, 5.6e8 N/m, after 1501 points.
+/// Fails today, as `results/validation/open_bars.toml` says: the peak at 60 N and 1.8e9 N/m is 1.2 % from that of a rigid slider.
 #[test]
 #[ignore = "about 1 minute: `cargo test --release --test physics extremes -- --ignored`"]
 fn a_stiff_slider_settles_to_a_rigid_one_long() {
