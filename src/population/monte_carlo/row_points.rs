@@ -109,8 +109,8 @@ impl RowPoints {
     }
 
     /// From now on for rows on tuned receptances, those of a basis or all: a search with fewer harmonics has so many samples per period, and
-    /// there is none with a creeping ring, nor where harmonics that are stated, or those of a basis, give the contact of all `sectors` few unknowns, unless the study
-    /// asks for it.
+    /// there is none with a creeping ring, nor where harmonics that are stated, or those of a basis, give the contact of all `sectors` few
+    /// unknowns, unless the study asks for it.
     pub(super) fn search_on_receptances(
         &mut self,
         (samples, of_basis): (usize, bool),

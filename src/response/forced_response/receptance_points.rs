@@ -76,7 +76,7 @@ impl<'a> EngineRow<'a> {
         self.solver_with(contact, settings, transform)
     }
 
-    /// Solver under a contact whose tangential stiffness is that of the settings times `factor`.
+    /// Solver of a row that is no linear limit, under a contact whose tangential stiffness is that of the settings times `factor`.
     pub(super) fn softened_solver(&self, settings: &PointSettings, factor: f64) -> WheelSolver<'a> {
         let contact = settings.contact.map(|(law, sector)| {
             let load_n = self.condition.normal_load_n().unwrap_or(0.0);
@@ -198,7 +198,8 @@ impl<'a> ReceptancePoints<'a> {
         self.solver
             .set_ring_drift(near.map_or([0.0; 2], |point| point.ring_drift_m));
         let (mut solved, mut work) = self.solver.solve(frequency_hz, starts, tolerance);
-        if solved.is_err() && !self.beside_lost && self.solver.has_few_unknowns() {
+        let goes_softer = self.is_nonlinear && !self.beside_lost && self.solver.has_few_unknowns();
+        if solved.is_err() && goes_softer {
             let softer = from_softer_contact(|share, starts| {
                 let mut solver = self.row.softened_solver(self.settings, share);
                 let (solved, own) = solver.solve(frequency_hz, starts, tolerance);
