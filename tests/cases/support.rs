@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use blisk::population::monte_carlo::{CurveSettings, ResponseRow, Scenario, TunedReference};
 use blisk::report::Warning;
 use blisk::response::forced_response::ContactCondition;
 use blisk::response::mistuning::{Pattern, PatternSource};
@@ -177,9 +177,12 @@ impl Case {
     ) -> Vec<Vec<f64>> {
         let pattern = id.map(|id| self.pattern(id, None));
         let scenario = self.scenario(contact);
-        let points = self
-            .engine
-            .curve(&scenario, pattern.as_ref(), frequencies_hz);
+        let points = self.engine.curve(
+            &scenario,
+            pattern.as_ref(),
+            frequencies_hz,
+            CurveSettings::default(),
+        );
         let amplitudes: Vec<f64> = points
             .iter()
             .map(|point| {

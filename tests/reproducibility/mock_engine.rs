@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use blisk::model::sector::SectorModel;
-use blisk::population::monte_carlo::{ResponseRow, Scenario, TunedReference};
+use blisk::population::monte_carlo::{CurveSettings, ResponseRow, Scenario, TunedReference};
 use blisk::population::table::CurvePoint;
 use blisk::report::ModelReport;
 use blisk::response::forced_response::{ResponseTrace, SearchPlan};
@@ -125,15 +125,7 @@ impl Engine for MockEngine {
         _scenario: &Scenario,
         _pattern: Option<&Pattern>,
         _frequencies_hz: &[f64],
-    ) -> Vec<CurvePoint> {
-        Vec::new()
-    }
-
-    fn curve_with_fewest_harmonics(
-        &self,
-        _scenario: &Scenario,
-        _pattern: Option<&Pattern>,
-        _frequencies_hz: &[f64],
+        _settings: CurveSettings,
     ) -> Vec<CurvePoint> {
         Vec::new()
     }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::VerifyRequest;
 use crate::campaign::store::{ResultsFolder, StoredModel, StoredStudy};
-use crate::population::monte_carlo::{ResponseRow, Scenario};
+use crate::population::monte_carlo::{CurveSettings, ResponseRow, Scenario};
 use crate::population::statistics::draw;
 use crate::population::table::{
     CurvePoint, PeakAuditRecord, TableHeader, write_peak_audit, write_side_table,
@@ -19,6 +19,11 @@ use crate::study::PipelineError;
 /// Share of the width of the searched band that the sweep goes beyond either end: a peak outside of
 /// the band is what the search cannot see.
 const BEYOND: f64 = 0.25;
+/// Amplitudes to a hundredth of the share by which a row counts as missed.
+const SWEEP: CurveSettings = CurveSettings {
+    fewest_harmonics: false,
+    least_residual_tolerance: 1e-5,
+};
 /// Steps in a half-bandwidth by which a top with fewer harmonics is looked at.
 const BESIDE: i32 = 8;
 
@@ -125,13 +130,17 @@ fn sweep(
     let half_bandwidth_hz = plan.envelope.linear_half_bandwidth_hz;
     let band_hz = ((start - margin).max(0.5 * start), stop + margin);
     let with_fewest = |frequencies_hz: &[f64]| {
-        let points = engine.curve_with_fewest_harmonics(scenario, Some(pattern), frequencies_hz);
+        let settings = CurveSettings {
+            fewest_harmonics: true,
+            ..SWEEP
+        };
+        let points = engine.curve(scenario, Some(pattern), frequencies_hz, settings);
         largest_of_blades(&points, frequencies_hz.len())
     };
     let mut with_fewer_harmonics = 0;
     let mut top_m = None;
     let peak = dense_peak(band_hz, half_bandwidth_hz, |frequencies_hz| {
-        let points = engine.curve(scenario, Some(pattern), frequencies_hz);
+        let points = engine.curve(scenario, Some(pattern), frequencies_hz, SWEEP);
         let mut found = largest_of_blades(&points, frequencies_hz.len());
         let lost = frequencies_hz.iter().zip(&found);
         let lost = lost.filter(|(_, amplitude)| amplitude.is_none());

@@ -1,7 +1,7 @@
 //! Wheels of one scenario solved again for a report: response curves, blades and contact at the peak.
 
 use crate::campaign::store::{ScenarioColumns, StoredModel, StoredStudy};
-use crate::population::monte_carlo::{ResponseRow, Scenario};
+use crate::population::monte_carlo::{CurveSettings, ResponseRow, Scenario};
 use crate::population::statistics::Quantity;
 use crate::report::{
     PairReport, ResponseCurve, WheelCurves, WheelReport, WheelStateReport, Wheels,
@@ -133,7 +133,9 @@ impl Curves<'_> {
             contact,
             ..self.scenario
         };
-        let points = self.engine.curve(&scenario, pattern, frequencies_hz);
+        let points =
+            self.engine
+                .curve(&scenario, pattern, frequencies_hz, CurveSettings::default());
         let of_frequency =
             points.chunk_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz).is_eq());
         let (frequency_hz, amplitude_m) = of_frequency

@@ -2,7 +2,7 @@
 
 use super::TracedCurve;
 use crate::model::sector::SectorModel;
-use crate::population::monte_carlo::{LoadCaseName, Scenario};
+use crate::population::monte_carlo::{CurveSettings, LoadCaseName, Scenario};
 use crate::population::table::CurvePoint;
 use crate::response::forced_response::ContactCondition;
 use crate::response::mistuning::Pattern;
@@ -39,7 +39,12 @@ pub fn response_curve(
     let wanted = Wanted::of(study, request)?;
     let engine = source.build(study, &wanted.sector, None)?;
     let pattern = wanted.pattern.as_ref();
-    Ok(engine.curve(&wanted.scenario, pattern, request.frequencies_hz))
+    Ok(engine.curve(
+        &wanted.scenario,
+        pattern,
+        request.frequencies_hz,
+        CurveSettings::default(),
+    ))
 }
 
 /// The response of one pattern followed by continuation over frequency, upwards and downwards, and

@@ -3,8 +3,8 @@
 use std::sync::OnceLock;
 
 use super::{
-    CurveResult, LoadCaseName, ResponseRow, RowSolver, Scenario, TunedReference, WheelState,
-    harmonics_name,
+    CurveResult, CurveSettings, LoadCaseName, ResponseRow, RowSolver, Scenario, TunedReference,
+    WheelState, harmonics_name,
 };
 use crate::response::forced_response::TopBeside;
 use crate::response::harmonic_balance::Status;
@@ -89,25 +89,27 @@ impl LoadCaseSolver {
         scenario: &Scenario,
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
+        settings: CurveSettings,
     ) -> Vec<CurveResult> {
-        curve_of(&self.rows, scenario, pattern, frequencies_hz)
-    }
-
-    /// [`Self::curve`] by the last fallback; without a solution where it does not have fewer harmonics.
-    #[must_use]
-    pub fn curve_with_fewest_harmonics(
-        &self,
-        scenario: &Scenario,
-        pattern: Option<&Pattern>,
-        frequencies_hz: &[f64],
-    ) -> Vec<CurveResult> {
-        let own = self.rows.points(scenario).harmonics().len();
-        let has_fewer = |solver: &&RowSolver| solver.points(scenario).harmonics().len() < own;
-        if let Some(solver) = self.fallbacks().last().filter(has_fewer) {
-            return curve_of(solver, scenario, pattern, frequencies_hz);
-        }
-        let lost = frequencies_hz.iter();
-        lost.map(|&hz| (hz, Err(Status::IterationLimit))).collect()
+        let lost = |status| {
+            let frequencies = frequencies_hz.iter();
+            frequencies.map(|&hz| (hz, Err(status))).collect()
+        };
+        let solver = if settings.fewest_harmonics {
+            let own = self.rows.points(scenario).harmonics().len();
+            let has_fewer = |solver: &&RowSolver| solver.points(scenario).harmonics().len() < own;
+            self.fallbacks().last().filter(has_fewer)
+        } else {
+            Some(&self.rows)
+        };
+        let Some(solver) = solver else {
+            return lost(Status::IterationLimit);
+        };
+        let (order, contact) = (scenario.engine_order, scenario.contact);
+        let tolerance = settings.least_residual_tolerance;
+        let solved = solver.curve_within(order, contact, pattern, frequencies_hz, tolerance);
+        // A pattern that cannot be applied has no solution at any frequency.
+        solved.unwrap_or_else(lost)
     }
 
     /// The row, or that of the first fallback that has to solve it again and can.
@@ -171,21 +173,6 @@ impl LoadCaseSolver {
             ..again
         })
     }
-}
-
-/// The curve of a solver; a pattern that cannot be applied has no solution at any frequency.
-fn curve_of(
-    solver: &RowSolver,
-    scenario: &Scenario,
-    pattern: Option<&Pattern>,
-    frequencies_hz: &[f64],
-) -> Vec<CurveResult> {
-    let (order, contact) = (scenario.engine_order, scenario.contact);
-    let solved = solver.curve(order, contact, pattern, frequencies_hz);
-    solved.unwrap_or_else(|status| {
-        let failed = frequencies_hz.iter().map(|&hz| (hz, Err(status)));
-        failed.collect()
-    })
 }
 
 impl LoadCaseSolvers {

@@ -35,4 +35,4 @@ pub use stated_error::{
 };
 pub use surrogate::{Surrogate, SurrogatePeak};
 pub use time_domain::compare_in_time;
-pub use wheel_state::{CurveResult, WheelState};
+pub use wheel_state::{CurveResult, CurveSettings, WheelState};

@@ -184,19 +184,19 @@ impl ReceptanceRows {
         )
     }
 
-    /// Amplitude of every blade at each frequency, Hz, of the tuned wheel for no pattern; none under an engine order without
-    /// excitation.
+    /// Amplitude of every blade at each frequency, Hz, with a residual tolerance of at least so much, of the tuned wheel for no pattern;
+    /// none under an engine order without excitation.
     pub(super) fn curve(
         &self,
         basis: &BasisRows,
         (engine_order, condition): (u32, ContactCondition),
         pattern: Option<&Pattern>,
-        frequencies_hz: &[f64],
+        (frequencies_hz, least_tolerance): (&[f64], f64),
     ) -> Option<Vec<CurveResult>> {
         let wheel = pattern.map(|pattern| self.wheel(pattern));
         let row = self.row(wheel.as_ref(), engine_order, condition)?;
         let points = basis.points.of(pattern, engine_order, condition);
-        let curve = receptance_curve(&row, &points, frequencies_hz).into_iter();
+        let curve = receptance_curve(&row, &points, frequencies_hz, least_tolerance).into_iter();
         let amplitudes = curve.map(|(hz, point)| (hz, point.map(|point| point.amplitudes_m)));
         Some(amplitudes.collect())
     }

@@ -266,14 +266,28 @@ impl RowSolver {
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
     ) -> Result<Vec<CurveResult>, Status> {
+        self.curve_within(engine_order, contact, pattern, frequencies_hz, 0.0)
+    }
+
+    /// [`Self::curve`] with a residual tolerance of at least `least_tolerance`.
+    ///
+    /// # Errors
+    /// The status of a pattern that cannot be applied.
+    pub fn curve_within(
+        &self,
+        engine_order: u32,
+        contact: ContactCondition,
+        pattern: Option<&Pattern>,
+        frequencies_hz: &[f64],
+        least_tolerance: f64,
+    ) -> Result<Vec<CurveResult>, Status> {
         if pattern.is_some_and(|pattern| !pattern.is_possible()) {
             return Err(Status::InvalidPattern);
         }
         let case = (engine_order, contact);
         let on_receptances = self.on_receptances.as_ref();
-        match on_receptances
-            .and_then(|rows| rows.curve(&self.on_basis, case, pattern, frequencies_hz))
-        {
+        let points = (frequencies_hz, least_tolerance);
+        match on_receptances.and_then(|rows| rows.curve(&self.on_basis, case, pattern, points)) {
             Some(curve) => Ok(curve),
             None => self
                 .on_basis

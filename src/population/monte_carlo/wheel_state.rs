@@ -15,3 +15,13 @@ pub struct WheelState {
 
 /// Amplitudes of every blade at one frequency.
 pub type CurveResult = (f64, Result<Vec<f64>, Status>);
+
+/// How the points of a curve are solved.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct CurveSettings {
+    /// With the fewest harmonics that rows without a peak are solved with, in place of those of the load; there is no solution where none
+    /// are fewer.
+    pub fewest_harmonics: bool,
+    /// No point is solved to a smaller residual, whatever the study asks for.
+    pub least_residual_tolerance: f64,
+}

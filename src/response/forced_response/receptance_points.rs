@@ -404,7 +404,7 @@ pub fn receptance_contact_motion(
     Ok(motion.filter(|_| solver.is_nonlinear))
 }
 
-/// Points of a row at the given frequencies, Hz, in their order.
+/// Points of a row at the given frequencies, Hz, in their order, with a residual tolerance of at least `least_tolerance`.
 ///
 /// With automatic sets of many harmonics there mostly is no solution next to a frequency without one, and all attempts take as long as a
 /// hundred that are found. The frequencies after such a one are tried once each, until one is found.
@@ -413,8 +413,10 @@ pub fn receptance_curve(
     row: &EngineRow<'_>,
     settings: &PointSettings,
     frequencies_hz: &[f64],
+    least_tolerance: f64,
 ) -> Vec<(f64, Result<Point, Status>)> {
     let mut solver = ReceptancePoints::new(row, settings);
+    solver.set_precision(least_tolerance);
     let solve = |&hz: &f64| {
         let point = solver.added(hz).cloned();
         solver.try_once_if(point.is_err() && settings.fewer_follow());

@@ -6,7 +6,9 @@ use serde_json::Value;
 
 use super::{Engine, EngineSource, SurrogateOf};
 use crate::model::sector::SectorModel;
-use crate::population::monte_carlo::{LoadCaseSolvers, ResponseRow, Scenario, TunedReference};
+use crate::population::monte_carlo::{
+    CurveSettings, LoadCaseSolvers, ResponseRow, Scenario, TunedReference,
+};
 use crate::population::table::CurvePoint;
 use crate::report::ModelReport;
 use crate::response::forced_response::{ResponseTrace, SearchPlan};
@@ -98,18 +100,10 @@ impl Engine for AccurateEngine {
         scenario: &Scenario,
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
-    ) -> Vec<CurvePoint> {
-        self.engine.curve(scenario, pattern, frequencies_hz)
-    }
-
-    fn curve_with_fewest_harmonics(
-        &self,
-        scenario: &Scenario,
-        pattern: Option<&Pattern>,
-        frequencies_hz: &[f64],
+        settings: CurveSettings,
     ) -> Vec<CurvePoint> {
         self.engine
-            .curve_with_fewest_harmonics(scenario, pattern, frequencies_hz)
+            .curve(scenario, pattern, frequencies_hz, settings)
     }
 
     fn traces(

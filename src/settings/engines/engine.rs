@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{
-    LoadCaseSolvers, ResponseRow, Scenario, SurrogatePeak, TunedReference,
+    CurveSettings, LoadCaseSolvers, ResponseRow, Scenario, SurrogatePeak, TunedReference,
 };
 use crate::population::table::CurvePoint;
 use crate::report::ModelReport;
@@ -78,15 +78,7 @@ pub trait Engine: Send + Sync {
         scenario: &Scenario,
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
-    ) -> Vec<CurvePoint>;
-
-    /// [`Self::curve`] with the fewest harmonics that rows without a peak are solved with; without a solution where there are none fewer
-    /// than those of the load.
-    fn curve_with_fewest_harmonics(
-        &self,
-        scenario: &Scenario,
-        pattern: Option<&Pattern>,
-        frequencies_hz: &[f64],
+        settings: CurveSettings,
     ) -> Vec<CurvePoint>;
 
     /// The curve followed by continuation between the first and the last frequency, upwards and

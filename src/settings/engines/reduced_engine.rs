@@ -9,8 +9,8 @@ use super::{Engine, EngineSource, SurrogateOf};
 use crate::model::reduction::Basis;
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{
-    CurveResult, LoadCaseName, LoadCaseSolver, LoadCaseSolvers, ResponseRow, RowSolver, Scenario,
-    Surrogate, TunedReference, compare_in_time,
+    CurveResult, CurveSettings, LoadCaseName, LoadCaseSolver, LoadCaseSolvers, ResponseRow,
+    RowSolver, Scenario, Surrogate, TunedReference, compare_in_time,
 };
 use crate::population::table::CurvePoint;
 use crate::report::{BasisSummary, ModelReport, NodalDiameterFacts};
@@ -282,19 +282,10 @@ impl Engine for ReducedEngine {
         scenario: &Scenario,
         pattern: Option<&Pattern>,
         frequencies_hz: &[f64],
+        settings: CurveSettings,
     ) -> Vec<CurvePoint> {
         let solver = self.solver.under(scenario);
-        self.points_of(solver.curve(scenario, pattern, frequencies_hz))
-    }
-
-    fn curve_with_fewest_harmonics(
-        &self,
-        scenario: &Scenario,
-        pattern: Option<&Pattern>,
-        frequencies_hz: &[f64],
-    ) -> Vec<CurvePoint> {
-        let solver = self.solver.under(scenario);
-        self.points_of(solver.curve_with_fewest_harmonics(scenario, pattern, frequencies_hz))
+        self.points_of(solver.curve(scenario, pattern, frequencies_hz, settings))
     }
 
     fn traces(
