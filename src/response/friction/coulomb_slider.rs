@@ -21,13 +21,16 @@
 //! [`PeriodicSlider`](super::PeriodicSlider) there is no closed form: periods are marched from
 //! `y = 0` until the slider sticks throughout a period or the period closes. Where the slip is much
 //! shorter than `R / kt`, offsets across the slip fade slowly; so from the second period on each
-//! is followed by a Newton step on `P(y) - y = 0` for the map `P` of the period,
+//! is followed by a share `f` of a Newton step on `P(y) - y = 0` for the map `P` of the period,
 //!
 //! ```text
-//! y <- y + (I - P'(y))^-1 (P(y) - y)
+//! y <- y + f s,    s = (I - P'(y))^-1 (P(y) - y)
 //! ```
 //!
-//! kept if it halves the distance `|P(y) - y|`, else replaced by the marched `P(y)`. Motion along
+//! `f` is the first of 1, 1/2, 1/4, ... after which the next step with the same derivative would be
+//! shorter (natural monotonicity test, Deuflhard 2004, section 3.3). The distance `|P(y) - y|` is no
+//! measure: where the slip is short it tells little of the offset across it, and whole steps that
+//! enlarge it go to and fro for good. Where no `f` serves, the marched `P(y)` follows. Motion along
 //! one line from rest reaches its state within the first period, as in `PeriodicSlider`. Where the
 //! slider sticks for good, its offset is the one at which this march arrives; only its mean, which
 //! the displacements without their means do not determine, depends on it.
@@ -49,8 +52,10 @@ const CLOSURE: f64 = 1e-13;
 /// Start of the march under a drift, in units of the largest forces.
 const FAR_AHEAD: f64 = 1e3;
 
-/// A Newton step is kept if it reduces the distance over a period at least to this share.
-const KEPT_STEP: f64 = 0.5;
+/// Share of a Newton step below which none is tried.
+const LEAST_SHARE: f64 = 1.0 / 64.0;
+/// A share f of a step is kept if the next step with the same derivative is at most `1 - f / 4` as long.
+const SHORTENED: f64 = 0.25;
 
 /// One sample at which the slider slips, and the derivative of its projection.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,6 +98,58 @@ struct Period {
     end: [f64; 2],
     /// Path of the slips, as a force.
     slipped: f64,
+}
+
+/// A share of a Newton step that is tried.
+struct Trial {
+    start: [f64; 2],
+    /// Where the period from `start` ended.
+    marched: [f64; 2],
+    /// `I - P'` of that period.
+    lost: [[f64; 2]; 2],
+    step: [f64; 2],
+    share: f64,
+}
+
+/// Where the next period starts, and what is tried by that; nothing where it is only marched on.
+type Next = ([f64; 2], Option<Trial>);
+
+impl Trial {
+    /// The whole step after a period from `start` to `marched`; no step where the derivative has none.
+    fn whole(start: [f64; 2], marched: [f64; 2], lost: [[f64; 2]; 2]) -> Next {
+        let change = [0, 1].map(|axis| marched[axis] - start[axis]);
+        match solve2(lost, change) {
+            None => (marched, None),
+            Some(step) => Self {
+                start,
+                marched,
+                lost,
+                step,
+                share: 1.0,
+            }
+            .next(),
+        }
+    }
+
+    /// Half the share, or where the period ended below the least one.
+    fn halved(self) -> Next {
+        let share = 0.5 * self.share;
+        if share < LEAST_SHARE {
+            return (self.marched, None);
+        }
+        Self { share, ..self }.next()
+    }
+
+    fn next(self) -> Next {
+        let offset = [0, 1].map(|axis| self.start[axis] + self.share * self.step[axis]);
+        (offset, Some(self))
+    }
+
+    /// Whether the share is kept, from which on a period changes the offset by `change`.
+    fn is_kept(&self, change: [f64; 2]) -> bool {
+        let next = solve2(self.lost, change);
+        next.is_some_and(|next| norm(next) <= (1.0 - SHORTENED * self.share) * norm(self.step))
+    }
 }
 
 impl CoupledSlider {
@@ -177,34 +234,28 @@ impl CoupledSlider {
         } else {
             0.0
         };
-        let (mut start, mut distance) = (drift_m.map(|drift| ahead * drift), f64::INFINITY);
-        // Where to go on from if a Newton step does not serve: where the period before it ended.
-        let mut marched: Option<[f64; 2]> = None;
+        let mut start = drift_m.map(|drift| ahead * drift);
+        let mut tried: Option<Trial> = None;
         self.closed = false;
         while self.periods < MAX_PERIODS {
             self.periods += 1;
             let histories = (displacement_m, normal_load_n);
             let period = self.march((kt, mu), histories, start, growth);
-            let change = [period.end[0] - start[0], period.end[1] - start[1]];
-            let now = norm(change);
+            let marched = period.end;
+            let change = [marched[0] - start[0], marched[1] - start[1]];
             if period.slipped <= negligible && drift == 0.0 {
                 self.closed = true;
                 break;
             }
-            if now <= negligible {
+            if norm(change) <= negligible {
                 self.closed = true;
                 self.slipping = true;
                 break;
             }
-            start = match marched.take() {
-                Some(end) if now.is_nan() || now > KEPT_STEP * distance => end,
-                _ if self.periods == 1 => period.end,
-                _ => {
-                    distance = now;
-                    marched = Some(period.end);
-                    let step = solve2(self.lost, change);
-                    step.map_or(period.end, |step| [start[0] + step[0], start[1] + step[1]])
-                }
+            (start, tried) = match tried.take() {
+                Some(trial) if !trial.is_kept(change) => trial.halved(),
+                _ if self.periods == 1 => (marched, None),
+                _ => Trial::whole(start, marched, self.lost),
             };
         }
         if self.closed && !self.slipping {

@@ -134,7 +134,7 @@ fn periodic_state_is_where_every_marched_history_ends() {
     }
     println!("{slipping} slipping, {stuck} stuck, at most {most_periods} periods");
     assert!(slipping > 300 && stuck > 100);
-    assert!(most_periods < 60);
+    assert!(most_periods < 15);
 }
 
 #[test]
@@ -163,7 +163,37 @@ fn slip_far_shorter_than_the_limit_closes_too() {
         }
     }
     println!("at most {most_periods} periods");
-    assert!(most_periods < 40);
+    assert!(most_periods < 15);
+}
+
+/// Where two short slips opposite to each other determine the offset across them, whole Newton steps can go to and fro.
+#[test]
+fn a_narrow_ellipse_that_slips_a_little_at_both_ends_closes() {
+    let mut random = Random(34);
+    let n = 128;
+    let (mut slipping, mut most_periods) = (0, 0);
+    for _ in 0..3000 {
+        let (width, width_phase) = (random.uniform(0.03, 0.1), random.uniform(0.0, TAU));
+        let (swing, swing_phase) = (random.uniform(0.0, 0.35), random.uniform(0.0, TAU));
+        let level = random.uniform(0.9, 1.1);
+        let wave = |phase: f64| (0..n).map(move |j| (TAU * j as f64 / n as f64 - phase).cos());
+        let motion = Motion {
+            x: [
+                wave(0.0).collect(),
+                wave(width_phase).map(|x| width * x).collect(),
+            ],
+            load: wave(swing_phase)
+                .map(|x| level * (1.0 + swing * x))
+                .collect(),
+        };
+        let slider = motion.solve(1.0, 1.0);
+        assert!(slider.is_closed());
+        slipping += usize::from(slider.is_slipping());
+        most_periods = most_periods.max(slider.periods());
+    }
+    println!("{slipping} slipping, at most {most_periods} periods");
+    assert!(slipping > 1500);
+    assert!(most_periods < 15);
 }
 
 #[test]
