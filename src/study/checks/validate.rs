@@ -159,11 +159,6 @@ fn resolve(
         .map(|table| contact_options(check, table));
     if let Some(contact) = &contact {
         normal_stiffness(check, contact);
-        if contact.law.couples_tangents() && contact.ring == Ring::Creeping {
-            let law = contact.law.name();
-            let reason = format!("{law} is solved with a locked ring only; accepted: \"locked\"");
-            check.conflict("contact.ring", &reason);
-        }
     }
     let variation = file
         .contact

@@ -24,7 +24,7 @@ toml_table! {
         normal_stiffness_n_per_m: f64 = key(ABOVE_ZERO, "required by laws with a variable normal load; none otherwise",
             "N/m per sector, shared out likewise").and(", in N/m").or_null(),
         ring: Ring = key(Name(&["locked", "creeping"]), "`\"locked\"`",
-            "`creeping`: a ring that is free drifts so that friction has no mean along its rigid motions; not with `coulomb_3d` ([formulation.md](formulation.md))"),
+            "`creeping`: a ring that is free drifts so that friction has no mean along its rigid motions ([formulation.md](formulation.md))"),
         normal_load: NormalLoadTable = table(
             "normal loads by rotation, besides those of the sweep", NormalLoadTable::KEYS),
         variation: VariationTable = table(

@@ -170,9 +170,20 @@ fn a_creeping_ring_feels_no_mean_friction_unless_pairs_that_stick_take_it() {
 /// else is not.
 #[test]
 fn a_mistuned_wheel_with_a_creeping_ring_is_that_of_newton_s_method() {
+    for law in [ContactLaw::Simplified3d, ContactLaw::Coulomb3d] {
+        mistuned_on_both(law);
+    }
+}
+
+fn mistuned_on_both(law: ContactLaw) {
     let wheel = Wheel {
+        law,
         ring: Ring::Creeping,
         ..Wheel::wheel8()
+    };
+    let held = Wheel {
+        ring: Ring::Locked,
+        ..wheel.clone()
     };
     let options = || SolverOptions {
         peak_tolerance: 1e-6,
@@ -189,11 +200,11 @@ fn a_mistuned_wheel_with_a_creeping_ring_is_that_of_newton_s_method() {
             [&by_newton, &on_receptances].map(|solver| solve_row(solver, &pattern, full(load)).1);
         let [expected, found] = rows.each_ref().map(|row| row.peak_amplitude_m.unwrap());
         let limit_n = 1e-6 * wheel.sector.friction_coefficient * load;
-        let locked = Wheel::wheel8().solver(&[1, 3], options());
+        let locked = held.solver(&[1, 3], options());
         let locked = solve_row(&locked, &pattern, full(load)).1;
         let force_n = |row: &ResponseRow| row.mean_friction_circumferential_n.unwrap();
         println!(
-            "{load} N: {:+.1e}, mean friction {:.2} N locked, {:.1e} and {:.1e} N creeping",
+            "{law:?}, {load} N: {:+.1e}, mean friction {:.2} N locked, {:.1e} and {:.1e} N creeping",
             found / expected - 1.0,
             force_n(&locked),
             force_n(&rows[0]),
