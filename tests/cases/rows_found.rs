@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use blisk::population::monte_carlo::ResponseRow;
+use blisk::response::forced_response::ContactCondition;
 use blisk::response::friction::ContactLaw;
 use blisk::response::harmonic_balance::Status;
 use blisk::study::Study;
@@ -44,8 +45,8 @@ fn parsed(path: &Path, text: &str, loads_n: &[f64]) -> Study {
     Study::parse(path, &lines.collect::<Vec<_>>().join("\n")).unwrap()
 }
 
-/// Rows with friction of the first `patterns` patterns.
-fn rows_of(study: Study, patterns: u32) -> Vec<ResponseRow> {
+/// Rows with friction of the first `patterns` patterns, with their contact.
+fn rows_of(study: Study, patterns: u32) -> Vec<(ContactCondition, ResponseRow)> {
     let loads = study.contacts.clone().into_iter();
     let loads: Vec<_> = loads
         .filter(|load| load.normal_load_n().is_some())
@@ -56,24 +57,24 @@ fn rows_of(study: Study, patterns: u32) -> Vec<ResponseRow> {
     let rows = (0..patterns).into_par_iter().flat_map_iter(|id| {
         let pattern = case.pattern(id, standard_deviation);
         let rows = loads.iter().zip(&tuned);
-        let rows = rows.map(|(&load, tuned)| case.row(&pattern, load, tuned));
+        let rows = rows.map(|(&load, tuned)| (load, case.row(&pattern, load, tuned)));
         rows.collect::<Vec<_>>()
     });
     rows.collect()
 }
 
-/// Rows with friction of the first `patterns` patterns without a peak, and all of them; states are printed by scenario and harmonics.
+/// Rows with friction of the first `patterns` patterns without a peak, and all of them; states are printed by load and harmonics.
 fn without_a_peak(study: Study, patterns: u32) -> [usize; 2] {
     let rows = rows_of(study, patterns);
     let mut counts = BTreeMap::new();
-    for row in &rows {
-        let of = (row.scenario, &row.harmonics, row.status.name());
+    for (load, row) in &rows {
+        let of = (format!("{load:?}, {}", row.harmonics), row.status.name());
         *counts.entry(of).or_insert(0) += 1;
     }
-    for ((scenario, harmonics, status), count) in counts {
-        println!("scenario {scenario}, {harmonics}: {count} {status}");
+    for ((of, status), count) in counts {
+        println!("{of}: {count} {status}");
     }
-    let lost = rows.iter().filter(|row| row.status != Status::Ok);
+    let lost = rows.iter().filter(|(_, row)| row.status != Status::Ok);
     [lost.count(), rows.len()]
 }
 
@@ -82,8 +83,8 @@ fn without_a_peak(study: Study, patterns: u32) -> [usize; 2] {
 fn rows_with_the_friction_circle_are_found_at_once() {
     let file = "studies/validation/wheel24.toml";
     let study = at_drawn_patterns(file, ContactLaw::Coulomb3d, &[160.0, 640.0]);
-    for row in rows_of(study, 6) {
-        let name = format!("pattern {}, scenario {}", row.pattern, row.scenario);
+    for (load, row) in rows_of(study, 6) {
+        let name = format!("pattern {}, {load:?}", row.pattern);
         assert_eq!(row.status, Status::Ok, "{name}");
         assert!(row.harmonics.ends_with("-15"), "{name}: {}", row.harmonics);
         assert_eq!(row.retries, 0, "{name}");

@@ -170,7 +170,7 @@ fn slip_far_shorter_than_the_limit_closes_too() {
 #[test]
 fn a_narrow_ellipse_that_slips_a_little_at_both_ends_closes() {
     let mut random = Random(34);
-    let n = 128;
+    let n: usize = 128;
     let (mut slipping, mut most_periods) = (0, 0);
     for _ in 0..3000 {
         let (width, width_phase) = (random.uniform(0.03, 0.1), random.uniform(0.0, TAU));
