@@ -19,11 +19,9 @@ use crate::study::PipelineError;
 /// Share of the width of the searched band that the sweep goes beyond either end: a peak outside of
 /// the band is what the search cannot see.
 const BEYOND: f64 = 0.25;
-/// Amplitudes to a hundredth of the share by which a row counts as missed.
-const SWEEP: CurveSettings = CurveSettings {
-    fewest_harmonics: false,
-    least_residual_tolerance: 1e-5,
-};
+/// Residual of a point of a sweep: a hundredth of the share by which a row counts as missed, and at most this share of what the row states.
+const RESIDUAL: f64 = 1e-5;
+const RESIDUAL_OVER_STATED: f64 = 0.1;
 /// Steps in a half-bandwidth by which a top with fewer harmonics is looked at.
 const BESIDE: i32 = 8;
 
@@ -93,11 +91,8 @@ fn audit_row(
         .ok_or_else(no_row)?;
     let swept = if delivered.status == Status::Ok {
         let band = stored.study.solver.frequency_band;
-        let peak = delivered.peak_frequency_hz.zip(delivered.peak_amplitude_m);
-        peak.and_then(|peak| {
-            let of = (&scenario, &pattern);
-            sweep(engine, of, peak, tuned.frequency_hz, band)
-        })
+        let of = (&scenario, &pattern);
+        sweep(engine, of, &delivered, tuned.frequency_hz, band)
     } else {
         None
     };
@@ -108,19 +103,28 @@ fn audit_row(
     })
 }
 
-/// The highest value in and around the band that the peak was sought in; none where the linear
+/// The highest value in and around the band that the peak of the row `delivered` was sought in; none where the linear
 /// limits give no band.
 ///
 /// Frequencies without a solution with the harmonics of the load are solved with the fewest. What the others change of an amplitude is
-/// taken from the delivered peak `(peak_hz, peak_m)`: the top that the fewest have beside it counts as high as that peak.
+/// taken from the delivered peak: the top that the fewest have beside it counts as high as that peak.
 /// Without such a top the frequencies stay without a solution.
 fn sweep(
     engine: &dyn Engine,
     (scenario, pattern): (&Scenario, &Pattern),
-    (peak_hz, peak_m): (f64, f64),
+    delivered: &ResponseRow,
     tuned_hz: Option<f64>,
     band: FrequencyBand,
 ) -> Option<DensePeak> {
+    let (peak_hz, peak_m) = delivered
+        .peak_frequency_hz
+        .zip(delivered.peak_amplitude_m)?;
+    let judged = CurveSettings {
+        fewest_harmonics: false,
+        least_residual_tolerance: delivered.stated_error.map_or(RESIDUAL, |stated| {
+            (RESIDUAL_OVER_STATED * stated).min(RESIDUAL)
+        }),
+    };
     let plan = engine.search_plan(scenario, pattern, tuned_hz).ok()?;
     let (start, stop) = plan.band_hz;
     let margin = match band {
@@ -132,7 +136,7 @@ fn sweep(
     let with_fewest = |frequencies_hz: &[f64]| {
         let settings = CurveSettings {
             fewest_harmonics: true,
-            ..SWEEP
+            ..judged
         };
         let points = engine.curve(scenario, Some(pattern), frequencies_hz, settings);
         largest_of_blades(&points, frequencies_hz.len())
@@ -140,7 +144,7 @@ fn sweep(
     let mut with_fewer_harmonics = 0;
     let mut top_m = None;
     let peak = dense_peak(band_hz, half_bandwidth_hz, |frequencies_hz| {
-        let points = engine.curve(scenario, Some(pattern), frequencies_hz, SWEEP);
+        let points = engine.curve(scenario, Some(pattern), frequencies_hz, judged);
         let mut found = largest_of_blades(&points, frequencies_hz.len());
         let lost = frequencies_hz.iter().zip(&found);
         let lost = lost.filter(|(_, amplitude)| amplitude.is_none());
