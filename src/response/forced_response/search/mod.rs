@@ -15,7 +15,7 @@ pub use samples::{Curve, Sample};
 #[cfg(test)]
 mod tests {
     use super::peak_search::tests::{ENVELOPE, SETTINGS, curves};
-    use super::{Curve, SearchEnd, find_peak};
+    use super::{Curve, Samples, SearchEnd, find_peak};
 
     /// A curve that can be steeper than the envelope allows for.
     struct Steep<F>(F);
@@ -69,5 +69,32 @@ mod tests {
             );
             assert_eq!(result.end, end, "{half_gap}");
         }
+    }
+
+    #[test]
+    fn the_top_of_a_blade_that_another_one_exceeds_beside_it_is_a_rival() {
+        // Heights 1.3 at 100.4 Hz and 1.2 at 102.2 Hz: at 101 Hz the second blade is the higher one already.
+        let mode =
+            |top: f64, at: f64, half: f64, f: f64| top / (1.0 + ((f - at) / half).powi(2)).sqrt();
+        let mut samples = Samples::default();
+        for f in [99.0, 100.0, 101.0, 102.0, 103.0] {
+            samples.insert(
+                f,
+                Some(vec![mode(1.3, 100.4, 0.8, f), mode(1.2, 102.2, 5.0, f)]),
+            );
+        }
+        let best = samples.best().expect("five samples");
+        assert!(
+            samples
+                .0
+                .windows(2)
+                .take(3)
+                .all(|two| two[0].largest < two[1].largest)
+        );
+        assert_eq!(samples.0[best].blade, 1);
+        let rival = samples
+            .rival(best, SETTINGS)
+            .expect("the first blade's top");
+        assert!((rival - 100.4).abs() < 1e-9, "{rival}");
     }
 }

@@ -209,24 +209,46 @@ impl Samples {
             let Some(summit) = summits().reduce(Summit::higher) else {
                 continue;
             };
-            let trusted = settings.trusted_hz(summit.half_bandwidth_hz);
-            let gap = (points[2].0 - points[1].0).max(points[1].0 - points[0].0);
             // Where parabola and cubics differ, the truth may lie as far on the other side.
             let lowest = summits().fold(f64::INFINITY, |low, other| low.min(other.amplitude));
             let reach = 2.0 * summit.amplitude - lowest;
-            let resolved = (points[2].0 - points[0].0) * RESOLVED;
-            let away = (summit.frequency_hz - points[1].0).abs();
             // What cannot be the best need not be known better than by a parabola.
             let near = if reach > top { NEAR } else { 1.0 };
             if reach > height
-                && away > resolved
-                && gap > near * trusted
+                && is_unseen(points, summit, near, settings)
                 && highest.is_none_or(|(_, known)| reach > known)
             {
                 highest = Some((summit.frequency_hz, reach));
             }
         }
-        highest.map(|(frequency, _)| frequency)
+        self.exceeded_rival(top, settings)
+            .into_iter()
+            .chain(highest)
+            .reduce(|a, b| if b.1 > a.1 { b } else { a })
+            .map(|(frequency, _)| frequency)
+    }
+
+    /// The highest summit above `top` of a blade that another one exceeds at its highest sample: frequency, Hz, and height.
+    fn exceeded_rival(&self, top: f64, settings: SearchSettings) -> Option<(f64, f64)> {
+        let summits = (0..self.0.len()).flat_map(|at| {
+            let beside = self.neighbours(at);
+            beside.into_iter().flat_map(move |(left, right)| {
+                let here = &self.0[at].amplitudes;
+                let exceeds =
+                    move |other: usize, blade: usize| here[blade] > self.0[other].amplitudes[blade];
+                (0..here.len())
+                    .filter(move |&blade| blade != self.0[at].blade || !self.bracketed(at))
+                    .filter(move |&blade| exceeds(left, blade) && exceeds(right, blade))
+                    .filter_map(move |blade| {
+                        let points = self.points([left, at, right], blade);
+                        let summit = summit::of_parabola(points)?;
+                        let higher = summit.amplitude.is_finite() && summit.amplitude > top;
+                        (higher && is_unseen(points, summit, NEAR, settings))
+                            .then_some((summit.frequency_hz, summit.amplitude))
+                    })
+            })
+        });
+        summits.reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
 
     pub fn points(&self, at: [usize; 3], blade: usize) -> [CurvePoint; 3] {
@@ -237,4 +259,12 @@ impl Samples {
         let sample = &self.0[at];
         (sample.frequency_hz, sample.amplitudes[blade].powi(-2))
     }
+}
+
+/// Whether a summit lies away from the middle of its three samples, and these are farther apart than is trusted.
+fn is_unseen(points: [CurvePoint; 3], summit: Summit, near: f64, settings: SearchSettings) -> bool {
+    let [left, middle, right] = points.map(|(frequency_hz, _)| frequency_hz);
+    let away = (summit.frequency_hz - middle).abs();
+    let gap = (right - middle).max(middle - left);
+    away > (right - left) * RESOLVED && gap > near * settings.trusted_hz(summit.half_bandwidth_hz)
 }
