@@ -1,6 +1,8 @@
 //! What is tried where a point on tuned receptances does not converge: the attempts of the contact iteration, in their order.
 
-use super::contact_equation::Preconditioned::{self, FirstOfFundamental, Resonant, Whole};
+use super::contact_equation::Preconditioned::{
+    self, FirstOfFundamental, HighCoupled, Resonant, Whole,
+};
 
 use Attempt::{Accelerated, Damped, Newton};
 use Start::{Best, Known, Linear};
@@ -149,9 +151,11 @@ const WITH_FEW_HARMONICS: [(Start, Attempt); 13] = [
     (Known, Newton(BY_PAIRS)),
     (Linear, Newton(BY_PAIRS)),
 ];
-/// The same with many: where an attempt stalls it is over, since Newton's method from there takes less than other starts do.
-const WITH_MANY_HARMONICS: [(Start, Attempt); 8] = [
+/// The same with many: where an attempt stalls it is over, since Newton's method from there takes less than other starts do. Steps with high
+/// harmonics coupled take less again. They begin from there: at a start from few harmonics their derivative says little.
+const WITH_MANY_HARMONICS: [(Start, Attempt); 9] = [
     (Known, brief(plan(&[0], 160, FirstOfFundamental))),
+    (Best, brief(plan(&[0], 160, HighCoupled))),
     (Best, Newton(FROM_THERE_WITH_MANY)),
     (Known, Newton(BY_MANY_HARMONICS)),
     (Linear, brief(plan(&[0, 3], 120, FirstOfFundamental))),
@@ -171,10 +175,10 @@ const BY_WHOLE: Plan = plan(&[0, 7, 14, 21, 28], 40, Whole);
 const RENEWED: Plan = plan(&[0, 10, 25], 160, FirstOfFundamental);
 const RENEWED_RESONANT: Plan = plan(&[0, 10, 25], 160, Resonant);
 
-/// The attempts with so many harmonics and unknowns, by the whole derivative first or not, in their order; without a known start the linear
-/// response begins.
+/// The attempts with so many harmonics and unknowns, by the whole derivative first or not, with high harmonics coupled or not, in their
+/// order; without a known start the linear response begins.
 pub(super) fn attempts(
-    takes_whole: bool,
+    (takes_whole, couples_high): (bool, bool),
     (harmonics, unknowns): (usize, usize),
     has_known: bool,
 ) -> impl Iterator<Item = &'static (Start, Attempt)> {
@@ -190,7 +194,10 @@ pub(super) fn attempts(
     } else {
         &WITH_MANY_HARMONICS
     };
+    let couples =
+        |attempt: &Attempt| matches!(attempt, Accelerated(plan) if plan.takes_in == HighCoupled);
     let known = { first.iter().chain(attempts).chain(last) }
+        .filter(move |(_, attempt)| couples_high || !couples(attempt))
         .filter(move |(start, _)| has_known || *start != Known);
     known.skip_while(move |(start, _)| !has_known && *start == Best)
 }
@@ -205,12 +212,12 @@ mod tests {
     #[test]
     fn without_a_known_start_the_linear_response_begins() {
         let counts = [1, FEW_HARMONICS, FEW_HARMONICS + 1, 16];
-        let counts = counts.map(|harmonics| [false, true].map(|whole| (whole, harmonics)));
+        let counts = counts.map(|harmonics| [false, true].map(|takes| (takes, harmonics)));
         let counts = counts.into_iter().flatten();
         for (case, unknowns) in counts.flat_map(|case| [(case, 100), (case, 10_000)]) {
-            let (takes_whole, harmonics) = case;
+            let (takes, harmonics) = case;
             let starts = |has_known: bool| {
-                let attempts = attempts(takes_whole, (harmonics, unknowns), has_known);
+                let attempts = attempts((takes, takes), (harmonics, unknowns), has_known);
                 attempts.map(|(start, _)| *start)
             };
             assert!(starts(false).next() == Some(Linear));

@@ -17,6 +17,7 @@ use super::contact_places::Places;
 use super::fields::{Field, SectorTransform, flatten, norm_squared, padded, unflatten};
 use super::pair_preconditioner::PairPreconditioner;
 use super::preconditioner::Preconditioner;
+use super::wave_preconditioner::WavePreconditioner;
 use super::wheel_harmonic::WheelHarmonic;
 use super::whole_preconditioner::WholePreconditioner;
 
@@ -27,6 +28,8 @@ pub(super) enum Preconditioned {
     Resonant,
     /// The mean tangent, and the first blade shape, of harmonic 1.
     FirstOfFundamental,
+    /// The mean tangent of low harmonics, the first blade shape of harmonic 1, and high harmonics coupled.
+    HighCoupled,
     /// The whole derivative.
     Whole,
 }
@@ -35,6 +38,8 @@ pub(super) enum Preconditioned {
 pub(super) enum StepPreconditioner {
     /// Every harmonic by itself.
     Harmonics(Vec<Preconditioner>),
+    /// Low harmonics by themselves, high ones together.
+    HighCoupled(Vec<Preconditioner>, Box<WavePreconditioner>),
     /// All harmonics together.
     Whole(Box<WholePreconditioner>),
 }
@@ -52,6 +57,8 @@ pub(super) struct ContactEquation<'a> {
     /// Forces on the contact besides its own, a field per harmonic.
     pub(super) added_forces: Option<&'a ContactForces>,
     pub(super) fundamental: usize,
+    /// The wave of the excitation.
+    pub(super) wave: usize,
     pub(super) buffers: &'a mut Buffers,
 }
 
@@ -165,15 +172,22 @@ impl ContactEquation<'_> {
         ((residual / motion).sqrt(), shares)
     }
 
-    /// Takes the tangent of the contact at the motions last evaluated into a preconditioner; by the mean, where the whole derivative is
+    /// Takes the tangent of the contact at the motions last evaluated into a preconditioner; by the mean, where what couples harmonics is
     /// singular.
     pub(super) fn preconditioner(&mut self, takes_in: Preconditioned) -> StepPreconditioner {
         let whole = takes_in == Preconditioned::Whole;
         let whole =
             whole.then(|| WholePreconditioner::new(self.transform, self.contact, self.harmonics));
-        match whole.flatten() {
-            Some(whole) => StepPreconditioner::Whole(Box::new(whole)),
-            None => StepPreconditioner::Harmonics(self.preconditioners(takes_in)),
+        if let Some(whole) = whole.flatten() {
+            return StepPreconditioner::Whole(Box::new(whole));
+        }
+        let harmonics = self.preconditioners(takes_in);
+        let couples = takes_in == Preconditioned::HighCoupled;
+        let high =
+            couples.then(|| WavePreconditioner::new(self.contact, self.harmonics, self.wave));
+        match high.flatten() {
+            Some(high) => StepPreconditioner::HighCoupled(harmonics, Box::new(high)),
+            None => StepPreconditioner::Harmonics(harmonics),
         }
     }
 
@@ -187,7 +201,9 @@ impl ContactEquation<'_> {
                 let tangent = contact.mean_tangent(place);
                 let shapes = match takes_in {
                     Preconditioned::Resonant => harmonic.resonant_shapes(),
-                    Preconditioned::FirstOfFundamental | Preconditioned::Whole => {
+                    Preconditioned::FirstOfFundamental
+                    | Preconditioned::HighCoupled
+                    | Preconditioned::Whole => {
                         harmonic.first_shapes(usize::from(place == self.fundamental))
                     }
                 };
@@ -200,6 +216,11 @@ impl ContactEquation<'_> {
     pub(super) fn precondition_by(&mut self, by: &mut StepPreconditioner) {
         let whole = match by {
             StepPreconditioner::Harmonics(harmonics) => return self.precondition(harmonics),
+            StepPreconditioner::HighCoupled(harmonics, high) => {
+                let residual = self.buffers.residual.clone();
+                self.precondition(harmonics);
+                return high.apply(&residual, &mut self.buffers.residual);
+            }
             StepPreconditioner::Whole(whole) => whole,
         };
         let places = Places::of(self.contact);

@@ -12,11 +12,12 @@ use super::attempts_on_receptances::Start::{Best, Known, Linear};
 use super::attempts_on_receptances::{
     BESIDE, DAMPING, NEAR, NEWTON_STEPS, NewtonPlan, Plan, attempts,
 };
-use super::contact_equation::Preconditioned::{FirstOfFundamental, Whole};
+use super::contact_equation::Preconditioned::{FirstOfFundamental, HighCoupled, Whole};
 use super::contact_equation::{Buffers, ContactEquation, StepPreconditioner};
 use super::fields::{Field, flatten, unflatten};
 use super::pair_preconditioner::PairPreconditioner;
 use super::preconditioner::Preconditioner;
+use super::wave_preconditioner::WavePreconditioner;
 
 /// Steps by the whole derivative at most, and the share of one below which it is not tried.
 const DAMPED_STEPS: usize = 100;
@@ -108,7 +109,8 @@ impl ContactEquation<'_> {
         let linear = self.linear_start();
         let known = self.best_of(starts);
         let size = (self.harmonics.len(), self.contact.motion().len());
-        let attempts = attempts(takes_whole, size, known.is_some());
+        let fit = (takes_whole, WavePreconditioner::fits(self.contact));
+        let attempts = attempts(fit, size, known.is_some());
         let attempts = attempts.take(most_attempts);
         let mut best = (f64::INFINITY, linear.clone());
         let mut total = Outcome::none();
@@ -160,11 +162,12 @@ impl ContactEquation<'_> {
     fn accelerate(&mut self, plan: &Plan, tolerance: f64) -> Outcome {
         let mut preconditioner = StepPreconditioner::Harmonics(Vec::new());
         let mut outcome = Outcome::none();
-        self.contact.couple(plan.takes_in == Whole);
+        let couples = matches!(plan.takes_in, HighCoupled | Whole);
+        self.contact.couple(couples);
         let mut judge = Judge::of(tolerance);
         for iteration in 0..plan.iterations {
             let renew = plan.renewals.contains(&iteration);
-            (outcome.residual, outcome.shares) = if plan.takes_in == Whole {
+            (outcome.residual, outcome.shares) = if couples {
                 self.residual(renew)
             } else {
                 self.residual_with_tangent(renew)

@@ -26,6 +26,7 @@ mod resonances;
 mod tuned_diameter;
 mod wave_force;
 mod wave_matrix;
+mod wave_preconditioner;
 mod wheel_harmonic;
 mod wheel_solver;
 mod whole_preconditioner;

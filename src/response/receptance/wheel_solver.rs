@@ -190,6 +190,7 @@ impl<'a> WheelSolver<'a> {
             linear: &self.linear,
             added_forces: self.added_forces.as_ref(),
             fundamental,
+            wave: self.force.wave(sectors),
             buffers: &mut self.buffers,
         })
     }
