@@ -315,9 +315,9 @@ mod tests {
         });
         // What the derivative makes of motions in the high harmonics, in these.
         let mut expected = zeros();
-        for place in 3..SET.len() {
+        for (place, field) in expected.iter_mut().enumerate().skip(3) {
             for at in 0..3 * SECTORS {
-                expected[place].set(at, number(at + 50 * place));
+                field.set(at, number(at + 50 * place));
             }
         }
         let mut change = vec![0.0; contact.motion().len()];
