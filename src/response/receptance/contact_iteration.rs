@@ -162,6 +162,7 @@ impl ContactEquation<'_> {
     fn accelerate(&mut self, plan: &Plan, tolerance: f64) -> Outcome {
         let mut preconditioner = StepPreconditioner::Harmonics(Vec::new());
         let mut outcome = Outcome::none();
+        // What couples harmonics is taken from the contact itself. The mean tangents beside it stay those of the attempt before.
         let couples = matches!(plan.takes_in, HighCoupled | Whole);
         self.contact.couple(couples);
         let mut judge = Judge::of(tolerance);
