@@ -7,6 +7,7 @@
 )]
 
 mod automatic_harmonics;
+mod tops;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

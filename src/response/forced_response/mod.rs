@@ -25,6 +25,7 @@ mod receptance_points;
 mod row_equation;
 mod search;
 mod softer_contact;
+mod top_beside;
 mod tops;
 
 pub use a_posteriori::{ErrorEstimate, Screening, estimate_errors, screen};
@@ -43,12 +44,11 @@ pub use peak::{
 pub use point::{Point, Work};
 pub use point_settings::PointSettings;
 pub use point_solver::PointSolver;
-pub use receptance_errors::{
-    TopBeside, receptance_errors, receptance_top_beside, receptance_top_m,
-};
+pub use receptance_errors::receptance_errors;
 pub use receptance_peak::{ReceptancePeak, receptance_peak};
 pub use receptance_points::{
     ContactMotion, EngineRow, receptance_contact_motion, receptance_curve, receptance_plan,
     receptance_state,
 };
 pub use search::{Envelope, SearchEnd, SearchResult, SearchSettings, find_peak};
+pub use top_beside::{TopBeside, receptance_top_beside, receptance_top_m};

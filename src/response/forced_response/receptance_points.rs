@@ -237,17 +237,7 @@ impl<'a> ReceptancePoints<'a> {
 
     /// Amplitude of every blade at the solution last solved, over what `few` take for it in the harmonics that they count.
     pub(super) fn growth_over(&mut self, few: &Self) -> Vec<f64> {
-        let of_all = observed(&mut self.solver, &self.settings.amplitude);
-        let counted = of_all
-            .iter()
-            .filter(|observed| few.solver.harmonics().contains(&observed.harmonic));
-        let counted: Vec<ObservedHarmonic> = counted.cloned().collect();
-        let of_few = few.settings.amplitude.of_observed(&counted);
-        let amplitudes = self.settings.amplitude.of_observed(&of_all).into_iter();
-        amplitudes
-            .zip(of_few)
-            .map(|(amplitude, few)| amplitude / few)
-            .collect()
+        growth_of(&mut self.solver, self.settings, &few.solver, few.settings)
     }
 
     /// Whether the next frequency is tried once, or by every attempt.
@@ -354,6 +344,25 @@ pub(super) fn observed(
                 vec![Complex64::default(); 3 * blades]
             },
         })
+        .collect()
+}
+
+/// Amplitude of every blade at the solution last solved by `all`, over what `few` take for it in the harmonics that they count.
+pub(super) fn growth_of(
+    all: &mut WheelSolver<'_>,
+    of_all: &PointSettings,
+    few: &WheelSolver<'_>,
+    of_few: &PointSettings,
+) -> Vec<f64> {
+    let observed = observed(all, &of_all.amplitude);
+    let counted = observed.iter();
+    let counted = counted.filter(|observed| few.harmonics().contains(&observed.harmonic));
+    let counted: Vec<ObservedHarmonic> = counted.cloned().collect();
+    let by_few = of_few.amplitude.of_observed(&counted).into_iter();
+    let amplitudes = of_all.amplitude.of_observed(&observed).into_iter();
+    amplitudes
+        .zip(by_few)
+        .map(|(amplitude, few)| amplitude / few)
         .collect()
 }
 
