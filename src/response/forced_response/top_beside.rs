@@ -12,9 +12,9 @@ const TURNS: usize = 2;
 /// Largest amplitude, m, of a row near `point`, a solution of the same wheel on this or on another engine. None where a solution is not
 /// found.
 ///
-/// Where every contact stays closed, few harmonics lead to the top, under what all of them leave on these at the point, and all of them
-/// are solved there once (`corrected_peak.rs`). Else it is the height at the top of a parabola through the point and two others `step_hz`
-/// on either side, with all harmonics.
+/// Few harmonics lead to the top, under what all of them leave on these at the point, and all of them are solved there once
+/// (`corrected_peak.rs`). Where few do not follow, it is the height at the top of a parabola through the point and two others `step_hz` on
+/// either side, with all harmonics.
 #[must_use]
 pub fn receptance_top_m(
     row: &EngineRow<'_>,
@@ -24,7 +24,12 @@ pub fn receptance_top_m(
     tolerance: f64,
 ) -> Option<f64> {
     let mut all = row.solver(settings, &settings.transform, None);
-    let few = settings.search().filter(|_| is_closed(point.shares));
+    let follows = !is_closed(point.shares);
+    let few = if follows {
+        settings.opening()
+    } else {
+        settings.search()
+    };
     let few = few.filter(|_| all.is_nonlinear());
     let few = few.and_then(|few| few.at_samples_of(settings).ok());
     let led = few.and_then(|few| {
@@ -68,6 +73,8 @@ struct LedTop<'a> {
     few: WheelSolver<'a>,
     of_few: &'a PointSettings,
     of_all: &'a PointSettings,
+    /// Whether the few harmonics have the mean motion, and so follow a contact that opens.
+    follows: bool,
     /// Where all harmonics are known: frequency, Hz, motions, and those of the few harmonics among them.
     frequency_hz: f64,
     motions: Vec<f64>,
@@ -91,6 +98,7 @@ impl<'a> LedTop<'a> {
             few: row.solver(of_few, &of_few.transform, None),
             of_few,
             of_all,
+            follows: of_few.harmonics().contains(&0),
             frequency_hz: point.frequency_hz,
             motions: Vec::new(),
             part: Vec::new(),
@@ -124,7 +132,9 @@ impl<'a> LedTop<'a> {
         let start = self.start(all, found.frequency_hz, tolerance)?;
         all.set_ring_drift(self.ring_drift_m);
         let (solved, _) = all.solve(found.frequency_hz, &[start], tolerance);
-        let solved = solved.ok().filter(|solved| is_closed(solved.shares))?;
+        let solved = solved
+            .ok()
+            .filter(|solved| self.follows || is_closed(solved.shares))?;
         let middle_m = largest_m(all, self.of_all, None);
         self.growth = Some(growth_of(all, self.of_all, &self.few, self.of_few));
         self.take(all, found.frequency_hz, solved.motions)?;
@@ -143,7 +153,9 @@ impl<'a> LedTop<'a> {
             self.few.add_forces(forces);
             self.few.set_ring_drift(self.ring_drift_m);
             let (solved, _) = self.few.solve(frequency_hz, &[motions], tolerance);
-            let solved = solved.ok().filter(|solved| is_closed(solved.shares))?;
+            let solved = solved
+                .ok()
+                .filter(|solved| self.follows || is_closed(solved.shares))?;
             motions = solved.motions;
             phases = self.few.phases_ahead(&self.part, &motions);
             forces = self.few.forces_ahead(&self.left, &phases);
