@@ -9,7 +9,7 @@
 //!
 //! A point is lost when every attempt of `receptance/attempts_on_receptances.rs` has failed.
 
-use super::corrected_peak::corrected_peak;
+use super::corrected_peak::{Lost, corrected_peak};
 use super::peak::{Peak, Window, peak_by};
 use super::point::Work;
 use super::point_settings::PointSettings;
@@ -58,11 +58,6 @@ pub fn receptance_peak(
             wasted = lost.work;
             by_harmonics = false;
             found = corrected_peak(row, &plan, opening, &[settings], peak_tolerance);
-            if let Err(lost) = &found
-                && let Some(status) = lost.unsolved
-            {
-                return alone(Peak::without(status, wasted.plus(lost.work)));
-            }
         }
         match found {
             Ok((peak, change)) => {
@@ -70,6 +65,14 @@ pub fn receptance_peak(
                     peak: with_work(peak, wasted),
                     by_harmonics: by_harmonics.then_some(change),
                 };
+            }
+            // What no attempt solves at a top, the whole band does not bring either.
+            Err(Lost {
+                work,
+                unsolved: Some(status),
+                ..
+            }) if settings.fewer_follow() => {
+                return alone(Peak::without(status, wasted.plus(work)));
             }
             Err(lost) => wasted = wasted.plus(lost.work),
         }

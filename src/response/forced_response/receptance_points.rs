@@ -21,6 +21,10 @@ use crate::response::receptance::{
 /// Points that the search of a row may lose before it is over: each takes as long as many that are found.
 const MOST_FAILURES: usize = 8;
 
+/// Steps after which all harmonics are given up at a point, where fewer of them follow: under loads at which all wheels have them, no point
+/// took more than 400.
+const STEPS_OF_ALL: u64 = 1_000;
+
 /// One wheel on an engine under one excitation and contact condition.
 #[derive(Debug, Clone, Copy)]
 pub struct EngineRow<'a> {
@@ -152,8 +156,9 @@ pub(super) struct ReceptancePoints<'a> {
 impl<'a> ReceptancePoints<'a> {
     pub(super) fn new(row: &EngineRow<'a>, settings: &'a PointSettings) -> Self {
         let mut solver = row.solver(settings, &settings.transform, None);
-        if settings.search().is_none() {
-            solver.take_whole_derivative();
+        solver.effort().takes_whole = settings.search().is_none();
+        if settings.guide().is_some() {
+            solver.effort().most_steps = STEPS_OF_ALL;
         }
         Self {
             solver,
@@ -244,7 +249,7 @@ impl<'a> ReceptancePoints<'a> {
     fn try_once_if(&mut self, beside_lost: bool) {
         self.beside_lost = beside_lost;
         let most_attempts = if beside_lost { 1 } else { usize::MAX };
-        self.solver.limit_attempts(most_attempts);
+        self.solver.effort().most_attempts = most_attempts;
     }
 
     pub(super) fn residual_is_stated(&self) -> bool {

@@ -18,6 +18,26 @@ pub(super) const FEW_UNKNOWNS: usize = 150;
 /// Most harmonics that are few: with more a step takes so long that attempts are ended early, and that no pair is preconditioned by itself.
 const FEW_HARMONICS: usize = 6;
 
+/// How far the solver goes for a point.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Effort {
+    /// Whether the whole derivative is taken first of a contact with few unknowns, in the place of the mean tangent: where its harmonics are
+    /// solved with from the start, and not where others have led to.
+    pub(crate) takes_whole: bool,
+    /// Attempts at most.
+    pub(crate) most_attempts: usize,
+    /// Steps after which no other attempt begins.
+    pub(crate) most_steps: u64,
+}
+
+impl Effort {
+    pub(super) const ALL: Self = Self {
+        takes_whole: false,
+        most_attempts: usize::MAX,
+        most_steps: u64::MAX,
+    };
+}
+
 /// When preconditioners are renewed, what they take in, and how many steps are taken at most.
 #[derive(Clone, Copy)]
 pub(super) struct Plan {

@@ -10,7 +10,7 @@ use crate::response::harmonic_balance::{ContactShares, Status};
 use super::attempts_on_receptances::Attempt::{Accelerated, Damped, Newton};
 use super::attempts_on_receptances::Start::{Best, Known, Linear};
 use super::attempts_on_receptances::{
-    BESIDE, DAMPING, NEAR, NEWTON_STEPS, NewtonPlan, Plan, attempts,
+    BESIDE, DAMPING, Effort, NEAR, NEWTON_STEPS, NewtonPlan, Plan, attempts,
 };
 use super::contact_equation::Preconditioned::{FirstOfFundamental, HighCoupled, Whole};
 use super::contact_equation::{Buffers, ContactEquation, StepPreconditioner};
@@ -98,20 +98,14 @@ pub(super) struct Outcome {
 }
 
 impl ContactEquation<'_> {
-    /// Solves from the best of `starts`, or from the linear response without any, until the residual is within `tolerance`, by so many
-    /// attempts at most; by the whole derivative first, where it is to be taken and the unknowns are few.
-    pub(super) fn solve(
-        &mut self,
-        starts: &[Vec<f64>],
-        tolerance: f64,
-        (takes_whole, most_attempts): (bool, usize),
-    ) -> Outcome {
+    /// Solves from the best of `starts`, or from the linear response without any, until the residual is within `tolerance`.
+    pub(super) fn solve(&mut self, starts: &[Vec<f64>], tolerance: f64, effort: Effort) -> Outcome {
         let linear = self.linear_start();
         let known = self.best_of(starts);
         let size = (self.harmonics.len(), self.contact.motion().len());
-        let fit = (takes_whole, WavePreconditioner::fits(self.contact));
+        let fit = (effort.takes_whole, WavePreconditioner::fits(self.contact));
         let attempts = attempts(fit, size, known.is_some());
-        let attempts = attempts.take(most_attempts);
+        let attempts = attempts.take(effort.most_attempts);
         let mut best = (f64::INFINITY, linear.clone());
         let mut total = Outcome::none();
         for (rung, (start, attempt)) in attempts.enumerate() {
@@ -127,7 +121,7 @@ impl ContactEquation<'_> {
                 Damped => self.damped_newton(tolerance),
             };
             total = total.followed_by(outcome, rung);
-            if total.status == Status::Ok {
+            if total.status == Status::Ok || total.iterations >= effort.most_steps {
                 break;
             }
             if outcome.residual < best.0 {

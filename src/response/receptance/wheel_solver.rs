@@ -8,7 +8,7 @@ use crate::response::harmonic_balance::{
     ContactShares, DriftingRing, PairContact, Status, WheelContact, let_creep,
 };
 
-use super::attempts_on_receptances::FEW_UNKNOWNS;
+use super::attempts_on_receptances::{Effort, FEW_UNKNOWNS};
 use super::contact_equation::{Buffers, ContactEquation};
 use super::contact_forces::ContactForces;
 use super::contact_iteration::Outcome;
@@ -33,9 +33,7 @@ pub struct WheelSolver<'a> {
     added_forces: Option<ContactForces>,
     /// What a free ring does under mean friction.
     ring: Ring,
-    most_attempts: usize,
-    /// Whether the whole derivative is taken of a contact with few unknowns.
-    takes_whole: bool,
+    effort: Effort,
     buffers: Buffers,
     /// Tuned response to the excitation of the motions [contact, strain, observed].
     excited: Vec<Complex64>,
@@ -112,8 +110,7 @@ impl<'a> WheelSolver<'a> {
             linear: Field::default(),
             added_forces: None,
             ring: Ring::Locked,
-            most_attempts: usize::MAX,
-            takes_whole: false,
+            effort: Effort::ALL,
             buffers: Buffers::default(),
             excited: Vec::new(),
         }
@@ -139,15 +136,9 @@ impl<'a> WheelSolver<'a> {
         }
     }
 
-    /// So many attempts at most from now on at every frequency; all of them at first.
-    pub fn limit_attempts(&mut self, most: usize) {
-        self.most_attempts = most;
-    }
-
-    /// From now on the whole derivative is taken first of a contact with few unknowns, in the place of the mean tangent: where its harmonics
-    /// are solved with from the start, and not where others have led to.
-    pub(crate) fn take_whole_derivative(&mut self) {
-        self.takes_whole = true;
+    /// How far it goes at every frequency from now on.
+    pub(crate) fn effort(&mut self) -> &mut Effort {
+        &mut self.effort
     }
 
     /// This solver with derivatives from `contact`, which is its contact with fewer samples; none: from its contact itself.
@@ -254,10 +245,10 @@ impl<'a> WheelSolver<'a> {
 
     /// Solves at the frequency prepared and the present drift of the ring; none for a linear limit.
     fn at_drift(&mut self, way: Way<'_>, tolerance: f64) -> Option<Outcome> {
-        let attempts = (self.takes_whole, self.most_attempts);
+        let effort = self.effort;
         let mut equation = self.equation()?;
         Some(match way {
-            Way::From(starts) => equation.solve(starts, tolerance, attempts),
+            Way::From(starts) => equation.solve(starts, tolerance, effort),
             Way::Beside(start) => equation.settle(start, tolerance),
         })
     }
