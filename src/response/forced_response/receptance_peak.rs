@@ -4,7 +4,8 @@
 //!
 //! 1. few harmonics over the band, and every larger set at the tops that the one before it finds (`corrected_peak.rs`);
 //! 2. where contacts open, the same led by harmonics 0 to 3, of an automatic set;
-//! 3. the whole set over the band: up to nine lost points, one where fewer harmonics follow;
+//! 3. the whole set over the band: up to nine lost points, one where fewer harmonics follow. There it is left out after a top that no
+//!    attempt solved;
 //! 4. the whole of this with harmonics up to 9, then 7, then 5, of an automatic set (`population/monte_carlo/load_case_solvers.rs`).
 //!
 //! A point is lost when every attempt of `receptance/attempts_on_receptances.rs` has failed.
