@@ -3,8 +3,9 @@
 use super::point::Point;
 use super::point_settings::PointSettings;
 use super::receptance_points::{EngineRow, growth_of, observed};
-use crate::response::harmonic_balance::ContactShares;
-use crate::response::receptance::{ContactForces, WheelSolver, embedded, overlay};
+use crate::response::friction::Ring;
+use crate::response::harmonic_balance::{ContactShares, Status};
+use crate::response::receptance::{ContactForces, WheelSolution, WheelSolver, embedded, overlay};
 
 /// Times that forces are turned with the motion of their sector.
 const TURNS: usize = 2;
@@ -30,7 +31,8 @@ pub fn receptance_top_m(
     } else {
         settings.search()
     };
-    let few = few.filter(|_| all.is_nonlinear());
+    // A ring that creeps drifts by the mean friction of all harmonics.
+    let few = few.filter(|_| all.is_nonlinear() && settings.ring == Ring::Locked);
     let few = few.and_then(|few| few.at_samples_of(settings).ok());
     let led = few.and_then(|few| {
         let mut led = LedTop::new(row, &few, settings, &mut all, point)?;
@@ -82,7 +84,6 @@ struct LedTop<'a> {
     /// What all harmonics leave there on the few of them, and the amplitude of every blade with all over that with the few.
     left: ContactForces,
     growth: Option<Vec<f64>>,
-    ring_drift_m: [f64; 2],
 }
 
 impl<'a> LedTop<'a> {
@@ -104,7 +105,6 @@ impl<'a> LedTop<'a> {
             part: Vec::new(),
             left: ContactForces::default(),
             growth: None,
-            ring_drift_m: point.ring_drift_m,
         };
         led.take(all, point.frequency_hz, point.solution.clone())?;
         Some(led)
@@ -130,17 +130,20 @@ impl<'a> LedTop<'a> {
         let near_hz = self.frequency_hz;
         let found = climbed(near_hz, step_hz, |hz| self.height_m(hz, tolerance))?;
         let start = self.start(all, found.frequency_hz, tolerance)?;
-        all.set_ring_drift(self.ring_drift_m);
         let (solved, _) = all.solve(found.frequency_hz, &[start], tolerance);
-        let solved = solved
-            .ok()
-            .filter(|solved| self.follows || is_closed(solved.shares))?;
+        let solved = self.followed(solved)?;
         let middle_m = largest_m(all, self.of_all, None);
         self.growth = Some(growth_of(all, self.of_all, &self.few, self.of_few));
         self.take(all, found.frequency_hz, solved.motions)?;
         let sides_hz = [-step_hz, step_hz].map(|way| found.frequency_hz + way);
         let [low_m, high_m] = sides_hz.map(|hz| self.height_m(hz, tolerance));
         Some(vertex([low_m?, middle_m, high_m?]).1)
+    }
+
+    /// A solution, unless a contact opens there that few harmonics do not follow.
+    fn followed(&self, solved: Result<WheelSolution, Status>) -> Option<WheelSolution> {
+        let follows = |solved: &WheelSolution| self.follows || is_closed(solved.shares);
+        solved.ok().filter(follows)
     }
 
     /// Motions of the few harmonics at a frequency, Hz, under what all of them leave, which turns with the motion of its sector, and the
@@ -151,12 +154,8 @@ impl<'a> LedTop<'a> {
         let mut phases = Vec::new();
         for _ in 0..TURNS {
             self.few.add_forces(forces);
-            self.few.set_ring_drift(self.ring_drift_m);
             let (solved, _) = self.few.solve(frequency_hz, &[motions], tolerance);
-            let solved = solved
-                .ok()
-                .filter(|solved| self.follows || is_closed(solved.shares))?;
-            motions = solved.motions;
+            motions = self.followed(solved)?.motions;
             phases = self.few.phases_ahead(&self.part, &motions);
             forces = self.few.forces_ahead(&self.left, &phases);
         }
