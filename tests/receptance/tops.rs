@@ -69,8 +69,8 @@ fn changes(law: ContactLaw, normal_load_n: f64) -> [f64; 2] {
     });
     let own_change = after_m / before_m - 1.0;
     println!(
-        "{law:?} {normal_load_n} N: {change:.2e}, full contact {own_change:.2e}, {:.2} slip",
-        point.shares.slipping
+        "{law:?} {normal_load_n} N: {change:.2e}, full contact {own_change:.2e}, {:.2} slip, {:.2} open",
+        point.shares.slipping, point.shares.separated
     );
     [change, own_change]
 }
@@ -79,13 +79,14 @@ fn changes(law: ContactLaw, normal_load_n: f64) -> [f64; 2] {
 #[test]
 fn tops_on_another_engine_are_those_of_the_full_contact_model() {
     faer::set_global_parallelism(faer::Par::Seq);
-    let laws = [ContactLaw::Simplified3d; 4].into_iter();
+    // Pairs open under the first load.
+    let laws = [ContactLaw::Simplified3d; 6].into_iter();
     let laws = laws.chain([ContactLaw::Coulomb3d]);
     let mut largest: f64 = 0.0;
-    for (law, load_n) in laws.zip([300.0, 600.0, 1200.0, 2400.0, 600.0]) {
+    for (law, load_n) in laws.zip([150.0, 200.0, 300.0, 600.0, 1200.0, 2400.0, 600.0]) {
         let [change, own_change] = changes(law, load_n);
         assert!(
-            (change - own_change).abs() < 2e-4,
+            (change - own_change).abs() < f64::max(2e-4, 0.1 * own_change.abs()),
             "{law:?} {load_n} N: {change:.2e}, full contact {own_change:.2e}"
         );
         largest = largest.max(own_change.abs());
