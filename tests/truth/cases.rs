@@ -15,13 +15,13 @@ const SEED: u64 = 20_261_123;
 pub const PATTERNS: usize = 70;
 /// Loads of a wheel; pattern i has load i modulo this number.
 pub const LOADS: usize = 10;
-/// Loads relative to the one under which every pair of the tuned wheel sticks at its stuck peak: one is drawn from each
+/// Loads relative to the one under which every pair of the tuned wheel sticks at its stuck peak ([`HELD`]): one is drawn from each
 /// tenth of the way between them, on a logarithmic scale. Below a twentieth pairs separate.
 const LOADS_OF_STICKING: [f64; 2] = [0.01, 0.9];
 /// Standard deviations of the blades' stiffness, drawn alike.
 const STANDARD_DEVIATIONS: [f64; 3] = [0.01, 0.03, 0.06];
 
-pub const WHEELS: [&str; 9] = [
+pub const WHEELS: [&str; 11] = [
     "wheel8",
     "wheel24",
     "built-in",
@@ -31,9 +31,19 @@ pub const WHEELS: [&str; 9] = [
     "wedges",
     "shrouds",
     "ground",
+    "held-shrouds",
+    "cylinders",
 ];
 /// Those of them with another damper than a ring.
-pub const OTHER_DAMPERS: [&str; 3] = ["wedges", "shrouds", "ground"];
+pub const OTHER_DAMPERS: [&str; 5] = ["wedges", "shrouds", "ground", "held-shrouds", "cylinders"];
+/// Those of them whose loads are relative to the one under which no pair slips or opens, in the place of that under which the normal load
+/// would hold every pair if it stayed the same: tips of shrouds press on each other far more than they slide.
+pub const HELD: [&str; 2] = ["held-shrouds", "cylinders"];
+
+const WEDGE: &str = r#"damper = "underplatform""#;
+const CYLINDER: &str = r#"damper = "underplatform", damper_shape = "cylinder""#;
+const SHROUD: &str = r#"damper = "shroud""#;
+const GROUND: &str = r#"damper = "blade_to_ground""#;
 
 /// Numbers without pattern (Steele et al. 2014, `splitmix64`).
 struct Numbers(u64);
@@ -81,7 +91,7 @@ fn study_text(wheel: &str, numbers: &mut Numbers) -> String {
     };
     let damped = |damper: &str, angle: &str, [low, high]: [f64; 2], numbers: &mut Numbers| {
         format!(
-            "source = \"parametric\"\nparametric = {{ sectors = 9, damper = \"{damper}\", blade_height_m = {}, \
+            "source = \"parametric\"\nparametric = {{ sectors = 9, {damper}, blade_height_m = {}, \
              blade_stagger_angle_deg = {}, blade_twist_deg = {}, {angle} = {} }}",
             digits(0.080 * numbers.between(0.85, 1.15)),
             digits(numbers.between(20.0, 40.0)),
@@ -96,21 +106,16 @@ fn study_text(wheel: &str, numbers: &mut Numbers) -> String {
         "built-in" => ("source = \"parametric\"".to_owned(), 3),
         "odd" => (parametric(13, ordinary, ordinary), 4),
         "half" => (parametric(12, ordinary, ordinary), 6),
-        "wedges" => (
-            damped("underplatform", "flank_angle_deg", [25.0, 45.0], numbers),
+        "wedges" => (damped(WEDGE, "flank_angle_deg", [25.0, 45.0], numbers), 3),
+        "cylinders" => (
+            damped(CYLINDER, "platform_height_m", [0.007, 0.010], numbers),
             3,
         ),
-        "shrouds" => (
-            damped("shroud", "shroud_angle_deg", [15.0, 45.0], numbers),
-            2,
-        ),
+        "shrouds" | "held-shrouds" => {
+            (damped(SHROUD, "shroud_angle_deg", [15.0, 45.0], numbers), 2)
+        }
         "ground" => (
-            damped(
-                "blade_to_ground",
-                "platform_height_m",
-                [0.005, 0.008],
-                numbers,
-            ),
+            damped(GROUND, "platform_height_m", [0.005, 0.008], numbers),
             3,
         ),
         _ => (parametric(16, heavy, thin), 2),

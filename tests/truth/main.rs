@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 use blisk::model::sector::bundle;
 use blisk::population::monte_carlo::ResponseRow;
 
-use cases::{Condition, OTHER_DAMPERS, PATTERNS, WHEELS, Wheel, draw};
+use cases::{Condition, HELD, OTHER_DAMPERS, PATTERNS, WHEELS, Wheel, draw};
 use contact::{Law, Period};
 use dampers::within_one_sector;
 use hints::Hints;
@@ -347,7 +347,8 @@ fn five_rows_of_the_truth_are_solved_again() {
         });
 }
 
-/// The load under which every pair of the tuned wheel sticks at its stuck peak, N per sector.
+/// The load under which every pair of the tuned wheel sticks at its stuck peak, N per sector: at a normal load that stays the same, or at
+/// what the motion leaves of it ([`HELD`]).
 fn sticking_n(wheel: &Wheel) -> f64 {
     let sector = Sector::new(&within_one_sector(wheel.model.clone()), 80);
     let hint_hz = Hints::new(wheel).frequency_hz(None, Condition::Stuck);
@@ -371,9 +372,13 @@ fn sticking_n(wheel: &Wheel) -> f64 {
         [kn, kt, kt],
     );
     let motion = stuck.receptance(case.engine_order).contact_excited;
-    let tangential = |motion: &[faer::c64]| f64::max(motion[1].norm(), motion[2].norm());
-    let largest = motion.chunks(3).map(tangential).fold(0.0, f64::max);
-    largest * law.tangential_stiffness_n_per_m / law.friction_coefficient
+    let is_held = HELD.contains(&wheel.name.as_str());
+    let holding_n = |motion: &[faer::c64]| {
+        let tangential = f64::max(motion[1].norm(), motion[2].norm());
+        let taken_off = if is_held { kn * motion[0].norm() } else { 0.0 };
+        tangential * kt / law.friction_coefficient + taken_off
+    };
+    motion.chunks(3).map(holding_n).fold(0.0, f64::max)
 }
 
 /// `cargo test --release --test truth make_the_cases -- --ignored`
