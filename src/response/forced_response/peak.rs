@@ -193,33 +193,39 @@ pub fn peak(
             return Peak::without(status, Work::default());
         }
     };
-    let nonlinear = matches!(condition, ContactCondition::Full { .. });
-    let search = SearchSettings {
-        tolerance: if nonlinear {
-            peak_tolerance
-        } else {
-            LINEAR_PEAK_TOLERANCE
-        },
-        evaluations: EVALUATIONS,
-        extensions: plan.extensions,
-        rivals_from: 1.0,
-    };
-    let precision = SEARCH_PRECISION * search.tolerance;
-    let mut solver = PointSolver::new(excited, condition, settings).with_precision(precision);
-    let result = searched(&mut solver, &plan, search);
-    let (status, point) = settled(&result, &mut solver);
+    let mut solver = PointSolver::new(excited, condition, settings);
+    let (found, search) = peak_by(&plan, condition, &mut solver, peak_tolerance);
     // Contacts that open can fold the curve; where they do, the samples fall off a cliff.
-    let cliff = result
+    let cliff = search
         .best
-        .is_some_and(|best| falls_off(&result.samples, best, plan.envelope));
-    let higher = match (status, &point) {
-        (Status::Ok, Some(point)) if cliff => {
-            solver.over_folds(point, search.tolerance, plan.extensions > 0)
-        }
-        _ => Ok(None),
+        .is_some_and(|best| falls_off(&search.samples, best, plan.envelope));
+    let top = { found.point.as_ref() }.filter(|_| cliff && found.status == Status::Ok);
+    let Some(point) = top.cloned() else {
+        return found;
     };
-    let status = higher.as_ref().err().copied().unwrap_or(status);
-    let point = higher.ok().flatten().or(point);
+    let tolerance = search_tolerance(condition, peak_tolerance);
+    let (status, point) = match solver.over_folds(&point, tolerance, plan.extensions > 0) {
+        Ok(higher) => (Status::Ok, higher.unwrap_or(point)),
+        Err(status) => (status, point),
+    };
+    peak_at(Some(point), status, found.bracketed, &mut solver)
+}
+
+/// Relative tolerance of the search for a peak.
+fn search_tolerance(condition: ContactCondition, peak_tolerance: f64) -> f64 {
+    match condition {
+        ContactCondition::Full { .. } => peak_tolerance,
+        _ => LINEAR_PEAK_TOLERANCE,
+    }
+}
+
+/// The peak at a point of `solver`.
+fn peak_at(
+    point: Option<Point>,
+    status: Status,
+    bracketed: bool,
+    solver: &mut impl PointSource,
+) -> Peak {
     let mean_friction_n = point
         .as_ref()
         .and_then(|point| solver.mean_friction_n(point));
@@ -227,7 +233,7 @@ pub fn peak(
         status,
         blade: point.as_ref().map_or(0, Point::largest_blade),
         point,
-        bracketed: result.bracketed,
+        bracketed,
         mean_friction_n,
         work: solver.work(),
     }
@@ -255,57 +261,34 @@ fn settled(result: &SearchResult, solver: &mut impl PointSource) -> (Status, Opt
     (status, point)
 }
 
-/// [`peak`] by `plan` with the points of `solver`.
+/// The peak by `plan` with the points of `solver`, and the search that found it.
 pub(super) fn peak_by(
     plan: &SearchPlan,
     condition: ContactCondition,
-    mut solver: impl PointSource,
+    solver: &mut impl PointSource,
     peak_tolerance: f64,
-) -> Peak {
-    let nonlinear = matches!(condition, ContactCondition::Full { .. });
-    let tolerance = if nonlinear {
-        peak_tolerance
-    } else {
-        LINEAR_PEAK_TOLERANCE
-    };
+) -> (Peak, SearchResult) {
     let search = SearchSettings {
-        tolerance,
+        tolerance: search_tolerance(condition, peak_tolerance),
         evaluations: EVALUATIONS,
         extensions: plan.extensions,
         rivals_from: 1.0,
     };
-    solver.set_precision(SEARCH_PRECISION * tolerance);
-    let result = searched(&mut solver, plan, search);
-    let (status, point) = settled(&result, &mut solver);
-    let mean_friction_n = point
-        .as_ref()
-        .and_then(|point| solver.mean_friction_n(point));
-    Peak {
-        status,
-        blade: point.as_ref().map_or(0, Point::largest_blade),
-        point,
-        bracketed: result.bracketed,
-        mean_friction_n,
-        work: solver.work(),
-    }
-}
-
-fn searched(
-    solver: &mut impl PointSource,
-    plan: &SearchPlan,
-    search: SearchSettings,
-) -> SearchResult {
+    solver.set_precision(SEARCH_PRECISION * search.tolerance);
     let watched = Watched {
         solver,
         stuck: &plan.stuck,
     };
-    find_peak(
+    let result = find_peak(
         plan.band_hz,
         &plan.starts_hz,
         plan.envelope,
         search,
         watched,
-    )
+    );
+    let (status, point) = settled(&result, solver);
+    let peak = peak_at(point, status, result.bracketed, solver);
+    (peak, result)
 }
 
 /// Status of the failed frequency nearest to the best point, among those with no lower amplitude

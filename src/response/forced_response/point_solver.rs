@@ -97,16 +97,8 @@ impl<'a> PointSolver<'a> {
         Some(self.nonlinear.as_mut()?.at(point))
     }
 
-    /// This solver for a search: from now on a point ends where the next step would change no amplitude by more than
-    /// `precision` of the largest, unless its contacts open. Its residual may be far above the tolerance. Points with
-    /// a creeping ring are solved to the tolerance all the same.
-    #[must_use]
-    pub fn with_precision(mut self, precision: f64) -> Self {
-        self.set_precision(precision);
-        self
-    }
-
-    /// From now on points end as those of [`Self::with_precision`].
+    /// From now on a point ends where the next step would change no amplitude by more than `precision` of the largest, unless its contacts
+    /// open. Its residual may be far above the tolerance. Points with a creeping ring are solved to the tolerance all the same.
     pub(super) fn set_precision(&mut self, precision: f64) {
         if let Some(row) = &mut self.nonlinear {
             row.precision = Some(precision);

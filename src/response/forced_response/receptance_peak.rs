@@ -78,7 +78,7 @@ pub fn receptance_peak(
             Err(lost) => wasted = wasted.plus(lost.work),
         }
     }
-    let solver = ReceptancePoints::new(row, settings);
-    let found = peak_by(&plan, row.condition, solver, peak_tolerance);
+    let mut solver = ReceptancePoints::new(row, settings);
+    let (found, _) = peak_by(&plan, row.condition, &mut solver, peak_tolerance);
     alone(with_work(found, wasted))
 }

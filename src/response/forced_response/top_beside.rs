@@ -48,8 +48,8 @@ pub fn receptance_top_m(
         solved.ok()?;
         Some(largest_m(&mut all, settings, None))
     };
-    let top = climbed(point.frequency_hz, step_hz, &mut height_m)?;
-    height_m(top.frequency_hz)
+    let (top_hz, _) = climbed(point.frequency_hz, step_hz, &mut height_m)?;
+    height_m(top_hz)
 }
 
 fn is_closed(shares: ContactShares) -> bool {
@@ -128,14 +128,14 @@ impl<'a> LedTop<'a> {
     /// The height, m, of the top, with all harmonics at the frequency at which few of them have it.
     fn top_m(&mut self, all: &mut WheelSolver<'_>, step_hz: f64, tolerance: f64) -> Option<f64> {
         let near_hz = self.frequency_hz;
-        let found = climbed(near_hz, step_hz, |hz| self.height_m(hz, tolerance))?;
-        let start = self.start(all, found.frequency_hz, tolerance)?;
-        let (solved, _) = all.solve(found.frequency_hz, &[start], tolerance);
+        let (top_hz, _) = climbed(near_hz, step_hz, |hz| self.height_m(hz, tolerance))?;
+        let start = self.start(all, top_hz, tolerance)?;
+        let (solved, _) = all.solve(top_hz, &[start], tolerance);
         let solved = self.followed(solved)?;
         let middle_m = largest_m(all, self.of_all, None);
         self.growth = Some(growth_of(all, self.of_all, &self.few, self.of_few));
-        self.take(all, found.frequency_hz, solved.motions)?;
-        let sides_hz = [-step_hz, step_hz].map(|way| found.frequency_hz + way);
+        self.take(all, top_hz, solved.motions)?;
+        let sides_hz = [-step_hz, step_hz].map(|way| top_hz + way);
         let [low_m, high_m] = sides_hz.map(|hz| self.height_m(hz, tolerance));
         Some(vertex([low_m?, middle_m, high_m?]).1)
     }
@@ -235,17 +235,21 @@ pub fn receptance_top_beside(
         unsettled = unsettled.max(left);
         Some(largest_m(&mut solver, settings, None))
     };
-    let found = climbed(point.frequency_hz, step_hz, height_m)?;
-    Some(TopBeside { unsettled, ..found })
+    let (frequency_hz, amplitude_m) = climbed(point.frequency_hz, step_hz, height_m)?;
+    Some(TopBeside {
+        amplitude_m,
+        frequency_hz,
+        unsettled,
+    })
 }
 
-/// The top that is climbed from a frequency, Hz, by steps of `step_hz`; none where a height is not found, or the top is further away than
-/// some steps.
+/// Frequency, Hz, and height, m, of the top that is climbed from a frequency by steps of `step_hz`; none where a height is not found, or the
+/// top is further away than some steps.
 fn climbed(
     from_hz: f64,
     step_hz: f64,
     mut height_m: impl FnMut(f64) -> Option<f64>,
-) -> Option<TopBeside> {
+) -> Option<(f64, f64)> {
     let mut place = from_hz;
     let middle = height_m(place)?;
     let low = height_m(place - step_hz)?;
@@ -259,12 +263,8 @@ fn climbed(
             place += step_hz;
             heights = [middle, high, height_m(place + step_hz)?];
         } else {
-            let (steps, amplitude_m) = vertex(heights);
-            return Some(TopBeside {
-                amplitude_m,
-                frequency_hz: place + steps * step_hz,
-                unsettled: 0.0,
-            });
+            let (steps, height_m) = vertex(heights);
+            return Some((place + steps * step_hz, height_m));
         }
     }
     None

@@ -195,21 +195,29 @@ const BY_WHOLE: Plan = plan(&[0, 7, 14, 21, 28], 40, Whole);
 const RENEWED: Plan = plan(&[0, 10, 25], 160, FirstOfFundamental);
 const RENEWED_RESONANT: Plan = plan(&[0, 10, 25], 160, Resonant);
 
-/// The attempts with so many harmonics and unknowns, by the whole derivative first or not, with high harmonics coupled or not, in their
-/// order; without a known start the linear response begins.
-pub(super) fn attempts(
-    (takes_whole, couples_high): (bool, bool),
-    (harmonics, unknowns): (usize, usize),
-    has_known: bool,
-) -> impl Iterator<Item = &'static (Start, Attempt)> {
-    let are_few = unknowns <= FEW_UNKNOWNS;
-    let first: &[_] = if are_few && takes_whole && harmonics > 1 {
+/// What decides which attempts a point has.
+#[derive(Clone, Copy)]
+pub(super) struct Circumstances {
+    pub(super) harmonics: usize,
+    pub(super) unknowns: usize,
+    /// Whether the whole derivative may come first, see [`Effort`].
+    pub(super) takes_whole: bool,
+    /// Whether high harmonics can be coupled.
+    pub(super) couples_high: bool,
+    /// Whether there is a known start; without one the linear response begins.
+    pub(super) has_known: bool,
+}
+
+/// The attempts of a point, in their order.
+pub(super) fn attempts(of: Circumstances) -> impl Iterator<Item = &'static (Start, Attempt)> {
+    let are_few = of.unknowns <= FEW_UNKNOWNS;
+    let first: &[_] = if are_few && of.takes_whole && of.harmonics > 1 {
         &WITH_FEW_UNKNOWNS
     } else {
         &[]
     };
     let last: &[_] = if are_few { &WITH_WHOLE_STEPS } else { &[] };
-    let attempts: &[_] = if harmonics <= FEW_HARMONICS {
+    let attempts: &[_] = if of.harmonics <= FEW_HARMONICS {
         &WITH_FEW_HARMONICS
     } else {
         &WITH_MANY_HARMONICS
@@ -217,9 +225,9 @@ pub(super) fn attempts(
     let couples =
         |attempt: &Attempt| matches!(attempt, Accelerated(plan) if plan.takes_in == HighCoupled);
     let known = { first.iter().chain(attempts).chain(last) }
-        .filter(move |(_, attempt)| couples_high || !couples(attempt))
-        .filter(move |(start, _)| has_known || *start != Known);
-    known.skip_while(move |(start, _)| !has_known && *start == Best)
+        .filter(move |(_, attempt)| of.couples_high || !couples(attempt))
+        .filter(move |(start, _)| of.has_known || *start != Known);
+    known.skip_while(move |(start, _)| !of.has_known && *start == Best)
 }
 
 /// For the errors of a solution, from that solution: what is left counts, so every step does.
@@ -227,17 +235,22 @@ pub(super) const BESIDE: Plan = combining_all(plan(&[0], 120, FirstOfFundamental
 
 #[cfg(test)]
 mod tests {
-    use super::{Best, FEW_HARMONICS, Known, Linear, attempts};
+    use super::{Best, Circumstances, FEW_HARMONICS, Known, Linear, attempts};
 
     #[test]
     fn without_a_known_start_the_linear_response_begins() {
         let counts = [1, FEW_HARMONICS, FEW_HARMONICS + 1, 16];
-        let counts = counts.map(|harmonics| [false, true].map(|takes| (takes, harmonics)));
+        let counts = counts.map(|harmonics| [(harmonics, 100), (harmonics, 10_000)]);
         let counts = counts.into_iter().flatten();
-        for (case, unknowns) in counts.flat_map(|case| [(case, 100), (case, 10_000)]) {
-            let (takes, harmonics) = case;
+        for ((harmonics, unknowns), takes) in counts.flat_map(|own| [(own, false), (own, true)]) {
             let starts = |has_known: bool| {
-                let attempts = attempts((takes, takes), (harmonics, unknowns), has_known);
+                let attempts = attempts(Circumstances {
+                    harmonics,
+                    unknowns,
+                    takes_whole: takes,
+                    couples_high: takes,
+                    has_known,
+                });
                 attempts.map(|(start, _)| *start)
             };
             assert!(starts(false).next() == Some(Linear));

@@ -10,7 +10,7 @@ use crate::response::harmonic_balance::{ContactShares, Status};
 use super::attempts_on_receptances::Attempt::{Accelerated, Damped, Newton};
 use super::attempts_on_receptances::Start::{Best, Known, Linear};
 use super::attempts_on_receptances::{
-    BESIDE, DAMPING, Effort, NEAR, NEWTON_STEPS, NewtonPlan, Plan, attempts,
+    BESIDE, Circumstances, DAMPING, Effort, NEAR, NEWTON_STEPS, NewtonPlan, Plan, attempts,
 };
 use super::contact_equation::Preconditioned::{FirstOfFundamental, HighCoupled, Whole};
 use super::contact_equation::{Buffers, ContactEquation, StepPreconditioner};
@@ -102,9 +102,13 @@ impl ContactEquation<'_> {
     pub(super) fn solve(&mut self, starts: &[Vec<f64>], tolerance: f64, effort: Effort) -> Outcome {
         let linear = self.linear_start();
         let known = self.best_of(starts);
-        let size = (self.harmonics.len(), self.contact.motion().len());
-        let fit = (effort.takes_whole, WavePreconditioner::fits(self.contact));
-        let attempts = attempts(fit, size, known.is_some());
+        let attempts = attempts(Circumstances {
+            harmonics: self.harmonics.len(),
+            unknowns: self.contact.motion().len(),
+            takes_whole: effort.takes_whole,
+            couples_high: WavePreconditioner::fits(self.contact),
+            has_known: known.is_some(),
+        });
         let attempts = attempts.take(effort.most_attempts);
         let mut best = (f64::INFINITY, linear.clone());
         let mut total = Outcome::none();

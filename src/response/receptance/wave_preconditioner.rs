@@ -77,7 +77,7 @@ impl Coupled {
     }
 
     /// A value of the harmonic, or its conjugate.
-    fn turned(self, value: Complex64) -> Complex64 {
+    fn conjugated(self, value: Complex64) -> Complex64 {
         if self.k > 0 { value } else { value.conj() }
     }
 }
@@ -102,7 +102,7 @@ impl WavePreconditioner {
             let mut factors = LuWorkspace::new(coupled.len() * rows);
             let answer = |of: Coupled, row: usize, through: usize| {
                 let wave = of.wave(m, wave, sectors);
-                of.turned(harmonics[of.place].receptance.at(wave, row, through))
+                of.conjugated(harmonics[of.place].receptance.at(wave, row, through))
             };
             add_family(
                 factors.matrix_mut(),
@@ -133,11 +133,11 @@ impl WavePreconditioner {
                 (0..self.rows).map(move |row| (of, row * stride + wave))
             });
             unknowns.clear();
-            let read = |(of, at): (Coupled, usize)| of.turned(residual[of.place].at(at));
+            let read = |(of, at): (Coupled, usize)| of.conjugated(residual[of.place].at(at));
             unknowns.extend(places.clone().map(read));
             inverse.times(&unknowns, &mut step);
             for ((of, at), value) in places.zip(&step) {
-                steps[of.place].set(at, of.turned(*value));
+                steps[of.place].set(at, of.conjugated(*value));
             }
         }
     }
@@ -232,7 +232,7 @@ fn mean_derivative(
                         Complex64::new(at(0, 0) + sign * at(1, 1), at(1, 0) - sign * at(0, 1));
                     let turns = ((of.k - by.k) * wave as i64).rem_euclid(sectors as i64) as usize;
                     let back = phase(turns, pair / pairs, sectors).conj();
-                    sum[i * count + j] += of.turned(slope) * back * (0.5 / sectors as f64);
+                    sum[i * count + j] += of.conjugated(slope) * back * (0.5 / sectors as f64);
                 }
             }
         }
