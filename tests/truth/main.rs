@@ -170,7 +170,12 @@ const OTHERS: [(&str, &[f64], usize); 2] = [
     ("wedges", &[432.6, 1348.0], 14),
 ];
 /// All rows with friction of these wheels that the truth has, and how many have all harmonics at the settings that the program chooses.
-const OTHERS_IN_ALL: [(&str, usize, usize); 2] = [("ground", 70, 70), ("wedges", 58, 48)];
+const OTHERS_IN_ALL: [(&str, usize, usize); 4] = [
+    ("cylinders", 45, 45),
+    ("sliding-shrouds", 9, 7),
+    ("ground", 70, 70),
+    ("wedges", 58, 48),
+];
 
 /// Mistuned rows of wheels with another damper than a ring, at the settings that the program chooses, drawn before it solved any of them.
 #[test]
@@ -202,8 +207,9 @@ fn with_all_harmonics(wheel: &str, wanted: impl Fn(&Row) -> bool) -> [usize; 2] 
         let error = found_m / truth.amplitude_m.expect("a peak") - 1.0;
         let stated = row.stated_error.expect("an error");
         println!(
-            "{name}: {error:.2e}, stated {stated:.2e}, {}",
-            row.harmonics
+            "{name}: {error:.2e}, stated {stated:.2e}, {} at {:.2} Hz",
+            row.harmonics,
+            row.peak_frequency_hz.expect("a peak")
         );
         let has_all = row.harmonics == everything;
         let most = if has_all { 0.005 } else { 0.02 };
@@ -398,7 +404,7 @@ fn make_the_cases() {
 /// Loads of a wheel whose rows are solved after all others.
 const LIGHTEST_LOADS: usize = 2;
 
-/// Solves the rows that `truth.csv` does not have; `TRUTH_WHEEL`, `TRUTH_ROWS` and `TRUTH_LEAST_N` leave others out, and
+/// Solves the rows that `truth.csv` does not have; `TRUTH_WHEEL`, `TRUTH_PATTERN`, `TRUTH_ROWS` and `TRUTH_LEAST_N` leave others out, and
 /// `TRUTH_HINT_HZ` is a frequency to start from in the place of the hint, where a higher top is known.
 /// `cargo test --release --test truth make_the_truth -- --ignored --nocapture`
 #[test]
@@ -407,6 +413,8 @@ fn make_the_truth() {
     faer::set_global_parallelism(faer::Par::Seq);
     let wanted = std::env::var("TRUTH_WHEEL").ok();
     let most = std::env::var("TRUTH_ROWS").map_or(usize::MAX, |own| own.parse().expect("a number"));
+    let only: Option<usize> =
+        { std::env::var("TRUTH_PATTERN").ok() }.map(|own| own.parse().expect("a number"));
     let least_n = std::env::var("TRUTH_LEAST_N").map_or(0.0, |own| own.parse().expect("a load"));
     for name in WHEELS {
         if wanted.as_ref().is_some_and(|own| own != name) {
@@ -421,6 +429,7 @@ fn make_the_truth() {
         let mut jobs: Vec<(usize, Condition)> = [false, true]
             .into_iter()
             .flat_map(|friction| (0..PATTERNS).map(move |pattern| (pattern, friction)))
+            .filter(|(pattern, _)| only.is_none_or(|only| only == *pattern))
             .map(|(pattern, friction)| (pattern, wheel.condition(pattern, friction)))
             .filter(|(_, condition)| {
                 !matches!(condition, Condition::Friction(load_n) if *load_n < least_n)

@@ -27,8 +27,8 @@ const CHECKED: usize = 10;
 const CHANGE_BY_MODES: f64 = 2e-4;
 const FEWEST_MODES: usize = 40;
 const MOST_MODES: usize = 320;
-/// With wedges: a peak may be the same with 80 and 160 modes, and another one with 320.
-const FEWEST_MODES_WITH_WEDGES: usize = 160;
+/// With wedges and cylinders: a peak may be the same with 80 and 160 modes, and another one with 320.
+const FEWEST_MODES_UNDER_PLATFORMS: usize = 160;
 /// With other dampers than rings, whose pairs more modes soften.
 const MOST_MODES_OF_OTHERS: usize = 640;
 
@@ -165,8 +165,8 @@ impl<'a> Sectors<'a> {
             MOST_MODES
         };
         let made = all.take_while(|modes| *modes <= most_modes);
-        let fewest_modes = if wheel.name == "wedges" {
-            FEWEST_MODES_WITH_WEDGES
+        let fewest_modes = if ["wedges", "cylinders"].contains(&wheel.name.as_str()) {
+            FEWEST_MODES_UNDER_PLATFORMS
         } else {
             FEWEST_MODES
         };
