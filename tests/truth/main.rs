@@ -189,13 +189,17 @@ fn rows_with_other_dampers_are_as_true_as_they_state() {
 #[test]
 #[ignore = "minutes: all rows with friction"]
 fn all_rows_with_other_dampers_are_as_true_as_they_state() {
-    OTHERS_IN_ALL.map(|own| all_are_as_true(own, 0.005));
+    for own in OTHERS_IN_ALL {
+        all_are_as_true(own, 0.005);
+    }
 }
 
 #[test]
 #[ignore = "minutes: all rows with friction"]
 fn all_rows_with_cylinders_and_sliding_shrouds_are_as_true_as_they_state() {
-    FURTHER_IN_ALL.map(|own| all_are_as_true(own, 0.01));
+    for own in FURTHER_IN_ALL {
+        all_are_as_true(own, 0.01);
+    }
 }
 
 fn all_are_as_true((wheel, count, with_all): (&str, usize, usize), within: f64) {
