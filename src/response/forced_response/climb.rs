@@ -23,6 +23,8 @@ pub(super) struct Known {
     /// Phases of harmonic 1 of the sectors there, rad, by few harmonics.
     pub(super) phases: Vec<f64>,
     pub(super) height_m: f64,
+    /// Whether few harmonics led there; else it was solved to see what is beside another point.
+    pub(super) is_led: bool,
     /// What the set leaves on few harmonics beyond what the sets before it do.
     pub(super) force: ContactForces,
     /// Amplitude of every blade with the set over that of few harmonics in the same solution, over the same by the sets before it.
@@ -37,6 +39,8 @@ pub(super) struct Climb {
     pub(super) starts_hz: Vec<f64>,
     /// Distance of points beside the top, Hz.
     pub(super) beside_hz: f64,
+    /// Distance, Hz, as narrow as a hump can be.
+    pub(super) narrow_hz: f64,
 }
 
 impl Climb {
@@ -76,6 +80,25 @@ impl Climb {
             .concat()
             .into_iter();
         all_hz.find_map(|top_hz| self.unseen_beside(top_hz))
+    }
+
+    /// A frequency, Hz, between the best point of the last set and the one next to it, where few harmonics did not lead to the best: what
+    /// the set leaves changes there by more than they know, and the top may lie between. None where the gaps on both sides are narrow.
+    pub(super) fn between(&self) -> Option<f64> {
+        let best = self.best();
+        if best.is_led {
+            return None;
+        }
+        let gap_hz = |side: f64| {
+            let ways = self.last_set().iter();
+            let ways = ways.map(|known| side * (known.frequency_hz - best.frequency_hz));
+            ways.filter(|&way| way > 0.0).fold(f64::INFINITY, f64::min)
+        };
+        let is_wide = |gap_hz: f64| gap_hz.is_finite() && 0.5 * gap_hz > self.narrow_hz;
+        [-1.0, 1.0]
+            .into_iter()
+            .find(|&side| is_wide(gap_hz(side)))
+            .map(|side| best.frequency_hz + 0.5 * side * gap_hz(side))
     }
 
     /// A frequency beside a top, Hz, on a side on which no point serves, or on which the curve has not fallen. Both sides are looked at
@@ -186,6 +209,7 @@ mod tests {
             frequency_hz,
             phases: Vec::new(),
             height_m,
+            is_led: true,
             force: ContactForces::default(),
             growth: Vec::new(),
         });
@@ -193,6 +217,7 @@ mod tests {
             known: vec![known.collect()],
             starts_hz: Vec::new(),
             beside_hz: 1.0,
+            narrow_hz: 0.3,
         }
     }
 
@@ -215,6 +240,18 @@ mod tests {
         // And so is every top that another one parts from the best.
         let parted = climb(&[&points[..], &[(96.0, 0.97)]].concat());
         assert_eq!(parted.unseen(0.05), Some(95.0));
+    }
+
+    #[test]
+    fn gaps_beside_a_best_that_few_harmonics_did_not_lead_to_are_halved_until_they_are_narrow() {
+        let mut moved = climb(&[(100.0, 0.99), (101.0, 1.0), (102.0, 0.98)]);
+        assert_eq!(moved.between(), None);
+        moved.known[0][1].is_led = false;
+        assert_eq!(moved.between(), Some(100.5));
+        moved.known[0][0].frequency_hz = 100.5;
+        assert_eq!(moved.between(), Some(101.5));
+        moved.known[0][2].frequency_hz = 101.5;
+        assert_eq!(moved.between(), None);
     }
 
     #[test]

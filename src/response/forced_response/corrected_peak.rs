@@ -57,6 +57,17 @@ const LED: Care = Care {
     of_few: 0.1,
     above: 0.5,
 };
+/// Why a set is solved at a frequency.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    /// Few harmonics have the top there.
+    Top,
+    /// To see what is beside a top.
+    Beside,
+    /// Between the highest point and the next, where few harmonics did not lead to it.
+    Between,
+}
+
 /// Points of one top with all harmonics at most.
 const POINTS: usize = 20;
 /// Points beside a top, in its half-bandwidths: where it has fallen by a hundredth. Nearer than this a hump of that size shows.
@@ -260,6 +271,7 @@ impl CorrectedSearch<'_> {
             known: Vec::new(),
             starts_hz: Vec::new(),
             beside_hz: self.distance_beside(top),
+            narrow_hz: self.narrow_hz(),
         };
         let mut highest = Highest {
             frequency_hz: top.frequency_hz,
@@ -270,7 +282,7 @@ impl CorrectedSearch<'_> {
             climb.starts_hz = climb.tops_hz(MADE_UP).unwrap_or(vec![top.frequency_hz]);
             climb.known.push(Vec::new());
             for start_hz in climb.starts_hz.clone() {
-                self.solve(&mut climb, start_hz, self.care.at_top)?;
+                self.solve(&mut climb, start_hz, Place::Top)?;
             }
             if set == 0 {
                 let is_top =
@@ -288,11 +300,15 @@ impl CorrectedSearch<'_> {
         Ok(Some(highest))
     }
 
+    /// Distance, Hz, of points beside a top as narrow as a resonance.
+    fn narrow_hz(&self) -> f64 {
+        BESIDE_LINEAR * self.envelope.linear_half_bandwidth_hz
+    }
+
     fn distance_beside(&self, top: &Top) -> f64 {
-        let narrow = BESIDE_LINEAR * self.envelope.linear_half_bandwidth_hz;
         f64::min(
             NEIGHBOURS * top.half_bandwidth_hz,
-            narrow.max(BESIDE * top.half_bandwidth_hz),
+            self.narrow_hz().max(BESIDE * top.half_bandwidth_hz),
         )
     }
 
@@ -332,9 +348,11 @@ impl CorrectedSearch<'_> {
             if is_lower {
                 return Ok((best.height_m, best.frequency_hz));
             } else if summit.largest > above {
-                self.solve(climb, summit.frequency_hz, self.care.at_top)?;
+                self.solve(climb, summit.frequency_hz, Place::Top)?;
             } else if let Some(side_hz) = climb.unseen(MADE_UP) {
-                self.solve(climb, side_hz, self.care.at_side)?;
+                self.solve(climb, side_hz, Place::Beside)?;
+            } else if let Some(between_hz) = climb.between() {
+                self.solve(climb, between_hz, Place::Between)?;
             } else {
                 return Ok((best.height_m, best.frequency_hz));
             }
@@ -395,13 +413,17 @@ impl CorrectedSearch<'_> {
         Some(start)
     }
 
-    /// Solves the last set of the climb at a frequency, Hz, to a share of the tolerance of the peak.
+    /// Solves the last set of the climb at a frequency, Hz.
     fn solve(
         &mut self,
         climb: &mut Climb,
         frequency_hz: f64,
-        precision: f64,
+        place: Place,
     ) -> Result<(), Status> {
+        let precision = match place {
+            Place::Top | Place::Between => self.care.at_top,
+            Place::Beside => self.care.at_side,
+        };
         let sets = climb.known.len();
         let start = self.start(sets, frequency_hz).ok_or(Status::NotBracketed)?;
         let last_set = &mut self.sets[sets - 1];
@@ -431,6 +453,7 @@ impl CorrectedSearch<'_> {
             frequency_hz,
             phases,
             height_m: point.largest_amplitude_m(),
+            is_led: place == Place::Top,
             force,
             growth,
         };
