@@ -52,7 +52,6 @@ pub(crate) fn told(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
             tangential_stiffness_n_per_m: 8.0e5,
             normal_stiffness_n_per_m: None,
             ring: Ring::Locked,
-            in_place_of: None,
         }),
         amplitude_n: 10.0,
         conditions: loads.to_vec(),

@@ -97,7 +97,6 @@ impl Case {
             harmonics: harmonics.clone(),
             contact: Some(contact),
             ring: study.contact.as_ref().expect("a study with contact").ring,
-            in_place_of: None,
             damping: study.damping,
             amplitude_n: study.amplitude_n,
             projection: study.mistuning.projection,

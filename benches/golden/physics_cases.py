@@ -296,13 +296,6 @@ METHODS = [
         "report results/accuracy --no-curves",
         "plot results/accuracy accuracy",
     ),
-    Case(
-        "simpler-contact-law",
-        bundle(
-            "coulomb_3d", "samples_per_period = 64", "[accuracy]\namplitude_error = 0.05\nsimpler_contact_law = true"
-        ),
-        "run study.toml",
-    ),
 ]
 
 PHYSICS = MODELS + LAWS + METHODS

@@ -6,7 +6,6 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::population::statistics::Percentile;
-use crate::response::friction::ContactLaw;
 
 /// Share of an interval beyond which numerical error is no longer small beside it.
 const LARGE_SHARE: f64 = 0.1;
@@ -149,9 +148,6 @@ pub struct NumericalError {
     pub worst_upper: Option<f64>,
     /// Whether that is accepted.
     pub met: bool,
-    /// The contact law that was taken, and that of the study, where they differ.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub simpler_law: Option<[ContactLaw; 2]>,
 }
 
 /// What there is to say of a numerical error.
@@ -186,13 +182,6 @@ pub enum NumericalFinding {
 }
 
 impl NumericalError {
-    /// Which contact law took the place of which, in words.
-    #[must_use]
-    pub fn law_words(&self) -> Option<String> {
-        let [taken, own] = self.simpler_law?.map(ContactLaw::name);
-        Some(format!("contact law {taken} in the place of {own}"))
-    }
-
     /// What there is to say of the error beside the intervals of the percentile of the amplitude asked for,
     /// one of each scenario.
     #[must_use]
@@ -323,7 +312,6 @@ mod tests {
                 p95_upper: Some(share * width),
                 worst_upper: None,
                 met,
-                simpler_law: None,
             };
             error.findings(&[found])
         };

@@ -248,11 +248,8 @@ pub(super) fn measured(error: NumericalError) -> String {
             share_words(worst)
         )
     });
-    let law = error
-        .law_words()
-        .map_or(String::new(), |words| format!(" They have {words}."));
     format!(
-        "The settings were chosen on a sample of rows for an error of {accepted} (accuracy.amplitude_error): {kept}{worst}.{law}"
+        "The settings were chosen on a sample of rows for an error of {accepted} (accuracy.amplitude_error): {kept}{worst}."
     )
 }
 

@@ -113,11 +113,8 @@ fn numerical_line(error: &NumericalError) -> String {
         format!(", the worst within {:.2} %", 100.0 * worst)
     });
     let accepted = 100.0 * error.accepted;
-    let law = error
-        .law_words()
-        .map_or(String::new(), |words| format!("; {words}"));
     format!(
-        "settings chosen by an accepted numerical error of {accepted} %: {bound}{worst}, measured on a sample{law}"
+        "settings chosen by an accepted numerical error of {accepted} %: {bound}{worst}, measured on a sample"
     )
 }
 

@@ -39,7 +39,6 @@ pub fn choose_harmonics(
     first: &[u32],
     tolerance: Option<f64>,
 ) -> Result<Vec<HarmonicChoice>, PipelineError> {
-    let settings = &by_own_law(settings);
     let mut choices = Vec::new();
     for &engine_order in engine_orders {
         for &contact in conditions {
@@ -71,7 +70,6 @@ pub fn with_separation(
     settings: &RowSettings,
     choices: Vec<HarmonicChoice>,
 ) -> Result<Vec<HarmonicChoice>, PipelineError> {
-    let settings = &by_own_law(settings);
     let admitted = choices.into_iter().map(|choice| {
         if choice.admits_separation() {
             return Ok(choice);
@@ -90,14 +88,6 @@ pub fn with_separation(
         }
     });
     admitted.collect()
-}
-
-/// By the law that is solved with: no set brings in what it leaves out.
-fn by_own_law(settings: &RowSettings) -> RowSettings {
-    RowSettings {
-        in_place_of: None,
-        ..settings.clone()
-    }
 }
 
 /// Sets with the harmonics that separation needs, the smallest first.

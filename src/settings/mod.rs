@@ -15,9 +15,7 @@ mod row_settings;
 mod time_left;
 mod tuned_receptances;
 
-pub use accuracy::{
-    AccuracyChoice, AccuracyEvidence, ChosenSetting, ReceptanceSetting, TriedSetting,
-};
+pub use accuracy::{AccuracyChoice, AccuracyEvidence, ReceptanceSetting, TriedSetting};
 pub use engines::{Engine, EngineSource, ReducedEngineSource, SurrogateOf};
 pub(crate) use engines::{RowWork, rows_of, tuned_references};
 pub(crate) use fixed_interface::FixedInterface;

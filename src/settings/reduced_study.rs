@@ -19,7 +19,7 @@ use super::row_settings::{contact_stiffness, row_settings};
 use super::tuned_receptances::{COMPANION_MODES, Refined, engine_options, no_modes, refined};
 use crate::identity::bytes_of;
 use crate::model::cyclic::pair_tangents;
-use crate::model::reduction::{Basis, BasisChoice, Reduction, WHOLE_SPACE_DOFS};
+use crate::model::reduction::{Basis, BasisChoice, Reduction};
 use crate::model::sector::SectorModel;
 use crate::model::{ReducedModel, read_cached, reduction_digest, write_cached};
 use crate::population::monte_carlo::{
@@ -206,7 +206,7 @@ pub(super) fn stored_digest(study: &Study, model: &SectorModel) -> Result<String
 }
 
 /// Whether rows are solved on the receptances of the tuned wheel: where the study names them, and by default wherever they are ready for
-/// what it asks. Settings of small sectors for `[accuracy]` are chosen on a ladder, in the whole space as a basis.
+/// what it asks.
 pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
     // A law of constant normal load acts along the tangents alone.
     let rubs = |tangents: [bool; 2]| tangents.contains(&true);
@@ -215,8 +215,6 @@ pub(super) fn is_on_receptances(study: &Study, sector: &SectorModel) -> bool {
         let contact = study.contact.as_ref();
         !sector.contact_pairs.is_empty()
             && contact.is_none_or(|contact| contact.law.has_variable_load() || can_rub())
-            && (sector.dofs.len() > WHOLE_SPACE_DOFS || study.accuracy.is_none())
-            && contact.is_none_or(|contact| contact.in_place_of.is_none())
     };
     match study.reduction.basis {
         Basis::TunedReceptances => true,

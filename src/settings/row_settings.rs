@@ -29,10 +29,6 @@ pub(super) fn row_settings(study: &Study) -> RowSettings {
             .contact
             .as_ref()
             .map_or(Ring::Locked, |contact| contact.ring),
-        in_place_of: study
-            .contact
-            .as_ref()
-            .and_then(|contact| contact.in_place_of),
         damping: study.damping,
         amplitude_n: study.amplitude_n,
         projection: study.mistuning.projection,

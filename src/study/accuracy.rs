@@ -12,9 +12,6 @@ use crate::input::Range;
 pub struct AccuracyOptions {
     /// Accepted relative error of the peak amplitude of 95 % of the rows. Default 0.01.
     pub amplitude_error: f64,
-    /// Whether a simpler contact law may take the place of that of the study, where the error allows it. Default false.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub simpler_contact_law: bool,
 }
 
 impl AccuracyOptions {
@@ -23,13 +20,10 @@ impl AccuracyOptions {
     /// Errors that can be asked for.
     pub const ACCEPTED: Range = Range::from_to(1e-3, 0.2);
 
-    /// An accepted error with everything else as it is if nothing is said.
+    /// An accepted error.
     #[must_use]
     pub fn within(amplitude_error: f64) -> Self {
-        Self {
-            amplitude_error,
-            simpler_contact_law: false,
-        }
+        Self { amplitude_error }
     }
 
     /// Whether an error can be asked for.
@@ -45,8 +39,8 @@ impl AccuracyOptions {
         // Writing to a string cannot fail.
         let _ = write!(
             text,
-            "\n[accuracy]\namplitude_error = {:e}\nsimpler_contact_law = {}\n",
-            self.amplitude_error, self.simpler_contact_law
+            "\n[accuracy]\namplitude_error = {:e}\n",
+            self.amplitude_error
         );
         text
     }

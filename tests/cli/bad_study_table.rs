@@ -676,7 +676,7 @@ pub const CASES: &[Case] = &[
         "[stop]\npercentil = 50\n[mistuning]",
         &["unknown key stop.percentil", "did you mean percentile?"],
     ),
-    // [accuracy] and the keys of a basis, of which it has a ladder.
+    // [accuracy] and the keys of a basis.
     (
         "[solver]\nharmonics = [1, 3]",
         "[reduction]\nbasis = \"stick_slide\"\nslide_modes = 4\nstick_modes = 4\n[accuracy]",
@@ -685,6 +685,11 @@ pub const CASES: &[Case] = &[
             "reduction.slide_modes",
             "accuracy.amplitude_error chooses it",
         ],
+    ),
+    (
+        "[solver]\nharmonics = [1, 3]",
+        "[accuracy]\nsimpler_contact_law = true",
+        &["accuracy.simpler_contact_law", "as contact.law"],
     ),
     (
         "[solver]\nharmonics = [1, 3]",

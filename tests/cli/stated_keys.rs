@@ -39,8 +39,7 @@ fn stated() -> Vec<String> {
         ),
     ]) + AFTER_SOLVER;
     let load_cases = replaced(&[("engine_orders = [2]\namplitude_n = 10.0", LOAD_CASES)]);
-    let accuracy = replaced(&[("harmonics = [1, 3]", "")])
-        + "[accuracy]\namplitude_error = 0.02\nsimpler_contact_law = true\n";
+    let accuracy = replaced(&[("harmonics = [1, 3]", "")]) + "[accuracy]\namplitude_error = 0.02\n";
     let creeping = replaced(&[(
         "law = \"macro_slip_1d\"",
         "law = \"macro_slip_1d\"\nring = \"creeping\"",

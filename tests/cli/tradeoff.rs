@@ -140,20 +140,18 @@ fn an_accepted_error_chooses_settings_once_and_records_the_evidence() {
             .expect("a list")
             .is_empty()
     );
-    // The rows are those of the settings written by hand, on the basis that a small sector has: its whole space.
+    // The rows are those of the settings written by hand.
     let setting = &chosen["setting"];
-    let level = setting["harmonics"].as_str().expect("a level");
-    let harmonics = match level.strip_prefix("auto ") {
-        Some(tolerance) => format!("\"auto\"\nharmonic_tolerance = {tolerance}"),
-        None => format!("[{}]", level.replace('-', ", ")),
-    };
-    let text = |key: &str| setting[key].as_str().expect("a number").to_owned();
+    assert_eq!(setting["basis"], "tuned_receptances");
+    let text = |key: &str| setting[key].as_str().expect("a level").to_owned();
+    let level = text("harmonics");
+    let tolerance = level.strip_prefix("auto ").expect("automatic harmonics");
     let by_hand = format!(
-        "{}[reduction]\nbasis = \"stick_slide\"\n[solver]\nharmonics = {harmonics}\nsamples_per_period = {}\nresidual_tolerance = {}\n\
+        "{}[reduction]\nerror = {}\n[solver]\nharmonic_tolerance = {tolerance}\nsamples_per_period = {}\n\
          peak_tolerance = {}\n",
         open(),
+        text("reduction_error"),
         text("samples_per_period"),
-        text("residual_tolerance"),
         text("peak_tolerance"),
     );
     place.write("by-hand.toml", &by_hand);
@@ -302,33 +300,4 @@ fn an_accepted_error_and_a_basis_exclude_each_other() {
         "1",
     ]);
     assert_eq!(response.code, 2, "{}", response.stderr);
-}
-
-/// Without dofs along the normal the load is constant, so that the simpler law is exact.
-#[test]
-fn the_contact_law_of_the_study_is_replaced_where_it_may_be_and_said_to_be() {
-    let law = "law = \"simplified_3d\"\nnormal_stiffness_n_per_m = 1.0e8";
-    let study = accurate().replace("law = \"macro_slip_1d\"", law);
-    let place = Place::with(&study);
-    place.write("allowed.toml", &(study + "simpler_contact_law = true\n"));
-    let said = "contact law macro_slip_2d in the place of simplified_3d";
-    for (file, results, allowed) in [
-        ("study.toml", "own", false),
-        ("allowed.toml", "allowed", true),
-    ] {
-        let run = place.run(&["run", file, "--out", results]);
-        assert_eq!(run.code, 0, "{}", run.stderr);
-        assert_eq!(run.stdout.contains(said), allowed, "{}", run.stdout);
-        let expected = if allowed {
-            "macro_slip_2d"
-        } else {
-            "simplified_3d"
-        };
-        let chosen = &manifest(&place, results)["chosen"]["accuracy"];
-        assert_eq!(chosen["setting"]["contact_law"], expected);
-        assert_eq!(chosen["met"], true);
-        let replay = place.run(&["verify", results, "--scenario", "0", "--pattern", "1"]);
-        assert_eq!(replay.code, 0, "{}", replay.stderr);
-        assert!(replay.stdout.contains("bit-identical"), "{}", replay.stdout);
-    }
 }

@@ -39,7 +39,6 @@ fn problem() -> Problem {
             tangential_stiffness_n_per_m: 8.0e5,
             normal_stiffness_n_per_m: None,
             ring: Ring::Locked,
-            in_place_of: None,
         }),
         amplitude_n: 10.0,
         conditions: vec![

@@ -25,7 +25,6 @@ mod reference;
 mod rotation;
 mod sector_sources;
 mod separation;
-mod simpler_laws;
 mod surrogate;
 mod time_integration;
 mod wheels;

@@ -188,7 +188,6 @@ fn solver(model: &Arc<ReducedModel>, projection: Projection) -> RowSolver {
         harmonics: vec![1],
         contact: Some((ContactLaw::Simplified3d, wheel8_contact())),
         ring: Ring::Locked,
-        in_place_of: None,
         damping: Damping::StructuralLossFactor(0.002),
         amplitude_n: 1.0,
         projection,

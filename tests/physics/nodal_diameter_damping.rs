@@ -57,7 +57,6 @@ fn solver(options: &LumpedOptions, damping: Damping, modes: DampedModes) -> RowS
         harmonics: vec![1],
         contact: (options.ring_mass_kg > 0.0).then_some((law, contact())),
         ring: Ring::Locked,
-        in_place_of: None,
         damping,
         amplitude_n: 1.0,
         projection: Projection::Exact,

@@ -51,7 +51,6 @@ impl Case {
                 harmonics: harmonics.to_vec(),
                 contact: Some((law, wheel8_contact())),
                 ring: Ring::Locked,
-                in_place_of: None,
                 damping,
                 amplitude_n: 1.0,
                 projection,

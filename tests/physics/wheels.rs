@@ -136,7 +136,6 @@ impl Wheel {
             harmonics: harmonics.to_vec(),
             contact: Some((self.law, self.sector)),
             ring: self.ring,
-            in_place_of: None,
             damping: self.damping,
             amplitude_n: self.amplitude_n,
             projection: Projection::Exact,

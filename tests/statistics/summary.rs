@@ -326,7 +326,6 @@ fn a_numerical_error_is_held_against_the_interval_of_the_wanted_percentile() {
                 p95_upper: Some(p95_upper),
                 worst_upper: None,
                 met: true,
-                simpler_law: None,
             }),
             ..context(Harmonics::Auto)
         };

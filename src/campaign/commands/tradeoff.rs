@@ -129,7 +129,7 @@ impl Trade {
         progress.stage(Stage::Reduce);
         let probed = ids.len();
         let mut bench = LadderBench::new(study, sector, ids, progress)?;
-        let ends = LadderEnds::choose(&mut bench, REFERENCE_TOLERANCE, 0.0)?;
+        let ends = LadderEnds::choose(&mut bench, REFERENCE_TOLERANCE)?;
         progress.stage(Stage::Rows);
         let space = bench.space(ends.best.basis);
         let levels = space.one_at_a_time(&ends.base, REFERENCE_TOLERANCE);

@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use serde::Deserialize;
-
 use super::results_folder::{finished_rows, verify_tables};
 use crate::population::monte_carlo::{
     Scenario, TUNED_RECEPTANCES, TunedReference, sampling_tolerance,
@@ -15,7 +13,6 @@ use crate::population::table::{
 };
 use crate::report::{BasisSummary, NumericalError, RowTolerance, StudySummary, SummaryContext};
 use crate::response::forced_response::Harmonics;
-use crate::response::friction::ContactLaw;
 use crate::settings::SHAPES_BETWEEN;
 use crate::study::PipelineError;
 
@@ -212,14 +209,5 @@ fn numerical_error_of(manifest: &Manifest) -> Option<NumericalError> {
         p95_upper: choice["evidence"]["amplitude"]["p95_upper"].as_f64(),
         worst_upper: choice["evidence"]["amplitude_worst_upper"].as_f64(),
         met: choice["met"].as_bool()?,
-        simpler_law: simpler_law_of(manifest),
     })
-}
-
-/// The contact law that was taken, and that of the study, where they differ.
-fn simpler_law_of(manifest: &Manifest) -> Option<[ContactLaw; 2]> {
-    let taken = &manifest.chosen["accuracy"]["setting"]["contact_law"];
-    let laws = [taken, &manifest.study["contact"]["law"]];
-    let [taken, stated] = laws.map(|law| ContactLaw::deserialize(law).ok());
-    Some([taken?, stated?]).filter(|[taken, stated]| taken != stated)
 }

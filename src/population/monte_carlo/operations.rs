@@ -66,8 +66,6 @@ pub struct SystemSize {
     pub samples: usize,
     /// Contact law, where friction is solved for.
     pub law: Option<ContactLaw>,
-    /// Law of the check: `law`, or the one in whose place it is taken.
-    pub check_law: Option<ContactLaw>,
 }
 
 impl SystemSize {
@@ -87,7 +85,6 @@ impl SystemSize {
             pairs: model.contact.weights.len() * model.sectors,
             coefficients: Self::coefficients_of(harmonics),
             law,
-            check_law: settings.in_place_of.filter(|_| !linear).or(law),
             samples: if linear {
                 1
             } else {
@@ -158,14 +155,6 @@ impl SystemSize {
     /// harmonic besides, then evaluations with all harmonics up to 15.
     #[must_use]
     pub fn check(&self) -> f64 {
-        let under = Self {
-            law: self.check_law,
-            ..*self
-        };
-        under.check_by_law()
-    }
-
-    fn check_by_law(&self) -> f64 {
         let samples = CHECK_SAMPLES * self.samples as f64;
         let constant = self.law.is_some_and(|law| !law.has_variable_load());
         let (coefficients, blocks) = if constant {
@@ -229,7 +218,6 @@ mod tests {
             coefficients: SystemSize::coefficients_of(&[0, 1, 3]),
             samples: 128,
             law: Some(ContactLaw::Simplified3d),
-            check_law: Some(ContactLaw::Simplified3d),
         };
         assert_eq!(size(168).unknowns(), 840);
         let work = RowWork {

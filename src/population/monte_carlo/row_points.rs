@@ -25,8 +25,6 @@ pub struct RowSettings {
     pub contact: Option<(ContactLaw, PairParameters)>,
     /// What a free ring does under mean friction.
     pub ring: Ring,
-    /// Law in whose place the simpler one of `contact` is taken, with the same springs; what that changes is in the errors.
-    pub in_place_of: Option<ContactLaw>,
     /// Damping of the structure.
     pub damping: Damping,
     /// Factor on the model's force vector.
@@ -45,20 +43,8 @@ impl RowSettings {
         model: &ReducedModel,
     ) -> Result<PointSettings, TransformError> {
         let geometry = model.contact.clone();
-        PointSettings::new(&self.solver, harmonics, self.contact, geometry)?
-            .with_ring(self.ring)
-            .in_place_of(self.in_place_of, &self.solver)
-    }
-
-    /// In the column `shortcut`: what the law leaves out of the one in whose place it is taken.
-    pub(super) fn simpler_law(&self) -> Option<&'static str> {
-        let (law, _) = self.contact?;
-        let varies = self.in_place_of?.has_variable_load();
-        if varies && !law.has_variable_load() {
-            Some("constant_normal_load")
-        } else {
-            Some("uncoupled_tangents")
-        }
+        let points = PointSettings::new(&self.solver, harmonics, self.contact, geometry)?;
+        Ok(points.with_ring(self.ring))
     }
 
     pub(super) fn tolerance(&self) -> ErrorTolerance {

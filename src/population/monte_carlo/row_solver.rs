@@ -441,30 +441,21 @@ impl RowSolver {
             error_within_tolerance: good
                 .map(|_| errors.is_some_and(|errors| self.settings().tolerance().holds(&errors))),
             basis: self.basis_name(),
-            shortcut: shortcut(
-                scenario.contact,
-                good.map(|(_, point)| point),
-                self.settings().simpler_law(),
-            ),
+            shortcut: shortcut(scenario.contact, good.map(|(_, point)| point)).to_owned(),
         }
     }
 }
 
 /// `linear` for a linear limit; `stuck` where every pair sticks at the peak, so that the linear
-/// solution is the exact one; else `none`; where a simpler law is taken this first.
-fn shortcut(contact: ContactCondition, point: Option<&Point>, simpler_law: Option<&str>) -> String {
-    let solution = match (contact, point) {
+/// solution is the exact one; else `none`.
+fn shortcut(contact: ContactCondition, point: Option<&Point>) -> &'static str {
+    match (contact, point) {
         (ContactCondition::Full { .. }, Some(point))
             if point.shares.slipping == 0.0 && point.shares.separated == 0.0 =>
         {
             "stuck"
         }
         (ContactCondition::Full { .. }, _) => "none",
-        _ => return "linear".to_owned(),
-    };
-    match simpler_law {
-        Some(law) if solution == "none" => law.to_owned(),
-        Some(law) => format!("{law}, {solution}"),
-        None => solution.to_owned(),
+        _ => "linear",
     }
 }

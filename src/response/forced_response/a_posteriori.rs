@@ -11,14 +11,12 @@ use super::options::ContactCondition;
 use super::point::Point;
 use super::point_settings::PointSettings;
 use super::point_solver::PointSolver;
-use crate::response::harmonic_balance::{
-    ContactShares, Effects, HarmonicBlock, NewtonWorkspace, enlarge,
-};
+use crate::response::harmonic_balance::{ContactShares, Effects, HarmonicBlock, enlarge};
 
 /// Relative changes of the largest amplitude; positive where it would grow.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorEstimate {
-    /// By finer sampling, and by the law in whose place another one was taken. On a basis it is one Newton correction with 4
+    /// By finer sampling. On a basis it is one Newton correction with 4
     /// times the samples per period, at least 256. On tuned receptances the point is solved on from its solution, with the
     /// samples of the enlarged set.
     pub sampling: f64,
@@ -79,27 +77,14 @@ fn assess(
     wanted: Effects,
 ) -> Option<Screening> {
     let mut solver = PointSolver::new(excited, condition, settings);
-    let ErrorSettings {
-        set,
-        amplitude,
-        law,
-    } = settings.errors();
-    let linear = law.is_none() && point.shares == ContactShares::default();
+    let ErrorSettings { set, amplitude } = settings.errors();
+    let linear = point.shares == ContactShares::default();
     let nonlinear = solver.nonlinear_at(point).filter(|_| !linear);
     let Some((system, workspace)) = nonlinear else {
         return Some(Screening {
             errors: ErrorEstimate::default(),
             effects: Vec::new(),
         });
-    };
-    let mut other = law.map(|law| {
-        let system = system.under(law);
-        let workspace = NewtonWorkspace::new(&system);
-        (system, workspace)
-    });
-    let (system, workspace) = match &mut other {
-        Some((system, workspace)) => (&*system, workspace),
-        None => (system, workspace),
     };
     let omega = TAU * point.frequency_hz;
     let enlarged = enlarge(

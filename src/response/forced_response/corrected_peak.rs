@@ -414,12 +414,7 @@ impl CorrectedSearch<'_> {
     }
 
     /// Solves the last set of the climb at a frequency, Hz.
-    fn solve(
-        &mut self,
-        climb: &mut Climb,
-        frequency_hz: f64,
-        place: Place,
-    ) -> Result<(), Status> {
+    fn solve(&mut self, climb: &mut Climb, frequency_hz: f64, place: Place) -> Result<(), Status> {
         let precision = match place {
             Place::Top | Place::Between => self.care.at_top,
             Place::Beside => self.care.at_side,

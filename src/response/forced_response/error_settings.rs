@@ -15,8 +15,6 @@ const FINEST: usize = 256;
 pub struct ErrorSettings {
     pub(super) set: EnlargedSet,
     pub(super) amplitude: ObservedAmplitude,
-    /// Law of the equations beside which solutions are held, where it is not the one that they were solved with.
-    pub(super) law: Option<ContactLaw>,
 }
 
 impl ErrorSettings {
@@ -36,17 +34,7 @@ impl ErrorSettings {
         Ok(Self {
             amplitude: ObservedAmplitude::new(options.amplitude, set.harmonics(), instants)?,
             set,
-            law: None,
         })
-    }
-
-    /// These settings for solutions under another law in the place of `law`: their errors are those in the
-    /// equations of `law`.
-    pub(super) fn in_place_of(self, law: ContactLaw) -> Self {
-        Self {
-            law: Some(law),
-            ..self
-        }
     }
 
     /// Harmonics of the enlarged set, ascending.

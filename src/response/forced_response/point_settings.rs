@@ -128,26 +128,6 @@ impl PointSettings {
         }
     }
 
-    /// These settings for a law of `contact` that is taken in the place of `law`, which has the same springs: what that changes
-    /// is in the errors. They stay as they are where there is no `law`.
-    ///
-    /// # Errors
-    /// If the harmonics that the other law excites cannot be told apart with the samples of the errors.
-    pub fn in_place_of(
-        self,
-        law: Option<ContactLaw>,
-        options: &SolverOptions,
-    ) -> Result<Self, TransformError> {
-        let Some(law) = law else {
-            return Ok(self);
-        };
-        let errors = ErrorSettings::new(options, &self.harmonics, Some(law))?.in_place_of(law);
-        Ok(Self {
-            errors: Arc::new(errors),
-            ..self
-        })
-    }
-
     /// These settings with fewer samples in the search with fewer harmonics: those that its harmonics need, but not fewer than
     /// `least`.
     ///

@@ -25,13 +25,9 @@ pub fn receptance_errors(
 ) -> Option<ErrorEstimate> {
     let tolerance = ERROR_SHARE * peak_tolerance;
     let tolerance = tolerance.clamp(ERROR_TOLERANCES.0, ERROR_TOLERANCES.1);
-    let ErrorSettings {
-        set,
-        amplitude,
-        law,
-    } = settings.errors();
+    let ErrorSettings { set, amplitude } = settings.errors();
     let nonlinear = row.condition.normal_load_n().is_some();
-    let sticks = law.is_none() && point.shares == ContactShares::default();
+    let sticks = point.shares == ContactShares::default();
     if !nonlinear || sticks {
         return Some(ErrorEstimate::default());
     }
@@ -45,13 +41,13 @@ pub fn receptance_errors(
         Some((motions, observed, unsettled))
     };
     let harmonics = settings.harmonics();
-    let solver = row.solver(settings, &settings.transform, None);
+    let solver = row.solver(settings, &settings.transform);
     let (_, before, _) = settled(solver, &point.solution, harmonics)?;
-    let solver = row.solver(settings, alone, *law);
+    let solver = row.solver(settings, alone);
     let (motions, alone, own_unsettled) = settled(solver, &point.solution, harmonics)?;
     let solver = row
-        .solver(settings, enlarged, *law)
-        .with_coarse_contact(row.contact(settings, tangents, *law));
+        .solver(settings, enlarged)
+        .with_coarse_contact(row.contact(settings, tangents));
     let (_, after, unsettled) = settled(solver, &motions, harmonics)?;
     let largest = |amplitudes: Vec<f64>| amplitudes.into_iter().fold(0.0, f64::max);
     let height = largest(amplitude.of_observed(&before));

@@ -11,7 +11,6 @@ use super::point_settings::PointSettings;
 use super::point_source::PointSource;
 use super::softer_contact::from_softer_contact;
 use crate::linalg::Complex64;
-use crate::response::friction::ContactLaw;
 use crate::response::harmonic_balance::{HarmonicTransform, PairContact, Status, WheelContact};
 use crate::response::receptance::{
     EngineWheel, Limit, ReceptanceEngine, Resonance, WaveForce, WheelSolution, WheelSolver,
@@ -74,9 +73,8 @@ impl<'a> EngineRow<'a> {
         &self,
         settings: &PointSettings,
         transform: &Arc<HarmonicTransform>,
-        in_place_of: Option<ContactLaw>,
     ) -> WheelSolver<'a> {
-        let contact = self.contact(settings, transform, in_place_of);
+        let contact = self.contact(settings, transform);
         self.solver_with(contact, settings, transform)
     }
 
@@ -115,7 +113,6 @@ impl<'a> EngineRow<'a> {
         &self,
         settings: &PointSettings,
         transform: &Arc<HarmonicTransform>,
-        in_place_of: Option<ContactLaw>,
     ) -> Option<WheelContact> {
         let limit = self.condition.limit();
         let springs = self.engine.springs(limit);
@@ -126,7 +123,6 @@ impl<'a> EngineRow<'a> {
         let contact = contact.filter(|_| load_n.is_some() || varied);
         contact.map(|(law, sector)| {
             let own_springs = settings.factors.springs(springs, &settings.geometry.rows);
-            let law = in_place_of.unwrap_or(law);
             let interface = settings.interface(law, sector, load_n.unwrap_or(0.0));
             let sectors = self.engine.sectors();
             let contact = WheelContact::new(interface, sectors, springs, Arc::clone(transform));
@@ -155,7 +151,7 @@ pub(super) struct ReceptancePoints<'a> {
 
 impl<'a> ReceptancePoints<'a> {
     pub(super) fn new(row: &EngineRow<'a>, settings: &'a PointSettings) -> Self {
-        let mut solver = row.solver(settings, &settings.transform, None);
+        let mut solver = row.solver(settings, &settings.transform);
         solver.effort().takes_whole = settings.search().is_none();
         if settings.guide().is_some() {
             solver.effort().most_steps = STEPS_OF_ALL;

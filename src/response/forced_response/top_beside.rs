@@ -24,7 +24,7 @@ pub fn receptance_top_m(
     step_hz: f64,
     tolerance: f64,
 ) -> Option<f64> {
-    let mut all = row.solver(settings, &settings.transform, None);
+    let mut all = row.solver(settings, &settings.transform);
     let follows = !is_closed(point.shares);
     let few = if follows {
         settings.opening()
@@ -96,7 +96,7 @@ impl<'a> LedTop<'a> {
         point: &Point,
     ) -> Option<Self> {
         let mut led = Self {
-            few: row.solver(of_few, &of_few.transform, None),
+            few: row.solver(of_few, &of_few.transform),
             of_few,
             of_all,
             follows: of_few.harmonics().contains(&0),
@@ -225,7 +225,7 @@ pub fn receptance_top_beside(
     step_hz: f64,
     tolerance: f64,
 ) -> Option<TopBeside> {
-    let mut solver = row.solver(settings, &settings.transform, None);
+    let mut solver = row.solver(settings, &settings.transform);
     let mut motions = embedded(&point.solution, from, settings.harmonics());
     solver.set_ring_drift(point.ring_drift_m);
     let mut unsettled = 0.0_f64;

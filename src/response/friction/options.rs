@@ -31,9 +31,6 @@ pub struct ContactOptions {
     /// What a free ring does under mean friction. Default `locked`.
     #[serde(default)]
     pub ring: Ring,
-    /// Law of the study in whose place `law` is taken to keep an accepted error; never in a file.
-    #[serde(skip)]
-    pub in_place_of: Option<ContactLaw>,
 }
 
 impl ContactOptions {

@@ -6,7 +6,6 @@ use serde_json::{Value, json};
 use super::ReceptanceSetting;
 use crate::population::monte_carlo::LoadCaseName;
 use crate::population::statistics::{ErrorBound, LoadCaseErrors};
-use crate::settings::ladder::{Knob, LadderSetting};
 use crate::study::Study;
 
 /// The settings chosen for an accepted error.
@@ -15,7 +14,7 @@ pub struct AccuracyChoice {
     /// Error accepted.
     pub accepted: f64,
     /// The settings.
-    pub setting: ChosenSetting,
+    pub setting: ReceptanceSetting,
     /// Fixed-interface modes.
     pub craig_bampton_modes: usize,
     /// Whether the upper bound of the 95th percentile of the amplitude error is accepted, and on tuned receptances most rows of the
@@ -23,15 +22,6 @@ pub struct AccuracyChoice {
     pub met: bool,
     /// Errors on the sample; none where nothing was to be measured.
     pub evidence: Option<AccuracyEvidence>,
-}
-
-/// Settings that were chosen.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum ChosenSetting {
-    /// A combination of the ladder, for rows on a basis.
-    Ladder(LadderSetting),
-    /// For rows on tuned receptances.
-    Receptances(ReceptanceSetting),
 }
 
 /// What a choice was made by.
@@ -82,29 +72,12 @@ impl AccuracyChoice {
     /// The study at the settings chosen.
     #[must_use]
     pub fn applied_to(&self, study: &Study) -> Study {
-        match &self.setting {
-            ChosenSetting::Ladder(setting) => {
-                let mut applied = setting.applied_to(study);
-                applied.reduction.craig_bampton_modes = Some(self.craig_bampton_modes);
-                if study.states("solver.rows_beyond_tolerance") {
-                    applied.solver.rows_beyond_tolerance = study.solver.rows_beyond_tolerance;
-                }
-                applied
-            }
-            ChosenSetting::Receptances(setting) => setting.applied_to(study),
-        }
+        self.setting.applied_to(study)
     }
 
     /// The choice for the manifest.
     #[must_use]
     pub fn facts(&self) -> Value {
-        let setting: Value = match &self.setting {
-            ChosenSetting::Ladder(setting) => Knob::ALL
-                .into_iter()
-                .map(|knob| (knob.name(), json!(setting.level(knob))))
-                .collect(),
-            ChosenSetting::Receptances(setting) => setting.facts(),
-        };
         let mut evidence = json!(self.evidence);
         if let Some(evidence) = evidence.as_object_mut() {
             // A study without load cases has none in its manifest.
@@ -114,7 +87,7 @@ impl AccuracyChoice {
             "accepted_error": self.accepted,
             "met": self.met,
             "craig_bampton_modes": self.craig_bampton_modes,
-            "setting": setting,
+            "setting": self.setting.facts(),
             "evidence": evidence,
         })
     }

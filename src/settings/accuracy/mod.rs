@@ -2,9 +2,8 @@
 
 mod accuracy_choice;
 mod chosen_settings;
-mod ladder_trials;
 mod receptance_accuracy;
 mod receptance_setting;
 
-pub use chosen_settings::{AccuracyChoice, AccuracyEvidence, ChosenSetting, TriedSetting};
+pub use chosen_settings::{AccuracyChoice, AccuracyEvidence, TriedSetting};
 pub use receptance_setting::ReceptanceSetting;

@@ -11,7 +11,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::receptance_setting::enlarged_harmonics;
-use super::{AccuracyChoice, AccuracyEvidence, ChosenSetting, ReceptanceSetting, TriedSetting};
+use super::{AccuracyChoice, AccuracyEvidence, ReceptanceSetting, TriedSetting};
 use crate::model::sector::SectorModel;
 use crate::population::monte_carlo::{LoadCaseSolvers, Scenario};
 use crate::population::statistics::ErrorBound;
@@ -50,7 +50,7 @@ pub(super) fn on_receptances(
             craig_bampton_modes: stored.fixed_interface.modes,
             met,
             evidence,
-            setting: ChosenSetting::Receptances(setting.clone()),
+            setting: setting.clone(),
         };
         if !study.has_friction() {
             // Linear limits know none of these settings but modes and shapes.

@@ -16,6 +16,5 @@ pub(crate) use reference::{LadderEnds, LadderReference};
 pub(crate) use sample::{LadderSample, sample_of_patterns};
 pub(super) use sample::{Remainders, most_scenarios, sampled_scenarios};
 pub(crate) use search::{LadderSearch, Proposal};
-pub(super) use setting::LadderSpace;
 pub(crate) use setting::projection_name;
 pub use setting::{HarmonicLevel, Knob, LadderSetting};

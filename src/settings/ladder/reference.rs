@@ -85,16 +85,11 @@ pub struct LadderEnds {
 }
 
 impl LadderEnds {
-    /// Chooses them for the model of `bench`; `tolerance` is that of the best harmonics, and the base is
-    /// no better than `accepted`.
+    /// Chooses them for the model of `bench`; `tolerance` is that of the best harmonics.
     ///
     /// # Errors
     /// The model cannot be reduced.
-    pub fn choose(
-        bench: &mut LadderBench<'_>,
-        tolerance: f64,
-        accepted: f64,
-    ) -> Result<Self, PipelineError> {
+    pub fn choose(bench: &mut LadderBench<'_>, tolerance: f64) -> Result<Self, PipelineError> {
         let with_attachments = bench.reduction().contact_rows() + BEST_STICK;
         let best_basis = if bench.reduction().is_whole_space() {
             BasisChoice::CraigBampton
@@ -103,7 +98,7 @@ impl LadderEnds {
         } else {
             basis_within(bench, Basis::StickSlide, BEST_ERROR)?
         };
-        let base_basis = basis_within(bench, Basis::StickSlide, BASE_ERROR.max(accepted))?;
+        let base_basis = basis_within(bench, Basis::StickSlide, BASE_ERROR)?;
         let setting = |basis, harmonics, (samples, residual, peak)| LadderSetting {
             basis,
             harmonics,

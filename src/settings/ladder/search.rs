@@ -4,7 +4,7 @@
 //! proposes combinations; their errors are measured as they are.
 
 use super::bench::{LadderBench, LadderValues};
-use super::measure::{Compared, Measured, error_bound, relative_errors};
+use super::measure::{Compared, Measured, error_bound};
 use super::reference::LadderReference;
 use super::{Knob, LadderSetting};
 use crate::population::monte_carlo::{RowWork, SystemSize};
@@ -111,41 +111,15 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
         Ok(())
     }
 
-    /// Measures a setting on the whole sample, pattern by pattern, as long as every amplitude error is
-    /// within `target`: no bound is below the largest error seen. None if it was given up.
-    ///
-    /// # Errors
-    /// The model cannot be reduced.
-    pub fn measure_within(
-        &mut self,
-        setting: &LadderSetting,
-        target: f64,
-    ) -> Result<(Measured, bool), PipelineError> {
-        let ids = self.bench.sample().patterns.clone();
-        let engine = self.bench.engine(setting)?;
-        let mut rows = Vec::new();
-        let mut passed = true;
-        for chunk in chunks(&ids) {
-            rows.extend(engine.rows(self.patterns, chunk));
-            let measured = Measured::new(setting.clone(), None, &engine, rows.clone());
-            let reference = &self.reference.values[..rows.len()];
-            let errors = relative_errors(&measured.values(), reference, Compared::Amplitude);
-            passed = errors
-                .iter()
-                .all(|error| error.is_some_and(|error| error.abs() <= target));
-            if !passed {
-                break;
-            }
-        }
-        Ok((Measured::new(setting.clone(), None, &engine, rows), passed))
-    }
-
     /// Measures a setting on the whole sample.
     ///
     /// # Errors
     /// The model cannot be reduced.
     pub fn measure(&mut self, setting: &LadderSetting) -> Result<Measured, PipelineError> {
-        Ok(self.measure_within(setting, f64::INFINITY)?.0)
+        let ids = self.bench.sample().patterns.clone();
+        let engine = self.bench.engine(setting)?;
+        let rows = engine.rows(self.patterns, &ids);
+        Ok(Measured::new(setting.clone(), None, &engine, rows))
     }
 
     /// Amplitude errors of a setting that was measured on the whole sample.
@@ -225,7 +199,6 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
             coefficients: size_of(Knob::Harmonics).coefficients,
             samples: size_of(Knob::SamplesPerPeriod).samples,
             law: size_of(Knob::ContactLaw).law,
-            check_law: size_of(Knob::ContactLaw).check_law,
             ..base.sizes[scenario]
         };
         let product = |count: fn(&RowWork) -> f64| {
@@ -247,16 +220,6 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
     }
 }
 
-/// One pattern, then two, then the others: most settings that fail do so early.
-fn chunks(ids: &[u32]) -> Vec<&[u32]> {
-    let (first, rest) = ids.split_at(ids.len().min(1));
-    let (next, rest) = rest.split_at(rest.len().min(2));
-    [first, next, rest]
-        .into_iter()
-        .filter(|chunk| !chunk.is_empty())
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::reference::{LadderEnds, ReferenceKind};
@@ -271,7 +234,7 @@ mod tests {
         let sector = load_sector_model(&study).expect("a sector");
         let patterns = pattern_source(&study, &sector).expect("patterns");
         let mut bench = LadderBench::new(&study, &sector, vec![0], &()).expect("a bench");
-        let ends = LadderEnds::choose(&mut bench, 0.002, 0.01).expect("two ends");
+        let ends = LadderEnds::choose(&mut bench, 0.002).expect("two ends");
         let engine = bench.engine(&ends.base).expect("an engine");
         let rows = engine.rows(&patterns, &[0]);
         let base = Measured::new(ends.base.clone(), None, &engine, rows);

@@ -139,30 +139,6 @@ impl LadderSetting {
         }
     }
 
-    /// This setting but for what `study` says itself of harmonics, samples and tolerances.
-    pub(in crate::settings) fn but_for_those_of(mut self, study: &Study) -> Self {
-        let solver = &study.solver;
-        if study.states("solver.harmonics") {
-            self.harmonics = match &solver.harmonics {
-                Harmonics::Auto => HarmonicLevel::Automatic(solver.harmonic_tolerance),
-                Harmonics::Set(set) => HarmonicLevel::Set(set.clone()),
-            };
-        }
-        if study.states("solver.samples_per_period") {
-            self.samples_per_period = solver.samples_per_period;
-        } else if let HarmonicLevel::Set(set) = &self.harmonics {
-            let highest = set.last().map_or(1, |&highest| highest as usize);
-            self.samples_per_period = self.samples_per_period.max(SAMPLES_PER_HARMONIC * highest);
-        }
-        if study.states("solver.residual_tolerance") {
-            self.residual_tolerance = solver.residual_tolerance;
-        }
-        if study.states("solver.peak_tolerance") {
-            self.peak_tolerance = solver.peak_tolerance;
-        }
-        self
-    }
-
     /// `study` solved at this setting. What the setting does not say stays.
     #[must_use]
     pub fn applied_to(&self, study: &Study) -> Study {
@@ -196,9 +172,6 @@ impl LadderSetting {
         solver.residual_is_stated = true;
         solver.peak_tolerance = self.peak_tolerance;
         if let Some(contact) = &mut applied.contact {
-            // Errors beside a law with other springs would be those of another equation.
-            let same_springs = contact.law.tangents() == self.law.tangents();
-            contact.in_place_of = (contact.law != self.law && same_springs).then_some(contact.law);
             contact.law = self.law;
         }
         applied.mistuning.projection = self.projection;
@@ -263,8 +236,6 @@ const SETS: [&[u32]; 8] = [
 ];
 /// Tolerances of automatic sets.
 const AUTOMATIC: [f64; 3] = [0.02, 0.01, 0.005];
-/// Samples of a period over the highest harmonic at least.
-const SAMPLES_PER_HARMONIC: usize = 4;
 const SAMPLES: [usize; 4] = [32, 64, 128, 256];
 const RESIDUALS: [f64; 3] = [1e-4, 1e-6, 1e-8];
 const PEAKS: [f64; 4] = [1e-2, 3e-3, 1e-3, 3e-4];

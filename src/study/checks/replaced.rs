@@ -3,7 +3,7 @@
 use crate::input::{Finding, Problem, SourceMap};
 
 /// Keys that are refused, with one value or with any, and why.
-const REPLACED: [(&str, Option<&str>, &str); 3] = [
+const REPLACED: [(&str, Option<&str>, &str); 4] = [
     (
         "reduction.basis",
         Some("\"stick_partial_slide\""),
@@ -20,6 +20,12 @@ const REPLACED: [(&str, Option<&str>, &str); 3] = [
         None,
         "harmonics of the tuned wheel are replaced by basis = \"tuned_receptances\", on which every harmonic is of the \
          mistuned one; accepted: no such key",
+    ),
+    (
+        "accuracy.simpler_contact_law",
+        None,
+        "rows are solved under contact.law, whatever error is accepted; accepted: no such key, and a simpler law as \
+         contact.law",
     ),
 ];
 

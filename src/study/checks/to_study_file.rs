@@ -13,7 +13,7 @@ use crate::study::keys::contact::ContactTable;
 use crate::study::keys::solver::{AccuracyTable, OutputTable, SolverTable};
 use crate::study::keys::study_file::{HeadTable, SCHEMA, StudyFile};
 use crate::study::keys::{BundleTable, ModelKind, ModelTable, OptionsTable, ReductionTable, keys};
-use crate::study::{AccuracyOptions, ModelSource, OutputOptions, Study};
+use crate::study::{ModelSource, OutputOptions, Study};
 
 /// The study with every default filled in, key by key as in a study file.
 pub(super) fn resolved(study: &Study) -> Value {
@@ -63,7 +63,7 @@ fn study_file(study: &Study) -> StudyFile {
         mistuning: Some(mistuning_table(&study.mistuning)),
         sweep: Some(sweep_table(study)),
         solver: Some(solver),
-        accuracy: study.accuracy.as_ref().map(accuracy_table),
+        accuracy: study.accuracy.as_ref().map(AccuracyTable::of),
         stop: study.stop.as_ref().map(stop_table),
         output: Some(output_table(&study.output)),
     }
@@ -126,13 +126,7 @@ fn contact_table(study: &Study) -> Option<ContactTable> {
     })
 }
 
-/// The digests of older studies have neither of the two keys that are left out here at their defaults.
-fn accuracy_table(accuracy: &AccuracyOptions) -> AccuracyTable {
-    let mut table = AccuracyTable::of(accuracy);
-    table.simpler_contact_law = table.simpler_contact_law.filter(|is_accepted| *is_accepted);
-    table
-}
-
+/// The digests of older studies do not have the key that is left out here at its default.
 fn output_table(output: &OutputOptions) -> OutputTable {
     let mut table = OutputTable::of(output);
     table.stability = table.stability.filter(|rows| *rows > 0);

@@ -363,7 +363,6 @@ fn contact_options(check: &mut Check, table: &ContactTable) -> ContactOptions {
         ),
         normal_stiffness_n_per_m: table.normal_stiffness_n_per_m,
         ring: table.ring.unwrap_or_default(),
-        in_place_of: None,
     }
 }
 

@@ -5,8 +5,7 @@ use crate::model::reduction::Basis;
 use crate::study::keys::solver::AccuracyTable;
 use crate::study::{AccuracyOptions, Study};
 
-/// Keys of a basis, which conflict with an accepted error: the ladder is one of bases, and none of its
-/// settings is left where the study says one.
+/// Keys of a basis, which conflict with an accepted error: its settings are those of tuned receptances.
 const KEYS_OF_A_BASIS: [&str; 2] = ["reduction.stick_modes", "reduction.slide_modes"];
 
 /// The accepted error.

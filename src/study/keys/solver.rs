@@ -53,8 +53,6 @@ options_table! {
         amplitude_error: f64 = key(Number(AccuracyOptions::ACCEPTED), "0.01",
             "relative error of the peak amplitude that 95 % of the rows are to keep")
             .and(", relative error of the peak amplitude"),
-        simpler_contact_law: bool = key(Flag, "false",
-            "whether `macro_slip_2d` or `simplified_3d` may take the place of the law of the study, where the error allows it"),
     }
 }
 

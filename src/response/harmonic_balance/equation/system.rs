@@ -18,7 +18,7 @@ use super::equivalent_contact::equivalent_springs;
 use super::harmonic_blocks::HarmonicBlocks;
 use super::linear_part::LinearPart;
 use crate::linalg::Complex64;
-use crate::response::friction::{ContactLaw, PairParameters};
+use crate::response::friction::PairParameters;
 use crate::response::harmonic_balance::HarmonicTransform;
 use crate::response::harmonic_balance::pairs::{
     ContactInterface, ContactShares, InterfaceForces, InterfaceWorkspace, PairContact,
@@ -74,14 +74,6 @@ impl HarmonicSystem {
             linear,
             contact: InterfaceForces::new(interface, transform, rows),
         }
-    }
-
-    /// Copy of this system under another law with the same springs.
-    #[must_use]
-    pub fn under(&self, law: ContactLaw) -> Self {
-        let mut system = self.clone();
-        system.contact.interface.law = law;
-        system
     }
 
     /// Copy of this system with `pairs`, which have another normal load.
@@ -291,6 +283,7 @@ pub(in crate::response::harmonic_balance) mod tests {
     use super::*;
     use crate::linalg::Matrix;
     use crate::model::cyclic::ContactGeometry;
+    use crate::response::friction::ContactLaw;
     use crate::response::harmonic_balance::Damping;
     use crate::response::harmonic_balance::equation::Structure;
     use crate::response::mistuning::{ModalRows, StructuralModes};
