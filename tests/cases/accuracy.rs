@@ -106,10 +106,20 @@ impl Chosen {
         errors(&self.own, &self.reference, ids)
     }
 
-    /// What is measured on the ladder is what a run at these settings delivers, bit for bit.
+    /// What a choice measures is what the rows delivered at its settings are off by, beside another reference: to a quarter of the
+    /// tolerance of the peak.
     fn is_made_of_delivered_rows(&self) {
         let again = ErrorBound::of(&self.errors(&self.evidence.patterns)).unwrap();
-        assert_eq!(again, self.evidence.amplitude);
+        let claimed = &self.evidence.amplitude;
+        println!("sample: claimed {claimed:?}, found {again:?}");
+        assert_eq!((again.rows, again.failed), (claimed.rows, claimed.failed));
+        let known_to = 0.25 * self.own.study.solver.peak_tolerance;
+        for (found, claimed) in [(again.median, claimed.median), (again.worst, claimed.worst)] {
+            assert!(
+                (found - claimed).abs() <= known_to,
+                "{found:e}, {claimed:e}"
+            );
+        }
     }
 
     /// Whether of wheels that the choice did not see at least 95 % are within the claimed 95th
