@@ -23,7 +23,6 @@ pub const ROOMS: &[(&[&str], &[&str])] = &[
 const NAME_THE_STUDY: &[&str] = &[
     "settings/accuracy/accuracy_choice.rs",
     "settings/accuracy/chosen_settings.rs",
-    "settings/accuracy/ladder_trials.rs",
     "settings/accuracy/receptance_accuracy.rs",
     "settings/accuracy/receptance_setting.rs",
     "settings/basis_choice.rs",

@@ -127,7 +127,7 @@ impl Trade {
         progress: &dyn Progress,
     ) -> Result<Self, PipelineError> {
         progress.stage(Stage::Reduce);
-        let probed = ids.len();
+        let patterns_of_sample = ids.len();
         let mut bench = LadderBench::new(study, sector, ids, progress)?;
         let ends = LadderEnds::choose(&mut bench, REFERENCE_TOLERANCE)?;
         progress.stage(Stage::Rows);
@@ -140,10 +140,10 @@ impl Trade {
             threads,
         };
         plan.announce(&mut bench, patterns, progress)?;
-        let rows = (bench.sample().scenarios.len() * probed) as u64;
+        let rows = (bench.sample().scenarios.len() * patterns_of_sample) as u64;
         progress.begin_rows((levels.len() + PROPOSED.len()) as u64 * rows, 0);
         let reference = LadderReference::solve(&mut bench, &ends, patterns)?;
-        let mut search = LadderSearch::new(&mut bench, patterns, &reference, probed);
+        let mut search = LadderSearch::new(&mut bench, patterns, &reference);
         search.measure_levels(levels)?;
         let combinations = combinations(&mut search, reference.most_operations())?;
         let mut settings: Vec<Measured> = Vec::new();

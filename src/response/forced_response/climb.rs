@@ -23,8 +23,8 @@ pub(super) struct Known {
     /// Phases of harmonic 1 of the sectors there, rad, by few harmonics.
     pub(super) phases: Vec<f64>,
     pub(super) height_m: f64,
-    /// Whether few harmonics led there; else it was solved to see what is beside another point.
-    pub(super) is_led: bool,
+    /// Whether few harmonics expect this height there, under what the points before it leave.
+    pub(super) is_expected: bool,
     /// What the set leaves on few harmonics beyond what the sets before it do.
     pub(super) force: ContactForces,
     /// Amplitude of every blade with the set over that of few harmonics in the same solution, over the same by the sets before it.
@@ -39,7 +39,7 @@ pub(super) struct Climb {
     pub(super) starts_hz: Vec<f64>,
     /// Distance of points beside the top, Hz.
     pub(super) beside_hz: f64,
-    /// Distance, Hz, as narrow as a hump can be.
+    /// Distance, Hz, below which no more is looked for between two points.
     pub(super) narrow_hz: f64,
 }
 
@@ -82,23 +82,24 @@ impl Climb {
         all_hz.find_map(|top_hz| self.unseen_beside(top_hz))
     }
 
-    /// A frequency, Hz, between the best point of the last set and the one next to it, where few harmonics did not lead to the best: what
-    /// the set leaves changes there by more than they know, and the top may lie between. None where the gaps on both sides are narrow.
+    /// A frequency, Hz, between the best point of the last set and one next to it, where few harmonics do not expect the height of either:
+    /// what the set leaves changes there by more than they know, and the top may lie between. None where the gaps on both sides are narrow.
     pub(super) fn between(&self) -> Option<f64> {
         let best = self.best();
-        if best.is_led {
+        if best.is_expected {
             return None;
         }
         let gap_hz = |side: f64| {
-            let ways = self.last_set().iter();
-            let ways = ways.map(|known| side * (known.frequency_hz - best.frequency_hz));
-            ways.filter(|&way| way > 0.0).fold(f64::INFINITY, f64::min)
+            let way = |known: &Known| side * (known.frequency_hz - best.frequency_hz);
+            let beyond = self.last_set().iter().filter(|known| way(known) > 0.0);
+            let next = beyond.min_by(|a, b| way(a).total_cmp(&way(b)))?;
+            let gap_hz = way(next);
+            (!next.is_expected && 0.5 * gap_hz > self.narrow_hz).then_some(gap_hz)
         };
-        let is_wide = |gap_hz: f64| gap_hz.is_finite() && 0.5 * gap_hz > self.narrow_hz;
-        [-1.0, 1.0]
-            .into_iter()
-            .find(|&side| is_wide(gap_hz(side)))
-            .map(|side| best.frequency_hz + 0.5 * side * gap_hz(side))
+        let sides = [-1.0, 1.0].into_iter();
+        let gaps = sides.filter_map(|side| Some((side, gap_hz(side)?)));
+        let widest = gaps.max_by(|a, b| a.1.total_cmp(&b.1));
+        widest.map(|(side, gap_hz)| best.frequency_hz + 0.5 * side * gap_hz)
     }
 
     /// A frequency beside a top, Hz, on a side on which no point serves, or on which the curve has not fallen. Both sides are looked at
@@ -209,7 +210,7 @@ mod tests {
             frequency_hz,
             phases: Vec::new(),
             height_m,
-            is_led: true,
+            is_expected: true,
             force: ContactForces::default(),
             growth: Vec::new(),
         });
@@ -243,14 +244,16 @@ mod tests {
     }
 
     #[test]
-    fn gaps_beside_a_best_that_few_harmonics_did_not_lead_to_are_halved_until_they_are_narrow() {
-        let mut moved = climb(&[(100.0, 0.99), (101.0, 1.0), (102.0, 0.98)]);
+    fn the_wider_gap_beside_a_best_that_is_not_expected_is_halved_until_heights_are() {
+        let mut moved = climb(&[(100.0, 0.99), (101.0, 1.0), (101.8, 0.98)]);
         assert_eq!(moved.between(), None);
-        moved.known[0][1].is_led = false;
+        for known in &mut moved.known[0] {
+            known.is_expected = false;
+        }
         assert_eq!(moved.between(), Some(100.5));
         moved.known[0][0].frequency_hz = 100.5;
-        assert_eq!(moved.between(), Some(101.5));
-        moved.known[0][2].frequency_hz = 101.5;
+        assert_eq!(moved.between(), Some(101.4));
+        moved.known[0][2].is_expected = true;
         assert_eq!(moved.between(), None);
     }
 

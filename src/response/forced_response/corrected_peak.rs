@@ -64,7 +64,7 @@ enum Place {
     Top,
     /// To see what is beside a top.
     Beside,
-    /// Between the highest point and the next, where few harmonics did not lead to it.
+    /// Between two points whose heights few harmonics do not expect.
     Between,
 }
 
@@ -74,6 +74,8 @@ const POINTS: usize = 20;
 const BESIDE: f64 = 0.14;
 /// Distance of points beside a narrow top, in half-bandwidths of a linear resonance, which is as narrow as a hump can be.
 const BESIDE_LINEAR: f64 = 0.5;
+/// Least distance between points of a top, in half-bandwidths of a linear resonance: a hump where harmonic 5 meets one is this narrow.
+const NARROW: f64 = 0.1;
 /// Share that harmonics may change one top more than another at most.
 const MOST_MADE_UP: f64 = 0.5;
 
@@ -271,7 +273,7 @@ impl CorrectedSearch<'_> {
             known: Vec::new(),
             starts_hz: Vec::new(),
             beside_hz: self.distance_beside(top),
-            narrow_hz: self.narrow_hz(),
+            narrow_hz: NARROW * self.envelope.linear_half_bandwidth_hz,
         };
         let mut highest = Highest {
             frequency_hz: top.frequency_hz,
@@ -300,15 +302,11 @@ impl CorrectedSearch<'_> {
         Ok(Some(highest))
     }
 
-    /// Distance, Hz, of points beside a top as narrow as a resonance.
-    fn narrow_hz(&self) -> f64 {
-        BESIDE_LINEAR * self.envelope.linear_half_bandwidth_hz
-    }
-
     fn distance_beside(&self, top: &Top) -> f64 {
+        let narrow = BESIDE_LINEAR * self.envelope.linear_half_bandwidth_hz;
         f64::min(
             NEIGHBOURS * top.half_bandwidth_hz,
-            self.narrow_hz().max(BESIDE * top.half_bandwidth_hz),
+            narrow.max(BESIDE * top.half_bandwidth_hz),
         )
     }
 
@@ -351,7 +349,9 @@ impl CorrectedSearch<'_> {
                 self.solve(climb, summit.frequency_hz, Place::Top)?;
             } else if let Some(side_hz) = climb.unseen(MADE_UP) {
                 self.solve(climb, side_hz, Place::Beside)?;
-            } else if let Some(between_hz) = climb.between() {
+            } else if let Some(between_hz) =
+                { climb.between() }.filter(|_| climb.last_set().len() + 1 < POINTS)
+            {
                 self.solve(climb, between_hz, Place::Between)?;
             } else {
                 return Ok((best.height_m, best.frequency_hz));
@@ -419,6 +419,11 @@ impl CorrectedSearch<'_> {
             Place::Top | Place::Between => self.care.at_top,
             Place::Beside => self.care.at_side,
         };
+        let expected_m = match place {
+            Place::Between => self.corrected(climb, frequency_hz),
+            Place::Top | Place::Beside => None,
+        };
+        let expected_m = expected_m.map(|heights_m| heights_m.into_iter().fold(0.0, f64::max));
         let sets = climb.known.len();
         let start = self.start(sets, frequency_hz).ok_or(Status::NotBracketed)?;
         let last_set = &mut self.sets[sets - 1];
@@ -444,11 +449,17 @@ impl CorrectedSearch<'_> {
                 .for_each(|(factor, before)| *factor /= before);
         }
         let last_set = &mut self.sets[sets - 1];
+        let height_m = point.largest_amplitude_m();
         let known = Known {
             frequency_hz,
             phases,
-            height_m: point.largest_amplitude_m(),
-            is_led: place == Place::Top,
+            height_m,
+            is_expected: match expected_m {
+                Some(expected_m) => {
+                    (height_m / expected_m - 1.0).abs() <= self.care.above * self.tolerance
+                }
+                None => place == Place::Top,
+            },
             force,
             growth,
         };

@@ -27,7 +27,7 @@ impl AccuracyChoice {
         let keys = StudyDigest::of(study)?.hex();
         // A study with more patterns than the sample has the same sample.
         let sampled = sampled_patterns(study).min(study.patterns as usize);
-        let digest = reduction_digest(sector, &format!("accuracy with its worst {keys} {sampled}"));
+        let digest = reduction_digest(sector, &format!("accuracy on receptances {keys} {sampled}"));
         let stored: Option<Self> = cache.and_then(|folder| read_cached(folder, &digest));
         let asked = |stored: &Self| stored.accepted.total_cmp(&accuracy.amplitude_error).is_eq();
         if let Some(stored) = stored.filter(asked) {

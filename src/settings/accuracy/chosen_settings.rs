@@ -17,8 +17,8 @@ pub struct AccuracyChoice {
     pub setting: ReceptanceSetting,
     /// Fixed-interface modes.
     pub craig_bampton_modes: usize,
-    /// Whether the upper bound of the 95th percentile of the amplitude error is accepted, and on tuned receptances most rows of the
-    /// sample are known at the enlarged settings.
+    /// Whether the upper bound of the 95th percentile of the amplitude error is accepted, and half of the rows of the sample are known
+    /// at the enlarged settings.
     pub met: bool,
     /// Errors on the sample; none where nothing was to be measured.
     pub evidence: Option<AccuracyEvidence>,
@@ -31,9 +31,7 @@ pub struct AccuracyEvidence {
     pub patterns: Vec<u32>,
     /// Normal loads of its scenarios, N.
     pub normal_loads_n: Vec<f64>,
-    /// Tolerance of the harmonics of the reference; none where they are fixed.
-    pub reference_tolerance: Option<f64>,
-    /// `joint`, `by_knobs`, or `enlarged` on tuned receptances.
+    /// What rows are compared with: `enlarged`.
     pub reference: String,
     /// Errors of the peak amplitude.
     pub amplitude: ErrorBound,
@@ -45,9 +43,9 @@ pub struct AccuracyEvidence {
     pub amplification_factor: Option<ErrorBound>,
     /// Estimated floating-point operations of a row at the settings chosen.
     pub operations_per_row: f64,
-    /// Estimated floating-point operations of the whole choice: reference, single knobs and combinations.
+    /// Estimated floating-point operations of the whole choice.
     pub operations_of_choice: f64,
-    /// Combinations measured, in order.
+    /// Settings measured, in order.
     pub tried: Vec<TriedSetting>,
     /// Load case of each scenario of the sample; empty in a study without load cases.
     pub load_cases: Vec<LoadCaseName>,
@@ -55,10 +53,10 @@ pub struct AccuracyEvidence {
     pub errors_of_load_cases: Vec<LoadCaseErrors>,
 }
 
-/// A combination that was measured.
+/// Settings that were measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TriedSetting {
-    /// The setting, in words.
+    /// The settings, in words.
     pub setting: String,
     /// Rows measured before it was taken or given up.
     pub rows: u64,

@@ -165,7 +165,6 @@ impl Rows {
                 .clone()
                 .filter_map(|scenario| scenario.contact.normal_load_n())
                 .collect(),
-            reference_tolerance: None,
             reference: "enlarged".to_owned(),
             amplitude,
             amplitude_worst_upper: amplitude.worst_upper(setting.peak_tolerance),

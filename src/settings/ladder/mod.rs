@@ -6,7 +6,7 @@ mod measure;
 mod reference;
 mod sample;
 mod search;
-pub(super) mod setting;
+mod setting;
 
 pub(crate) use bench::{LadderBench, LadderValues};
 pub(super) use bench::{LadderEngine, LadderRow};

@@ -17,8 +17,6 @@ pub struct LadderSearch<'a, 'b> {
     bench: &'a mut LadderBench<'b>,
     patterns: &'a PatternSource,
     reference: &'a LadderReference,
-    /// Patterns on which single knobs are measured, the first ones of the sample.
-    probe: Vec<u32>,
     /// Levels of each knob in the order of [`Knob::ALL`]: places in `levels`.
     of_knob: Vec<Vec<usize>>,
     levels: Vec<Measured>,
@@ -38,43 +36,27 @@ pub struct Proposal {
 }
 
 impl<'a, 'b> LadderSearch<'a, 'b> {
-    /// A search that measures single knobs on the first `probed` patterns of the sample.
+    /// A search beside `reference`, with its base and its best levels.
     #[must_use]
     pub fn new(
         bench: &'a mut LadderBench<'b>,
         patterns: &'a PatternSource,
         reference: &'a LadderReference,
-        probed: usize,
     ) -> Self {
-        let mut probe = bench.sample().patterns.clone();
-        probe.truncate(probed);
         let mut search = Self {
             bench,
             patterns,
             reference,
-            probe,
             of_knob: vec![Vec::new(); Knob::ALL.len()],
-            levels: Vec::new(),
+            levels: vec![reference.base.clone()],
         };
-        let base = search.on_probe(&reference.base);
-        search.levels.push(base);
         for knob in [Knob::Basis, Knob::Harmonics] {
             let best = reference.parts.iter().find(|part| part.knob == Some(knob));
             if let Some(best) = best {
-                let best = search.on_probe(best);
-                search.add(knob, best);
+                search.add(knob, best.clone());
             }
         }
         search
-    }
-
-    /// A measured setting with the rows of the probe alone.
-    fn on_probe(&self, measured: &Measured) -> Measured {
-        let mut on_probe = measured.clone();
-        on_probe
-            .rows
-            .retain(|row| self.probe.contains(&row.pattern));
-        on_probe
     }
 
     fn add(&mut self, knob: Knob, level: Measured) {
@@ -91,7 +73,7 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
         &self.levels
     }
 
-    /// Measures levels of single knobs on the probe.
+    /// Measures levels of single knobs on the sample.
     ///
     /// # Errors
     /// The model cannot be reduced.
@@ -104,9 +86,8 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
                 self.of_knob[knob as usize].push(0);
                 continue;
             }
-            let engine = self.bench.engine(&setting)?;
-            let rows = engine.rows(self.patterns, &self.probe);
-            self.add(knob, Measured::new(setting, Some(knob), &engine, rows));
+            let level = self.measured(&setting, Some(knob))?;
+            self.add(knob, level);
         }
         Ok(())
     }
@@ -116,10 +97,18 @@ impl<'a, 'b> LadderSearch<'a, 'b> {
     /// # Errors
     /// The model cannot be reduced.
     pub fn measure(&mut self, setting: &LadderSetting) -> Result<Measured, PipelineError> {
+        self.measured(setting, None)
+    }
+
+    fn measured(
+        &mut self,
+        setting: &LadderSetting,
+        knob: Option<Knob>,
+    ) -> Result<Measured, PipelineError> {
         let ids = self.bench.sample().patterns.clone();
         let engine = self.bench.engine(setting)?;
         let rows = engine.rows(self.patterns, &ids);
-        Ok(Measured::new(setting.clone(), None, &engine, rows))
+        Ok(Measured::new(setting.clone(), knob, &engine, rows))
     }
 
     /// Amplitude errors of a setting that was measured on the whole sample.
@@ -261,7 +250,7 @@ mod tests {
             base: base.clone(),
             product_error: None,
         };
-        let search = LadderSearch::new(&mut bench, &patterns, &reference, 1);
+        let search = LadderSearch::new(&mut bench, &patterns, &reference);
         let [best] = &search.proposals()[..] else {
             panic!("one level of each knob")
         };

@@ -334,10 +334,10 @@ impl LadderSpace {
 }
 
 #[cfg(test)]
-pub(in crate::settings) mod tests {
+mod tests {
     use super::*;
 
-    pub(in crate::settings) fn setting(law: ContactLaw, harmonics: HarmonicLevel) -> LadderSetting {
+    fn setting(law: ContactLaw, harmonics: HarmonicLevel) -> LadderSetting {
         LadderSetting {
             basis: BasisChoice::StickAttachment { stick: 4 },
             harmonics,
@@ -349,7 +349,7 @@ pub(in crate::settings) mod tests {
         }
     }
 
-    pub(in crate::settings) fn space(law: ContactLaw) -> LadderSpace {
+    fn space(law: ContactLaw) -> LadderSpace {
         LadderSpace {
             whole_space: false,
             contact_rows: 12,
