@@ -80,14 +80,7 @@ fn what_rows_are_held_to_and_solved_on_is_said_in_plain_words() {
         for text in [&check, &run, &report, &model] {
             assert!(!text.contains("tuned_receptances"), "{text}");
         }
-        // `[accuracy]` decides when rows are solved.
-        let of_automatic = "\ntuned receptances (no reduction basis): 18 reduced coordinates";
-        let of_accuracy = "\nbasis whole space: 18 reduced coordinates";
-        let line = if *study == accuracy {
-            of_accuracy
-        } else {
-            of_automatic
-        };
+        let line = "\ntuned receptances (no reduction basis): 18 reduced coordinates";
         assert!(model.contains(line), "{model}");
     }
     // A basis has its name.
