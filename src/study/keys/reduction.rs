@@ -10,7 +10,7 @@ options_table! {
     /// `[reduction]`.
     pub(in crate::study) struct ReductionTable of ReductionOptions {
         basis: Basis = key(Name(&["auto", "stick_slide", "stick_attachment", "tuned_receptances"]), "`\"auto\"`",
-            "to which motions of the wheel a row is reduced ([formulation.md](formulation.md)). Leave it at `auto`; the others are there to compare ways of reduction. `auto` is `tuned_receptances`, which leaves out no motion of the contact, where the contact has pairs that act, but for a sector of up to 12 dofs with `[accuracy]`, which is solved in its whole space; else a basis of modes is chosen by `error`. `stick_attachment` means `auto`, and warns that its modes are left out")
+            "to which motions of the wheel a row is reduced ([formulation.md](formulation.md)). Leave it at `auto`; the others are there to compare ways of reduction. `auto` is `tuned_receptances`, which leaves out no motion of the contact, where the contact has pairs that act; else a basis of modes is chosen by `error`. `stick_attachment` means `auto`, and warns that its modes are left out")
             .of_accuracy(),
         error: f64 = key(Number(Range::above(0.0).up_to(0.5)), "0.001",
             "wanted relative error of the judged peaks by the modes left out, by which their number is chosen where it is not fixed")
