@@ -25,7 +25,7 @@ use crate::report::{
 use crate::response::forced_response::ContactCondition;
 use crate::response::harmonic_balance::Status;
 use crate::settings::{AccuracyChoice, EngineSource, Progress, Stage};
-use crate::study::{AccuracyOptions, PipelineError, Study, load_sector_model};
+use crate::study::{PipelineError, Study, load_sector_model};
 
 /// Loads solved at most.
 const MOST_LOADS: usize = 24;
@@ -95,8 +95,6 @@ fn settled(request: &OptimumRequest<'_>) -> Result<Study, PipelineError> {
     let Some(accuracy) = study.accuracy else {
         return Ok(study);
     };
-    // The folders of single loads hold the study at the settings chosen, in which a law in the place of another cannot be told.
-    let accuracy = AccuracyOptions::within(accuracy.amplitude_error);
     let [low, high] = request.between_n;
     study.contacts = [low, (low * high).sqrt(), high]
         .map(|normal_load_n| ContactCondition::Full { normal_load_n })
